@@ -16,7 +16,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     arguments : None: those of the command line, of a process that does nothing else
     """
     try:
-        from dancetutor_cli.streams import open_streams
+        from dancetutor_cli.run.process import open_streams
 
         if not open_streams():
             _say("standard output is closed; send it to a file, or to /dev/null")
@@ -28,7 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         _say("interrupted")
         status = 130
     if status == 130 and arguments is None:
-        from dancetutor_cli.interruption import end_at_once
+        from dancetutor_cli.run.process import end_at_once
 
         end_at_once(status)
     sys.exit(status)
@@ -36,12 +36,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _run(arguments: Sequence[str] | None) -> int:
     """The exit status."""
-    from dancetutor_cli.startup import collect_seldom, leave_garbage, without_threads
+    from dancetutor_cli.run.process import collect_seldom, leave_garbage, without_threads
 
     collect_seldom()
     without_threads()
     from dancetutor_cli.commands import cli
-    from dancetutor_cli.interruption import hear_again
+    from dancetutor_cli.run.process import hear_again
 
     hear_again()
     output = sys.stdout
@@ -62,9 +62,8 @@ def _told(error: BaseException) -> int:
     """Say in one line what ended the run; the exit status."""
     import click
 
-    from dancetutor_cli.errors import DancetutorError
-    from dancetutor_cli.interruption import is_interruption
-    from dancetutor_cli.streams import OUTPUT, leave_output, told
+    from dancetutor_cli.run.errors import DancetutorError
+    from dancetutor_cli.run.process import OUTPUT, is_interruption, leave_output, told
 
     if isinstance(error, click.exceptions.Exit):
         return error.exit_code
@@ -95,7 +94,7 @@ def _told(error: BaseException) -> int:
 
 def _reader_gone() -> int:
     """The reader of a pipe has gone (`| head`); nobody is left to be told. A shell makes this of SIGPIPE."""
-    from dancetutor_cli.streams import leave_output
+    from dancetutor_cli.run.process import leave_output
 
     leave_output()
     return 141

@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.formats.npz import write_npz
-from dancetutor_cli.motion.baked import Motion
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.run.reading import charts_path
 
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
 HIGHER = np.array([0.0, 0.5, 0.0])  # metres

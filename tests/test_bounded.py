@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli import bounded
-from dancetutor_cli.errors import DancetutorError, FileError, MissingFileError
-from dancetutor_cli.lint.baseline import load_baseline
+from dancetutor_cli.feet import load_preset
+from dancetutor_cli.film.layout import load_layout
+from dancetutor_cli.lint.check import load_baseline
 from dancetutor_cli.lint.configuration import load_configuration
-from dancetutor_cli.marked_yaml import parse_value, read
-from dancetutor_cli.play import load_preset
-from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.run import reading
+from dancetutor_cli.run.errors import DancetutorError, FileError, MissingFileError
+from dancetutor_cli.run.yaml_files import parse_value, read
 
 BOMB = "a: &a [x, x, x, x, x, x, x, x, x]\n" + "".join(
     f"{chr(98 + n)}: &{chr(98 + n)} [{','.join(['*' + chr(97 + n)] * 9)}]\n" for n in range(9)
@@ -72,7 +72,7 @@ def test_json_of_a_stranger_is_one_line(name: str, tmp_path: Path) -> None:
     path = tmp_path / "x.json"
     path.write_bytes(text.encode("latin-1"))
     with pytest.raises(FileError, match=said):
-        bounded.read_json(path)
+        reading.read_json(path)
     with pytest.raises(FileError, match=said):
         load_baseline(path)
 
@@ -83,7 +83,7 @@ def test_ordinary_documents_are_read(tmp_path: Path) -> None:
     assert read(path).data == {"a": {"b": [1, 2.5, {"c": False}]}}
     assert read(path).lines[("a", "b", 2, "c")] == 1
     path.write_bytes(b'\xef\xbb\xbf{"a": [1, 2.5, null, "x"]}')
-    assert bounded.read_json(path) == {"a": [1, 2.5, None, "x"]}
+    assert reading.read_json(path) == {"a": [1, 2.5, None, "x"]}
     assert parse_value("0.4", "--set") == 0.4
     with pytest.raises(FileError, match="--set"):
         parse_value("[" * 100_000, "--set")
@@ -92,15 +92,15 @@ def test_ordinary_documents_are_read(tmp_path: Path) -> None:
 def test_a_size_limit_and_what_is_not_there(tmp_path: Path) -> None:
     path = tmp_path / "x"
     path.write_bytes(b"x" * 1000)
-    assert bounded.read_bytes(path, 1000) == b"x" * 1000
+    assert reading.read_bytes(path, 1000) == b"x" * 1000
     with pytest.raises(FileError, match="larger than"):
-        bounded.read_bytes(path, 999)
+        reading.read_bytes(path, 999)
     with pytest.raises(MissingFileError):
-        bounded.read_bytes(tmp_path / "none", 999)
+        reading.read_bytes(tmp_path / "none", 999)
     with pytest.raises(FileError, match="folder"):
-        bounded.read_bytes(tmp_path, 999)
+        reading.read_bytes(tmp_path, 999)
     with pytest.raises(FileError, match="cannot be read"):
-        bounded.read_bytes(tmp_path / "a\0b", 999)
+        reading.read_bytes(tmp_path / "a\0b", 999)
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no such files")
@@ -112,10 +112,10 @@ def test_special_files_are_not_read(tmp_path: Path) -> None:
     ):  # fmt: skip
         (tmp_path / name).symlink_to(to)
         with pytest.raises(FileError, match=said):
-            bounded.read_bytes(tmp_path / name, 10_000)
-        assert not bounded.is_regular(tmp_path / name) or name == "grows"
+            reading.read_bytes(tmp_path / name, 10_000)
+        assert not reading.is_regular(tmp_path / name) or name == "grows"
     with pytest.raises(FileError, match="named pipe"):
-        bounded.read_bytes(tmp_path / "pipe", 10_000)
+        reading.read_bytes(tmp_path / "pipe", 10_000)
 
 
 SECRET = "root:*:20228:0:99999:7::\n"

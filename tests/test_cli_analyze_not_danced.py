@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from dancetutor_cli.commands.analyze import command
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.run.errors import UsageError
 
 MENU = "#TITLE:Menu;\n#MUSIC:menu.ogg;\n#OFFSET:0;\n#BPMS:0=120;\n"
 WALK = "1000\n0100\n0010\n0001\n"

@@ -7,10 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.colours import hex_colour, limb_colours, read_limb_colours
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.play.played import Limb
-from dancetutor_cli.resources import config_path
+from dancetutor_cli.feet.limbs import Limb, hex_colour, limb_colours, read_limb_colours
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.reading import config_path
 
 GOOD = config_path("colours.yaml").read_text("utf-8")
 

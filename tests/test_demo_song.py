@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli import chart as chart_room
-from dancetutor_cli import play as play_room
+from dancetutor_cli import feet as play_room
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Chart, Kind, Song
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from dancetutor_cli.__main__ import main
-from dancetutor_cli.errors import did_you_mean
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.run.errors import did_you_mean
+from dancetutor_cli.run.reading import charts_path
 
 DEMO = str(charts_path() / "two_left_feet" / "two_left_feet.ssc")
 FILM = ("render", DEMO, "--index", "3", "--section", "4:5")

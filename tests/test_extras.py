@@ -13,10 +13,9 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from dancetutor_cli.errors import UnavailableError
-from dancetutor_cli.extras import PACKAGES, how_to_add
-from dancetutor_cli.physics import backend
-from dancetutor_cli.video.scene.gl import available
+from dancetutor_cli.dance.physics import style
+from dancetutor_cli.film.scene.gl import available
+from dancetutor_cli.run.errors import PACKAGES, UnavailableError, how_to_add
 
 ROOT = Path(__file__).resolve().parent.parent
 PROJECT = ROOT / "pyproject.toml"
@@ -60,9 +59,9 @@ def test_without_an_extra_one_line_says_what_to_install(monkeypatch: pytest.Monk
     available.gpu_device.cache_clear()
     assert available.gpu_device() is None
     monkeypatch.setitem(sys.modules, "mujoco", None)
-    assert not backend.is_installed()
+    assert not style.is_installed()
     with pytest.raises(UnavailableError, match=f"{how_to_add('physics')}$"):
-        backend.engine()
+        style.engine()
 
 
 def test_plain_work_needs_no_extra(tmp_path: Path) -> None:

@@ -15,9 +15,9 @@ from typing import BinaryIO
 
 import pytest
 
-from dancetutor_cli import files
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.files import remove_leftovers, temporary_name, write_atomic
+from dancetutor_cli.run import files
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.files import remove_leftovers, temporary_name, write_atomic
 
 POSIX = pytest.mark.skipif(os.name == "nt", reason="POSIX modes, links and locks")
 ROOT = os.name != "nt" and os.geteuid() == 0
@@ -274,7 +274,7 @@ def test_a_really_full_disk(small_disk: Path) -> None:
 CHILD = """
 import sys
 from pathlib import Path
-from dancetutor_cli.files import write_atomic
+from dancetutor_cli.run.files import write_atomic
 path, contents = Path(sys.argv[1]), [bytes([c]) * 200_000 for c in b"ab"]
 sys.stdout.write("ready"); sys.stdout.flush()
 while True:
@@ -311,8 +311,8 @@ BOOT = f"import sys; sys.path.insert(0, {str(Path(files.__file__).parent.parent)
 ADDER = """
 import sys
 from pathlib import Path
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.files import write_atomic
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.files import write_atomic
 path, done = Path(sys.argv[1]), 0
 while done < 50:
     old = path.read_bytes()

@@ -13,9 +13,9 @@ import pytest
 
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.commands import cli
-from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.interruption import hear_again
+from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.pool import Report, Task, open_workers
+from dancetutor_cli.run.process import hear_again
 
 EARLY = "import sys, dancetutor_cli\nraise KeyboardInterrupt"
 KERNEL = """from dancetutor_cli.run.kernels.compiling import njit

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image, ImageSequence
 
-from dancetutor_cli.pictures import picture_bytes, read_palette, write_gif, write_webp
+from dancetutor_cli.run.pictures import picture_bytes, read_palette, write_gif, write_webp
 
 PACKAGE = Path(__file__).resolve().parent.parent / "dancetutor_cli"
 
@@ -62,4 +62,4 @@ def test_the_colours_of_a_palette(tmp_path: Path) -> None:
 def test_pictures_are_written_in_one_place() -> None:
     saving = re.compile(r"""\.save\(|imwrite|imopen|libwebp""")
     found = {path.name for path in PACKAGE.rglob("*.py") if saving.search(path.read_text(encoding="utf-8"))}
-    assert found == {"pictures.py"}
+    assert found == {"run/pictures.py"}

@@ -29,7 +29,7 @@ ONLY_POSIX = {
     "time": {"tzset"},
     "select": {"epoll", "kqueue", "poll"},
 }  # fmt: skip
-DIGITS = {Path("play/compiled.py")}  # what it reads and writes are digits, the same in every encoding
+DIGITS = {Path("feet/solver/compiled.py")}  # what it reads and writes are digits, the same in every encoding
 CAUGHT = ("ImportError", "ModuleNotFoundError", "AttributeError")
 ASKED = ("hasattr", "os.name", "sys.platform", "platform.system", "is None")
 

@@ -72,7 +72,7 @@ def test_the_package_is_the_wheels(installed: Path, tmp_path: Path) -> None:
 
 
 def test_analyze_runs_with_the_wheels_configs_and_charts(installed: Path, tmp_path: Path) -> None:
-    code = "from dancetutor_cli.resources import charts_path; print(charts_path())"
+    code = "from dancetutor_cli.run.reading import charts_path; print(charts_path())"
     charts = Path(run(installed, tmp_path, "python", "-c", code).stdout.strip())
     assert charts.is_relative_to(installed.parent)
     result = run(installed, tmp_path, "dancetutor", "analyze", "--format", "json", str(charts))
@@ -83,7 +83,7 @@ def test_analyze_runs_with_the_wheels_configs_and_charts(installed: Path, tmp_pa
 
 
 def test_a_dancer_comes_out_of_the_wheel(installed: Path, tmp_path: Path) -> None:
-    code = "from dancetutor_cli.resources import charts_path; print(charts_path())"
+    code = "from dancetutor_cli.run.reading import charts_path; print(charts_path())"
     charts = Path(run(installed, tmp_path, "python", "-c", code).stdout.strip())
     song = next(charts.rglob("*.ssc"))
     arguments = ("animate", str(song), "--difficulty", "beginner", "--section", "m1:m2", "-o", "out.glb")

@@ -14,10 +14,11 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.csv_cells import as_text, text_of
-from dancetutor_cli.workflow_commands import (
+from dancetutor_cli.run.foreign_text import (
     GuardedText,
+    as_text,
     json_without_commands,
+    text_of,
     without_commands,
     xml_without_commands,
 )

@@ -25,12 +25,11 @@ from earlier import HERE, ROOT, filmed_by, run_on
 from motion_sheet import Array, Moments, baked, baked_before, sheet, under
 from PIL import Image, ImageDraw
 
-from dancetutor_cli.bake.quality import report
-from dancetutor_cli.bake.quality.flight import ground_force
-from dancetutor_cli.bake.quality.posture import knee_angles, speeds
-from dancetutor_cli.bake.quality.resampled import Body, body_of
-from dancetutor_cli.bake.quality.zero_moment import zmp_margin
-from dancetutor_cli.motion.baked import Motion
+from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.quality.dynamics import ground_force, zmp_margin
+from dancetutor_cli.dance.quality.figures import Body, body_of
+from dancetutor_cli.dance.quality.posture import knee_angles, speeds
+from dancetutor_cli.dance.quality.report import report
 
 POINTS = ROOT / "tools" / "before_after.yaml"
 CHARTS = (ROOT / "charts", ROOT / "build" / "corpus" / "dev")

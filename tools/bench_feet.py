@@ -8,7 +8,7 @@ from __future__ import annotations
 import feet_data
 import fit_weights
 
-from dancetutor_cli.play import Preset, load_preset, solve
+from dancetutor_cli.feet import Preset, load_preset, solve
 
 GOALS = {"song": "99", "pattern": "97", "pump-single": "97", "pump-double": "97", "pump-halfdouble": "97"}
 PEERS = {  # on songs, patterns and Pump charts that are not here; see docs/feet.md

@@ -47,11 +47,10 @@ class Watch:
 
 def _request(kind: str) -> Any:
     """The film that a row is about."""
+    from dancetutor_cli.chart.selection import Selection
     from dancetutor_cli.dance.request import DanceRequest
-    from dancetutor_cli.jobs.film_request import FilmRequest
-    from dancetutor_cli.library.selection import Selection
-    from dancetutor_cli.video.film_look import FilmLook
-    from dancetutor_cli.video.layout import load_layout
+    from dancetutor_cli.film.layout import FilmLook, load_layout
+    from dancetutor_cli.film.work.request import FilmRequest
 
     renderer = "gl" if kind == "gl" else "cpu"
     look = FilmLook(load_layout("side-by-side"), (1280, 720), "draft" if kind == "draft" else "good", renderer)
@@ -61,11 +60,11 @@ def _request(kind: str) -> Any:
 
 def child(output: str, kind: str) -> None:
     """Render a part of the demo song with workers of this process and print what was seen, as JSON."""
-    from dancetutor_cli.jobs.film_plan import prepare
-    from dancetutor_cli.jobs.film_request import look_up
-    from dancetutor_cli.jobs.render import make_film
+    from dancetutor_cli.film.media.encoder import Encoding
+    from dancetutor_cli.film.work.planning import prepare
+    from dancetutor_cli.film.work.render import make_film
+    from dancetutor_cli.film.work.request import look_up
     from dancetutor_cli.run.pool import default_jobs
-    from dancetutor_cli.video.media.encoder import Encoding
 
     request = _request(kind)
     look, watch = request.look, Watch()
@@ -142,8 +141,8 @@ def film(kind: str) -> list[Row]:
 
 def gl() -> list[Row]:
     """Rows of the OpenGL renderer, none where there is no OpenGL."""
-    from dancetutor_cli.errors import UnavailableError
-    from dancetutor_cli.video.scene.gl.available import require_gl
+    from dancetutor_cli.film.scene.gl.available import require_gl
+    from dancetutor_cli.run.errors import UnavailableError
 
     try:
         require_gl()
@@ -176,17 +175,15 @@ def pack() -> list[Row]:
 
 def pack_child(folder: str) -> None:
     """Make the films of a folder's pack with workers of this process and print for how long they had work, as JSON."""
+    from dancetutor_cli.chart.selection import Selection
     from dancetutor_cli.dance.request import DanceRequest
-    from dancetutor_cli.jobs.batch import Batch
-    from dancetutor_cli.jobs.film_list import BatchRequest, film_list
-    from dancetutor_cli.jobs.film_request import FilmRequest
-    from dancetutor_cli.jobs.film_segments import common_to_workers
-    from dancetutor_cli.library.selection import Selection
+    from dancetutor_cli.film.layout import FilmLook, load_layout
+    from dancetutor_cli.film.media.encoder import Encoding
+    from dancetutor_cli.film.work.batch import Batch, BatchRequest, film_list
+    from dancetutor_cli.film.work.request import FilmRequest
+    from dancetutor_cli.film.work.segments import common_to_workers
     from dancetutor_cli.run.pool import default_jobs
     from dancetutor_cli.run.processes import ProcessWorkers
-    from dancetutor_cli.video.film_look import FilmLook
-    from dancetutor_cli.video.layout import load_layout
-    from dancetutor_cli.video.media.encoder import Encoding
 
     class Watched(ProcessWorkers):
         """Adds up the time of all workers in which they had work."""
@@ -215,11 +212,11 @@ def pack_child(folder: str) -> None:
 
 def stages_child(output: str, kind: str) -> None:
     """Print, as JSON, the seconds of processor time of the stages of a film, all in this process but for x264."""
-    from dancetutor_cli.jobs.film_plan import prepare
-    from dancetutor_cli.jobs.film_request import look_up
-    from dancetutor_cli.video.film import Film
-    from dancetutor_cli.video.media.encoder import Encoding, encode_segment
-    from dancetutor_cli.video.media.yuv import yuv420
+    from dancetutor_cli.film.film import Film
+    from dancetutor_cli.film.media.encoder import Encoding, encode_segment
+    from dancetutor_cli.film.media.yuv import yuv420
+    from dancetutor_cli.film.work.planning import prepare
+    from dancetutor_cli.film.work.request import look_up
 
     request, clock, seen = _request(kind), time.process_time, [time.process_time()]
     plan = prepare(request, look_up(request)).plan

@@ -6,13 +6,12 @@ import time
 
 import numpy as np
 
-from dancetutor_cli.bake import bake, bake_plan, planned
 from dancetutor_cli.chart import load
-from dancetutor_cli.motion.ik import full_body as ik
-from dancetutor_cli.pads import load_pad
-from dancetutor_cli.play import load_preset, solve_chart
-from dancetutor_cli.resources import charts_path
-from dancetutor_cli.rig.skeleton import dancer_skeleton
+from dancetutor_cli.dance.bake import bake, bake_plan, planned
+from dancetutor_cli.dance.ik import full_body as ik
+from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
+from dancetutor_cli.feet import load_pad, load_preset, solve_chart
+from dancetutor_cli.run.reading import charts_path
 
 Row = tuple[str, float, str, str, str]
 FPS, LENGTH = 60.0, 120.0
@@ -88,7 +87,7 @@ def _hour_memory() -> float:
 
 
 def _ik_rate() -> float:
-    from dancetutor_cli.motion.ik.full_body import Targets
+    from dancetutor_cli.dance.ik.full_body import Targets
 
     frames, rng = 20000, np.random.default_rng(1)
     turn = np.tile([1.0, 0.0, 0.0, 0.0], (frames, 1))

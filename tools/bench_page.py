@@ -13,9 +13,9 @@ import sys
 import tempfile
 from pathlib import Path
 
+from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.jobs.page import PageRequest, make_page
-from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.page.work import PageRequest, make_page
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "page"))
 from page_chromium import Browser

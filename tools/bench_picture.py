@@ -13,12 +13,12 @@ from pathlib import Path
 import numpy as np
 
 from dancetutor_cli.character import load_dancer
-from dancetutor_cli.errors import UnavailableError
-from dancetutor_cli.pads.pad import load_pad
-from dancetutor_cli.rig.kinematics import joint_matrices
-from dancetutor_cli.video.choices import QUALITIES, Quality, RendererKind
-from dancetutor_cli.video.scene.renderer import create
-from dancetutor_cli.video.scene.scene import FrameState, Scene
+from dancetutor_cli.dance.rig.body import joint_matrices
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.film.choices import QUALITIES, Quality, RendererKind
+from dancetutor_cli.film.scene.renderer import create
+from dancetutor_cli.film.scene.scene import FrameState, Scene
+from dancetutor_cli.run.errors import UnavailableError
 
 Row = tuple[str, float, str, str, str]
 SIZE = (1280, 720)

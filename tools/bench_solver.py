@@ -18,10 +18,9 @@ from unpacking import unpack
 
 from dancetutor_cli import chart as charts
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
-from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.pads import Pad, load_pad
-from dancetutor_cli.play import Preset, Rows, load_preset, prepare, solve
-from dancetutor_cli.play.engine import Engine
+from dancetutor_cli.feet import Pad, Preset, Rows, load_pad, load_preset, prepare, solve
+from dancetutor_cli.feet.solver.engine import Engine
+from dancetutor_cli.run.errors import DancetutorError
 
 ROOT = Path(__file__).resolve().parent.parent
 ARCHIVE = ROOT.parent / "shared" / "data" / "charts" / "charts.tar.xz"

@@ -22,9 +22,9 @@ from build_character_skin import ORDER, Skin, four, with_elbows
 from build_character_socks import Cut, cut_level, on_side
 
 from dancetutor_cli.character.mesh import Character, Material, Mesh
-from dancetutor_cli.colours import limb_colours
+from dancetutor_cli.dance.rig.skeleton import FINGERS, KNUCKLES
+from dancetutor_cli.feet.limbs import limb_colours
 from dancetutor_cli.formats.glb import write_glb
-from dancetutor_cli.rig.skeleton import FINGERS, KNUCKLES
 
 DATA = Path(__file__).resolve().parent.parent / "dancetutor_cli" / "character" / "data"
 MIRROR = np.array([-1.0, 1.0, 1.0])

@@ -1,4 +1,4 @@
-"""The dancer's body and clothes as signed distance functions, on the rest positions of `rig.skeleton`.
+"""The dancer's body and clothes as signed distance functions, on the rest positions of `dance.rig.skeleton`.
 
 Sections are drawn as an artist draws a front and a side view: (station, half width, depth to the front, depth to the
 back, shift to the front, shift aside), all in metres. She is 1.70 m tall, athletic, with slightly larger head, hands
@@ -23,7 +23,7 @@ from build_character_sdf import (
     tube,
 )
 
-from dancetutor_cli.rig.skeleton import dancer_skeleton
+from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 
 SKELETON = dancer_skeleton()
 REST = dict(zip(SKELETON.names, SKELETON.rest, strict=True))

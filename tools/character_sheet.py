@@ -16,11 +16,11 @@ import numpy as np
 from PIL import Image
 from pose_sheet import ROOT, Cell, cells, posed
 
-from dancetutor_cli.character.loading import load_character
-from dancetutor_cli.pads.pad import load_pad
-from dancetutor_cli.video.scene import renderer
-from dancetutor_cli.video.scene.camera import Camera
-from dancetutor_cli.video.scene.scene import FrameState, Scene
+from dancetutor_cli.character.gltf import load_character
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.film.scene import renderer
+from dancetutor_cli.film.scene.camera import Camera
+from dancetutor_cli.film.scene.scene import FrameState, Scene
 
 SIZE = (620, 1000)
 STILL = ("front", "back", "side", "three quarters", "back three quarters")

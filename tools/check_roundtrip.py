@@ -13,11 +13,11 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.jobs.annotate import AnnotateOutcome, Item, Order, annotate_song
-from dancetutor_cli.library import find_files
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.markers.changes import STYLES
+from dancetutor_cli.chart import find_files
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.markers.annotate import AnnotateOutcome, Item, Order, annotate_song
+from dancetutor_cli.markers.comments import STYLES
+from dancetutor_cli.run.errors import FileError
 
 ROOT = Path(__file__).resolve().parent.parent
 DEFAULT = (ROOT / "build" / "corpus" / "dev", ROOT / "tests" / "data" / "hostile")

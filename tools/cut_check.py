@@ -14,13 +14,12 @@ from pathlib import Path
 import motion_report
 import numpy as np
 
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance.motion import Cut, Motion, sample
 from dancetutor_cli.dance.performance import perform, solve
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.motion.baked import Cut, Motion
-from dancetutor_cli.motion.sampling import sample
-from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.run.errors import DancetutorError
 
 KINDS = ({}, {"bar": True}, {"style": "lazy"}, {"rates": (0.75,)})
 END = 1.0  # seconds at either end of a film that may differ

@@ -21,8 +21,8 @@ from pathlib import Path
 from PIL import Image, ImageSequence
 from unpacking import unpack
 
+from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.formats.npz import read_npz
-from dancetutor_cli.motion.baked import Motion
 
 ROOT = Path(__file__).resolve().parent.parent
 HERE = "now"

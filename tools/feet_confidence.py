@@ -12,7 +12,7 @@ from feet_data import Labelled
 from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
-from dancetutor_cli.play.curves import cost_at
+from dancetutor_cli.feet.solver.engine import cost_at
 
 Outcome = Sequence[tuple[Labelled, NDArray[np.bool_], NDArray[np.int64]]]
 MARGINS = (0, 20, 40, 70, 100, 140, 180, 230, 290, 360, 450, 600, 900)  # knots of the curve

@@ -18,11 +18,9 @@ from numpy.typing import NDArray
 from unpacking import unpack
 
 from dancetutor_cli import chart as reader
-from dancetutor_cli import play
+from dancetutor_cli import feet as play
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
-from dancetutor_cli.feet import overrides_for
-from dancetutor_cli.pads import Pad, load_pad
-from dancetutor_cli.play import Rows
+from dancetutor_cli.feet import Pad, Rows, load_pad, overrides_for
 
 SHARED = Path(__file__).resolve().parent.parent.parent / "shared" / "data"
 FEET = SHARED / "feet"

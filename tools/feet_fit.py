@@ -32,11 +32,11 @@ from feet_lattice import (
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from dancetutor_cli.play import Preset
-from dancetutor_cli.play.curves import cost_at
-from dancetutor_cli.play.preset import MAX_WEIGHT
-from dancetutor_cli.play.tables import DISTANCE_UNIT
-from dancetutor_cli.play.vocabulary import MOST_MS
+from dancetutor_cli.feet import Preset
+from dancetutor_cli.feet.preset import MAX_WEIGHT
+from dancetutor_cli.feet.solver.engine import cost_at
+from dancetutor_cli.feet.solver.tables import DISTANCE_UNIT
+from dancetutor_cli.feet.solver.vocabulary import MOST_MS
 
 Floats = NDArray[np.float64]
 SCALE = 100.0  # a cost of so much makes a play e times less likely

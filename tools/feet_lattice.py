@@ -14,12 +14,11 @@ from feet_data import Labelled
 from numba import njit
 from numpy.typing import NDArray
 
-from dancetutor_cli.pads import Pad
-from dancetutor_cli.play import Preset
-from dancetutor_cli.play.engine import Engine, engine_for
-from dancetutor_cli.play.store import ACTION, EVENTS, FACTS, FACTS_KNOWN, LIMBS, NEXT, TERMS_SHIFT
-from dancetutor_cli.play.tables import DISTANCE_UNIT
-from dancetutor_cli.play.vocabulary import MODELS
+from dancetutor_cli.feet import Pad, Preset
+from dancetutor_cli.feet.solver.engine import Engine, engine_for
+from dancetutor_cli.feet.solver.store import ACTION, EVENTS, FACTS, FACTS_KNOWN, LIMBS, NEXT, TERMS_SHIFT
+from dancetutor_cli.feet.solver.tables import DISTANCE_UNIT
+from dancetutor_cli.feet.solver.vocabulary import MODELS
 
 FIXED = ("twisted", "hand", "unplayable")  # not for a fit: what nobody does where there is another way
 BY_SIZE = ("stretch", "leap")  # their counts are 1/20 panels

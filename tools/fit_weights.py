@@ -24,8 +24,8 @@ from feet_fit import KNOTS, Floats, Share, fitted, least, likelihood, part, perc
 from feet_lattice import CURVES, WEIGHTS
 from numpy.typing import NDArray
 
-from dancetutor_cli import play
-from dancetutor_cli.play import Preset
+from dancetutor_cli import feet
+from dancetutor_cli.feet import Preset
 
 HERE = Path(__file__).resolve().parent
 PRESETS = HERE.parent / "configs" / "presets"
@@ -157,7 +157,7 @@ def fit_all(write: bool, only: str | None) -> None:
     for task in tasks():
         if only not in (None, task.preset):
             continue
-        home, began = play.load_preset(task.preset), time.process_time()
+        home, began = feet.load_preset(task.preset), time.process_time()
         print(f"{task.preset}: rows right")
         told("before, the preset as it is", outcome(task.judged, home))
         held_out = cross_validated(task, "likelihood", home)
@@ -198,7 +198,7 @@ def main() -> None:
     pins = feet_data.load_pins(arguments.pins)
     if not pins:
         sys.exit("no feet are pinned in these files; see `dancetutor annotate --help` for pins")
-    text = own_preset(pins, play.load_preset(arguments.preset), arguments.preset)
+    text = own_preset(pins, feet.load_preset(arguments.preset), arguments.preset)
     if arguments.out:
         arguments.out.write_text(text, encoding="utf-8")
     else:

@@ -24,8 +24,8 @@ from typing import Any
 
 from PIL import ImageFont
 
-from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.resources import PACKAGE, charts_path, config_path
+from dancetutor_cli.run.errors import DancetutorError
+from dancetutor_cli.run.reading import PACKAGE, charts_path, config_path
 
 ROOT = Path(__file__).resolve().parent.parent
 FINDS = ROOT / "tests" / "data" / "fuzz"
@@ -41,10 +41,10 @@ Reader = Callable[[Path], object]
 
 def _chart(path: Path) -> object:
     """Read, solve and lint; write feet and take them out again: the bytes must be the old ones."""
-    from dancetutor_cli.jobs.analyze import analyze_file
-    from dancetutor_cli.jobs.annotate import Item, Order, annotate_song
-    from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
-    from dancetutor_cli.library.selection import Selection
+    from dancetutor_cli.chart.selection import Selection
+    from dancetutor_cli.lint.analysis import analyze_file
+    from dancetutor_cli.lint.run import LintRequest, LintRun
+    from dancetutor_cli.markers.annotate import Item, Order, annotate_song
 
     before = path.read_bytes()
     result = analyze_file(LintRun(LintRequest()).task(path))
@@ -63,7 +63,7 @@ def _chart(path: Path) -> object:
 
 
 def _configuration(path: Path) -> object:
-    from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
+    from dancetutor_cli.lint.run import LintRequest, LintRun
 
     run = LintRun(LintRequest())
     folder = path.with_suffix(".d")
@@ -71,32 +71,32 @@ def _configuration(path: Path) -> object:
     (folder / "dancetutor.yaml").write_bytes(path.read_bytes())
     song = folder / "x.sm"
     song.write_bytes(b"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n1000\n0100\n0010\n0001\n;\n")
-    from dancetutor_cli.jobs.analyze import analyze_file
+    from dancetutor_cli.lint.analysis import analyze_file
 
     return analyze_file(run.task(song))
 
 
 def _preset(path: Path) -> object:
-    from dancetutor_cli.play import load_preset
+    from dancetutor_cli.feet import load_preset
 
     return load_preset(path, confined=True)
 
 
 def _layout(path: Path) -> object:
-    from dancetutor_cli.video.layout import load_layout
+    from dancetutor_cli.film.layout import load_layout
 
     layout = load_layout(str(path))
     return [layout.box(name, layout.size, 4) for name in ("dancer", "highway") if getattr(layout, name)]
 
 
 def _motion(path: Path) -> object:
-    from dancetutor_cli.motion.settings import load_settings
+    from dancetutor_cli.dance.settings import load_settings
 
     return load_settings(path)
 
 
 def _baseline(path: Path) -> object:
-    from dancetutor_cli.lint.baseline import load_baseline
+    from dancetutor_cli.lint.check import load_baseline
 
     known = load_baseline(path)
     known.saw("x.sm", "dance-single Hard", ["DT201"])
@@ -105,9 +105,8 @@ def _baseline(path: Path) -> object:
 
 def _play(path: Path) -> object:
     from dancetutor_cli import chart as charts
-    from dancetutor_cli.formats.play_json import read_play
-    from dancetutor_cli.pads import load_pad
-    from dancetutor_cli.play import prepare
+    from dancetutor_cli.feet import load_pad, prepare
+    from dancetutor_cli.feet.play_json import read_play
 
     chart = charts.load(charts_path() / "two_left_feet" / "two_left_feet.ssc").charts[0]
     pad = load_pad(chart.steps_type)
@@ -118,9 +117,9 @@ def _play(path: Path) -> object:
 def _editor(path: Path) -> object:
     """data.sme beside a song: read for its feet, and merged with ours."""
     from dancetutor_cli import chart as charts
+    from dancetutor_cli.chart.selection import Selection
     from dancetutor_cli.feet import overrides_for
-    from dancetutor_cli.jobs.annotate import Item, Order, annotate_song
-    from dancetutor_cli.library.selection import Selection
+    from dancetutor_cli.markers.annotate import Item, Order, annotate_song
 
     folder = path.with_suffix(".d")
     folder.mkdir(exist_ok=True)
@@ -139,7 +138,7 @@ def _character(path: Path) -> object:
 
 
 def _font(path: Path) -> object:
-    from dancetutor_cli.video.overlay.text import Typeface
+    from dancetutor_cli.film.overlay.text import Typeface
 
     face = Typeface(path)
     return face.sprite(face.fit("Ag é日 1", 20, 60), 20, (255, 255, 255))

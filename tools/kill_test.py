@@ -20,7 +20,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.run.reading import charts_path
 
 SONG = charts_path() / "two_left_feet" / "two_left_feet.ssc"
 FILM = ("--steps-type", "dance-single", "--difficulty", "hard", "--section", "m3:m4", "--size", "96x64", "--fps", "10")

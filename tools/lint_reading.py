@@ -16,11 +16,12 @@ from pathlib import Path
 from lint_table import linted
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
-from dancetutor_cli.lint.excerpt import arrows
-from dancetutor_cli.lint.finding import Finding
-from dancetutor_cli.lint.registry import all_rules, matching
+from dancetutor_cli.feet.limbs import Part
+from dancetutor_cli.feet.play import Play
+from dancetutor_cli.lint.figures import arrows
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.rule import all_rules, matching
 from dancetutor_cli.lint.subject import ChartSubject, FileSubject
-from dancetutor_cli.play.played import Part, Play
 
 BEFORE, AFTER = 9, 5  # rows, and lines of the file
 COUNTED = ("warning", "error")

@@ -17,13 +17,13 @@ from pathlib import Path
 from typing import Any
 
 from dancetutor_cli import chart as reader
-from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.jobs.analyze import solved
-from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
-from dancetutor_cli.library import find_files
+from dancetutor_cli.chart import find_files
+from dancetutor_cli.lint.analysis import solved
 from dancetutor_cli.lint.check import check_chart, check_file
-from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.lint.subject import ChartSubject, FileSubject
+from dancetutor_cli.run.errors import DancetutorError
 
 BANDS = {"dance": (3, 6, 9, 12, 999), "pump": (7, 13, 17, 20, 999)}  # the last meter of each band
 

@@ -14,15 +14,14 @@ from pathlib import Path
 from typing import Any
 
 from dancetutor_cli import chart as reader
-from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.jobs.analyze import solved
-from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
-from dancetutor_cli.library import find_files
-from dancetutor_cli.lint.layers import default_rules
-from dancetutor_cli.lint.registry import all_rules
-from dancetutor_cli.lint.rule import TimedRule
+from dancetutor_cli.chart import find_files
+from dancetutor_cli.lint.analysis import solved
+from dancetutor_cli.lint.rule import TimedRule, all_rules
+from dancetutor_cli.lint.rule_settings import default_rules
+from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.resources import config_path
+from dancetutor_cli.run.errors import DancetutorError
+from dancetutor_cli.run.reading import config_path
 
 TARGET = config_path("lint/default.yaml").parent.parent / "move_times.yaml"
 MILLISECONDS = (75, 100, 125, 150, 175, 200, 225, 250, 275, 300, 350, 400, 450)

@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from dancetutor_cli import chart as reader
+from dancetutor_cli.chart import find_files
 from dancetutor_cli.chart.model import Song
-from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.jobs.analyze import solved
-from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
-from dancetutor_cli.library import find_files
-from dancetutor_cli.meter.features import Feature, features
+from dancetutor_cli.lint.analysis import solved
+from dancetutor_cli.lint.meter_model import Feature, features
+from dancetutor_cli.lint.run import LintRequest, LintRun
+from dancetutor_cli.run.errors import DancetutorError
 
 HIGHEST = 30  # no pad's players count further without a joke
 LEAST_ROWS, LEAST_SECONDS = 40, 30.0

@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.pool import Task, default_jobs, open_workers
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -145,10 +145,9 @@ def pick(count: int, seed: int) -> list[Wanted]:
 
 def _everything(paths: tuple[Path, ...] | list[Path]) -> list[Wanted]:
     """Every chart below `paths` with a pad and enough steps; of a .sm and .ssc of one song the latter."""
-    from dancetutor_cli.chart import load
+    from dancetutor_cli.chart import find_files, load, twin
     from dancetutor_cli.chart.model import Kind
-    from dancetutor_cli.library import find_files, twin
-    from dancetutor_cli.pads import load_pad
+    from dancetutor_cli.feet import load_pad
 
     out = []
     for path in find_files([p for p in paths if p.exists()]):
@@ -167,11 +166,12 @@ def _everything(paths: tuple[Path, ...] | list[Path]) -> list[Wanted]:
 
 def measure(_: Any, wanted: Wanted, preset: str | None, bar: bool, length: float = 0.0) -> Measured:
     """Bake one chart, or a section so many seconds long, and report on it; runs in a worker process."""
-    from dancetutor_cli.bake import mines_of, report
+    from dancetutor_cli.chart.selection import Selection
+    from dancetutor_cli.dance.bake import mines_of
+    from dancetutor_cli.dance.motion import Cut
     from dancetutor_cli.dance.performance import perform, solve
+    from dancetutor_cli.dance.quality.report import report
     from dancetutor_cli.dance.request import DanceRequest
-    from dancetutor_cli.library.selection import Selection
-    from dancetutor_cli.motion.baked import Cut
     from dancetutor_cli.reports.motion_report import as_json
 
     started = time.monotonic()

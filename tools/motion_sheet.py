@@ -21,16 +21,15 @@ from earlier import baked_by
 from PIL import Image, ImageDraw
 
 from dancetutor_cli.character import load_dancer
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance.motion import Cut, Motion, sample
 from dancetutor_cli.dance.performance import perform, solve
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.motion.baked import Cut, Motion
-from dancetutor_cli.motion.sampling import sample
-from dancetutor_cli.rig.kinematics import joint_matrices
-from dancetutor_cli.video.scene import renderer
-from dancetutor_cli.video.scene.look import default_look
-from dancetutor_cli.video.scene.props import bar_matrix, with_bar
-from dancetutor_cli.video.scene.scene import FrameState, Scene
+from dancetutor_cli.dance.rig.body import joint_matrices
+from dancetutor_cli.film.scene import renderer
+from dancetutor_cli.film.scene.look import default_look
+from dancetutor_cli.film.scene.props import bar_matrix, with_bar
+from dancetutor_cli.film.scene.scene import FrameState, Scene
 
 Array = np.ndarray[Any, Any]
 SIZE = (168, 250)  # pixels of one picture

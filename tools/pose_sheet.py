@@ -200,7 +200,7 @@ def sheet(character: Character, pictures: list[Cell], columns: int, width: int, 
 
 def main(arguments: list[str]) -> None:
     """Draw what the arguments name; by default the pose sheet of the package's dancer."""
-    from dancetutor_cli.character.gltf_reader import read_character
+    from dancetutor_cli.character.gltf import read_character
 
     data = ROOT / "dancetutor_cli/character/data/dancer.glb"
     character = read_character(Path(arguments[0]) if arguments else data)

@@ -19,13 +19,13 @@ from typing import Any
 import motion_report
 import numpy as np
 
-from dancetutor_cli.bake import bake
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.performance import solve
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.rig.kinematics import world_transforms
-from dancetutor_cli.rig.skeleton import dancer_skeleton
+from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
+from dancetutor_cli.run.errors import DancetutorError
 
 LENGTH = 30.0  # seconds of a section
 

@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 
 from dancetutor_cli.character.humanoid import humanoid_of
+from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.formats.bvh import read_bvh, write_bvh
-from dancetutor_cli.motion.baked import Motion
-from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.kinematics import world_transforms
 
 POP_EVERY, POP_FRAMES = 0.4, 0.05  # seconds from pop to pop of one knee, and that it stays straight
 POP_BEND = 25.0  # degrees of bend below which a knee snaps

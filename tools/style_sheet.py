@@ -18,11 +18,11 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 from motion_sheet import AROUND, sheet
 
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance.motion import Cut
 from dancetutor_cli.dance.performance import perform, solve
+from dancetutor_cli.dance.physics.style import style_names
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.motion.baked import Cut
-from dancetutor_cli.physics.style import style_names
 
 
 def main() -> None:

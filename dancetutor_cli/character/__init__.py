@@ -1,12 +1,21 @@
 """The dancer's mesh, skin and colours; a user's character fitted to the rig."""
 
-from dancetutor_cli.character.loading import (
-    BUILT_IN,
-    DANCER,
-    check_character,
-    dressed,
-    load_character,
-    load_dancer,
-)
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from dancetutor_cli.character.gltf import BUILT_IN, DANCER, check_character, dressed, load_character, load_dancer
 
 __all__ = ["BUILT_IN", "DANCER", "check_character", "dressed", "load_character", "load_dancer"]
+_MODULES = {
+    "gltf": ("BUILT_IN", "DANCER", "check_character", "dressed", "load_character", "load_dancer"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    for module, names in _MODULES.items():
+        if name in names:
+            return getattr(import_module(f"{__name__}.{module}"), name)
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

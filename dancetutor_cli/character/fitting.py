@@ -1,9 +1,4 @@
-"""A user's character fitted to the rig: its bones found, its rest pose brought to ours, its size to a dancer's.
-
-The fitted character keeps its own bone lengths. Each joint's rest rotation is the identity and its rest pose our
-A pose, so the world rotation of a joint of our rig is the world rotation of the same joint of the character; only
-the binding pose, which may be a T pose, differs, and `inverse_bind` carries that.
-"""
+"""A user's character fitted to the rig: bones, rest pose, size; the body that a ragdoll gets of it."""
 
 from __future__ import annotations
 
@@ -13,15 +8,20 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.container import Container, read_container
-from dancetutor_cli.character.gltf_reader import character_with_nodes
+from dancetutor_cli.character.container import Container, Nodes, read_container, read_nodes
+from dancetutor_cli.character.gltf import character_with_nodes
 from dancetutor_cli.character.humanoid import find_humanoid
 from dancetutor_cli.character.mesh import Character, rest_vertices
-from dancetutor_cli.character.nodes import Nodes, read_nodes
 from dancetutor_cli.character.surfaces import drawable
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.skeleton import Skeleton, dancer_skeleton
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.skeleton import Skeleton, dancer_skeleton
+from dancetutor_cli.run.errors import FileError
+
+# A user's character fitted to the rig: its bones found, its rest pose brought to ours, its size to a dancer's.
+#
+# The fitted character keeps its own bone lengths. Each joint's rest rotation is the identity and its rest pose our
+# A pose, so the world rotation of a joint of our rig is the world rotation of the same joint of the character; only
+# the binding pose, which may be a T pose, differs, and `inverse_bind` carries that.
 
 Array = NDArray[np.float64]
 
@@ -191,3 +191,45 @@ def _foot_turn(skeleton: Skeleton, side: str) -> Array:
         return np.array([1.0, 0.0, 0.0, 0.0])
     way = skeleton.rest[skeleton.index(f"{side}_metatarsal")] - skeleton.rest[skeleton.index(f"{side}_talocrural")]
     return quat.from_axis_angle(np.array([0.0, 1.0, 0.0]), np.asarray(-np.arctan2(way[0], way[2])))
+
+
+# The body that a ragdoll gets of a character: the rig's joints in the character's own proportions.
+
+_TRUNK = ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4", "skullbase")
+
+
+def body_of(skeleton: Skeleton) -> Skeleton:
+    """The dancer's joints, resting where those of a fitted character rest; what it lacks lies in proportion.
+
+    skeleton : of a character of `character.load_character`; the project's own dancers come back as they are
+    """
+    ours = dancer_skeleton()
+    if skeleton.names == ours.names and np.allclose(skeleton.offsets, ours.offsets, atol=1e-9):
+        return ours
+    own, rest = dict(zip(skeleton.names, skeleton.rest, strict=True)), ours.rest.copy()
+    place = {name: rest[k] for k, name in enumerate(ours.names)}
+    tall = own["skullbase"][1] / place["skullbase"][1]
+    out: dict[str, np.ndarray[tuple[int], np.dtype[np.float64]]] = {}
+    known = [name for name in _TRUNK if name in own]
+    for k, name in enumerate(ours.names):
+        above = ours.names[ours.parents[k]] if ours.parents[k] >= 0 else None
+        if name in own:
+            out[name] = own[name]
+        elif name in _TRUNK:
+            index = _TRUNK.index(name)
+            low = max((n for n in known if _TRUNK.index(n) < index), key=_TRUNK.index)
+            high = min((n for n in known if _TRUNK.index(n) > index), key=_TRUNK.index)
+            share = (place[name][1] - place[low][1]) / (place[high][1] - place[low][1])
+            out[name] = own[low] + share * (own[high] - own[low])
+        elif name.endswith("_sternoclavicular"):
+            shoulder, chest = own[f"{name[0]}_shoulder"], out["vt4"]
+            out[name] = np.array([0.14 * shoulder[0], shoulder[1] + 0.05 * (shoulder[1] - chest[1]), shoulder[2]])
+        else:  # toes, face, braid
+            assert above is not None
+            out[name] = out[above] + tall * (place[name] - place[above])
+            if name.endswith("_metatarsal"):
+                out[name][1] = min(0.33 * out[above][1], out[name][1])
+    new = np.array([out[name] for name in ours.names])
+    offsets = new.copy()
+    offsets[1:] -= new[ours.parents[1:]]
+    return Skeleton(ours.names, ours.parents, offsets)

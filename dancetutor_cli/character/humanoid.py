@@ -18,9 +18,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.container import Container
-from dancetutor_cli.character.nodes import Nodes
-from dancetutor_cli.errors import FileError
+from dancetutor_cli.character.container import Container, Nodes
+from dancetutor_cli.run.errors import FileError
 
 # VRM bone: the joint of our rig, words its name may be made of
 _MIDDLE = {

@@ -1,20 +1,24 @@
-"""A character: triangle meshes skinned to a skeleton, ready for either renderer."""
+"""A character: triangle meshes skinned to a skeleton; which part are its feet; two of them side by side."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.rig.skeleton import Skeleton
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.feet.limbs import LIMBS, LimbColours, PartnerColours, limb_colours, partner_colours
+
+# A character: triangle meshes skinned to a skeleton, ready for either renderer.
 
 
 @dataclass(frozen=True, slots=True)
 class Material:
     """Colour of a mesh: base_color times texture, as in glTF. base_color : sRGB (4,) in 0..1
 
-    name : a limb of `colours.LimbColours` gives our own characters' meshes that limb's colour when they are loaded
+    name : a limb of `feet.limbs.LimbColours` gives our own characters' meshes that limb's colour when they are loaded
     texture : uint8 (h, w, 4) sRGB, or None; meshes that share a texture share the array
     cutoff : least alpha that is there, None where alpha means nothing; double_sided : seen from behind too. The
     renderers know neither: `surfaces.drawable` makes meshes of it
@@ -67,3 +71,147 @@ def rest_vertices(character: Character) -> NDArray[np.float64]:
         skin = np.einsum("vk,vkij->vij", mesh.weights.astype(np.float64), matrices[mesh.joints])
         out.append(np.einsum("vij,vj->vi", skin[:, :3, :3], mesh.positions) + skin[:, :3, 3])
     return np.concatenate(out)
+
+
+# Which part of a character are its feet, and their colours: a user's character wears them, too, where it can.
+
+FOOT = ("talocrural", "metatarsal")  # joints of a foot, after l_ or r_
+SIDES = {"l": "left_foot", "r": "right_foot"}  # of `LimbColours`
+
+
+def on_foot(character: Character, mesh: Mesh, side: str) -> NDArray[np.bool_]:
+    """Which vertices of a mesh, (v,), hang mostly on the foot of a side, "l" or "r"."""
+    names = character.skeleton.names
+    joints = [names.index(name) for part in FOOT if (name := f"{side}_{part}") in names]
+    return np.asarray((mesh.weights * np.isin(mesh.joints, joints)).sum(axis=1) > 0.5)
+
+
+def with_foot_colours(character: Character, colours: LimbColours | None = None) -> Character:
+    """The character with feet in the colours that the notes' markers have.
+
+    A foot is what hangs on ankle and toes alone; a mesh is cut there. Our own dancers wear these colours already.
+    """
+    colours = colours or limb_colours()
+    if any(mesh.material.name in SIDES.values() for mesh in character.meshes):
+        return character
+    meshes: list[Mesh] = []
+    for mesh in character.meshes:
+        rest = np.ones(len(mesh.triangles), dtype=bool)
+        for side, limb in SIDES.items():
+            foot = np.asarray(on_foot(character, mesh, side)[mesh.triangles].all(axis=1))
+            if foot.any():
+                r, g, b = (c / 255 for c in getattr(colours, limb))
+                meshes.append(_part(mesh, foot, limb, Material(limb, (r, g, b, 1.0))))
+                rest &= ~foot
+        if rest.all():
+            meshes.append(mesh)
+        elif rest.any():
+            meshes.append(_part(mesh, rest, "", mesh.material))
+    return replace(character, meshes=tuple(meshes))
+
+
+def _part(mesh: Mesh, triangles: NDArray[np.bool_], name: str, material: Material) -> Mesh:
+    """Some triangles of a mesh, with only the vertices that they use."""
+    kept, place = np.unique(mesh.triangles[triangles], return_inverse=True)
+    return replace(
+        mesh,
+        name=f"{mesh.name} {name}".strip(),
+        positions=mesh.positions[kept],
+        normals=mesh.normals[kept],
+        uv=mesh.uv[kept],
+        triangles=place.reshape(-1, 3).astype(np.int32),
+        joints=mesh.joints[kept],
+        weights=mesh.weights[kept],
+        material=material,
+        colors=None if mesh.colors is None else mesh.colors[kept],
+    )
+
+
+# Two who dance: a character with a second one beside it, the same but for the colour of the clothes.
+
+_SEEN = 0.01  # part of the textures that has to change for two to be told apart
+PREFIX = "partner_"  # of the names of the second one's joints: who asks for a joint by name gets the first one's
+
+
+def with_partner(character: Character) -> Character:
+    """Both as one character of twice as many joints, the second one's behind the first one's.
+
+    Their joints' matrices come from two motions: the joint tree of both only says where everything is at rest.
+    """
+    one, count = character.skeleton, len(character.skeleton.names)
+    parents = np.where(one.parents < 0, 0, one.parents + count).astype(one.parents.dtype)
+    offsets = one.offsets.copy()
+    offsets[0] -= one.rest[0]
+    skeleton = replace(
+        one,
+        names=(*one.names, *(PREFIX + name for name in one.names)),
+        parents=np.concatenate((one.parents, parents)),
+        offsets=np.vstack((one.offsets, offsets)),
+    )
+    paint = _Paint.of(character, partner_colours())
+    others = tuple(_other(mesh, count, paint) for mesh in character.meshes)
+    return replace(
+        character,
+        name=f"two of {character.name}",
+        skeleton=skeleton,
+        meshes=(*character.meshes, *others),
+        inverse_bind=np.concatenate((character.inverse_bind, character.inverse_bind)),
+    )
+
+
+def partner_of(character: Character) -> Character:
+    """The second one alone: the same in clothes of other colours."""
+    paint = _Paint.of(character, partner_colours())
+    return replace(character, meshes=tuple(_other(mesh, 0, paint) for mesh in character.meshes))
+
+
+@dataclass(frozen=True, slots=True)
+class _Paint:
+    """The second one's textures, by the `id` of the first one's (meshes share them); tint : where no hue is turned"""
+
+    textures: Mapping[int, NDArray[np.uint8]]
+    tint: tuple[float, float, float]
+
+    @staticmethod
+    def of(character: Character, colours: PartnerColours) -> _Paint:
+        textures = {id(t): t for mesh in character.meshes if (t := mesh.material.texture) is not None}
+        painted = {key: np.dstack((turned(t[..., :3], colours), t[..., 3])) for key, t in textures.items()}
+        differs = sum(int((painted[key] != t).any(axis=2).sum()) for key, t in textures.items())
+        plain = differs < _SEEN * sum(t.shape[0] * t.shape[1] for t in textures.values()) or not textures
+        r, g, b = (level / 255 for level in colours.tint)
+        return _Paint(painted, (r, g, b) if plain else (1.0, 1.0, 1.0))
+
+
+def _other(mesh: Mesh, count: int, paint: _Paint) -> Mesh:
+    material = mesh.material
+    texture = None if material.texture is None else paint.textures[id(material.texture)]
+    if material.name not in LIMBS:  # shoes and wristbands say whose limb it is
+        r, g, b, alpha = material.base_color
+        material = replace(material, base_color=(r * paint.tint[0], g * paint.tint[1], b * paint.tint[2], alpha))
+    return replace(
+        mesh,
+        name=PREFIX + mesh.name,
+        joints=(mesh.joints + count).astype(mesh.joints.dtype),
+        material=replace(material, texture=texture),
+    )
+
+
+def turned(rgb: NDArray[np.uint8], colours: PartnerColours) -> NDArray[np.uint8]:
+    """Colours, uint8 (h, w, 3), those of some hues turned on the colour circle; others and greys stay."""
+    values = rgb.astype(np.float32) / 255
+    high, low = values.max(axis=2), values.min(axis=2)
+    span = high - low
+    safe = np.where(span > 0, span, 1)
+    r, g, b = (values[..., k] for k in range(3))
+    hue = np.select([high == r, high == g], [(g - b) / safe % 6, (b - r) / safe + 2], (r - g) / safe + 4) * 60
+    first, last = colours.hues
+    ours = (span > colours.least * high) & (hue >= first) & (hue <= last)
+    hue = np.where(ours, (hue + colours.turn) % 360, hue)
+    sector, chroma = hue / 60, span
+    second = chroma * (1 - np.abs(sector % 2 - 1))
+    zero = np.zeros_like(second)
+    place = sector.astype(np.int64) % 6
+    table = [(chroma, second, zero), (second, chroma, zero), (zero, chroma, second)]
+    table += [(zero, second, chroma), (second, zero, chroma), (chroma, zero, second)]
+    out = np.stack([np.choose(place, [row[k] for row in table]) for k in range(3)], axis=2) + low[..., None]
+    return np.where(ours[..., None], np.round(out * 255), rgb).astype(np.uint8)

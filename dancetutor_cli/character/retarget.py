@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character.mesh import Character
-from dancetutor_cli.motion.baked import Motion
-from dancetutor_cli.numerics.smoothing import upper_envelope
-from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.kinematics import local_rotations, world_transforms
-from dancetutor_cli.rig.skeleton import Skeleton
+from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import local_rotations, world_transforms
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.smoothing import upper_envelope
 
 Array = NDArray[np.float64]
 

@@ -1,6 +1,6 @@
-"""Bytes of a chart file -> Song and Chart: positions, rows, timing.
+"""Bytes of a chart file -> Song and Chart; what a path means: packs, pairs of .sm and .ssc, selection, the music.
 
-Names are looked up when they are used, so that what games call things (`names`) is known without numpy.
+Names are looked up when they are used, so that finding files, and what games call things, needs no numpy.
 """
 
 from __future__ import annotations
@@ -10,10 +10,19 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Kind, Song
+    from dancetutor_cli.chart.music import music_file
     from dancetutor_cli.chart.reader import load, parse
+    from dancetutor_cli.chart.selection import find_files, one_song, select, select_one, twin
 
-__all__ = ["Chart", "Kind", "Song", "load", "parse"]
-_MODULES = {"model": ("Chart", "Kind", "Song"), "reader": ("load", "parse")}
+__all__ = [
+    "Chart", "Kind", "Song", "find_files", "load", "music_file", "one_song", "parse", "select", "select_one", "twin",
+]  # fmt: skip
+_MODULES = {
+    "model": ("Chart", "Kind", "Song"),
+    "music": ("music_file",),
+    "reader": ("load", "parse"),
+    "selection": ("find_files", "one_song", "select", "select_one", "twin"),
+}
 
 
 def __getattr__(name: str) -> Any:

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart import stepf2
-from dancetutor_cli.chart.holds import OTHERS_HEAD, TAIL, Cells, report
+from dancetutor_cli.chart import cells as stepf2
+from dancetutor_cli.chart.cells import OTHERS_HEAD, TAIL, Cells, report
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Kind, MeasureTable, ReadWarning, RowTable
 
 _LF, _CR, _COMMA, _BRACKET = 10, 13, 44, 91
@@ -233,7 +233,7 @@ def odd_row(
 ) -> tuple[list[int], list[tuple[str, str]], dict[int, tuple[int, str]]]:
     """The cells of one row, character by character, as the games go; and what is odd about it: code, message.
 
-    And by column what is StepF2's: the letter, and which of `stepf2.SAID` it is.
+    And by column what is StepF2's: the letter, and which of `cells.SAID` it is.
     """
     cells: list[int] = []
     found: dict[tuple[str, str], None] = {}

@@ -112,7 +112,7 @@ class Chart:
     columns : number of columns of the steps type; 0 if the type is unknown
     notes_span : byte span of the note data value in `Song.data`, after `:` up to before `;`
     tags : the chart's own tags, upper-case name -> decoded value (the first value only)
-    players : of a chart for several what each of them steps, see `chart.players`; else empty
+    players : of a chart for several what each of them steps, see `chart.note_data`; else empty
     player : of such a part whose it is, from 1, else 0; written : the chart that it is a part of, without `players`;
         first_column : its first column there
     marked : letters mark whose a note is (StepF2); of such a chart and of its parts

@@ -1,21 +1,24 @@
-"""Note data: bytes -> measures, rows and notes with their positions, of all charts of a file at once."""
+"""Note data: bytes -> measures, rows and notes of all charts of a file at once; charts for several, parted."""
 
 from __future__ import annotations
 
 import itertools
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.chart import marked, stepf2
+from dancetutor_cli.chart import cells as marked
+from dancetutor_cli.chart.cells import Cells, joined
 from dancetutor_cli.chart.grid import BLANKS, OF_PLAYERS, Grid, LineIndex, NotePart, NoteText
-from dancetutor_cli.chart.holds import Cells, joined
-from dancetutor_cli.chart.model import Kind, MeasureTable, NoteTable, ReadWarning, RowTable
+from dancetutor_cli.chart.model import Chart, Kind, MeasureTable, NoteTable, ReadWarning, RowTable
 from dancetutor_cli.chart.msd import blanked
+from dancetutor_cli.chart.names import is_routine
 from dancetutor_cli.chart.timing import Timing
+
+# Note data: bytes -> measures, rows and notes with their positions, of all charts of a file at once.
 
 _PLAYERS = 2
 _AT_ONCE = 200  # charts; a file may hold thousands
@@ -115,11 +118,11 @@ class _Found:
         ]
         warnings = [warning for at in parts for warning in self._parts[at].warnings]
         first = self._parts[parts[0]]
-        letters = stepf2.letters_of(self._text.value[start:end], form.columns) if first.letters is OF_PLAYERS else b""
+        letters = marked.letters_of(self._text.value[start:end], form.columns) if first.letters is OF_PLAYERS else b""
         shared = marked.parts_of(players[0], first.marks, form.columns, letters) if letters else []
         if len(shared) > 1:
             own = [NoteData(_table([cells], timing), *self._tables(parts[0]), ()) for cells in shared]
-            said = stepf2.for_several(len(own), letters)
+            said = marked.for_several(len(own), letters)
             warnings.insert(0, ReadWarning("stepf2-note", said, self._text.lines(start)))
         elif not form.routine:  # letters of fakes alone
             own = []
@@ -143,7 +146,7 @@ def _parts(text: NoteText, value: Value) -> list[NotePart]:
         _tell_players([text.value[a:b] for a, b in spans], text.lines(start), warnings)
     parts = [NotePart(a, b, begin, columns) for a, b in spans[:_PLAYERS]]
     parts[0].warnings += warnings
-    if len(parts) == 1 and stepf2.letters_of(text.value[start:end], columns):
+    if len(parts) == 1 and marked.letters_of(text.value[start:end], columns):
         parts[0].letters = OF_PLAYERS
     return parts
 
@@ -171,3 +174,97 @@ def _table(players: list[Cells], timing: Timing) -> NoteTable:
     return NoteTable(
         cells.tick, cells.column.astype(np.int16), cells.kind, cells.end, cells.line, judged,
     )  # fmt: skip
+
+
+# Charts for several: what each player steps, as a chart of the pad that this player stands on.
+#
+# In a couple chart each has a pad of one's own, and half of the columns. In a routine both dance on one double pad, and
+# `&` parts the notes of the first from those of the second. So they do where letters mark whose a note is (StepF2's co-
+# op, in pump-double, and in a pump-routine without `&`): there the notes of all, two or more, stand in the same rows.
+
+# Steps type of a chart for two -> that of the pad on which each of them stands.
+OWN_PADS = {"dance-couple": "dance-single", "pump-couple": "pump-single"}
+ONE_PAD = {"dance-routine": "dance-double", "pump-routine": "pump-double"}
+
+
+def parts(chart: Chart, player: int | None = None) -> tuple[Chart, ...]:
+    """What feet are found for: the chart itself, or of one for several each player's part, or that of one player."""
+    if not chart.players:
+        return (chart,)
+    return tuple(one for one in chart.players if player in (None, one.player))
+
+
+def written_parts(chart: Chart) -> tuple[Chart, ...]:
+    """What has rows of its own in the file: of a routine each player's part, else the chart."""
+    return chart.players if chart.steps_type in ONE_PAD and not chart.marked else (chart,)
+
+
+def shares_rows(part: Chart) -> bool:
+    """Whether another player's notes stand in the rows of a part: of a couple, or where letters mark whose they are."""
+    return part.written is not None and (part.marked or part.written.steps_type not in ONE_PAD)
+
+
+def with_players(chart: Chart, read: NoteData, data: bytes) -> Chart:
+    """The chart with the parts of its players, if it is for several. read : its note data; data : bytes of its file"""
+    if chart.steps_type in OWN_PADS:
+        half = chart.columns // 2
+        tables = [_columns(chart, data, first, half) for first in (0, half)]
+        columns = half
+        pad = OWN_PADS[chart.steps_type]
+    elif read.players and (chart.steps_type in ONE_PAD or not is_routine(chart.steps_type)):
+        tables = [(own.notes, own.rows) for own in read.players]
+        columns = chart.columns
+        pad = ONE_PAD.get(chart.steps_type, chart.steps_type)
+        chart = replace(chart, marked=read.marked)
+    else:
+        return chart
+    on_one_pad = chart.steps_type not in OWN_PADS
+    players = tuple(
+        replace(
+            chart,
+            steps_type=pad,
+            columns=columns,
+            notes=notes,
+            rows=rows,
+            measures=read.players[n].measures if on_one_pad else chart.measures,
+            warnings=chart.warnings if n == 0 else (),  # told once
+            player=n + 1,
+            written=chart,
+            first_column=0 if on_one_pad else n * columns,
+        )
+        for n, (notes, rows) in enumerate(tables)
+    )
+    return replace(chart, players=players)
+
+
+def _columns(chart: Chart, data: bytes, first: int, count: int) -> tuple[NoteTable, RowTable]:
+    """The notes in some columns, and the part of each row that they stand in."""
+    notes, rows = chart.notes, chart.rows
+    ours = (notes.column >= first) & (notes.column < first + count)
+    table = NoteTable(
+        notes.tick[ours],
+        (notes.column[ours] - first).astype(np.int16),
+        notes.kind[ours],
+        notes.end[ours],
+        notes.line[ours],
+        notes.judged[ours],
+    )
+    start, end = np.minimum(rows.start + first, rows.end), np.minimum(rows.start + first + count, rows.end)
+    for row in np.flatnonzero(rows.end - rows.start != chart.columns).tolist():
+        places = [*_places(data[int(rows.start[row]) : int(rows.end[row])]), int(rows.end[row] - rows.start[row])]
+        start[row] = rows.start[row] + places[min(first, len(places) - 1)]
+        end[row] = rows.start[row] + places[min(first + count, len(places) - 1)]
+    return table, RowTable(start, end, rows.line, rows.tick, rows.measure)
+
+
+def _places(row: bytes) -> list[int]:
+    """Offsets of the letters of a row; keysounds, `[...]`, stand between them."""
+    found, keysound = [], False
+    for offset, letter in enumerate(row):
+        if letter == ord("["):
+            keysound = True
+        elif not keysound:
+            found.append(offset)
+        if letter == ord("]"):
+            keysound = False
+    return found

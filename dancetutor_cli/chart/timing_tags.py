@@ -1,16 +1,288 @@
-"""From the timing tags of a song, or of a chart that has its own, to a `Timing`."""
+"""From the timing tags of a song, or of a chart that has its own, to a `Timing`: exact decimals, segments, warps."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import lru_cache
 
-from dancetutor_cli.chart import negatives, segments
-from dancetutor_cli.chart.decimals import number
-from dancetutor_cli.chart.decoding import shown
-from dancetutor_cli.chart.model import ReadWarning
-from dancetutor_cli.chart.timing import Timing
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, ReadWarning
+from dancetutor_cli.chart.msd import shown
+from dancetutor_cli.chart.timing import Segments, Timing
+
+# Numbers as the games read them (C's strtof and atoi), but exact.
+
+_NUMBER = re.compile(r"\s*([+-]?)(?:(\d+)(?:\.(\d*))?|\.(\d+))(?:[eE]([+-]?\d+))?(.*)", re.DOTALL | re.ASCII)
+_LARGEST = 35 * 10**37  # beyond it the games' floats are infinite, which they read as 0
+_SHORT = 40  # characters of a text that is worth to be kept
+_DIGITS = 60  # more decimals than any use has; Python refuses to read thousands
+
+
+def number(text: str) -> tuple[Fraction, bool]:
+    """The decimal at the start of a text, and whether the text is nothing else. Junk and the not finite are 0."""
+    return _known(text) if len(text) < _SHORT else _number(text)
+
+
+def _number(text: str) -> tuple[Fraction, bool]:
+    match = _NUMBER.match(text)
+    if match is None:
+        return Fraction(0), False
+    sign, whole, decimals, only_decimals, exponent, rest = match.groups()
+    decimals = (decimals or only_decimals or "")[:_DIGITS]
+    whole = (whole or "").lstrip("0")
+    power = int(exponent) if exponent and len(exponent) < 6 else 0 if not exponent else 10**6
+    if exponent and exponent.startswith("-") and power == 10**6:
+        power = -power
+    clean = not rest.strip()
+    if len(whole) + power > 39 or len(whole) > 2 * _DIGITS:
+        return Fraction(0), False
+    if power < -_DIGITS - 39:
+        return Fraction(0), clean
+    digits = int(whole + decimals or "0")
+    if sign == "-":
+        digits = -digits
+    scale = power - len(decimals)
+    value = Fraction(digits * 10**scale) if scale >= 0 else Fraction(digits, 10**-scale)
+    if len(whole) + power > 30 and abs(value) > _LARGEST:
+        return Fraction(0), False
+    return value, clean
+
+
+_known = lru_cache(maxsize=8192)(_number)  # charts of a song mostly say the same again
+
+
+def beat(text: str) -> tuple[Fraction, bool]:
+    """A beat; with the suffix `r` it is given in rows of 1/48 beat."""
+    stripped = text.strip()
+    bare = stripped.strip("rR")
+    value, clean = number(bare)
+    return (value / TICKS_PER_BEAT if bare != stripped else value), clean
+
+
+def tick_of(beat: Fraction) -> int:
+    """Beat to ticks of 1/48, halves to even."""
+    return round(beat * TICKS_PER_BEAT)
+
+
+# From the text of timing tags to segments in beats: exact decimals; junk is named in warnings, not guessed.
+
+FAST_BPM = 9_999_999  # anything faster is a warp, as the games have it
+MAX_BEAT = 2**30 // TICKS_PER_BEAT  # beyond this row numbers overflow in the games
+
+Pairs = list[tuple[Fraction, Fraction]]  # (beat, value) in file order
+Warn = Callable[[str, str], None]  # code, message
+
+
+@dataclass(slots=True)
+class Raw:
+    """Segments of one song or chart in beats: BPM, seconds, seconds, beats, beats; offset in seconds."""
+
+    bpms: Pairs = field(default_factory=list)
+    stops: Pairs = field(default_factory=list)
+    delays: Pairs = field(default_factory=list)
+    warps: Pairs = field(default_factory=list)
+    fakes: Pairs = field(default_factory=list)
+    offset: Fraction = Fraction(0)
+
+
+def entries(text: str) -> list[tuple[str, list[str]]]:
+    """The entries of `a=b,a=b`, each with its parts; empty parts do not count, as in the games."""
+    return [(entry, [p for p in entry.split("=") if p]) for entry in text.split(",") if entry.strip()]
+
+
+def pairs(text: str, tag: str, negative: bool, warn: Warn) -> Pairs:
+    """The usable entries of `beat=value,beat=value` in file order. Only with `negative` may value and beat be so."""
+    out: Pairs = []
+    for entry, parts in entries(text):
+        if len(parts) != 2:
+            warn("odd-timing", f"{tag} entry '{shown(entry)}' has not exactly one '=' and is ignored")
+            continue
+        (at, clean), (value, clean_value) = beat(parts[0]), number(parts[1])
+        below = value.numerator < 0  # ten times as quick as to compare fractions
+        if abs(at.numerator) > MAX_BEAT * at.denominator:
+            warn("odd-timing", f"{tag} entry '{shown(entry)}' is beyond every song and is ignored")
+        elif (below or (at.numerator < 0 and tag in ("BPMS", "STOPS"))) and not negative:
+            warn("odd-timing", f"{tag} entry '{shown(entry)}' is negative and is ignored")
+        elif not value.numerator:
+            if not clean_value or tag != "STOPS":
+                warn("odd-timing", f"{tag} entry '{shown(entry)}' has no usable value and is ignored")
+        else:
+            if not clean or not clean_value:
+                read = f"{float(at):g}={float(value):g}"
+                warn("odd-timing", f"{tag} entry '{shown(entry)}' is no pair of numbers; read as {read}")
+            out.append((at, value))
+    return out
+
+
+def at_ticks(segments: Pairs) -> Segments:
+    """Beats to ticks; of several entries on one tick the last counts."""
+    return tuple(sorted({tick_of(at): value for at, value in segments}.items()))
+
+
+def lengths_at_ticks(segments: Pairs) -> Segments:
+    """The same for warps and fakes, whose values are lengths: whole ticks too."""
+    found = {
+        tick_of(at): tick_of(min(length, Fraction(2 * MAX_BEAT))) for at, length in segments
+    }  # to the end of every song
+    return tuple((at, Fraction(length)) for at, length in sorted(found.items()) if length > 0)
+
+
+def holds_segment(tag: str, text: str) -> bool:
+    """Whether a chart's own timing tag holds a segment, so that the chart leaves the song's timing.
+
+    Source: the games' readers of TIMESIGNATURES, TICKCOUNTS, COMBOS, SPEEDS, SCROLLS and LABELS. The other timing
+    tags are asked through their pairs; an OFFSET alone switches nothing.
+    """
+    least = {"TIMESIGNATURES": 3, "TICKCOUNTS": 2, "COMBOS": 2, "SPEEDS": 3, "SCROLLS": 2, "LABELS": 2}[tag]
+    for _, parts in entries(text):
+        if len(parts) < least or (tag in ("TICKCOUNTS", "LABELS") and len(parts) != 2):
+            continue
+        numbers = [number(p)[0] for p in parts]
+        if tag == "TIMESIGNATURES" and (numbers[1] < 1 or numbers[2] < 1):
+            continue
+        if numbers[0] >= 0 or tag in ("TICKCOUNTS", "COMBOS"):
+            return True
+    return False
+
+
+def odd_signatures(text: str) -> list[str]:
+    """Entries of TIMESIGNATURES that the games ignore."""
+    out = []
+    for entry, parts in entries(text):
+        numbers = [math.trunc(number(p)[0]) for p in parts[:3]]
+        if len(numbers) < 3 or numbers[0] < 0 or numbers[1] < 1 or numbers[2] < 1:
+            out.append(shown(entry))
+    return out
+
+
+def warner(into: list[ReadWarning], line: int) -> Warn:
+    """A function that adds warnings about one line; of more than 20 with one code the rest is only counted."""
+    seen: dict[str, int] = {}
+
+    def warn(code: str, message: str) -> None:
+        seen[code] = seen.get(code, 0) + 1
+        if seen[code] <= 20:
+            into.append(ReadWarning(code, message, line))
+        elif seen[code] == 21:
+            into.append(ReadWarning(code, "more like these on this line", line))
+
+    return warn
+
+
+def overlaps(warps: Sequence[tuple[Fraction, Fraction]]) -> list[Fraction]:
+    """Beats at which a warp starts inside the one before."""
+    order = sorted(warps)
+    return [order[i + 1][0] for i in range(len(order) - 1) if order[i + 1][0] < sum(order[i])]
+
+
+# Negative and infinite BPMs and negative stops, the old way to skip beats, become warps.
+
+
+def has_tricks(raw: Raw) -> bool:
+    """Whether there is something to turn into warps, or a stop before beat 0."""
+    return any(v < 0 or v > FAST_BPM for _, v in raw.bpms) or any(b < 0 or v < 0 for b, v in raw.stops)
+
+
+def to_warps(raw: Raw) -> Raw:
+    """The same timing without tricks, as StepMania 5 and ITGmania make it of an .sm file.
+
+    Time is followed through the changes. Where it starts to run backwards (or not at all) a warp begins; it ends
+    where time is back at that point. Source: the games' `ProcessBPMsAndStops`.
+    """
+    walk = _Walk(raw)
+    before = [pair for pair in sorted(raw.bpms, key=_beat) if pair[0] <= 0]
+    bpms = [pair for pair in sorted(raw.bpms, key=_beat) if pair[0] > 0]
+    stops = [pair for pair in sorted(raw.stops, key=_beat) if pair[0] >= 0]
+    walk.out.offset -= sum((value for at, value in raw.stops if at < 0), Fraction(0))
+    walk.start(before[-1][1] if before else bpms.pop(0)[1] if bpms else Fraction(60))
+    changes = sorted([(at, 0, v) for at, v in bpms] + [(at, 1, v) for at, v in stops], key=lambda c: c[:2])
+    for at, is_stop, value in changes:
+        walk.advance(at)
+        if is_stop:
+            walk.stop(at, value)
+        else:
+            walk.change(at, value)
+    walk.finish()
+    return walk.out
+
+
+def _beat(pair: tuple[Fraction, Fraction]) -> Fraction:
+    return pair[0]
+
+
+def _runs(bpm: Fraction) -> bool:
+    return 0 < bpm <= FAST_BPM
+
+
+def _short(value: Fraction) -> Fraction:
+    """Keeps sums over thousands of BPMs from growing without end; exact where people look."""
+    return value if value.denominator < 1 << 512 else Fraction(round(value * (1 << 96)), 1 << 96)
+
+
+class _Walk:
+    """Follows time through the changes. `ahead` : how far time is past the start of the open warp, in seconds."""
+
+    def __init__(self, raw: Raw) -> None:
+        self.out = Raw(delays=raw.delays, warps=list(raw.warps), fakes=raw.fakes, offset=raw.offset)
+        self.bpm = self.bpm_before = Fraction(0)
+        self.here = self.ahead = Fraction(0)
+        self.warp: Fraction | None = None
+
+    def start(self, bpm: Fraction) -> None:
+        self.bpm = bpm
+        if _runs(bpm):
+            self.out.bpms.append((Fraction(0), bpm))
+
+    def advance(self, at: Fraction) -> None:
+        """Let time pass up to the next change; the open warp may end on the way."""
+        if self.warp is not None and self.bpm <= FAST_BPM:
+            self.ahead = _short(self.ahead + (at - self.here) * 60 / self.bpm)
+            if self.bpm > 0 and self.ahead > 0:
+                self._end(at - self.ahead * self.bpm / 60)
+                self.warp = None
+        self.here = at
+
+    def change(self, at: Fraction, bpm: Fraction) -> None:
+        if self.warp is None:
+            if _runs(bpm):
+                self.out.bpms.append((at, bpm))
+            else:
+                self.warp, self.bpm_before, self.ahead = at, self.bpm, Fraction(0)
+        self.bpm = bpm
+
+    def stop(self, at: Fraction, seconds: Fraction) -> None:
+        if self.warp is None:
+            if seconds < 0:
+                self.warp, self.bpm_before, self.ahead = at, self.bpm, seconds
+            else:
+                self.out.stops.append((at, seconds))
+            return
+        self.ahead += seconds
+        if seconds > 0 and self.ahead > 0:  # the stop makes up for more than was skipped: it stops for the rest
+            self.out.stops.append((at, self.ahead))
+            if _runs(self.bpm):
+                self._end(at)
+                self.warp = None
+            else:
+                self.out.warps.append((self.warp, at - self.warp))
+                self.warp, self.ahead = at, Fraction(0)
+
+    def finish(self) -> None:
+        if self.warp is not None:
+            self._end(self.here - self.ahead * self.bpm / 60 if _runs(self.bpm) else Fraction(MAX_BEAT))
+
+    def _end(self, at: Fraction) -> None:
+        """Close the open warp; a BPM that changed inside counts from its start."""
+        assert self.warp is not None
+        self.out.warps.append((self.warp, at - self.warp))
+        if _runs(self.bpm) and self.bpm != self.bpm_before:
+            self.out.bpms.append((self.warp, self.bpm))
+
+
+# From the timing tags of a song, or of a chart that has its own, to a `Timing`.
 
 TIMING_TAGS = frozenset({
     "BPMS", "STOPS", "DELAYS", "WARPS", "FAKES", "OFFSET", "TIMESIGNATURES", "TICKCOUNTS", "COMBOS", "SPEEDS",
@@ -40,21 +312,21 @@ class Source:
 
 def read(tags: Mapping[str, Text], source: Source, offset: Fraction, warnings: list[ReadWarning], line: int) -> Timing:
     """The timing that tags describe; `offset` holds where they have no OFFSET, `line` where they have no BPMS."""
-    raw = segments.Raw(offset=offset)
+    raw = Raw(offset=offset)
     for name, into in zip(_PAIRS, (raw.bpms, raw.stops, raw.delays, raw.warps, raw.fakes), strict=True):
         if tag := tags.get(name):
-            warn = segments.warner(warnings, tag.line)
+            warn = warner(warnings, tag.line)
             if source.sm and name in _SSC_ONLY:
                 if tag.value.strip():
                     warn("odd-timing", f"{name} is ignored: the games read it only in .ssc files")
                 continue
             negative = source.sm and name in ("BPMS", "STOPS")
-            into.extend(segments.pairs(tag.value, name, negative, warn))
+            into.extend(pairs(tag.value, name, negative, warn))
     if tag := tags.get("OFFSET"):
         raw.offset = _offset(tag, warnings)
     if tag := tags.get("TIMESIGNATURES"):
-        warn = segments.warner(warnings, tag.line)
-        for entry in segments.odd_signatures(tag.value):
+        warn = warner(warnings, tag.line)
+        for entry in odd_signatures(tag.value):
             warn("odd-time-signature", f"time signature '{entry}' is ignored; measures have 4 beats in note data")
     at = tags["BPMS"].line if "BPMS" in tags else line
     if not source.sm and source.version < SPLIT_TIMING_VERSION:
@@ -70,9 +342,9 @@ def is_own(tags: Mapping[str, Text], source: Source) -> bool:
     if source.version < SPLIT_TIMING_VERSION:
         return False
     return any(
-        bool(segments.pairs(tag.value, name, False, lambda code, message: None))
+        bool(pairs(tag.value, name, False, lambda code, message: None))
         if name in _PAIRS
-        else segments.holds_segment(name, tag.value)
+        else holds_segment(name, tag.value)
         for name, tag in tags.items()
         if name in TIMING_TAGS and name != "OFFSET"
     )
@@ -86,22 +358,22 @@ def _offset(tag: Text, warnings: list[ReadWarning]) -> Fraction:
     return value
 
 
-def _built(raw: segments.Raw, warnings: list[ReadWarning], line: int) -> Timing:
-    warn = segments.warner(warnings, line)
-    for beat in segments.overlaps(raw.warps):
+def _built(raw: Raw, warnings: list[ReadWarning], line: int) -> Timing:
+    warn = warner(warnings, line)
+    for beat in overlaps(raw.warps):
         warn("odd-timing", f"warps overlap at beat {float(beat):g}")
     for beat, value in (*raw.stops, *raw.delays):
         if abs(value) > _LONG:
             warn("odd-timing", f"stop of {float(value):g} s at beat {float(beat):g} is more than an hour")
-    if negatives.has_tricks(raw):
-        if any(value < 0 for _, value in raw.stops) or not all(0 < v <= segments.FAST_BPM for _, v in raw.bpms):
+    if has_tricks(raw):
+        if any(value < 0 for _, value in raw.stops) or not all(0 < v <= FAST_BPM for _, v in raw.bpms):
             warn("negative-timing", "negative or endless BPMs or stops: read as warps")
-        raw = negatives.to_warps(raw)
+        raw = to_warps(raw)
     if not raw.bpms:
         warn("no-bpm", "no usable BPM: 60 is taken")
         raw.bpms.append((Fraction(0), Fraction(60)))
-    bpms = segments.at_ticks(raw.bpms)
+    bpms = at_ticks(raw.bpms)
     return Timing(
-        bpms=((0, bpms[0][1]), *bpms[1:]), stops=segments.at_ticks(raw.stops), delays=segments.at_ticks(raw.delays),
-        warps=segments.lengths_at_ticks(raw.warps), fakes=segments.lengths_at_ticks(raw.fakes), offset=raw.offset,
+        bpms=((0, bpms[0][1]), *bpms[1:]), stops=at_ticks(raw.stops), delays=at_ticks(raw.delays),
+        warps=lengths_at_ticks(raw.warps), fakes=lengths_at_ticks(raw.fakes), offset=raw.offset,
     )  # fmt: skip

@@ -7,7 +7,7 @@ import importlib
 import click
 
 import dancetutor_cli
-from dancetutor_cli.errors import did_you_mean
+from dancetutor_cli.run.errors import did_you_mean
 
 # name -> (module, short help); the short help stands here so that `--help` imports no subcommand.
 COMMANDS = {
@@ -65,6 +65,6 @@ def cli(context: click.Context) -> None:
     if context.invoked_subcommand is None:
         from pathlib import Path
 
-        from dancetutor_cli.commands.first_steps import first_steps
+        from dancetutor_cli.commands.first_run import first_steps
 
         click.echo(first_steps(Path()))

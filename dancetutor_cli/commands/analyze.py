@@ -10,29 +10,28 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dancetutor_cli.commands.chart_options import Selection, preset_option, selection_options
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.commands.arguments import GivenPath, Source, fixes, folder, named, rules, sources
+from dancetutor_cli.commands.chart_options import preset_option, selection_options
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.commands.names import fixes, folder, named, rules
-from dancetutor_cli.commands.pack_options import pack_options
-from dancetutor_cli.commands.paths import GivenPath
-from dancetutor_cli.commands.sources import Source, sources
-from dancetutor_cli.errors import DancetutorError, UsageError
-from dancetutor_cli.outputs import check_file
+from dancetutor_cli.commands.pack import pack_options
 from dancetutor_cli.reports.formats import FORMATS
+from dancetutor_cli.run.errors import DancetutorError, UsageError
+from dancetutor_cli.run.files import check_file
 from dancetutor_cli.run.trust import results_folder
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.analyze import AnalyzeTask
-    from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
-    from dancetutor_cli.reports.tally import Tally
+    from dancetutor_cli.lint.analysis import AnalyzeTask
+    from dancetutor_cli.lint.run import LintRequest, LintRun
+    from dancetutor_cli.reports.formats import Tally
 
 
 def _explain(context: click.Context, _: click.Parameter, value: str | None) -> None:
     """Print the documentation of a rule and end; needs no PATH."""
     if value is None or context.resilient_parsing:
         return
-    from dancetutor_cli.lint.registry import rule_named
-    from dancetutor_cli.reports.explain import explain, explain_all
+    from dancetutor_cli.lint.rule import rule_named
+    from dancetutor_cli.reports.text_report import explain, explain_all
 
     click.echo(explain_all() if value.lower() == "all" else explain(rule_named(value)), nl=False)
     context.exit()
@@ -151,7 +150,7 @@ def command(**options: Any) -> int:  # fmt: skip
 
     Exit status: 0 no findings, 1 findings, 2 something could not be read or run.
     """
-    from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
+    from dancetutor_cli.lint.run import LintRequest, LintRun
 
     request = LintRequest(
         selection=Selection(options["steps_type"], options["difficulty"], options["index"], options["player"]),
@@ -171,9 +170,8 @@ def command(**options: Any) -> int:  # fmt: skip
 
 def _watch(request: LintRequest, options: dict[str, Any]) -> int:
     """Run for all files, then for those that are saved, until Ctrl-C."""
-    from dancetutor_cli.jobs.lint_run import LintRun
-    from dancetutor_cli.jobs.watch import changes
-    from dancetutor_cli.library import find_files
+    from dancetutor_cli.chart import find_files
+    from dancetutor_cli.lint.run import LintRun, changes
 
     if any(str(path) == "-" for path in options["paths"]):
         raise UsageError("--watch needs files or folders, not standard input")
@@ -200,13 +198,12 @@ def _report_errors(work: Callable[[], object]) -> None:
 
 
 def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
-    from dancetutor_cli.jobs.analyze_all import analyze_all
-    from dancetutor_cli.jobs.cache import ResultCache, default_folder
-    from dancetutor_cli.reports.formats import open_brief_report, open_report
-    from dancetutor_cli.reports.tally import Tally
+    from dancetutor_cli.lint.cache import ResultCache, default_folder
+    from dancetutor_cli.lint.run import analyze_all
+    from dancetutor_cli.reports.formats import Tally, open_brief_report, open_report
 
     if options["sheet"] is not None:
-        from dancetutor_cli.commands.chart_sheet import check_sheet
+        from dancetutor_cli.commands.pack import check_sheet
 
         check_sheet(options["sheet"], len(files))
     if options["update_baseline"] and options["baseline"] is not None:
@@ -217,10 +214,10 @@ def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
 
         run.open_baseline(first)
         return fix_all(run, [run.task(path, data) for path, data in files], options)
-    from dancetutor_cli.commands.pack_report import PackReport
+    from dancetutor_cli.commands.pack import PackReport
 
     if options["beside"] is not None:
-        from dancetutor_cli.commands.pack_report import tell_beside
+        from dancetutor_cli.commands.pack import tell_beside
 
         return tell_beside([run.task(path, data) for path, data in files], options)
     tally = Tally(run.fail_on(first), options["exit_zero"])
@@ -251,7 +248,7 @@ def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
     for line in pack.said():
         click.echo(line, err=True)
     if options["sheet"] is not None and not tally.unreadable:
-        from dancetutor_cli.commands.chart_sheet import write_sheet
+        from dancetutor_cli.commands.pack import write_sheet
 
         click.echo(write_sheet(options["sheet"], tasks), err=True)
     _finish(run, tally, options)
@@ -272,7 +269,7 @@ def _before_work(tasks: Sequence[AnalyzeTask]) -> None:
     solves_often = any(task.suggest or task.alternatives for task in tasks)
 
     def size() -> int:
-        from dancetutor_cli.library.selection import note_bytes
+        from dancetutor_cli.chart.selection import note_bytes
 
         return sum(note_bytes(task.path, task.selection, task.data) for task in tasks)
 

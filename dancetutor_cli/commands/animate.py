@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 
 import click
 
+from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.chart.timing import FASTEST, SLOWEST
+from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, into
 from dancetutor_cli.commands.chart_options import (
     TABLE,
-    Selection,
     character_option,
     form_option,
     gait_option,
@@ -27,19 +28,16 @@ from dancetutor_cli.commands.chart_options import (
     style_option,
 )
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.commands.long_work import LONG, confirm_long
-from dancetutor_cli.commands.paths import GivenPath
-from dancetutor_cli.commands.records import into
-from dancetutor_cli.errors import UsageError
 from dancetutor_cli.formats.writers import FORMATS
-from dancetutor_cli.outputs import check_file, one_of
+from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.files import check_file, one_of
 
 if TYPE_CHECKING:
-    from dancetutor_cli.bake import MotionReport
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.dance.performance import Performance
+    from dancetutor_cli.dance.quality.figures import MotionReport
     from dancetutor_cli.dance.request import ChartChoice
-    from dancetutor_cli.jobs.animation import AnimatedDancer
+    from dancetutor_cli.formats.animation import AnimatedDancer
 
 _FILE = GivenPath()
 AFTER = 2.5  # seconds after the last row that a section may still reach
@@ -124,14 +122,14 @@ def command(file: Path, selection: Selection, dance: DanceOptions, result: Resul
     NAME-p2, of one clock, each dancer on her place; with --player one.
     """
     from dancetutor_cli.character import DANCER, dressed, load_character
-    from dancetutor_cli.character.partner import partner_of
+    from dancetutor_cli.character.mesh import partner_of
+    from dancetutor_cli.chart import one_song
+    from dancetutor_cli.chart.selection import note_bytes
     from dancetutor_cli.dance.performance import perform, pooled, solve
     from dancetutor_cli.dance.request import DanceRequest, check_request, read_chart, with_style
-    from dancetutor_cli.jobs.animation import AnimatedDancer, Animation
-    from dancetutor_cli.library import one_song
-    from dancetutor_cli.library.selection import note_bytes
-    from dancetutor_cli.lint.presets import choice_for
-    from dancetutor_cli.reports.safe import safe
+    from dancetutor_cli.formats.animation import AnimatedDancer, Animation
+    from dancetutor_cli.lint.configuration import choice_for
+    from dancetutor_cli.reports.terminal import safe
 
     _check(result)
     output, character = result.output, result.character
@@ -217,9 +215,9 @@ def _write(dance: AnimatedDancer, places: _Places, report: bool) -> None:
         click.echo(f"warning: {note}", err=True)
     click.echo(f"{places.output}: {form.write(places.output, dance)}, {dance.label}")
     if measured:
-        from dancetutor_cli.bake import mines_of
-        from dancetutor_cli.bake import report as report_of
-        from dancetutor_cli.bake.quality.retargeting import with_distances
+        from dancetutor_cli.dance.bake import mines_of
+        from dancetutor_cli.dance.quality.report import report as report_of
+        from dancetutor_cli.dance.quality.report import with_distances
 
         dancer = dance.animation.performance.dancers[dance.number]
         whole = report_of(dance.baked.motion, mines_of(dancer.play, dancer.pad))
@@ -241,13 +239,13 @@ def _report(report: MotionReport, asked_for: bool, places: _Places) -> None:
         for note in report.notes:
             click.echo(f"note: {note}")
     if places.report is not None:
-        from dancetutor_cli.files import write_atomic
         from dancetutor_cli.reports.motion_report import as_json
+        from dancetutor_cli.run.files import write_atomic
 
         write_atomic(places.report, (json.dumps(as_json(report), indent=1) + "\n").encode())
         click.echo(f"{places.report}: the report")
     if places.plot is not None:
-        from dancetutor_cli.reports.motion_plot import write_plot
+        from dancetutor_cli.reports.motion_report import write_plot
 
         write_plot(places.plot, report)
         click.echo(f"{places.plot}: the plot")

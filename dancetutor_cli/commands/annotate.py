@@ -10,17 +10,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.commands.chart_options import Selection, preset_option, selection_options, verbose_option
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.commands.arguments import GivenPath, into, within_folders
+from dancetutor_cli.commands.chart_options import preset_option, selection_options, verbose_option
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.commands.paths import GivenPath, within_folders
-from dancetutor_cli.commands.records import into
-from dancetutor_cli.errors import UsageError, did_you_mean
-from dancetutor_cli.outputs import check_folder
-from dancetutor_cli.reports.diff import coloured
-from dancetutor_cli.reports.joined_warnings import JoinedWarnings
+from dancetutor_cli.reports.terminal import JoinedWarnings, coloured
+from dancetutor_cli.run.errors import UsageError, did_you_mean
+from dancetutor_cli.run.files import check_folder
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.annotate import AnnotateOutcome, Item, Order
+    from dancetutor_cli.markers.annotate import AnnotateOutcome, Item, Order
 
 STYLES = ("measure", "rows", "sidecar", "smeditor", "edit", "theme")
 STRIPPED = (*STYLES, "background")  # and what `render --background --into-file` has entered
@@ -88,9 +87,9 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
 
     Exit status: 0 done, 1 --check found something, 2 something could not be read or written.
     """
-    from dancetutor_cli.jobs.annotate import Order
-    from dancetutor_cli.library import find_files
-    from dancetutor_cli.lint.presets import choice_of
+    from dancetutor_cli.chart import find_files
+    from dancetutor_cli.lint.configuration import choice_of
+    from dancetutor_cli.markers.annotate import Order
 
     if not wish.strip and "background" in (wish.styles or ()):
         raise UsageError("the style 'background' is a film: `render --background --into-file` writes it; add --strip")
@@ -116,7 +115,7 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
     talk = _Talk(order, wish.check, JoinedWarnings(every=wish.verbose))
     talk.begin()
     if not wish.strip:
-        from dancetutor_cli.library.selection import note_bytes
+        from dancetutor_cli.chart.selection import note_bytes
 
         tell_of_compiling(
             choice_of(wish.preset), lambda: sum(note_bytes(item.source, Selection()) for song in songs for item in song)
@@ -131,7 +130,7 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
 
 def _items(paths: Sequence[Path], output: Path | None, files: Sequence[Path]) -> list[Item]:
     """Where each file goes. Under -o DIR: a file into DIR, what lies in a folder at the same place below DIR."""
-    from dancetutor_cli.jobs.annotate import Item
+    from dancetutor_cli.markers.annotate import Item
 
     if output is None:
         return [Item(path, path) for path in files]
@@ -157,14 +156,14 @@ def _songs(items: Sequence[Item]) -> list[tuple[Item, ...]]:
 
 def _outcomes(songs: Sequence[tuple[Item, ...]], order: Order, jobs: int | None) -> Iterator[AnnotateOutcome]:
     """What became of each file, in the order of the files as far as they are done."""
-    from dancetutor_cli.jobs.annotate import annotate_song
+    from dancetutor_cli.markers.annotate import annotate_song
 
     wanted = jobs or _fitting_jobs(len(songs))
     if min(wanted, len(songs)) <= 1:
         for song in songs:
             yield from annotate_song(song, order)
         return
-    from dancetutor_cli.jobs.annotate import annotate_task
+    from dancetutor_cli.markers.annotate import annotate_task
     from dancetutor_cli.run.pool import Task, open_workers
 
     workers = open_workers(min(wanted, len(songs)), lambda key, n: None)
@@ -205,7 +204,7 @@ class _Talk:
 
     def begin(self) -> None:
         if "rows" in self.order.styles and not self.order.strip:
-            from dancetutor_cli.markers.row_comments import WARNING
+            from dancetutor_cli.markers.comments import WARNING
 
             click.echo(f"warning: {WARNING}", err=True)
 
@@ -275,6 +274,6 @@ def _details(outcome: AnnotateOutcome) -> str:
 
 
 def _safe(text: str) -> str:
-    from dancetutor_cli.reports.safe import safe
+    from dancetutor_cli.reports.terminal import safe
 
     return safe(text)

@@ -7,9 +7,8 @@ from typing import Any, TypeVar
 
 import click
 
-from dancetutor_cli.commands.names import characters, difficulties, folder, named, steps_types
-from dancetutor_cli.commands.paths import GivenPath
-from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.commands.arguments import GivenPath, characters, difficulties, folder, named, steps_types
 
 __all__ = [
     "TABLE",
@@ -60,7 +59,7 @@ def selection_options(command: _Command) -> _Command:
 
 
 def preset_option(command: _Command) -> _Command:
-    """Add --preset; the function gets keyword argument `preset`, to be given to `lint.presets`."""
+    """Add --preset; the function gets keyword argument `preset`, to be given to `lint.configuration`."""
     option = click.option(
         "--preset",
         shell_complete=named(folder("presets")),
@@ -71,7 +70,7 @@ def preset_option(command: _Command) -> _Command:
 
 
 def verbose_option(command: _Command) -> _Command:
-    """Add --verbose; the function gets keyword argument `verbose`, to be given to `reports.joined_warnings`."""
+    """Add --verbose; the function gets keyword argument `verbose`, to be given to `reports.terminal`."""
     option = click.option(
         "-v", "--verbose", is_flag=True, help="Tell each warning; else what is the same of many files is one line."
     )
@@ -128,7 +127,7 @@ def report_option(words: str) -> Callable[[_Command], _Command]:
 
 
 def form_option(command: _Command) -> _Command:
-    """Add --form; the function gets keyword argument `form`, to be given to `motion.settings.load_settings`."""
+    """Add --form; the function gets keyword argument `form`, to be given to `dance.settings.load_settings`."""
     option = click.option(
         "--form",
         shell_complete=named(folder("forms")),
@@ -142,7 +141,7 @@ def form_option(command: _Command) -> _Command:
 
 
 def style_option(command: _Command) -> _Command:
-    """Add --style; the function gets keyword argument `style`, to be given to `physics.style.load_style`."""
+    """Add --style; the function gets keyword argument `style`, to be given to `dance.physics.style.load_style`."""
     option = click.option(
         "--style",
         shell_complete=named(folder("styles")),
@@ -154,7 +153,7 @@ def style_option(command: _Command) -> _Command:
 
 
 def push_options(command: _Command) -> _Command:
-    """Add --push and --trip; the function gets `push` and `trip`, tuples to be given to `physics.pushes`."""
+    """Add --push and --trip; the function gets `push` and `trip`, tuples to be given to `dance.physics.pushes`."""
     for option in (
         click.option(
             "--trip",
@@ -176,7 +175,7 @@ def push_options(command: _Command) -> _Command:
 
 
 def motion_option(command: _Command) -> _Command:
-    """Add --motion; the function gets keyword argument `motion`, to be given to `motion.settings.load_settings`."""
+    """Add --motion; the function gets keyword argument `motion`, to be given to `dance.settings.load_settings`."""
     option = click.option(
         "--motion",
         type=GivenPath(),

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 from click.shell_completion import ShellComplete, add_completion_class, get_completion_class
 
-from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.run.errors import FileError, UsageError
 
 PROGRAM, VARIABLE = "dancetutor", "_DANCETUTOR_COMPLETE"
 SHELLS = ("bash", "zsh", "fish", "powershell")
@@ -142,7 +142,7 @@ def _read(place: Path) -> str:
 
 
 def _write(place: Path, text: str) -> None:
-    from dancetutor_cli.files import write_atomic
+    from dancetutor_cli.run.files import write_atomic
 
     try:
         place.parent.mkdir(parents=True, exist_ok=True)

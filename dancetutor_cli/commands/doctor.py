@@ -2,9 +2,195 @@
 
 from __future__ import annotations
 
+import shutil
 import textwrap
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
 
 import click
+
+from dancetutor_cli.run.errors import DancetutorError
+
+# The checks of `doctor`: each looks at one thing that rendering needs, and never raises.
+
+GIGABYTE = 1e9
+_NOTHING = "nothing compiled yet; the first render takes a minute longer"
+_ROOM = 2 * GIGABYTE  # a long song at best quality takes less
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """What was found. state : "ok", "without" (something optional is missing) or "broken"; mend : what to do, or ""."""
+
+    name: str
+    state: str
+    message: str
+    mend: str = ""
+
+
+def examine() -> list[Check]:
+    """All checks, in the order in which a render needs the things."""
+    checks = [_guarded("cpu renderer", _cpu), _guarded("gl renderer", _gl), _guarded("physics", _physics)]
+    checks.append(_guarded("ffmpeg", _ffmpeg))
+    if checks[-1].state == "ok":
+        checks += [_guarded(f"encoder {name}", lambda n=name: _encoder(n)) for name in ENCODERS]  # type: ignore[misc]
+        checks.append(_guarded("speed change", _rubberband))
+    return [*checks, _guarded("numba cache", _cache), _guarded("font", _font), _guarded("disk", _disk)]
+
+
+# name of --encoder -> ffmpeg's encoder
+ENCODERS = {"x264": "libx264", "nvenc": "h264_nvenc", "vaapi": "h264_vaapi", "aac": "aac"}
+_NEEDED = ("x264", "aac")
+_OPTIONAL = {
+    "nvenc": "an NVIDIA GPU and its driver; x264 does without",
+    "vaapi": "a GPU with a VA driver; x264 does without",
+}
+# Scripts in which titles come, with letters that tell whether a font has them.
+SCRIPTS = {"Western": "éßø", "Cyrillic": "Жя", "Japanese": "あ日", "Korean": "한", "Chinese": "们"}
+
+
+def _guarded(name: str, look: Callable[[], Check]) -> Check:
+    try:
+        return look()
+    except (DancetutorError, OSError, ImportError, RuntimeError) as error:
+        return Check(name, "broken", " ".join(str(error).split()), "install dancetutor again")
+
+
+def _cpu() -> Check:
+    from importlib.metadata import version
+
+    from dancetutor_cli.run.kernels.compiling import numba
+
+    return Check("cpu renderer", "ok", f"numba {numba.__version__}, llvmlite {version('llvmlite')}")
+
+
+def _gl() -> Check:
+    from dancetutor_cli.film.scene.gl.available import gpu_device, require_gl
+    from dancetutor_cli.run.errors import UnavailableError
+
+    try:
+        require_gl()
+    except UnavailableError as error:
+        message, _, mend = str(error).partition(". ")
+        return Check("gl renderer", "without", message, mend)
+    device = gpu_device()
+    if device is None:
+        return Check("gl renderer", "ok", "OpenGL without a GPU; auto takes cpu, which is faster")
+    return Check("gl renderer", "ok", f"OpenGL on GPU {device} through EGL")
+
+
+def _physics() -> Check:
+    from dancetutor_cli.dance.physics.style import engine, is_installed
+    from dancetutor_cli.run.errors import how_to_add
+
+    if not is_installed():
+        return Check("physics", "without", "no engine for styles and retarget", how_to_add("physics"))
+    return Check("physics", "ok", f"MuJoCo {engine().__version__}")
+
+
+def _ffmpeg() -> Check:
+    import subprocess
+
+    from dancetutor_cli.film.media.ffmpeg import MEND, executable
+    from dancetutor_cli.run.errors import UnavailableError
+
+    try:
+        path = executable()
+    except UnavailableError:
+        return Check("ffmpeg", "broken", "none found", MEND)
+    command = [path, "-version"]
+    said = subprocess.run(
+        command, capture_output=True, check=True, timeout=20, encoding="utf-8", errors="replace"
+    ).stdout
+    version = said.splitlines()[0].removeprefix("ffmpeg version ").split()[0]
+    return Check("ffmpeg", "ok", f"{version}, {'of imageio-ffmpeg' if 'imageio_ffmpeg' in str(path) else path}")
+
+
+def _encoder(name: str) -> Check:
+    from dancetutor_cli.film.media.encoder import works
+    from dancetutor_cli.film.media.ffmpeg import MEND
+
+    label = f"encoder {name}"
+    failure = works(ENCODERS[name])
+    if failure is None:
+        return Check(label, "ok", f"{ENCODERS[name]} encodes a frame")
+    if name in _NEEDED:
+        return Check(label, "broken", failure, MEND)
+    return Check(label, "without", failure.split(";")[0], _OPTIONAL.get(name, ""))
+
+
+def _rubberband() -> Check:
+    import numpy as np
+
+    from dancetutor_cli.film.media.sound import RATE, stretch
+
+    stretch(np.zeros((RATE // 4, 2), dtype=np.float32), 0.5)
+    return Check("speed change", "ok", "rubberband changes the speed and keeps the pitch")
+
+
+def _cache() -> Check:
+    from dancetutor_cli.run.kernels.store import VARIABLE, came_compiled, kernel_folder, kernels_in, shipped_root
+    from dancetutor_cli.run.reading import PACKAGE
+
+    folder, came = kernel_folder(), shipped_root()
+    shipped = set(kernels_in(came))
+    kept_in = folder.root or PACKAGE
+    here = {kept_in: set(kernels_in(kept_in)) - shipped}
+    here.setdefault(PACKAGE, set(kernels_in(PACKAGE)) - shipped - here[kept_in])
+    used = len(shipped) if came_compiled() else 0
+    found = [f"{_kernels(used)} came compiled"] if used else []
+    found += [f"{_kernels(len(paths))} compiled here, in {place}" for place, paths in here.items() if paths]
+    found = found or [_NOTHING]
+    if not folder.kept:
+        found.append("and none can be kept")
+    elif not here[kept_in]:
+        found.append(f"new ones go into {kept_in}")
+    message = ", ".join(found)
+    if shipped and not used:
+        message = f"those of the package are for {_made_by(came)}: not used; {message}"
+    if folder.fault:
+        mend = f"set {VARIABLE} to a folder that can be written, then dancetutor warmup"
+        return Check("numba cache", "without", f"{folder.fault}; {message}", mend)
+    there = bool(used or any(here.values()))
+    return Check("numba cache", "ok" if there else "without", message, "" if there else "dancetutor warmup")
+
+
+def _kernels(count: int) -> str:
+    return f"{count} kernel{'' if count == 1 else 's'}"
+
+
+def _made_by(shipped: Path) -> str:
+    """What compiled the kernels of the package, in words."""
+    from dancetutor_cli.run.kernels.store import MADE_BY
+
+    try:
+        return " ".join((shipped / MADE_BY).read_text("utf-8").split())
+    except (OSError, UnicodeDecodeError):
+        return "another machine"
+
+
+def _font() -> Check:
+    from dancetutor_cli.film.overlay.text import Typeface, system_fonts
+
+    missing = Typeface().missing("".join(SCRIPTS.values()))
+    if not missing:
+        others = [Path(path).stem for path in system_fonts()]
+        return Check("font", "ok", "Pillow's" + (f", for other letters {', '.join(others[:3])}" if others else ""))
+    lost = ", ".join(name for name, letters in SCRIPTS.items() if set(letters) & set(missing))
+    mend = "install Noto Sans CJK and DejaVu Sans, or --font FILE"
+    return Check("font", "without", f"no letters for {lost}", mend)
+
+
+def _disk() -> Check:
+    free = shutil.disk_usage(Path.cwd()).free
+    message = f"{free / GIGABYTE:.1f} GB free in {Path.cwd()}"
+    if free < _ROOM:
+        return Check("disk", "without", message, "make room, or write to another disk with -o")
+    return Check("disk", "ok", message)
+
+
+# `dancetutor doctor`: what this machine can render with, a line each, and below it the mend of what is missing.
 
 WIDTH = 80  # columns
 
@@ -18,13 +204,11 @@ def command(as_json: bool) -> None:
     """
     import sys
 
-    from dancetutor_cli.jobs.doctor import examine
-
     checks = examine()
     if as_json:
         import json
 
-        from dancetutor_cli.workflow_commands import json_without_commands
+        from dancetutor_cli.run.foreign_text import json_without_commands
 
         rows = [{"name": c.name, "state": c.state, "message": c.message, "mend": c.mend} for c in checks]
         text = json.dumps({"schema": 1, "checks": rows}, ensure_ascii=False, indent=1)

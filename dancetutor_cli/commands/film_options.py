@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.commands.arguments import GivenPath, folder, named
 from dancetutor_cli.commands.chart_options import (
-    Selection,
     character_option,
     form_option,
     gait_option,
@@ -20,16 +21,14 @@ from dancetutor_cli.commands.chart_options import (
     section_option,
     style_option,
 )
-from dancetutor_cli.commands.names import folder, named
-from dancetutor_cli.commands.paths import GivenPath
-from dancetutor_cli.errors import UsageError
-from dancetutor_cli.video.choices import LEAST_SIDE, MOST_SIDE, QUALITIES, RENDERERS
+from dancetutor_cli.film.choices import LEAST_SIDE, MOST_SIDE, QUALITIES, RENDERERS
+from dancetutor_cli.run.errors import UsageError
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.film_request import FilmRequest
-    from dancetutor_cli.video.layout import Layout
-    from dancetutor_cli.video.media.film_formats import FilmFormat
-    from dancetutor_cli.video.practice import Practice
+    from dancetutor_cli.film.clock import Practice
+    from dancetutor_cli.film.layout import Layout
+    from dancetutor_cli.film.media.ffmpeg import FilmFormat
+    from dancetutor_cli.film.work.request import FilmRequest
 
 MOST_LATE = 60_000.0  # milliseconds that the music may be moved
 _Command = TypeVar("_Command", bound=Callable[..., Any])
@@ -141,12 +140,11 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmR
     """The request that these options make, for a film of a format."""
     from dancetutor_cli.character import check_character
     from dancetutor_cli.dance.request import DanceRequest, with_style
-    from dancetutor_cli.jobs.film_request import FilmRequest
-    from dancetutor_cli.video.ahead import parse_ahead
-    from dancetutor_cli.video.film_look import FilmLook
-    from dancetutor_cli.video.layout import load_layout
-    from dancetutor_cli.video.media.encoder import even_size
-    from dancetutor_cli.video.scroll import parse_scroll
+    from dancetutor_cli.film.choices import parse_ahead
+    from dancetutor_cli.film.layout import FilmLook, load_layout
+    from dancetutor_cli.film.media.encoder import even_size
+    from dancetutor_cli.film.scroll import parse_scroll
+    from dancetutor_cli.film.work.request import FilmRequest
 
     background = bool(options.get("background"))
     layout = load_layout(options["layout"] or ("background" if background else "side-by-side"))
@@ -155,7 +153,7 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmR
             "--background is the dancer alone, the game draws the notes: choose a layout without a highway"
         )
     if options["font"] is not None:
-        from dancetutor_cli.video.overlay.fonts import font
+        from dancetutor_cli.film.overlay.text import font
 
         font(str(options["font"]), 24)  # refused before the work begins
     wanted = options["size"] or _default_size(layout.size, form)
@@ -193,16 +191,16 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmR
 
 
 def _rates(options: dict[str, Any], layout: Layout) -> tuple[float, ...]:
-    from dancetutor_cli.video.layout import PracticePart
-    from dancetutor_cli.video.practice import parse_rates
+    from dancetutor_cli.film.clock import parse_rates
+    from dancetutor_cli.film.layout import PracticePart
 
     return parse_rates(options["rate"]) if options["rate"] else (layout.practice or PracticePart()).rates
 
 
 def _practice(options: dict[str, Any], layout: Layout, film: bool) -> Practice:
     """film : of a passage she comes to rest after it; poses are single pictures of its rows"""
-    from dancetutor_cli.video.layout import PracticePart
-    from dancetutor_cli.video.practice import REST, Practice
+    from dancetutor_cli.film.clock import REST, Practice
+    from dancetutor_cli.film.layout import PracticePart
 
     usual = layout.practice or PracticePart()
     count_in = usual.count_in if options["count_in"] is None else options["count_in"]

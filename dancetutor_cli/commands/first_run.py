@@ -1,16 +1,27 @@
-"""A word before work: where kernels are kept if not in the usual place, and that a first run compiles for a minute."""
+"""Words before work: what `dancetutor` alone prints, and that a first run compiles for a minute."""
 
 from __future__ import annotations
 
 import os
+import shlex
+import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from itertools import islice
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+import dancetutor_cli
+from dancetutor_cli.chart.selection import is_chart_name
+from dancetutor_cli.run.reading import charts_path
+
 if TYPE_CHECKING:
-    from dancetutor_cli.lint.presets import PresetChoice
+    from dancetutor_cli.lint.configuration import PresetChoice
+
+
+# A word before work: where kernels are kept if not in the usual place, and that a first run compiles for a minute.
 
 _NOT_KEPT = "nothing compiled is kept, each run compiles again; set NUMBA_CACHE_DIR to a folder that only you can write"
 
@@ -22,7 +33,7 @@ def tell_of_compiling(choice: PresetChoice, size: Callable[[], int] | None = Non
 
     That they cannot be kept in the usual place is said everywhere: each run may take a minute longer for it.
     """
-    from dancetutor_cli.play.compiled import interpret, is_compiled
+    from dancetutor_cli.feet.solver.compiled import interpret, is_compiled
     from dancetutor_cli.run.kernels.store import VARIABLE, came_compiled, kernel_folder
 
     presets = list(choice.candidates())
@@ -38,3 +49,60 @@ def tell_of_compiling(choice: PresetChoice, size: Callable[[], int] | None = Non
         return
     if not all(is_compiled(preset) for preset in presets):
         click.echo("compiling the solver's kernels (once; `dancetutor warmup` does it ahead) ...", err=True)
+
+
+# What `dancetutor` alone prints: what it is, and what to try next, with a song that is at hand.
+
+_MOST = 2000  # entries of the folder that are looked at: it may be a disk
+
+
+def first_steps(folder: Path) -> str:
+    """The text; its examples take a chart of `folder`, or of a folder in it, else the demo song."""
+    song = next(_charts(folder), None)
+    whose = "your song" if song is not None else "the demo song"
+    name = _quoted(song or str(next(charts_path().rglob("*.ssc"))))
+    lines = [
+        f"dancetutor {dancetutor_cli.__version__}: finds the feet of stepcharts and lets a dancer play them.",
+        "",
+        f"Try next, with {whose}:",
+        f"  dancetutor analyze {name}",
+        "      how it is danced: crossovers, doublesteps, spins, and what is odd in it",
+        f"  dancetutor page {name} --index 0 -o dance.html",
+        "      a page to practise it with: open dance.html in a browser",
+        f"  dancetutor annotate {name} --diff",
+        "      what L and R in the file would look like; without --diff they are written, --strip takes them out",
+        f"  dancetutor render {name} --index 0 --section m1:m8 -o dance.mp4",
+        "      a film of the first measures; the first one takes a minute or two longer",
+        "",
+        "  dancetutor analyze Songs/MyPack    a pack of your own",
+        "  dancetutor doctor                  what works on this machine, and what mends the rest",
+        "  dancetutor completion              let the Tab key complete all this",
+        "  dancetutor --help                  every command; dancetutor COMMAND --help: its options",
+    ]
+    return "\n".join(lines)
+
+
+def _charts(folder: Path) -> Iterator[str]:
+    """Chart files in a folder and those just below it, as one would type them; .ssc before .sm of a folder."""
+    try:
+        with os.scandir(folder) as entries:
+            found = list(islice(entries, _MOST))
+    except OSError:
+        return
+    names = sorted((entry.name for entry in found if is_chart_name(entry.name)), key=lambda name: name[::-1].lower())
+    yield from sorted(names, key=lambda name: not name.lower().endswith(".ssc"))
+    for entry in sorted(found, key=lambda entry: entry.name):
+        try:
+            is_open = entry.is_dir() and not entry.name.startswith(".")
+            below = sorted(path.name for path in Path(entry.path).iterdir()) if is_open else []
+        except OSError:
+            continue
+        charts = sorted(
+            (name for name in below if is_chart_name(name)), key=lambda name: not name.lower().endswith("c")
+        )
+        yield from (str(Path(entry.name) / name) for name in charts)
+
+
+def _quoted(path: str) -> str:
+    """A path as the shell of this system takes it."""
+    return subprocess.list2cmdline([path]) if os.name == "nt" else shlex.quote(path)

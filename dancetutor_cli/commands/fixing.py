@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dancetutor_cli.commands.paths import within_folders
-from dancetutor_cli.errors import UsageError
-from dancetutor_cli.library.chart_files import twin
-from dancetutor_cli.reports.diff import coloured
+from dancetutor_cli.chart.selection import twin
+from dancetutor_cli.commands.arguments import within_folders
+from dancetutor_cli.reports.terminal import coloured
+from dancetutor_cli.run.errors import UsageError
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.analyze import AnalyzeTask
-    from dancetutor_cli.jobs.fix import FixOutcome
-    from dancetutor_cli.jobs.lint_run import LintRun
-    from dancetutor_cli.jobs.result import FileResult
-    from dancetutor_cli.lint.finding import Finding
+    from dancetutor_cli.lint.analysis import AnalyzeTask
+    from dancetutor_cli.lint.findings import Finding
+    from dancetutor_cli.lint.fix import FixOutcome
+    from dancetutor_cli.lint.results import FileResult
+    from dancetutor_cli.lint.run import LintRun
 
 SAFE = "safe"
 # Options of `analyze` that say how its report looks: there is none when files are mended.
@@ -41,8 +41,8 @@ def asked(texts: Sequence[str]) -> tuple[FixRequest, ...]:
 
 
 def _asked(text: str) -> FixRequest:
-    from dancetutor_cli.fixes.mend import FIXABLE
-    from dancetutor_cli.lint.registry import rule_named
+    from dancetutor_cli.lint.mend import FIXABLE
+    from dancetutor_cli.lint.rule import rule_named
 
     if text.strip().lower() == SAFE:
         return FixRequest(SAFE)
@@ -84,8 +84,8 @@ def _check(tasks: Sequence[AnalyzeTask], options: dict[str, Any]) -> None:
 
 
 def _fix(run: LintRun, task: AnalyzeTask, wanted: Sequence[FixRequest], options: dict[str, Any]) -> FixOutcome:
-    from dancetutor_cli.jobs.analyze import analyze_file
-    from dancetutor_cli.jobs.fix import FixOrder, FixOutcome, fix_file
+    from dancetutor_cli.lint.analysis import analyze_file
+    from dancetutor_cli.lint.fix import FixOrder, FixOutcome, fix_file
 
     result = run.without_known(analyze_file(task))
     if result.error is not None:
@@ -96,7 +96,7 @@ def _fix(run: LintRun, task: AnalyzeTask, wanted: Sequence[FixRequest], options:
 
 
 def _of_file(result: FileResult, asked_for: FixRequest) -> tuple[tuple[Finding, int], ...]:
-    from dancetutor_cli.jobs.fix import pick
+    from dancetutor_cli.lint.fix import pick
 
     findings = [(finding, chart.player) for chart in result.charts for finding in chart.findings]
     text = f"--fix {asked_for.rule}:{asked_for.number}"
@@ -163,6 +163,6 @@ class _Talk:
 
 
 def _safe(text: str) -> str:
-    from dancetutor_cli.reports.safe import safe
+    from dancetutor_cli.reports.terminal import safe
 
     return safe(text)

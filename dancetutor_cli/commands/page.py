@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.commands.arguments import GivenPath, into
 from dancetutor_cli.commands.chart_options import (
-    Selection,
     character_option,
     form_option,
     gait_option,
@@ -21,13 +22,11 @@ from dancetutor_cli.commands.chart_options import (
     verbose_option,
 )
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.commands.paths import GivenPath
-from dancetutor_cli.commands.records import into
-from dancetutor_cli.errors import DancetutorError, UsageError
-from dancetutor_cli.outputs import check_file, check_folder, make_folder
+from dancetutor_cli.run.errors import DancetutorError, UsageError
+from dancetutor_cli.run.files import check_file, check_folder, make_folder
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.page import PageRequest
+    from dancetutor_cli.page.work import PageRequest
 
 _FILE = GivenPath()
 SUFFIXES = (".html", ".htm")
@@ -92,10 +91,10 @@ def command(path: Path, selection: Selection, wish: PageWish) -> None:
     learns it. Its hardest passages are listed. If PATH is a folder, every chart below it that matches gets a page, and
     an index leads to them.
     """
+    from dancetutor_cli.chart import one_song
     from dancetutor_cli.dance.request import DanceRequest
-    from dancetutor_cli.jobs.page import PageRequest
-    from dancetutor_cli.library import one_song
-    from dancetutor_cli.lint.presets import choice_for
+    from dancetutor_cli.lint.configuration import choice_for
+    from dancetutor_cli.page.work import PageRequest
 
     output = wish.output
     file = one_song(path) if output is not None and output.suffix.lower() in SUFFIXES else path
@@ -113,8 +112,8 @@ def command(path: Path, selection: Selection, wish: PageWish) -> None:
 
 
 def _page(request: PageRequest, output: Path | None, quiet: bool) -> None:
-    from dancetutor_cli.files import write_atomic
-    from dancetutor_cli.jobs.page import look_up_page, pack_page
+    from dancetutor_cli.page.work import look_up_page, pack_page
+    from dancetutor_cli.run.files import write_atomic
 
     subject = look_up_page(request)
     target = output or Path(_default_name(subject.title, subject.label))
@@ -128,10 +127,8 @@ def _page(request: PageRequest, output: Path | None, quiet: bool) -> None:
 
 def _pages(request: PageRequest, folder: Path, wish: PageWish) -> None:
     """A page for each chart and the index; exit status 2 if one could not be made."""
-    from dancetutor_cli.jobs.page_batch import INDEX, make_all, page_jobs, write_index
-    from dancetutor_cli.reports.failures import failures_table
-    from dancetutor_cli.reports.joined_warnings import JoinedWarnings
-    from dancetutor_cli.reports.safe import safe, safe_path
+    from dancetutor_cli.page.work import INDEX, make_all, page_jobs, write_index
+    from dancetutor_cli.reports.terminal import JoinedWarnings, failures_table, safe, safe_path
 
     if request.dance.play is not None:
         raise UsageError(f"--play is for one chart, and {request.dance.path} is a folder")
@@ -169,13 +166,13 @@ def _pages(request: PageRequest, folder: Path, wish: PageWish) -> None:
 
 
 def _warn(warnings: Iterable[str]) -> None:
-    from dancetutor_cli.reports.safe import safe
+    from dancetutor_cli.reports.terminal import safe
 
     for warning in warnings:
         click.echo(f"warning: {safe(warning)}", err=True)
 
 
 def _default_name(title: str, label: str) -> str:
-    from dancetutor_cli.jobs.film_list import plain_name
+    from dancetutor_cli.film.work.batch import plain_name
 
     return f"{plain_name(f'{title}-{label}') or 'page'}.html"

@@ -11,18 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long
 from dancetutor_cli.commands.chart_options import preset_option, selection_options, verbose_option
 from dancetutor_cli.commands.film_options import film_options, film_request
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.commands.long_work import LONG, confirm_long
-from dancetutor_cli.commands.paths import GivenPath
-from dancetutor_cli.errors import UsageError
-from dancetutor_cli.outputs import check_file, check_folder, make_folder, one_of
-from dancetutor_cli.video.media.film_formats import FILES
+from dancetutor_cli.film.media.ffmpeg import FILES
+from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.files import check_file, check_folder, make_folder, one_of
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.jobs.film_request import FilmRequest, FilmSubject
+    from dancetutor_cli.film.work.request import FilmRequest, FilmSubject
 
 
 # Options that a film behind the notes cannot have: the game starts it with the music and plays it once, at its speed.
@@ -116,14 +115,14 @@ def _background(path: Path, frames: Path | None, options: dict[str, Any]) -> lis
         )
     if not options["into_file"]:
         return []
-    from dancetutor_cli.jobs.background import files_of_song
+    from dancetutor_cli.markers.background import files_of_song
 
     return files_of_song(path)
 
 
 def into_file_name(path: Path, options: dict[str, Any]) -> str:
     """What a film is called that is entered into a chart file: SONG-which.dancetutor.mp4."""
-    from dancetutor_cli.jobs.film_list import plain_name
+    from dancetutor_cli.film.work.batch import plain_name
 
     which = options["difficulty"] or (f"{options['index']}" if options["index"] is not None else "")
     stem = plain_name(f"{path.stem}-{which}" if which else path.stem) or "film"
@@ -131,14 +130,14 @@ def into_file_name(path: Path, options: dict[str, Any]) -> str:
 
 
 def _check_entry(film: Path, files: Sequence[Path]) -> None:
-    from dancetutor_cli.jobs.background import check_place
+    from dancetutor_cli.markers.background import check_place
 
     check_place(film, files)
 
 
 def _enter(film: Path, files: Sequence[Path], quiet: bool) -> None:
-    from dancetutor_cli.jobs.background import enter
-    from dancetutor_cli.reports.safe import safe
+    from dancetutor_cli.markers.background import enter
+    from dancetutor_cli.reports.terminal import safe
 
     for line in enter(film, files):
         if not quiet:
@@ -152,7 +151,7 @@ def _one_film(path: Path, output: Path | None, options: dict[str, Any]) -> Path:
         film or options["poses"] or options["poster"] or options["srt"] or options["background"]
     ):
         return path
-    from dancetutor_cli.library import one_song
+    from dancetutor_cli.chart import one_song
 
     file = one_song(path)
     if film and file == path:
@@ -163,9 +162,9 @@ def _one_film(path: Path, output: Path | None, options: dict[str, Any]) -> Path:
 def _render_one(
     path: Path, output: Path | None, folder: Path | None, yes: bool, quiet: bool, options: dict[str, Any]
 ) -> None:
-    from dancetutor_cli.jobs.film_request import look_up
-    from dancetutor_cli.lint.presets import choice_for
-    from dancetutor_cli.video.media.film_formats import FORMATS, PICTURES, target_of
+    from dancetutor_cli.film.media.ffmpeg import FORMATS, PICTURES, target_of
+    from dancetutor_cli.film.work.request import look_up
+    from dancetutor_cli.lint.configuration import choice_for
 
     kind = PICTURES if folder is not None else "mp4" if output is None else target_of(output)
     if output is not None:
@@ -196,7 +195,7 @@ def _render_one(
 
 def default_name(song: Song, chart: Chart) -> str:
     """SONG-difficulty.mp4, in characters that every file system takes."""
-    from dancetutor_cli.jobs.film_list import plain_name
+    from dancetutor_cli.film.work.batch import plain_name
 
     return f"{plain_name(f'{song.title or song.path.stem}-{chart.difficulty}') or 'film'}.mp4"
 
@@ -215,14 +214,13 @@ def _allow_long(subject: FilmSubject, file: Path, yes: bool) -> None:
 def _make(
     request: FilmRequest, subject: FilmSubject, target: Path, kind: str, quiet: bool, options: dict[str, Any]
 ) -> None:
-    from dancetutor_cli.jobs.film_plan import Prepared, prepare
-    from dancetutor_cli.jobs.render import make_film
-    from dancetutor_cli.reports.progress import FilmProgress
+    from dancetutor_cli.film import film as extras
+    from dancetutor_cli.film.media.encoder import Encoding, choose
+    from dancetutor_cli.film.media.ffmpeg import PICTURES
+    from dancetutor_cli.film.work.planning import Prepared, prepare
+    from dancetutor_cli.film.work.render import make_film
+    from dancetutor_cli.reports.terminal import FilmProgress
     from dancetutor_cli.run.pool import default_jobs
-    from dancetutor_cli.video import extras
-    from dancetutor_cli.video.media.encoder import Encoding
-    from dancetutor_cli.video.media.film_formats import PICTURES
-    from dancetutor_cli.video.media.probe import choose
 
     def prepared() -> Prepared:
         film = prepare(request, subject)
@@ -252,7 +250,7 @@ def _make(
 
 
 def _warn(warnings: Iterable[str]) -> None:
-    from dancetutor_cli.reports.safe import safe
+    from dancetutor_cli.reports.terminal import safe
 
     for warning in warnings:
         click.echo(f"warning: {safe(warning)}", err=True)

@@ -12,29 +12,26 @@ from typing import TYPE_CHECKING, Any, TextIO
 import click
 
 from dancetutor_cli.commands.film_options import film_request
-from dancetutor_cli.errors import DancetutorError, FileError, UsageError
-from dancetutor_cli.files import encoded
-from dancetutor_cli.outputs import check_file, check_folder, make_folder
-from dancetutor_cli.reports.joined_warnings import JoinedWarnings
-from dancetutor_cli.workflow_commands import json_without_commands
+from dancetutor_cli.reports.terminal import JoinedWarnings
+from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
+from dancetutor_cli.run.files import check_file, check_folder, encoded, make_folder
+from dancetutor_cli.run.foreign_text import json_without_commands
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.batch import FilmOutcome
-    from dancetutor_cli.jobs.film_list import BatchRequest, UnreadableFile
-    from dancetutor_cli.reports.progress import FilmProgress
+    from dancetutor_cli.film.choices import RendererKind
+    from dancetutor_cli.film.work.batch import BatchRequest, UnreadableFile
+    from dancetutor_cli.film.work.segments import FilmOutcome
+    from dancetutor_cli.reports.terminal import FilmProgress
     from dancetutor_cli.run.pool import Workers
-    from dancetutor_cli.video.choices import RendererKind
 
 
 def render_batch(
     path: Path, output: Path | None, frames: Path | None, longest: float | None, quiet: bool, options: dict[str, Any]
 ) -> None:
     """Make a film of every chart below `path` that matches. Exits with 2 if one of them failed."""
-    from dancetutor_cli.jobs.batch import Batch
-    from dancetutor_cli.jobs.film_list import film_list
-    from dancetutor_cli.jobs.film_records import find_records
-    from dancetutor_cli.reports.progress import FilmProgress
-    from dancetutor_cli.reports.safe import safe
+    from dancetutor_cli.film.work.batch import Batch, film_list
+    from dancetutor_cli.film.work.records import find_records
+    from dancetutor_cli.reports.terminal import FilmProgress, safe
     from dancetutor_cli.run.pool import default_jobs
 
     if options["scheduler"]:  # its workers have a working folder of their own
@@ -79,10 +76,9 @@ def render_batch(
 def _batch(
     path: Path, output: Path | None, frames: Path | None, longest: float | None, options: dict[str, Any]
 ) -> BatchRequest:
-    from dancetutor_cli.jobs.film_list import DEFAULT_NAME, BatchRequest, parse_meters, parse_shard
-    from dancetutor_cli.video.media.encoder import Encoding
-    from dancetutor_cli.video.media.film_formats import FORMATS, PICTURES
-    from dancetutor_cli.video.media.probe import choose
+    from dancetutor_cli.film.media.encoder import Encoding, choose
+    from dancetutor_cli.film.media.ffmpeg import FORMATS, PICTURES
+    from dancetutor_cli.film.work.batch import DEFAULT_NAME, BatchRequest, parse_meters, parse_shard
 
     kind = PICTURES if frames else "mp4"
     request = film_request(path, options, FORMATS[kind])
@@ -101,13 +97,13 @@ def _batch(
 
 
 def _workers(scheduler: str | None, jobs: int, progress: FilmProgress, kind: RendererKind) -> Workers:
-    from dancetutor_cli.jobs.film_segments import common_to_workers, frames_of
+    from dancetutor_cli.film.work.segments import common_to_workers, frames_of
     from dancetutor_cli.run.pool import open_workers
 
     if scheduler is None:
         common = common_to_workers(kind) if jobs > 1 else ""
         return open_workers(jobs, lambda _key, count: progress.advance(count), common)
-    from dancetutor_cli.run.cluster import ClusterWorkers
+    from dancetutor_cli.run.pool import ClusterWorkers
 
     return ClusterWorkers(scheduler, lambda _key, count: progress.advance(count), frames_of)
 
@@ -131,7 +127,7 @@ def _write(results: TextIO | None, line: dict[str, Any]) -> None:
 
 
 def _tell(outcome: FilmOutcome, progress: FilmProgress, quiet: bool, number: int, count: int) -> None:
-    from dancetutor_cli.reports.safe import safe
+    from dancetutor_cli.reports.terminal import safe
 
     name = outcome.job.output.name
     text = {"done": "done", "skipped": "is there already", "failed": f"FAILED: {outcome.error}"}[outcome.status]
@@ -156,7 +152,7 @@ def _sum_up(outcomes: list[FilmOutcome], unreadable: list[UnreadableFile], witho
             parts.append(f"{len(without)} {'songs have' if len(without) > 1 else 'song has'} no such chart")
         click.echo(", ".join(parts), err=True)
     if failed or unreadable:
-        from dancetutor_cli.reports.failures import failures_table
+        from dancetutor_cli.reports.terminal import failures_table
 
         rows = [(str(bad.path), "", bad.error) for bad in unreadable]
         rows += [(str(one.job.request.path), one.job.label, one.error or "") for one in failed]

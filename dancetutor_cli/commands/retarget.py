@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING
 
 import click
 
+from dancetutor_cli.commands.arguments import GivenPath, into
 from dancetutor_cli.commands.chart_options import TABLE, push_options, report_option, style_option
-from dancetutor_cli.commands.paths import GivenPath
-from dancetutor_cli.commands.records import into
-from dancetutor_cli.errors import UsageError, did_you_mean
-from dancetutor_cli.outputs import check_file, one_of
+from dancetutor_cli.run.errors import UsageError, did_you_mean
+from dancetutor_cli.run.files import check_file, one_of
 
 if TYPE_CHECKING:
-    from dancetutor_cli.jobs.retarget import Retargeting
+    from dancetutor_cli.formats.retarget import Retargeting
 
 SUFFIXES = (".glb", ".bvh", ".npz", ".mp4")
 _FILE = GivenPath()
@@ -67,8 +66,8 @@ def command(file: Path, wanted: RetargetOptions) -> None:
     Joints are found by their names: those of H-Anim, CMU, Mixamo, Unreal, Rigify and others. The world's turns
     are kept, and legs end where the captured feet stood, all in proportion to the character's legs.
     """
-    from dancetutor_cli.jobs.retarget import Retargeting, RetargetTask
-    from dancetutor_cli.physics.pipeline import wishes_of
+    from dancetutor_cli.dance.physics.pipeline import wishes_of
+    from dancetutor_cli.formats.retarget import Retargeting, RetargetTask
 
     check_file(wanted.output, SUFFIXES)
     if wanted.plot is not None:
@@ -99,14 +98,14 @@ def corrections_of(text: str) -> tuple[str, ...]:
 
 
 def _written(work: Retargeting, output: Path) -> str:
-    from dancetutor_cli.physics.backend import engine
+    from dancetutor_cli.dance.physics.style import engine
 
     engine()
     motion = work.motion
     seconds = float(motion.times[-1] - motion.times[0])
     suffix = output.suffix.lower()
     if suffix == ".mp4":
-        from dancetutor_cli.jobs.motion_film import film
+        from dancetutor_cli.film.work.render import film
 
         return f"{film(output, work.character, motion)} frames, {seconds:.1f} s"
     if suffix == ".glb":
@@ -133,12 +132,12 @@ def _report(work: Retargeting, wanted: RetargetOptions) -> None:
         for note in report.notes:
             click.echo(f"note: {note}")
         if wanted.report_to != TABLE:
-            from dancetutor_cli.files import write_atomic
+            from dancetutor_cli.run.files import write_atomic
 
             write_atomic(Path(wanted.report_to), (json.dumps(as_json(report), indent=1) + "\n").encode())
             click.echo(f"{wanted.report_to}: the report")
     if wanted.plot is not None:
-        from dancetutor_cli.reports.motion_plot import write_plot
+        from dancetutor_cli.reports.motion_report import write_plot
 
         write_plot(wanted.plot, report)
         click.echo(f"{wanted.plot}: the plot")

@@ -3,8 +3,88 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
 import click
+import numpy as np
+
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance.request import DanceRequest
+from dancetutor_cli.film.choices import QUALITIES, Quality
+from dancetutor_cli.film.clock import Practice
+from dancetutor_cli.film.layout import FilmLook, load_layout
+from dancetutor_cli.film.work.request import FilmRequest, look_up
+from dancetutor_cli.run.reading import charts_path
+
+if TYPE_CHECKING:
+    from dancetutor_cli.film.work.planning import Prepared
+
+
+# Doing a little of everything, so that numba's cache is full.
+
+_SONG = "two_left_feet/two_left_feet.ssc"
+_TYPES = ("dance-single", "dance-double")
+
+
+def steps() -> Iterator[tuple[str, Callable[[], None]]]:
+    """What to do, by name."""
+    prepared: dict[str, Prepared] = {}
+    for steps_type in _TYPES:
+        yield f"solve and bake {steps_type}", lambda kind=steps_type: _prepare(prepared, kind)  # type: ignore[misc]
+    yield "solve with the other model of moves", _solve
+    for quality in QUALITIES:
+        yield f"draw at quality {quality}", lambda value=quality: _draw(prepared[_TYPES[0]], value)  # type: ignore[misc]
+
+
+def _solve() -> None:
+    """Presets by name or file are of one of two models, which have kernels of their own; the default one is done.
+
+    Tables that are full, as those of many charts become, are filled into larger ones.
+    """
+    from dancetutor_cli import chart as charts
+    from dancetutor_cli.feet import load_pad, load_preset, solve_chart
+    from dancetutor_cli.feet.solver import store
+    from dancetutor_cli.feet.solver.engine import Engine
+    from dancetutor_cli.feet.solver.store import grown
+
+    song, preset, pad = charts.load(charts_path() / _SONG), load_preset("thesis"), load_pad(_TYPES[0])
+    solve_chart(song.charts[0], preset)
+    assert pad is not None
+    tables = Engine(pad, preset).tables
+    for full in (store.MORE_STATES, store.MORE_PATTERNS, store.MORE_PAIRS, store.MORE_TERMS, store.MORE_FACTS):
+        grown(tables, full, 1)
+
+
+def _prepare(prepared: dict[str, Prepared], steps_type: str) -> None:
+    from dancetutor_cli.feet import DEFAULT_PRESET
+    from dancetutor_cli.film.work.planning import prepare
+
+    look = FilmLook(load_layout("television"), (320, 180), renderer="cpu")
+    selection = Selection(steps_type=steps_type, difficulty="hard")
+    practice = Practice(metronome=True)
+    dance = DanceRequest(charts_path() / _SONG, selection, DEFAULT_PRESET, bar=steps_type == _TYPES[1])
+    request = FilmRequest(dance, look, section="m3:m5", practice=practice)
+    prepared[steps_type] = prepare(request, look_up(request))
+
+
+def _draw(prepared: Prepared, quality: Quality) -> None:
+    from dataclasses import replace
+
+    from dancetutor_cli.film.film import Film
+    from dancetutor_cli.film.media.yuv import yuv420
+    from dancetutor_cli.film.overlay.blit import Run, strip
+
+    look = replace(prepared.plan.look, quality=quality)
+    film = Film(replace(prepared.plan, look=look))
+    width, height = look.size
+    for number in (0, 1):
+        frame = film.frame(number)
+        strip(frame, np.zeros((8, 8, 4), dtype=np.uint8), 0, Run(0, 8, 0))  # the body of a hold: none is seen here
+        yuv420(frame, np.empty(width * height * 3 // 2, dtype=np.uint8))
+
+
+# `dancetutor warmup`: compile every kernel once and keep it, for example while a CI image is built.
 
 
 @click.command()
@@ -14,7 +94,6 @@ def command(quiet: bool) -> None:
 
     Solves, bakes and draws a few frames of the demo song, which fills numba's cache.
     """
-    from dancetutor_cli.jobs.warmup import steps
 
     begin = time.monotonic()
     for name, work in steps():

@@ -1,1 +1,22 @@
-"""The dance of a chart: a request, the feet that are found for it, and the performance from which every cut comes."""
+"""How a play becomes a motion: five stages, one type into each and one out of it. `Context` is what all of them know.
+
+    feet.play.Play                  who steps what, from the solver
+      |   feet.play                   without the notes that no person plays
+      |   footwork.planner            rules: step, jump, gallop, hold, bracket, mine, sidestep, walk, shake
+    plan.Plan                       when each foot leaves and lands, where, how; turns; palms; walks; contacts
+      |   foot_path.both_feet         where a foot is at any time
+      |   trajectory.posture          balance, height, facing, reach, counter-rotation, beat bounce
+    trajectory.posture.Trajectory   the body over the feet at even times
+      |   ik.targets.ik_targets       where pelvis, shoulders, hands and feet shall be
+    ik.full_body.Targets
+      |   ik.full_body.solve          all joints at once
+    ik.full_body.Poses              local rotations and root
+      |   layers                      gaze, glances, breath, blinks, wrists, hands
+    motion.Motion                   what files, films and the quality report get
+
+No stage calls a later one. `settle` repeats trajectory and inverse kinematics until both fit (its residuals say how
+well), `grips` lays hands on the bar by a rough bake, and hair (`physics.hair`) swings last.
+
+What is true of a play is true of its mirror image: where both sides are equal, the leading foot decides
+(`Plan.lead`). Numbers are in `configs/motion.yaml` (`settings`) and `configs/gaits` (`gait`), or follow from the rig.
+"""

@@ -7,23 +7,23 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.bake.bake import bake_piece, cut, planned
-from dancetutor_cli.bake.ends import entered, entrance_of, entrance_piece, exit_of, exit_piece, left, rest_from
-from dancetutor_cli.bake.pieces import BakedPiece, Each, Piece, RagdollStyle, in_turn, pieces_of, whole_span
+from dancetutor_cli.dance.bake import bake_piece, cut, planned
+from dancetutor_cli.dance.ends import entered, entrance_of, entrance_piece, exit_of, exit_piece, left, rest_from
+from dancetutor_cli.dance.motion import Cut, Motion
+from dancetutor_cli.dance.pieces import BakedPiece, Each, Piece, RagdollStyle, in_turn, pieces_of, whole_span
 from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_request, no_pad, read_chart
+from dancetutor_cli.dance.settings import load_settings
 from dancetutor_cli.dance.two import pad_of_both, place_on, sides_of, together
-from dancetutor_cli.errors import DancetutorError, UsageError
-from dancetutor_cli.motion.baked import Cut, Motion
-from dancetutor_cli.motion.settings import load_settings
-from dancetutor_cli.play.let_go import without_unplayable
-from dancetutor_cli.play.solved import Solved, solve_song
+from dancetutor_cli.feet.play import without_unplayable
+from dancetutor_cli.feet.solved import Solved, solve_song
+from dancetutor_cli.run.errors import DancetutorError, UsageError
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
-    from dancetutor_cli.motion.context import Context
-    from dancetutor_cli.motion.plan import Plan
-    from dancetutor_cli.pads import Pad
-    from dancetutor_cli.play.played import Play
+    from dancetutor_cli.dance.context import Context
+    from dancetutor_cli.dance.plan import Plan
+    from dancetutor_cli.feet import Pad
+    from dancetutor_cli.feet.play import Play
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,8 +90,8 @@ class Performance:
     def _ragdoll(self, wanted: Cut) -> RagdollStyle | None:
         if self.request.style is None:
             return None
-        from dancetutor_cli.physics.pipeline import wishes_of
-        from dancetutor_cli.physics.style import load_style
+        from dancetutor_cli.dance.physics.pipeline import wishes_of
+        from dancetutor_cli.dance.physics.style import load_style
 
         wishes = wishes_of(self.request.push, self.request.trip, self.rate)
         befalls = [("--push", push.second) for push in wishes.pushes] + [("--trip", t.second) for t in wishes.trips]
@@ -120,7 +120,7 @@ def solve(request: DanceRequest, chart: ChartChoice | None = None) -> tuple[Solv
             raise no_pad(request, one.chart)
     if request.play is None:
         return solved
-    from dancetutor_cli.formats.play_json import read_play
+    from dancetutor_cli.feet.play_json import read_play
 
     one = solved[0]
     assert one.play is not None and one.pad is not None

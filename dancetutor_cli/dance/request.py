@@ -6,14 +6,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.errors import UsageError
-from dancetutor_cli.fingerprint import NAMED
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.motion.forms import USUAL
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance.settings import USUAL
+from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.fingerprint import NAMED
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.play.preset import Preset
+    from dancetutor_cli.feet.preset import Preset
 
 FPS = 60.0  # frames per second that a dance is baked at, unless a file with others is wanted
 
@@ -23,7 +23,7 @@ class DanceRequest:
     """What dance is wanted. Pickles, so that another process can do it.
 
     path : the chart file; selection : which chart
-    preset : name or file of the solver's costs, None: what `lint.presets` finds for the chart
+    preset : name or file of the solver's costs, None: what `lint.configuration` finds for the chart
     play : a JSON file of analyze whose feet hold instead of the solver's
     rates : speeds of the music, 1 is its own; notes that nobody plays at the fastest one are not danced at any
     fps : regular keys per second
@@ -31,7 +31,8 @@ class DanceRequest:
     form : name or file of how she stands and turns
     motion : file with numbers of the motion that are other than those of configs/motion.yaml
     style : name or file of the style in which a ragdoll follows the dancer; None: no ragdoll
-    push, trip : what befalls her, as `physics.pushes.parse_push` takes it, and seconds of the song; only with a style
+    push, trip : what befalls her, as `dance.physics.pushes.parse_push` takes it, and seconds of the song; only with a
+    style
     """
 
     path: Path
@@ -73,19 +74,18 @@ def check_request(request: DanceRequest) -> None:
 
     UnavailableError if a style is wanted and there is no engine for it.
     """
-    from dancetutor_cli.motion.gait import load_gait
-    from dancetutor_cli.motion.settings import load_settings
+    from dancetutor_cli.dance.gait import load_gait
+    from dancetutor_cli.dance.settings import load_settings
 
     load_settings(request.motion, request.form)
     load_gait(request.gait)
     if request.style is not None:
-        from dancetutor_cli.physics.backend import engine
-        from dancetutor_cli.physics.style import load_style
+        from dancetutor_cli.dance.physics.style import engine, load_style
 
         load_style(request.style)
         engine()
     if request.push:
-        from dancetutor_cli.physics.pushes import parse_push
+        from dancetutor_cli.dance.physics.pushes import parse_push
 
         for push in request.push:
             parse_push(push)
@@ -103,8 +103,8 @@ def read_chart(request: DanceRequest, section: str | None = None) -> ChartChoice
     """
     from dancetutor_cli import chart as charts
     from dancetutor_cli.dance.two import check_alone
+    from dancetutor_cli.lint.configuration import choice_for, mismatch, preset_for
     from dancetutor_cli.lint.part import check_part
-    from dancetutor_cli.lint.presets import choice_for, mismatch, preset_for
 
     if section is not None:
         check_part(section)

@@ -17,10 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from dancetutor_cli.bake.pieces import BakedPiece, Each, Piece
-from dancetutor_cli.fingerprint import fingerprint, program_stamp
-from dancetutor_cli.motion.baked import Motion
-from dancetutor_cli.physics.distances import Distances
+from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.physics.simulation import Distances
+from dancetutor_cli.dance.pieces import BakedPiece, Each, Piece
+from dancetutor_cli.run.fingerprint import fingerprint, program_stamp
 from dancetutor_cli.run.trust import kept_folder
 
 LARGEST = 512_000_000  # bytes of all that is kept; the oldest go first

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.chart.players import ONE_PAD, OWN_PADS
-from dancetutor_cli.errors import UsageError
-from dancetutor_cli.motion.swing.panels import PANEL
-from dancetutor_cli.pads import load_pad
-from dancetutor_cli.play.played import Limb, Play
-from dancetutor_cli.play.rows import prepare
+from dancetutor_cli.chart.note_data import ONE_PAD, OWN_PADS
+from dancetutor_cli.dance.context import PANEL
+from dancetutor_cli.feet import load_pad
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.play import Play, prepare
+from dancetutor_cli.run.errors import UsageError
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
     from dancetutor_cli.dance.request import DanceRequest
-    from dancetutor_cli.pads import Pad
+    from dancetutor_cli.feet import Pad
 
 SEEN = 8  # notes at either end that say where somebody stands
 # Steps type as it is written -> the pad on which both stand: of a couple each has half of it. Else it is its own.

@@ -8,13 +8,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from dancetutor_cli.bounded import CHART_LIMIT, parse_json, read_bytes
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
-from dancetutor_cli.errors import FileError, MissingFileError
-from dancetutor_cli.feet.contradictions import Said
+from dancetutor_cli.chart.pack_files import EDITOR_FILE, song_stems
 from dancetutor_cli.feet.limbs import Limb, Part
-from dancetutor_cli.feet.overrides import FeetProblem
-from dancetutor_cli.library.feet_files import EDITOR_FILE, song_stems
+from dancetutor_cli.feet.overrides import FeetProblem, Said
+from dancetutor_cli.run.errors import FileError, MissingFileError
+from dancetutor_cli.run.reading import CHART_LIMIT, parse_json, read_bytes
 
 FILE_NAME = EDITOR_FILE
 OURS = "dancetutor"  # our own key in the file: what we wrote into it, which is no person's word

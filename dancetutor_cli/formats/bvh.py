@@ -15,12 +15,11 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.files import write_atomic
-from dancetutor_cli.motion.baked import Motion
-from dancetutor_cli.motion.sampling import sample
-from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.skeleton import Skeleton
+from dancetutor_cli.dance.motion import Motion, sample
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.files import write_atomic
 
 Array = NDArray[np.float64]
 

@@ -8,16 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.container import Container, as_dict, read_container
-from dancetutor_cli.character.nodes import Nodes, read_nodes
-from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.character.container import Container, Nodes, as_dict, read_container, read_nodes
+from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.physics.captured import Captured
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.formats.bvh import read_bvh
 from dancetutor_cli.formats.npz import read_npz
-from dancetutor_cli.motion.baked import Motion
-from dancetutor_cli.outputs import one_of
-from dancetutor_cli.physics.captured import Captured
-from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.kinematics import world_transforms
+from dancetutor_cli.run.errors import FileError, UsageError
+from dancetutor_cli.run.files import one_of
 
 Array = NDArray[np.float64]
 SUFFIXES = (".bvh", ".glb", ".vrm", ".npz")

@@ -29,11 +29,25 @@ import math
 from pathlib import Path
 from typing import Any
 
-from dancetutor_cli.files import encoded, write_atomic
-from dancetutor_cli.motion.baked import Bar, Grip
-from dancetutor_cli.motion.foot_moves import Gallop, Hover, Jump, Move, Pivot, Shake, Sidestep, Step, Swing, Walk
-from dancetutor_cli.motion.plan import FootTrack, Plan, Press
-from dancetutor_cli.play.played import Limb, Part, StepKind
+from dancetutor_cli.dance.motion import Bar, Grip
+from dancetutor_cli.dance.plan import (
+    FootTrack,
+    Gallop,
+    Hover,
+    Jump,
+    Move,
+    Pivot,
+    Plan,
+    Press,
+    Shake,
+    Sidestep,
+    Step,
+    Swing,
+    Walk,
+)
+from dancetutor_cli.feet.limbs import Limb, Part
+from dancetutor_cli.feet.play import StepKind
+from dancetutor_cli.run.files import encoded, write_atomic
 
 SCHEMA = 1
 _FEET = ("left_foot", "right_foot")

@@ -38,13 +38,13 @@ from typing import Any
 
 import numpy as np
 
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.files import write_atomic
+from dancetutor_cli.dance.motion import Bar, Contact, Grip, Ground, Motion
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.feet.play import LetGo
+from dancetutor_cli.feet.preset import Why
 from dancetutor_cli.formats.npz_arrays import Field, read_arrays
-from dancetutor_cli.motion.baked import Bar, Contact, Grip, Ground, Motion
-from dancetutor_cli.play.let_go import LetGo
-from dancetutor_cli.play.unplayable import Why
-from dancetutor_cli.rig.skeleton import Skeleton
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.files import write_atomic
 
 SCHEMA = 1
 _FAR = 1e5  # metres and seconds: a day of music

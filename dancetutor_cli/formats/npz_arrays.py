@@ -19,8 +19,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.bounded import MEGABYTE, read_bytes, shown_key
-from dancetutor_cli.errors import FileError
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.reading import MEGABYTE, read_bytes, shown_key
 
 LIMIT = 256 * MEGABYTE  # of the file, and of its arrays unpacked; half an hour of a whole body at 60 frames a second
 MOST_ENTRIES = 1000

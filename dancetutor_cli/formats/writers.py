@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
-    from dancetutor_cli.motion.baked import Bar, Motion
-    from dancetutor_cli.motion.plan import Plan
+    from dancetutor_cli.dance.motion import Bar, Motion
+    from dancetutor_cli.dance.plan import Plan
 
 
 class Dance(Protocol):

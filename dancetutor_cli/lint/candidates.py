@@ -1,21 +1,176 @@
-"""What rules would have to look at in each of several plays: most of them have nothing to look at in most plays."""
+"""Technical steps of several plays, and what rules would have to look at in each of them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.lint.chart_figures import TECH_COUNTS
-from dancetutor_cli.lint.plays import Plays
-from dancetutor_cli.lint.techniques import techniques
-from dancetutor_cli.meter.features import Feature, features_of
-from dancetutor_cli.pads import Pad
-from dancetutor_cli.play.played import Limb, Play
-from dancetutor_cli.play.turned import half_turned
+from dancetutor_cli.feet.limbs import Limb, Part
+from dancetutor_cli.feet.pads import Pad
+from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.solver.techniques import half_turned
+from dancetutor_cli.lint.findings import TECH_COUNTS
+from dancetutor_cli.lint.meter_model import Feature, features_of
+from dancetutor_cli.lint.plays import WRITTEN, Plays
+
+# Technical steps of plays, counted as ITGmania counts them, so that the numbers can be laid beside the game's.
+#
+# The game looks at rows with steps, each with the row before it; the first is nothing. A footswitch is a panel pressed
+# by another foot than in the row before, within 0.3 s; a jack the same foot on the same panel (0.176 s) and a
+# doublestep on another (0.235 s), both rows single. A crossover is one step after which the foot stands on the wrong
+# side of the other, which stepped in the row before: full where that foot came from its own side, half where it came
+# from the middle. So a crossed passage of five rows is one crossover or two, not five.
+
+_JACK, _DOUBLESTEP, _FOOTSWITCH = 176_000, 235_000, 300_000  # microseconds between two rows, the game's own limits
+_NEVER = 10**15
+_TOE = int(Part.TOE)
+Found = dict[str, NDArray[np.int64]]
+
+
+@dataclass(frozen=True)
+class _Steps:
+    """Rows with steps that a foot presses, n; columns c. -1: none.
+
+    row : of the plays; place : (n,) its place among those of its play; gap : (n - 1,) microseconds from one to the next
+    of the same play, free of float noise; count : steps in the row
+    heel, toe : for each foot (n,) the column that it presses
+    x : for each foot (n,) its place, NaN without; of a bracket between its panels; heel_x : that of the heel
+    cell : steps of feet, in order: row * c + column; foot : who presses it
+    """
+
+    row: NDArray[np.int64]
+    place: NDArray[np.int64]
+    gap: NDArray[np.int64]
+    count: NDArray[np.int64]
+    heel: list[NDArray[np.int64]]
+    toe: list[NDArray[np.int64]]
+    x: list[NDArray[np.float64]]
+    heel_x: list[NDArray[np.float64]]
+    cell: NDArray[np.int64]
+    foot: NDArray[np.int8]
+
+
+def techniques(plays: Plays) -> Found:
+    """The rows of the plays that are counted as each of `TECH_COUNTS`, one for each time, not in order."""
+    steps = _steps_of(plays)
+    inner = np.flatnonzero(steps.place > 0)
+    both = [steps.row[inner[(steps.heel[foot][inner] >= 0) & (steps.toe[foot][inner] >= 0)]] for foot in (0, 1)]
+    return {
+        **_switches(steps, plays),
+        **_repeats(steps, plays),
+        **_crossovers(steps),
+        "Brackets": np.concatenate(both),
+    }
+
+
+def _steps_of(plays: Plays) -> _Steps:
+    cell = np.flatnonzero(WRITTEN[plays.steps.ravel()])
+    at, column = np.divmod(cell, len(plays.pad))
+    first = np.ones(len(at), dtype=bool)
+    first[1:] = at[1:] != at[:-1]
+    row, number = at[first], np.cumsum(first) - 1
+    limb, toe = plays.limb.ravel()[cell], plays.part.ravel()[cell] == _TOE
+    brackets = bool(toe.any())
+    places = np.append(plays.pad.panels[:, 0], np.nan)  # column -1: no place
+    heels, toes, x, heel_x = [], [], [], []
+    for foot in (0, 1):
+        mine = limb == foot
+        heels.append(_first(number, column, mine & ~toe if brackets else mine, len(row)))
+        heel_x.append(places[heels[foot]])
+        if brackets:
+            toes.append(_first(number, column, mine & toe, len(row)))
+            x.append(np.where(toes[foot] >= 0, (heel_x[foot] + places[toes[foot]]) / 2, heel_x[foot]))
+        else:
+            toes.append(np.full(len(row), -1, dtype=np.int64))
+            x.append(heel_x[foot])
+    of_play = plays.number[row]
+    gap = np.rint((plays.second[row[1:]] - plays.second[row[:-1]]) * 1e6).astype(np.int64)
+    gap[of_play[1:] != of_play[:-1]] = _NEVER
+    place = np.arange(len(row)) - of_play.searchsorted(of_play)
+    feet = (limb == 0) | (limb == 1)
+    return _Steps(
+        row, place, gap, np.bincount(number, minlength=len(row)), heels, toes, x, heel_x,
+        (number * len(plays.pad) + column)[feet], limb[feet],
+    )  # fmt: skip
+
+
+def _first(
+    number: NDArray[np.int64], column: NDArray[np.int64], which: NDArray[np.bool_], rows: int
+) -> NDArray[np.int64]:
+    """The column of the first of some steps in each row, or -1."""
+    found = np.full(rows, -1, dtype=np.int64)
+    steps = np.flatnonzero(which)[::-1]
+    found[number[steps]] = column[steps]  # of several the one that comes last counts: the first column
+    return found
+
+
+def _switches(steps: _Steps, plays: Plays) -> Found:
+    """Panels taken over, by where their arrows point."""
+    c, pad = len(plays.pad), plays.pad
+    before = np.full((len(steps.row) + 1) * c, -1, dtype=np.int8)
+    before[steps.cell + c] = steps.foot
+    before = before[steps.cell]
+    other = np.flatnonzero((before >= 0) & (before != steps.foot))
+    number, column = np.divmod(steps.cell[other], c)
+    near = steps.gap[number - 1] < _FOOTSWITCH
+    row, column = steps.row[number[near]], column[near]
+    across, along = pad.arrows.T
+    up, down = row[along[column] > 0], row[along[column] < 0]
+    left, right = (row[(along[column] == 0) & side[column]] for side in (across < 0, across > 0))
+    middle = row[(along[column] == 0) & (across[column] == 0)]
+    return {
+        "Footswitches": np.concatenate([up, down, middle]), "UpFootswitches": up, "DownFootswitches": down,
+        "Sideswitches": np.concatenate([left, right]), "LeftSideswitches": left, "RightSideswitches": right,
+    }  # fmt: skip
+
+
+def _repeats(steps: _Steps, plays: Plays) -> Found:
+    """The same foot in two single rows one after the other: on its panel, or on another."""
+    single = steps.count == 1
+    near = single[1:] & single[:-1] & (steps.gap < _DOUBLESTEP)
+    jacks, doublesteps = [], []
+    for heel in steps.heel:
+        now, before = heel[1:], heel[:-1]
+        again = near & (now >= 0) & (before >= 0)
+        same = now == before
+        jacks.append(steps.row[1:][again & same & (steps.gap < _JACK)])
+        doublesteps.append(steps.row[1:][again & ~same])
+    stepped = np.concatenate(doublesteps)
+    forced = np.isin(stepped, plays.rows_with("forced-doublestep"))
+    return {
+        "Jacks": np.concatenate(jacks),
+        "Doublesteps": stepped,
+        "ForcedDoublesteps": stepped[forced],
+        "UnforcedDoublesteps": stepped[~forced],
+    }
+
+
+def _crossovers(steps: _Steps) -> Found:
+    """Steps of one foot to the wrong side of the other, which stepped in the row before; half or full."""
+    half, full = [], []
+    for foot, outward in ((0, -1.0), (1, 1.0)):
+        x, other = steps.x[foot], steps.x[1 - foot]
+        stepped, others = steps.heel[foot], steps.heel[1 - foot]
+        beyond = x[1:] > other[:-1] if foot == 0 else x[1:] < other[:-1]
+        follows = (steps.place[1:] > 0) & (stepped[1:] >= 0) & (stepped[:-1] < 0) & (others[:-1] >= 0)
+        at = np.flatnonzero(follows & beyond) + 1
+        third = steps.place[at] > 1
+        earlier = np.where(third, stepped[at - 2], -1)
+        moved = ~third | ((earlier >= 0) & (earlier != stepped[at]))
+        came_from = steps.heel_x[foot][at - 2] * outward
+        outside = third & (earlier >= 0) & (came_from > other[at - 1] * outward)
+        full.append(steps.row[at[moved & outside]])
+        half.append(steps.row[at[moved & ~outside]])
+    halves, fulls = np.concatenate(half), np.concatenate(full)
+    return {"Crossovers": np.concatenate([halves, fulls]), "HalfCrossovers": halves, "FullCrossovers": fulls}
+
+
+# What rules would have to look at in each of several plays: most of them have nothing to look at in most plays.
 
 _LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
 _HAND = 3  # panels that are down at once
@@ -41,7 +196,7 @@ class Candidates:
         self._features: dict[tuple[tuple[Feature, ...], float], list[list[float]]] = {}
 
     def features(self, number: int, wanted: Sequence[Feature], rate: float) -> list[float]:
-        """What the meter of one of the plays is estimated from, see `meter.features`."""
+        """What the meter of one of the plays is estimated from, see `lint.meter_model`."""
         asked = tuple(wanted), rate
         if asked not in self._features:
             self._features[asked] = features_of(self.plays.plays, wanted, rate)

@@ -1,16 +1,15 @@
-"""Reads dancetutor.yaml and configs/lint/*.yaml into `Settings`; what they say wrongly is named with its line."""
+"""Reads dancetutor.yaml and configs/lint/*.yaml into `Settings`, and decides which cost preset a chart gets."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from dancetutor_cli.bounded import is_regular, leads_out, shown_key
-from dancetutor_cli.errors import FileError, UsageError, did_you_mean
-from dancetutor_cli.library.settings_file import (
+from dancetutor_cli.chart.pack_files import (
     Condition,
     SettingError,
     check_keys,
@@ -18,11 +17,18 @@ from dancetutor_cli.library.settings_file import (
     condition_of,
     texts_of,
 )
-from dancetutor_cli.lint.layers import known, layer_of
-from dancetutor_cli.lint.registry import matching, named_singly
-from dancetutor_cli.lint.rule_settings import Layer, Settings
-from dancetutor_cli.marked_yaml import MarkedYaml, parse_value, read
-from dancetutor_cli.resources import config_path
+from dancetutor_cli.feet.preset import DEFAULT_PRESET, Preset, default_preset, load_preset
+from dancetutor_cli.lint.rule import matching, named_singly
+from dancetutor_cli.lint.rule_settings import Layer, Settings, known, layer_of
+from dancetutor_cli.run.errors import FileError, UsageError, did_you_mean
+from dancetutor_cli.run.reading import config_path, is_regular, leads_out, shown_key
+from dancetutor_cli.run.yaml_files import MarkedYaml, parse_value, read
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart
+
+
+# Reads dancetutor.yaml and configs/lint/*.yaml into `Settings`; what they say wrongly is named with its line.
 
 FAIL_ON = ("error", "warning", "never")
 _TOP_KEYS = (
@@ -194,7 +200,7 @@ def _apply(base: Configuration, data: Mapping[str, Any], folder: Path, *, confin
 
 def _preset(value: Any, folder: Path, place: tuple[str | int, ...]) -> str:
     """A preset's name, or the path of its file, which lies in the folder of the configuration or below it."""
-    from dancetutor_cli.play import preset_names
+    from dancetutor_cli.feet import preset_names
 
     name = str(value)
     if name in preset_names():
@@ -212,7 +218,7 @@ def _preset(value: Any, folder: Path, place: tuple[str | int, ...]) -> str:
 
 def _check_feet(data: Mapping[str, Any], folder: Path) -> None:
     """What `feet` says is read where feet are found; here it is only checked, for it knows no rules."""
-    from dancetutor_cli.feet.configured import entries_of
+    from dancetutor_cli.feet.song_feet import entries_of
 
     for number, entry in enumerate(entries_of(data, folder)):
         for rule in {rule for rules in entry.ignore.values() for rule in rules}:
@@ -231,3 +237,72 @@ def _list(data: Mapping[str, Any], key: str) -> list[Any]:
     if not isinstance(value, list):
         raise SettingError((key,), f"'{key}' is a list")
     return value
+
+
+# Which cost preset a chart is solved with: the one place that decides it, for every command.
+#
+# Imports neither numpy nor numba: a kept result is reported without them.
+
+
+@dataclass(frozen=True, slots=True)
+class PresetChoice:
+    """What was said about presets. Pickles; its `repr` tells all that a play depends on but the program itself.
+
+    given : what --preset names: it holds for every chart
+    ruled : (condition, preset) of the configuration: of those that hold for a chart the last one counts
+    """
+
+    given: Preset | None = None
+    ruled: tuple[tuple[Condition, Preset], ...] = ()
+
+    def candidates(self) -> Iterator[Preset]:
+        """Every preset that a chart may get, but those for other pads that nobody has named."""
+        if self.given is not None:
+            yield self.given
+            return
+        yield from (preset for _, preset in self.ruled)
+        if not any(condition == Condition() for condition, _ in self.ruled):
+            yield _default(DEFAULT_PRESET)
+
+
+def preset_for(chart: Chart, path: Path, choice: PresetChoice) -> Preset:
+    """The preset of a chart: the command line's, else the configuration's, else the one for its steps type.
+
+    path : the chart file, which conditions may be about
+    """
+    if choice.given is not None:
+        return choice.given
+    for when, preset in reversed(choice.ruled):
+        if when.holds_for_path(path) and when.holds_for_chart(chart.steps_type, chart.difficulty, chart.meter):
+            return preset
+    return _default(default_preset(chart.steps_type))
+
+
+_default = cache(load_preset)
+
+
+def choice_of(given: str | None, configuration: Configuration | None = None) -> PresetChoice:
+    """The presets that --preset and a configuration name, loaded; UsageError or FileError if one cannot be."""
+    if given is not None:
+        return PresetChoice(load_preset(given))
+    if configuration is None:
+        return PresetChoice()
+    ruled = [(when, load_preset(name, confined=True)) for when, name in configuration.presets]
+    return PresetChoice(None, tuple(ruled))
+
+
+def choice_for(path: Path, given: str | None) -> PresetChoice:
+    """The same with the configuration that holds for a chart file: the nearest dancetutor.yaml up the tree."""
+    if given is not None:
+        return choice_of(given)
+    from dancetutor_cli.chart.pack_files import find_settings_file
+
+    settings = find_settings_file(path.absolute().parent)
+    return choice_of(None, None if settings is None else load_configuration(settings, found=True))
+
+
+def mismatch(preset: Preset, steps_type: str) -> str | None:
+    """A line for people where a preset was made for other pads than a chart's, else None."""
+    if preset.is_for(steps_type):
+        return None
+    return f"preset '{preset.name}' was made for {' and '.join(preset.pads)} pads, not for {steps_type}"

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.timing import Timing
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.play import StepKind
 from dancetutor_cli.lint.candidates import Candidates
 from dancetutor_cli.lint.plays import CROSSED, EPSILON, PlayedSteps
-from dancetutor_cli.play.played import Limb, StepKind
 
 _BETWEEN = 2  # sure rows between two unsure ones of one passage, at most
 WALL = 3  # mines in a row

@@ -1,15 +1,91 @@
-"""Whether a passage goes as well on the other foot: after a rest or a jump players begin with whichever they like."""
+"""Whether some other way to dance a passage crosses the feet less, and where a dancer may begin with either foot."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.feet.play import Play
+from dancetutor_cli.lint.foot_questions import WALL
+from dancetutor_cli.lint.rule import EPSILON
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from dancetutor_cli.lint.subject import ChartSubject
+
+
+# Where a dancer may begin anew with either foot: worked out once for all steps of a play, and asked for often.
+
+RESTED = 0.45  # seconds without a step after which nobody alternates: of labelled crossings nine of ten are quicker
+REST = 1.75  # times the pace of the passage: a quarter among eighths, not the longer note of a gallop
+_SHORTEST = 0.22  # seconds of such a rest
+_AROUND = 7  # steps to either side that make the pace
+
+
+class Beginnings:
+    """The rows with a step of a play, by their places from 0 to k - 1.
+
+    rows : (k,), their rows; pauses : (k,), seconds since the step before, endless for the first
+    """
+
+    def __init__(self, play: Play, rows: NDArray[np.int64], pauses: NDArray[np.float64]) -> None:
+        self._play, self._rows, self._pauses = play, rows, pauses
+        self._anew: dict[float, NDArray[np.bool_]] = {}
+        self._starts: dict[float, NDArray[np.int64]] = {}
+
+    @cached_property
+    def rests(self) -> NDArray[np.bool_]:
+        """(k,) whether before a step about twice the time passes that the steps around it take."""
+        rests, count = self._pauses >= _SHORTEST, len(self._rows)
+        long = np.flatnonzero(rests)
+        around = long[:, None] + np.arange(-_AROUND, _AROUND + 1)
+        known = (around >= 1) & (around < count)  # nothing is known of the time before the first
+        times = np.sort(np.where(known, self._pauses[around.clip(0, count - 1)], np.inf), axis=1)
+        many = known.sum(axis=1)
+        middle = times[np.arange(len(long)), np.maximum(many - 1, 0) // 2]  # the median, of two the lesser
+        rests[long] = self._pauses[long] >= REST * np.where(many > 0, middle, 0.0)
+        return rests
+
+    @cached_property
+    def pairs(self) -> NDArray[np.bool_]:
+        """(k,) whether more than one panel is pressed: a pair is a jump as well as a bracket."""
+        return np.asarray((self._play.limb[self._rows] >= 0).sum(axis=1) > 1)
+
+    @cached_property
+    def after_walls(self) -> NDArray[np.bool_]:
+        """(k,) whether a wall of mines, for which everybody waits between the panels, stands before a step."""
+        found = np.zeros(len(self._rows), dtype=bool)
+        walls = np.concatenate([[0], (self._play.rows.mines.sum(axis=1) >= WALL).cumsum()])
+        found[1:] = walls[self._rows[1:]] > walls[self._rows[:-1] + 1]
+        return found
+
+    def anew(self, quick: float) -> NDArray[np.bool_]:
+        """(k,) whether the dancer may begin with either foot at a step.
+
+        After a rest, a wall of mines or two panels at once, or there is no step before; and at two panels at once.
+        quick : the longest time (s) between steps that is quick: no rest, even if longer than `RESTED`
+        """
+        if quick not in self._anew:
+            anew = self.rests | self.pairs | self.after_walls | (self._pauses > max(RESTED, quick + EPSILON))
+            anew[1:] |= self.pairs[:-1]
+            anew[:1] = True
+            self._anew[quick] = anew
+        return self._anew[quick]
+
+    def segment(self, at: int, quick: float) -> tuple[int, int]:
+        """First and last place around one in which the dancer does not begin anew."""
+        if quick not in self._starts:
+            self._starts[quick] = np.flatnonzero(self.anew(quick))
+        starts = self._starts[quick]
+        after = int(starts.searchsorted(at, side="right"))
+        return int(starts[after - 1]), int(starts[after]) - 1 if after < len(starts) else len(self._rows) - 1
+
+
+# Whether a passage goes as well on the other foot: after a rest or a jump players begin with whichever they like.
 
 _CROSSED = 90.0 + 1e-6  # degrees
 
@@ -71,3 +147,171 @@ def exchanged_facings(
             left = column
         facings.append(0.0 if left < 0 or right < 0 else subject.angles[left][right])
     return facings
+
+
+# Whether some other way to dance the steps around a row crosses the feet less: people choose a foot after a breath.
+
+_BEFORE, _AFTER = 16, 12  # steps to either side of the row, if no rest comes first
+_BREATH = 0.22  # seconds, at least: twice a shorter time is still a run
+_SWUNG = 0.2  # the same where the rule has breaths: the long half of a swing rhythm is one
+_NEAR = 5  # steps
+_UNKNOWN = -1
+
+
+class Freedom(NamedTuple):
+    """What else a dancer may do than step left and right in turn, beginning as she likes after a rest.
+
+    quick : the longest time (s) between steps that the rule takes for quick; rest : seconds that are a breath after a
+    quicker step alone, see `is_breath`; switch : from so many seconds the feet may change on a panel that
+    is stepped on again; slip : from so many seconds one foot may step twice in a row, once, out of a run of jacks or to
+    the other of two pads; spins : whether the body may turn on round behind; lead : seconds that let either foot begin
+    if the next step comes in half of them
+    """
+
+    quick: float
+    rest: float = math.inf
+    switch: float = math.inf
+    slip: float = math.inf
+    spins: bool = False
+    lead: float = math.inf
+
+
+class _Stand(NamedTuple):
+    """Panels of the left and the right foot, the foot that stepped last, where the body faces, slips used up."""
+
+    panels: tuple[int, int]
+    last: int
+    facing: float
+    slipped: bool
+
+
+def fewest_crossed(subject: ChartSubject, row: int, freedom: Freedom) -> float:
+    """How many steps of the phrase around a row leave the feet crossed, danced as well as the freedom allows.
+
+    Endless where no way goes, or where a hold or two panels at once stand in it.
+    """
+    play, feet = subject.play, subject.feet
+    if play is None or feet is None or subject.pad is None:
+        return math.inf
+    rows = subject.step_rows
+    at = int(rows.searchsorted(row))
+    first = last = at
+    while first > max(at - _BEFORE, 0) and not _begins(subject, first, freedom):
+        first -= 1
+    while last + 1 < min(at + _AFTER, len(rows)) and not _begins(subject, last + 1, freedom):
+        last += 1
+    phrase = rows[first : last + 1]
+    if ((play.limb[phrase] >= 0).sum(axis=1) != 1).any() or (feet.down[phrase] != 1).any():
+        return math.inf
+    columns = play.limb[phrase].argmax(axis=1).tolist()
+    anew = bool(subject.beginnings.anew(freedom.quick)[first])
+    ways = _starts(subject, first, anew=anew)
+    before = int(play.limb[int(rows[first - 1])].argmax()) if first and not anew else _UNKNOWN
+    for place, column in enumerate(columns):
+        step = _Step(subject, first + place, column, before, freedom)
+        ways = step.taken(ways, free=anew and place == 0)
+        before = column
+    return min(ways.values(), default=math.inf)
+
+
+def _begins(subject: ChartSubject, at: int, freedom: Freedom) -> bool:
+    """Whether a phrase begins with the `at`-th row with a step; where a rest is one for the rule, a breath is one."""
+    if subject.beginnings.anew(freedom.quick)[at]:
+        return True
+    return freedom.rest < math.inf and is_breath(subject, at, freedom.rest)
+
+
+def is_breath(subject: ChartSubject, at: int, rest: float = math.inf) -> bool:
+    """Whether the `at`-th row with a step begins a group: about twice the times inside this group and that before it.
+
+    rest : seconds that need only be twice the time in the group before
+    """
+    rows = subject.step_rows
+    pause = subject.pause(int(rows[at]))
+    before = subject.pause(int(rows[at - 1])) if at > 1 else math.inf
+    after = subject.pause(int(rows[at + 1])) if at + 1 < len(rows) else math.inf
+    least = _BREATH if rest == math.inf else _SWUNG
+    return pause >= least and pause >= REST * (before if pause >= rest else max(before, after))
+
+
+def in_groups(subject: ChartSubject, row: int) -> bool:
+    """Whether one of the few steps before or after a row begins a group."""
+    at = int(subject.step_rows.searchsorted(row))
+    return any(
+        is_breath(subject, one) for one in range(max(at - _NEAR, 1), min(at + _NEAR + 1, len(subject.step_rows)))
+    )
+
+
+def led_by_a_jack(subject: ChartSubject, row: int) -> bool:
+    """Whether one of the few panels stepped on before a row is stepped on twice."""
+    rows = subject.step_rows
+    at = int(rows.searchsorted(row))
+    pressed = [subject.pressed(int(one)) for one in rows[max(at - _NEAR, 0) : at]]
+    return any(one == two for one, two in pairwise(pressed))
+
+
+def _starts(subject: ChartSubject, first: int, *, anew: bool) -> dict[_Stand, int]:
+    play, rows = subject.play, subject.step_rows
+    assert play is not None
+    if anew:
+        return {_Stand((_UNKNOWN, _UNKNOWN), _UNKNOWN, 0.0, False): 0}
+    left, right = standing(subject, int(rows[first]))
+    last = int(play.limb[int(rows[first - 1])].max())
+    return {_Stand((left, right), last, float(play.facing[int(rows[first]) - 1]), False): 0}
+
+
+class _Step(NamedTuple):
+    """One step of the phrase: the `at`-th row with a step, on `column`, after one on `before`."""
+
+    subject: ChartSubject
+    at: int
+    column: int
+    before: int
+    freedom: Freedom
+
+    def taken(self, ways: dict[_Stand, int], *, free: bool) -> dict[_Stand, int]:
+        """The ways to stand after this step, each with its fewest crossed steps; free : with either foot."""
+        subject, freedom = self.subject, self.freedom
+        pause = subject.pause(int(subject.step_rows[self.at]))
+        free = free or is_breath(subject, self.at, freedom.rest) or (pause >= freedom.lead and self._leads(pause))
+        again = self.column == self.before
+        slips = pause >= freedom.slip and (self._after_jacks() or self._to_other_pad())
+        found: dict[_Stand, int] = {}
+        for stand, crossed in ways.items():
+            for foot in (0, 1):
+                same = foot == stand.last
+                allowed = free or stand.last == _UNKNOWN or same == again or (again and pause >= freedom.switch)
+                slipped = stand.slipped
+                if not allowed and same and slips and not slipped:
+                    allowed = slipped = True
+                after = self._stood(stand, foot, slipped) if allowed else None
+                if after is not None:
+                    count = crossed + (abs(after.facing) > _CROSSED)
+                    found[after] = min(found.get(after, count), count)
+        return found
+
+    def _stood(self, stand: _Stand, foot: int, slipped: bool) -> _Stand | None:
+        """How she stands with this foot on the panel; None where she would turn on round."""
+        left, right = (self.column, stand.panels[1]) if foot == 0 else (stand.panels[0], self.column)
+        if left == right and left != _UNKNOWN:  # the foot that was there makes room
+            left, right = (left, _UNKNOWN) if foot == 0 else (_UNKNOWN, right)
+        facing = 0.0
+        if min(left, right) >= 0:
+            facing = self.subject.angles[left][right]
+        if not self.freedom.spins and (abs(facing - stand.facing) > 180 or abs(facing) >= 180):
+            return None
+        return _Stand((left, right), foot, facing, slipped)
+
+    def _leads(self, pause: float) -> bool:
+        rows = self.subject.step_rows
+        return self.at + 1 < len(rows) and pause >= REST * self.subject.pause(int(rows[self.at + 1]))
+
+    def _after_jacks(self) -> bool:
+        pressed = [self.subject.pressed(int(one)) for one in self.subject.step_rows[max(self.at - 2, 0) : self.at]]
+        return len(pressed) == 2 and pressed[0] == pressed[1]
+
+    def _to_other_pad(self) -> bool:
+        assert self.subject.pad is not None
+        panels = self.subject.pad.panels
+        half, two = len(panels) // 2, float(np.ptp(panels[:, 0])) > 2.5
+        return two and self.before >= 0 and (self.before < half) != (self.column < half)

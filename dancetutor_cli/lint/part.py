@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.run.errors import UsageError
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.play.preset import Preset
+    from dancetutor_cli.feet.preset import Preset
 
 AROUND = 8  # beats before and after a finding
 _FINDING = re.compile(r"\s*(DT\d{3})\s*:\s*(\d+)\s*", re.IGNORECASE)
@@ -18,7 +18,7 @@ _HARDEST = re.compile(r"\s*hardest\s*:\s*(\d+)\s*", re.IGNORECASE)
 
 def check_part(text: str) -> None:
     """UsageError for what is no part of any chart: so that a slip is told before a chart is read."""
-    from dancetutor_cli.chart.section import check_section
+    from dancetutor_cli.chart.timing import check_section
 
     if not _FINDING.fullmatch(text) and not _HARDEST.fullmatch(text):
         check_section(text)
@@ -29,12 +29,12 @@ def part_of(text: str, song: Song, chart: Chart, preset: Preset, end: float) -> 
 
     Parameters
     ----------
-    text : START:END in seconds, beats or measures (`chart.section`); RULE:N, four measures around the N-th finding; or
+    text : START:END in seconds, beats or measures (`chart.timing`); RULE:N, four measures around the N-th finding; or
         hardest:N, the N-th hardest passage (`lint.passages`)
     preset : with which the feet are found that the finding is about
     end : second at which the chart ends; no part goes on after it, and one that begins after it is a UsageError
     """
-    from dancetutor_cli.chart.section import parse_section
+    from dancetutor_cli.chart.timing import parse_section
 
     if match := _FINDING.fullmatch(text):
         first, last = _around_finding(song, chart, preset, match[1].upper(), int(match[2]))
@@ -47,7 +47,7 @@ def part_of(text: str, song: Song, chart: Chart, preset: Preset, end: float) -> 
 
 def _hardest(song: Song, chart: Chart, preset: Preset, number: int) -> tuple[float, float]:
     from dancetutor_cli.lint.passages import hardest
-    from dancetutor_cli.lint.solved import solved_chart
+    from dancetutor_cli.lint.subject import solved_chart
 
     play = solved_chart(song, chart, preset).play
     found = () if play is None else hardest(play, chart.timing)
@@ -61,7 +61,7 @@ def _around_finding(song: Song, chart: Chart, preset: Preset, rule: str, number:
     import numpy as np
 
     from dancetutor_cli.lint.check import findings_of
-    from dancetutor_cli.lint.solved import solved_chart
+    from dancetutor_cli.lint.subject import solved_chart
 
     findings = findings_of(solved_chart(song, chart, preset))
     found = [one.beat for one in findings if one.rule == rule and one.beat is not None]

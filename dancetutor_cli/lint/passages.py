@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE
-from dancetutor_cli.play.played import Limb, Play, StepKind
-from dancetutor_cli.resources import config_path
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.play import Play, StepKind
+from dancetutor_cli.run.reading import config_path
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
@@ -75,8 +76,8 @@ class Passage:
 @cache
 def passage_settings() -> PassageSettings:
     """The numbers of configs/passages.yaml; FileError says what is wrong with them."""
-    from dancetutor_cli.errors import FileError
-    from dancetutor_cli.marked_yaml import read
+    from dancetutor_cli.run.errors import FileError
+    from dancetutor_cli.run.yaml_files import read
 
     path = config_path("passages.yaml")
     source = read(path)

@@ -1,17 +1,27 @@
-"""The abstract bases of rules: one small class per file under `rules/`, its docstring is its documentation."""
+"""The abstract bases of rules, and all rules by code and name: one small class per file under `rules/`."""
 
 from __future__ import annotations
 
+import importlib
 import math
+import pkgutil
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
-from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.lint import rules
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.run.errors import UsageError, did_you_mean
 
 if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Song
+    from dancetutor_cli.lint.findings import Estimate
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject
-    from dancetutor_cli.meter.bill import Estimate
+
+
+# The abstract bases of rules: one small class per file under `rules/`, its docstring is its documentation.
 
 BY_METER = "by-meter"  # what `max_seconds` says where the table of times is to decide
 EPSILON = 1e-6
@@ -124,7 +134,7 @@ class TimedRule(ChartRule):
     """A rule about moves that are worth a word only if they are quick.
 
     Option `max_seconds` says how quick: a number, or "by-meter": what at most `share` per cent of the charts of this
-    meter contain, see `lint.times`, but not more than `slowest`. `times` : what the move is called there.
+    meter contain, see `lint.rule_settings`, but not more than `slowest`. `times` : what the move is called there.
     `passage_beats` : those at most so many beats apart are one finding, at the surest of them; 0: each is one,
     endless: one for a chart
     """
@@ -195,7 +205,7 @@ class TimedRule(ChartRule):
         longest = self.options.get("max_seconds", math.inf)
         if longest != BY_METER:
             return float(longest)
-        from dancetutor_cli.lint.times import limit
+        from dancetutor_cli.lint.rule_settings import limit
 
         return min(limit(self.times, self.options["share"], steps_type, meter), self.slowest)
 
@@ -226,3 +236,94 @@ class MoveRule(TimedRule):
     def message(self, subject: ChartSubject, row: int) -> str:
         """What to say about this row."""
         return self.said
+
+
+# What rules about pictures share: whether the one that a song names is there and has a usual size.
+
+
+class PictureRule(FileRule):
+    """A rule about the picture that a tag of the song names. `tag` : its name; options `sizes` and `required`"""
+
+    tag: ClassVar[str]
+
+    @classmethod
+    def fault(cls, option: str, value: Any) -> str | None:
+        """Sizes that are none."""
+        return sizes_fault(value) if option == "sizes" else None
+
+    def check(self, subject: FileSubject) -> Iterable[Finding]:
+        """At most one finding."""
+        fault = picture_fault(subject.song, self.tag, self.options["sizes"], required=self.options["required"])
+        if fault:
+            yield self.finding(fault, subject.tag_place(self.tag))
+
+
+def sizes_fault(sizes: Sequence[object]) -> str | None:
+    """What is wrong with a list of sizes, or None."""
+    wrong = [size for size in sizes if not re.fullmatch(r"[1-9]\d*x[1-9]\d*", str(size))]
+    return f"'{wrong[0]}' is no size; write it as 418x164" if wrong else None
+
+
+def picture_fault(song: Song, tag: str, sizes: Sequence[str], *, required: bool) -> str | None:
+    """What is wrong with the picture of a tag, or None. `sizes` as "418x164"; empty: every size is right."""
+    name = song.tags.get(tag, "").strip()
+    if not name:
+        return f"#{tag} is empty" if required else None
+    folder = song.path.resolve().parent
+    path = (folder / name.replace("\\", "/")).resolve()
+    if not path.is_relative_to(folder.parent):
+        return f"#{tag} names a file outside the pack: {name}"
+    if not path.is_file():
+        return f"#{tag} names a file that is not there: {name}"
+    if not sizes:
+        return None
+    from PIL import Image, UnidentifiedImageError
+
+    try:
+        with Image.open(path) as picture:
+            width, height = picture.size
+    except (OSError, UnidentifiedImageError, Image.DecompressionBombError):
+        return f"#{tag} names a file that is no picture: {name}"
+    return None if f"{width}x{height}" in sizes else f"#{tag} is {width}x{height}, not {' or '.join(sizes)}: {name}"
+
+
+# All rules by code and name: the modules under `rules/`.
+
+
+@cache
+def all_rules() -> Mapping[str, type[Rule]]:
+    """Code -> class of every rule, sorted by code."""
+    found: dict[str, type[Rule]] = {}
+    for module in pkgutil.iter_modules(rules.__path__):
+        for value in vars(importlib.import_module(f"{rules.__name__}.{module.name}")).values():
+            if isinstance(value, type) and issubclass(value, Rule) and "code" in vars(value):
+                found[value.code] = value
+    return dict(sorted(found.items()))
+
+
+def rule_named(name: str) -> type[Rule]:
+    """The rule with this code or name; UsageError names the valid ones."""
+    for code, rule in all_rules().items():
+        if name.upper() == code or name.lower() == rule.name:
+            return rule
+    near = did_you_mean(name, [word for code, rule in all_rules().items() for word in (code, rule.name)])
+    raise UsageError(f"there is no rule '{name}'{near}; the rules are {described(all_rules().values())}")
+
+
+def matching(selector: str) -> set[str]:
+    """Codes that a selector means: a code, a name, a beginning of codes such as "DT2", or "all"."""
+    if selector.lower() == "all":
+        return set(all_rules())
+    found = {code for code in all_rules() if code.startswith(selector.upper())} if selector else set()
+    return found or {rule_named(selector).code}
+
+
+def named_singly(selectors: Iterable[str]) -> frozenset[str]:
+    """Codes of the selectors that are the code or the name of one rule, not of a family."""
+    words = {selector.upper() for selector in selectors}
+    return frozenset(code for code, rule in all_rules().items() if {code, rule.name.upper()} & words)
+
+
+def described(classes: Iterable[type[Rule]]) -> str:
+    """For error messages: "DT201 doublestep, DT202 spin"."""
+    return ", ".join(f"{rule.code} {rule.name}" for rule in classes)

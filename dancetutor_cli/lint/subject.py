@@ -1,31 +1,57 @@
-"""What a rule looks at: a file, or one chart with its play."""
+"""What a rule looks at: a file, or one chart with its play; charts that are looked at together."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, Song
-from dancetutor_cli.feet import FeetProblem, Ignores, Overrides
-from dancetutor_cli.lint.beginnings import Beginnings
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.overrides import FeetProblem, Ignores, Overrides
+from dancetutor_cli.feet.pads import Pad
+from dancetutor_cli.feet.play import SAME_TIME, Ambiguity, StepKind, too_quick
+from dancetutor_cli.feet.preset import LEAP, Preset, Why
+from dancetutor_cli.feet.solved import Solved, solve_song
 from dancetutor_cli.lint.candidates import Candidates
 from dancetutor_cli.lint.foot_questions import Feet
-from dancetutor_cli.lint.note_questions import Notes
-from dancetutor_cli.lint.places import PlacedChart
-from dancetutor_cli.lint.together import Shared
-from dancetutor_cli.pads import Pad
-from dancetutor_cli.play.let_go import SAME_TIME, too_quick
-from dancetutor_cli.play.played import Ambiguity, Limb, StepKind
-from dancetutor_cli.play.unplayable import LEAP, Why
+from dancetutor_cli.lint.note_questions import Notes, PlacedChart
+from dancetutor_cli.lint.other_foot import Beginnings
 
 if TYPE_CHECKING:
-    from dancetutor_cli.meter.estimate import Sized
+    from dancetutor_cli.lint.meters import Sized
+
+
+# Charts that are looked at together, so that what rules ask of one is answered for all of them at once.
+
+
+class Shared(NamedTuple):
+    """Plays that are looked at together, and which of them is meant."""
+
+    candidates: Candidates
+    number: int
+
+
+def look_at_together(subjects: Iterable[ChartSubject]) -> None:
+    """Let charts share their work: what is asked of one is answered for those on the same pad at once."""
+    of_pads: dict[str, list[ChartSubject]] = defaultdict(list)
+    for subject in subjects:
+        if subject.play is not None and subject.pad is not None:
+            of_pads[subject.pad.steps_type].append(subject)
+    for alike in of_pads.values():
+        assert alike[0].pad is not None
+        candidates = Candidates([subject.play for subject in alike if subject.play is not None], alike[0].pad)
+        for number, subject in enumerate(alike):
+            vars(subject)["shared"] = Shared(candidates, number)
+
+
+# What a rule looks at: a file, or one chart with its play.
 
 _LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
 
@@ -96,7 +122,7 @@ class ChartSubject(PlacedChart):
 
     def sized(self, rate: float = 1.0) -> Sized | None:
         """The chart's meters on every scale, for music that plays so fast; None without a play or a model."""
-        from dancetutor_cli.meter.estimate import size
+        from dancetutor_cli.lint.meters import size
 
         if self.play is None:
             return None
@@ -238,3 +264,22 @@ class ChartSubject(PlacedChart):
         """How many steps of a row no limb is left for."""
         assert self.play is not None
         return int((self.play.limb[row] == Limb.UNPLAYED).sum())
+
+
+# Charts with their feet as the rules look at them.
+
+
+def subject_of(solved: Solved) -> ChartSubject:
+    """What rules look at of a solved chart."""
+    one = solved
+    return ChartSubject(one.song, one.chart, one.play, one.pad, one.overrides, one.ignores, one.problems)
+
+
+def solved_chart(song: Song, chart: Chart, preset: Preset) -> ChartSubject:
+    """One chart, see `solved_charts`."""
+    return next(solved_charts(song, [chart], lambda _: preset))
+
+
+def solved_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart], Preset]) -> Iterator[ChartSubject]:
+    """Charts of a song, solved as `feet.solved.solve_song` does."""
+    return map(subject_of, solve_song(song, charts, preset_of))

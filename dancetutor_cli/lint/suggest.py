@@ -9,17 +9,16 @@ from functools import cached_property
 import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart
+from dancetutor_cli.feet import Play, StepKind, solve
+from dancetutor_cli.feet.preset import Preset
+from dancetutor_cli.feet.solver.engine import engine_for
+from dancetutor_cli.feet.solver.solve import OneTap, Outline, forced_limbs, moved_tap
+from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.lint.check import check_rule, rules_of
-from dancetutor_cli.lint.finding import Finding
-from dancetutor_cli.lint.registry import all_rules
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.rule import all_rules
 from dancetutor_cli.lint.rule_settings import Layer, Settings
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.play import Play, StepKind, solve
-from dancetutor_cli.play.engine import engine_for
-from dancetutor_cli.play.one_tap import OneTap, Outline, moved_tap
-from dancetutor_cli.play.preset import Preset
-from dancetutor_cli.play.solver import forced_limbs
-from dancetutor_cli.play.vocabulary import EVENTS
 
 # What can be mended by moving a note: doublestep, spin, jump-spin, ambiguous start, triple step.
 MENDABLE = ("DT201", "DT202", "DT203", "DT207", "DT209")

@@ -1,0 +1,1 @@
+"""Feet written into chart files and beside them, and taken out again."""

@@ -1,19 +1,107 @@
-"""The style `edit`: the lane-split chart as a `.edit` file for an unmodified game, or added to the chart file."""
+"""The lane-split chart, left foot on the left pad: as a `.edit` file for an unmodified game, or in the chart file."""
 
 from __future__ import annotations
 
 import glob
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from dancetutor_cli.bounded import CHART_LIMIT, read_bytes
-from dancetutor_cli.chart import parse
-from dancetutor_cli.chart.model import Chart, Song
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.markers import lanes
-from dancetutor_cli.markers.changes import ChartFeet
-from dancetutor_cli.markers.splice import Splice
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.chart.edits import Splice
+from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Chart, Kind, Song
+from dancetutor_cli.chart.reader import parse
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.play import Play
+from dancetutor_cli.markers.comments import ChartFeet
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
+
+# The lane-split chart: a single as a double, the left foot's steps on the left pad, the right foot's on the right.
+
+SOURCE, TARGET = "dance-single", "dance-double"
+_COLUMNS = 4
+_SIDE = {Limb.LEFT_FOOT: 0, Limb.LEFT_HAND: 0, Limb.RIGHT_FOOT: 1, Limb.RIGHT_HAND: 1}
+_LETTER = {
+    Kind.TAP: b"1", Kind.HOLD: b"2", Kind.ROLL: b"4", Kind.MINE: b"M", Kind.LIFT: b"L", Kind.FAKE: b"F",
+    Kind.KEYSOUND: b"K",
+}  # fmt: skip
+_TAIL = b"3"
+_ROW_COUNTS = (4, 8, 12, 16, 24, 32, 48, 64, 96, 192)  # what the games' editors write
+
+
+def sides(chart: Chart, play: Play) -> NDArray[np.int64]:
+    """The pad of each note of a single, (n,): 0 left, 1 right.
+
+    A step goes to the pad of the limb that plays it. What nobody steps on (mines, fakes, steps that are not judged)
+    goes where the panel was stepped on last: a mine stays under the foot that it threatens. Before the first step the
+    outer arrows are at their own side. A step that no limb is left for goes to the pad with fewer steps in its row.
+    """
+    limbs = _limbs(chart, play)
+    last = [0, 0, 0, 1]
+    out = np.zeros(len(chart.notes), dtype=np.int64)
+    places = zip(chart.notes.tick.tolist(), chart.notes.column.tolist(), strict=True)
+    for i, (tick, column) in enumerate(places):
+        limb = limbs.get((tick, column))
+        if limb is None:
+            out[i] = last[column]
+            continue
+        if limb in _SIDE:
+            side = _SIDE[Limb(limb)]
+        else:
+            row = [_SIDE[Limb(other)] for c in range(_COLUMNS) if (other := limbs.get((tick, c), -1)) in _SIDE]
+            side = int(row.count(1) < row.count(0))
+        out[i] = last[column] = side
+    return out
+
+
+def note_data(chart: Chart, play: Play, eol: bytes) -> bytes:
+    """The note data of the lane-split chart: rows and commas, each line with `eol`; no `;` at the end."""
+    notes = chart.notes
+    cells: dict[int, dict[int, bytes]] = {}
+
+    def put(tick: int, column: int, letter: bytes) -> None:
+        cells.setdefault(tick // TICKS_PER_MEASURE, {})[(tick % TICKS_PER_MEASURE) * 2 * _COLUMNS + column] = letter
+
+    table = zip(notes.tick.tolist(), notes.column.tolist(), notes.kind.tolist(), notes.end.tolist(), strict=True)
+    for (tick, column, kind, end), side in zip(table, sides(chart, play).tolist(), strict=True):
+        put(tick, column + _COLUMNS * side, _LETTER[Kind(kind)])
+        if kind in (Kind.HOLD, Kind.ROLL):
+            put(end, column + _COLUMNS * side, _TAIL)
+    measures = (_measure(cells.get(m, {}), eol) for m in range(max(cells, default=0) + 1))
+    return (b"," + eol).join(measures)
+
+
+def _measure(cells: dict[int, bytes], eol: bytes) -> bytes:
+    """The rows of one measure, as few as hold all its notes. cells : {tick in the measure * 8 + column: letter}"""
+    width = 2 * _COLUMNS
+    count = _rows_needed(place // width for place in cells)
+    grid = bytearray(b"0" * (count * width))
+    for place, letter in cells.items():
+        row = (place // width) * count // TICKS_PER_MEASURE
+        grid[row * width + place % width : row * width + place % width + 1] = letter
+    return b"".join(bytes(grid[i : i + width]) + eol for i in range(0, len(grid), width))
+
+
+def _rows_needed(ticks: Iterable[int]) -> int:
+    used = set(ticks)
+    return next(n for n in _ROW_COUNTS if all(tick * n % TICKS_PER_MEASURE == 0 for tick in used))
+
+
+def _limbs(chart: Chart, play: Play) -> dict[tuple[int, int], int]:
+    """{(tick, column): `Limb`} of all steps as written; virtual taps of rolls are not among them."""
+    row, column = (play.rows.steps > 0).nonzero()
+    ticks = play.rows.tick[row].tolist()
+    every = dict(zip(zip(ticks, column.tolist(), strict=True), play.limb[row, column].tolist(), strict=True))
+    notes = chart.notes
+    steps = notes.judged & np.isin(notes.kind, (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT))
+    written = zip(notes.tick[steps].tolist(), notes.column[steps].tolist(), strict=True)
+    return {place: every[place] for place in written if place in every}
+
+
+# The style `edit`: the lane-split chart as a `.edit` file for an unmodified game, or added to the chart file.
 
 LIMIT = 60 * 1024  # bytes of a .edit file that the games still read
 MARK = b"//{dt1 edit}"
@@ -28,7 +116,7 @@ class EditError(FileError):
 
 def ours(chart: Chart) -> bool:
     """Whether a chart is one that this style has added."""
-    made = chart.steps_type == lanes.TARGET and chart.difficulty == "Edit"
+    made = chart.steps_type == TARGET and chart.difficulty == "Edit"
     return made and chart.description.startswith(_NAME)
 
 
@@ -36,7 +124,7 @@ def edit_files(song: Song, feet: Sequence[ChartFeet]) -> Iterator[tuple[Path, by
     """For each single: the path of its .edit file, and its bytes or why there cannot be one."""
     names = _names(song)
     for one in feet:
-        if one.chart.steps_type != lanes.SOURCE:
+        if one.chart.steps_type != SOURCE:
             continue
         yield _path(song, names[one.chart.index]), _edit_file(song, one, names[one.chart.index])
 
@@ -51,7 +139,7 @@ def _edit_file(song: Song, one: ChartFeet, name: str) -> bytes | EditError:
         return EditError(song.path, f"{chart.label}: has timing of its own, which .edit cannot; use --into-file")
     folder = song.path.resolve().parent
     head = f"#SONG:{_value(folder.parent.name)}/{_value(folder.name)};\n".encode("utf-8", "surrogateescape")
-    data = head + _sm_chart(chart, name, lanes.note_data(chart, one.play, b"\n"), b"\n")
+    data = head + _sm_chart(chart, name, note_data(chart, one.play, b"\n"), b"\n")
     if len(data) > LIMIT:
         text = f"{chart.label}: as .edit it would have {len(data):,} bytes; games read {LIMIT:,}; use --into-file"
         return EditError(song.path, text)
@@ -86,9 +174,9 @@ def added_charts(song: Song, feet: Sequence[ChartFeet]) -> bytes:
         raise EditError(song.path, "ends with a lone '\\', behind which no chart can be added")
     blocks = []
     for one in feet:
-        if one.chart.steps_type != lanes.SOURCE:
+        if one.chart.steps_type != SOURCE:
             continue
-        notes = lanes.note_data(one.chart, one.play, eol)
+        notes = note_data(one.chart, one.play, eol)
         name = names[one.chart.index]
         ssc = song.format == "ssc"
         made = _ssc_chart(song, one.chart, name, notes, eol) if ssc else _sm_chart(one.chart, name, notes, eol)
@@ -120,7 +208,7 @@ def _names(song: Song) -> dict[int, str]:
     """A name for each single, which tells those of one difficulty and meter apart."""
     names: dict[int, str] = {}
     for chart in song.charts:
-        if chart.steps_type == lanes.SOURCE:
+        if chart.steps_type == SOURCE:
             name = f"{_NAME} {chart.difficulty} {chart.meter}"
             twins = sum(1 for other in names.values() if other == name or other.startswith(f"{name} ("))
             names[chart.index] = f"{name} ({twins + 1})" if twins else name
@@ -133,14 +221,14 @@ def _value(text: str) -> str:
 
 
 def _sm_chart(chart: Chart, name: str, notes: bytes, eol: bytes) -> bytes:
-    fields = (lanes.TARGET, name, "Edit", str(chart.meter), "0,0,0,0,0")
+    fields = (TARGET, name, "Edit", str(chart.meter), "0,0,0,0,0")
     head = b"#NOTES:" + eol + b"".join(f"     {field}:".encode() + eol for field in fields)
     return head + notes + b";" + eol
 
 
 def _ssc_chart(song: Song, chart: Chart, name: str, notes: bytes, eol: bytes) -> bytes:
     tags = {
-        "NOTEDATA": "", "CHARTNAME": name, "STEPSTYPE": lanes.TARGET, "DESCRIPTION": name, "CHARTSTYLE": "",
+        "NOTEDATA": "", "CHARTNAME": name, "STEPSTYPE": TARGET, "DESCRIPTION": name, "CHARTSTYLE": "",
         "DIFFICULTY": "Edit", "METER": str(chart.meter), "RADARVALUES": "0,0,0,0,0", "CREDIT": "dancetutor",
     }  # fmt: skip
     if chart.timing != song.timing:  # one timing tag of its own switches a chart to its own timing: all or none

@@ -1,26 +1,130 @@
-"""What would change in a chart file: its charts solved, every style asked, the result read back and compared."""
+"""What would change in a chart file and beside it: its charts solved, every style asked, the result read back."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
-from dancetutor_cli.chart import parse
+from dancetutor_cli.chart.edits import Splice, apply, unchanged
 from dancetutor_cli.chart.model import Chart, Song
-from dancetutor_cli.chart.players import parts, written_parts
-from dancetutor_cli.feet import overrides_for
-from dancetutor_cli.feet.measures import step_rows
-from dancetutor_cli.markers import edit, lanes, measure
-from dancetutor_cli.markers import row_comments as rows
-from dancetutor_cli.markers.changes import MEASURE, ROWS, ChartFeet, Lack
-from dancetutor_cli.markers.letters import row_letters
-from dancetutor_cli.markers.measure import MeasureState, State
-from dancetutor_cli.markers.splice import Splice, apply
-from dancetutor_cli.markers.verify import unchanged
-from dancetutor_cli.play.preset import Preset
+from dancetutor_cli.chart.note_data import parts, written_parts
+from dancetutor_cli.chart.pack_files import song_stems
+from dancetutor_cli.chart.reader import parse
+from dancetutor_cli.feet import sme
+from dancetutor_cli.feet.annotations import step_rows
+from dancetutor_cli.feet.preset import Preset
+from dancetutor_cli.feet.song_feet import overrides_for
+from dancetutor_cli.markers import comments, edit, sidecar, theme
+from dancetutor_cli.markers.comments import (
+    EDIT,
+    MEASURE,
+    ROWS,
+    SIDECAR,
+    SMEDITOR,
+    THEME,
+    ChartFeet,
+    FileChange,
+    Lack,
+    MeasureState,
+    State,
+    row_letters,
+)
+from dancetutor_cli.run.errors import FileError, MissingFileError
+from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
+
+# The styles that write beside a chart file: the sidecar, SMEditor's `data.sme`, `.edit` files and a theme's cues.
+
+Planned = tuple[FileChange, list[Lack]]
+
+
+def write(style: str, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[Planned | FileError]:
+    """The files that a style puts beside a song. folder : where they go; what is merged lies there or by the song.
+
+    Yields an error in place of a file that there cannot be; the others come nevertheless.
+    """
+    if style == SIDECAR:
+        path = folder / sidecar.sidecar_path(song.path).name
+        old = _present(path, song)
+        new = sidecar.write_sidecar(path, old, song, feet)
+        why = [(one.chart, sidecar.lack(path, old, song, one.chart, new)) for one in feet]
+        yield FileChange(path, old, new), [Lack(text, chart.line) for chart, text in why if text]
+    elif style == SMEDITOR:
+        path = folder / sme.FILE_NAME
+        _one_song(song, path)
+        old = _present(path, song)
+        merged = sidecar.write_editor_data(path, old, song, feet)
+        lacks = [] if merged == old else [Lack(f"{path.name} has not the feet that the solver finds")]
+        yield FileChange(path, old, merged), lacks
+    elif style == EDIT:
+        for where, data in edit.edit_files(song, feet):
+            if isinstance(data, FileError):
+                yield data
+                continue
+            path = folder / where.name
+            old = _present(path, song)
+            lacks = [] if old == data else [Lack(f"{path.name} is {'missing' if old is None else 'stale'}")]
+            yield FileChange(path, old, data), lacks
+    elif style == THEME:
+        table, lua = (folder / path.name for path in theme.paths_for(song.path))
+        before, script = _present(table, song), _present(lua, song)
+        theme.check_lua(lua, script)
+        said = theme.write(table, before, song, feet)
+        for path, old, new in ((table, before, theme.as_json(said)), (lua, script, theme.as_lua(said))):
+            lacks = [] if old == new else [Lack(f"{path.name} is {'missing' if old is None else 'stale'}")]
+            yield FileChange(path, old, new), lacks
+
+
+def strip(style: str, song: Song, charts: Sequence[Chart]) -> Iterator[Planned]:
+    """What taking a style out again does to the files beside a song."""
+    if style == SIDECAR:
+        path = sidecar.sidecar_path(song.path)
+        old = _read(path)
+        yield _removed(path, old, sidecar.strip_sidecar(path, old, song, charts))
+    elif style == SMEDITOR:
+        path = song.path.parent / sme.FILE_NAME
+        old = _read(path)
+        yield _removed(path, old, sidecar.strip_editor_data(path, old, song, charts))
+    elif style == EDIT:
+        for path in edit.edit_paths(song, charts):
+            yield _removed(path, read_bytes(path, CHART_LIMIT), None)
+    elif style == THEME:
+        table, lua = theme.paths_for(song.path)
+        old, script = _read(table), _read(lua)
+        theme.check_lua(lua, script)
+        kept = theme.without(table, old, charts)
+        said = {**theme.write(table, None, song, ()), "charts": kept}
+        yield _removed(table, old, theme.as_json(said) if kept and old else None)
+        yield _removed(lua, script, theme.as_lua(said) if kept and script else None)
+
+
+def _removed(path: Path, old: bytes | None, new: bytes | None) -> Planned:
+    return FileChange(path, old, new), [] if old == new else [Lack(f"{path.name} has feet to take out")]
+
+
+def _one_song(song: Song, path: Path) -> None:
+    """`data.sme` knows charts only by their place, so it can only serve one song."""
+    if len(stems := song_stems(song.path.parent)) > 1:
+        raise FileError(path, f"its folder has {len(stems)} songs, and data.sme can only tell one; it is not written")
+
+
+def _present(path: Path, song: Song) -> bytes | None:
+    """The file as it is, or for a file that goes elsewhere the one that lies by the song."""
+    found = _read(path)
+    return _read(song.path.with_name(path.name)) if found is None else found
+
+
+def _read(path: Path) -> bytes | None:
+    try:
+        return read_bytes(path, CHART_LIMIT)
+    except MissingFileError:
+        return None
+
+
+# What would change in a chart file: its charts solved, every style asked, the result read back and compared.
 
 
 @dataclass(slots=True)
@@ -44,7 +148,7 @@ def solve_charts(
     problems: list[Lack],
 ) -> Iterator[ChartFeet]:
     """The feet of each chart that has a pad; contradictions in what people said about them go to `problems`."""
-    from dancetutor_cli.play import solve_chart
+    from dancetutor_cli.feet import solve_chart
 
     padless = set()
     for chart in charts:
@@ -87,11 +191,11 @@ def mark(song: Song, feet: Sequence[ChartFeet], styles: Sequence[str], force: bo
     splices: list[Splice] = []
     for one in feet:
         if MEASURE in styles:
-            new, states = measure.write(song.data, one.chart, one.rows, one.letters, force)
+            new, states = comments.write_measures(song.data, one.chart, one.rows, one.letters, force)
             splices += new
             _tell_measures(plan, song, one.chart, states)
         if ROWS in styles:
-            new, lacking = rows.write(song.data, one.chart, one.rows, one.letters)
+            new, lacking = comments.write_rows(song.data, one.chart, one.rows, one.letters)
             splices += new
             if lacking:
                 plan.lacks.append(Lack(f"{one.chart.label}: {lacking} rows lack their letters", one.chart.line))
@@ -108,7 +212,7 @@ def add_charts(song: Song, before: Song, plan: MarkerPlan, feet: Sequence[ChartF
     song : without them, as `plan` was made from; before : the song as it was read, perhaps with older ones
     """
     added = edit.added_charts(song, feet)
-    singles = [one.chart for one in feet if one.chart.steps_type == lanes.SOURCE]
+    singles = [one.chart for one in feet if one.chart.steps_type == edit.SOURCE]
     plan.data += added
     removed = len(before.data) - len(song.data)
     if not before.data.endswith(added) or removed != len(added):
@@ -127,11 +231,11 @@ def unmark(song: Song, charts: Sequence[Chart], styles: Sequence[str], force: bo
         found: list[Splice] = []
         for part in written_parts(chart):
             if MEASURE in styles:
-                found += measure.strip(song.data, part, force)
-                plan.counts["pinned"] += 0 if force else measure.pinned(song.data, part)
+                found += comments.strip_measures(song.data, part, force)
+                plan.counts["pinned"] += 0 if force else comments.pinned(song.data, part)
             plan.counts["removed"] += len(found)
             if ROWS in styles:
-                found += rows.strip(song.data, part)
+                found += comments.strip_rows(song.data, part)
         if found:
             plan.lacks.append(Lack(f"{chart.label}: {len(found)} markers to take out", chart.line))
         splices += found
@@ -140,7 +244,7 @@ def unmark(song: Song, charts: Sequence[Chart], styles: Sequence[str], force: bo
 
 
 def checked(song: Song, plan: MarkerPlan) -> MarkerPlan:
-    """The plan, if its bytes read like the song they were made from; raises `verify.HarmError` if not."""
+    """The plan, if its bytes read like the song they were made from; raises `chart.edits.HarmError` if not."""
     if plan.data != song.data:
         unchanged(song, plan.data, edit.ours)
     return plan

@@ -1,12 +1,28 @@
-"""What a page says of a song and a chart: words, places of notes, seconds of beats."""
+"""What a page says of a song and a chart: words, places of notes, what the other foot would cost, sentences."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
+from dancetutor_cli.chart.density import bpm_text
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind, Song
-from dancetutor_cli.chart.tempo import bpm_text
-from dancetutor_cli.video.overlay.text import clean
+from dancetutor_cli.feet.limbs import Limb, Part
+from dancetutor_cli.feet.overrides import Overrides
+from dancetutor_cli.feet.play import Play, StepKind
+from dancetutor_cli.film.overlay.text import clean
+from dancetutor_cli.page.document import languages
+
+if TYPE_CHECKING:
+    from dancetutor_cli.feet.pads import Pad
+    from dancetutor_cli.feet.preset import Preset
+    from dancetutor_cli.lint.passages import Passage
+
+
+# What a page says of a song and a chart: words, places of notes, seconds of beats.
 
 BEATS_AFTER = 16  # that the page knows after the last note
 
@@ -30,7 +46,7 @@ def words_of(song: Song, chart: Chart, preset: str) -> dict[str, str]:
 
 
 def ticks_of(chart: Chart) -> list[int]:
-    """Ticks of the notes in the order of `video.tracks.note_track`."""
+    """Ticks of the notes in the order of `film.notes.note_track`."""
     keep = chart.notes.kind != Kind.KEYSOUND
     tick = chart.notes.tick[keep]
     order = np.argsort(np.asarray(chart.timing.seconds(tick), dtype=np.float64), kind="stable")
@@ -42,3 +58,95 @@ def beats_of(chart: Chart) -> list[float]:
     last = max(int(chart.notes.tick.max(initial=0)), int(chart.notes.end.max(initial=0))) // TICKS_PER_BEAT
     ticks = np.arange(last + BEATS_AFTER, dtype=np.int64) * TICKS_PER_BEAT
     return [float(second) for second in chart.timing.seconds(ticks)]
+
+
+# What the other foot would cost: each row with its feet exchanged, and everything the solver steps otherwise then.
+
+MOST_WORK = 4_000_000  # rows times rows: each flip solves the whole chart; 2000 rows are about half a minute
+_FEET = (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)
+
+
+def flips_of(play: Play, pad: Pad, preset: Preset, overrides: Overrides) -> list[dict[str, Any]]:
+    """For each row that feet step: its number, what exchanging its feet costs more, and the cells that change.
+
+    `extra` is exact: the cheapest play of the whole chart with these feet, less the cheapest of all; -1: nobody can
+    step it so. Of charts so long that it would take minutes only the first rows are told. Rows that are laid down by a
+    person (`overrides`) keep what the rest says.
+    """
+    most = MOST_WORK // max(len(play.rows), 1)
+    return [_flip(play, row, pad, preset, overrides) for row in islice(_rows(play), most)]
+
+
+def _rows(play: Play) -> Iterator[int]:
+    steps = play.rows.steps
+    seen = ((steps != StepKind.NONE) & (steps != StepKind.ROLL_TAP)).any(axis=1)
+    feet = np.isin(play.limb, _FEET).any(axis=1)
+    yield from np.flatnonzero(seen & feet).tolist()
+
+
+def _flip(play: Play, row: int, pad: Pad, preset: Preset, overrides: Overrides) -> dict[str, Any]:
+    from dancetutor_cli.feet import solve
+
+    tick = int(play.rows.tick[row])
+    cells = overrides.cells()
+    asked = {}
+    for column, limb in enumerate(play.limb[row].tolist()):
+        if limb in _FEET:
+            asked[column] = 1 - limb
+            cells[tick, column] = (1 - limb, int(Part.WHOLE))
+    other = solve(play.rows, pad, preset, Overrides.of(cells), margins=False)
+    kept = all(int(other.limb[row, column]) == limb for column, limb in asked.items())
+    changed = np.argwhere(other.limb != play.limb)
+    return {
+        "row": row,
+        "extra": other.total - play.total if kept else -1,
+        "changes": [[int(r), int(c), int(other.limb[r, c])] for r, c in changed] if kept else [],
+    }
+
+
+# What the feet do in a passage, in a sentence of each of the page's languages.
+
+_TURNED = 90.0  # degrees that are worth telling
+
+
+def sentence(passage: Passage, labels: Mapping[str, str]) -> str:
+    """One sentence, the most telling first."""
+    left, right = passage.crossovers
+    parts = [_filled(labels, "stream", passage.stream) if passage.stream else _filled(labels, "fast", passage.steps)]
+    for name, count in (
+        ("spin", passage.spins),
+        ("crossover-left", left),
+        ("crossover-right", right),
+        ("bracket", passage.brackets),
+        ("footswitch", passage.footswitches),
+        ("doublestep", passage.doublesteps),
+        ("jump", passage.jumps),
+        ("hand", passage.hands),
+        ("jack", passage.jacks),
+    ):
+        if count:
+            times = labels["once"] if count == 1 else labels["times"].replace("{count}", str(count))
+            parts.append(labels[f"sentence-{name}"].replace("{times}", times))
+    if passage.turn >= _TURNED and not passage.spins:
+        parts.append(labels["sentence-turn"].replace("{degrees}", f"{passage.turn:.0f}"))
+    if passage.unsure:
+        rows = labels["oneRow"] if passage.unsure == 1 else labels["rows"].replace("{count}", str(passage.unsure))
+        parts.append(labels["sentence-close"].replace("{rows}", rows))
+    text = ", ".join(parts) + "."
+    return text[0].upper() + text[1:]
+
+
+def told(passage: Passage) -> dict[str, Any]:
+    """A passage as the page has it."""
+    return {
+        "from": passage.first,
+        "to": passage.last,
+        "start": round(passage.start, 6),
+        "end": round(passage.end, 6),
+        "rate": round(passage.rate, 2),
+        "sentence": {name: sentence(passage, {**languages()["en"], **labels}) for name, labels in languages().items()},
+    }
+
+
+def _filled(labels: Mapping[str, str], name: str, count: int) -> str:
+    return labels[f"sentence-{name}"].replace("{count}", str(count))

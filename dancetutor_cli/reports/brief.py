@@ -9,11 +9,10 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import IO
 
-from dancetutor_cli.jobs.result import ChartResult, FileResult
-from dancetutor_cli.lint.finding import Finding
-from dancetutor_cli.reports.safe import safe, safe_path
-from dancetutor_cli.reports.tally import Tally
-from dancetutor_cli.reports.terminal import terminal_of
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.results import ChartResult, FileResult
+from dancetutor_cli.reports.formats import Tally
+from dancetutor_cli.reports.terminal import safe, safe_path, terminal_of
 from dancetutor_cli.reports.text_report import STYLES
 
 _COLOUR = re.compile("\x1b\\[[0-9;]*m")

@@ -1,13 +1,24 @@
-"""The quality report of a motion: a table for people, plain data for programs."""
+"""The quality report of a motion: a table for people, plain data for programs, curves as a picture."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.quality.figures import MotionReport
+from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.files import write_atomic
+from dancetutor_cli.run.pictures import picture_bytes
 
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from dancetutor_cli.bake import MotionReport
+
+# The quality report of a motion: a table for people, plain data for programs.
 
 _DISTANCES = ("minimum", "maximum", "mean", "deviation")
 
@@ -66,3 +77,83 @@ def as_json(report: MotionReport) -> dict[str, Any]:
     if report.distances:
         out["distances_cm"] = {n: dict(zip(_DISTANCES, values, strict=True)) for n, values in report.distances.items()}
     return out
+
+
+# Curves of a motion over the song as a picture: contact errors, height of the centre of mass, jerk.
+
+Array = NDArray[np.float64]
+WIDTH, PANEL, LEFT, TOP, GAP = 1200, 200, 70, 30, 50  # pixels
+INK, GRID, LINE = "#222222", "#dddddd", "#3060c0"
+
+
+def write_plot(path: Path, report: MotionReport) -> None:
+    """Write the report's curves as .svg or .png. Raises UsageError for another name, FileError if it cannot."""
+    if path.suffix.lower() == ".svg":
+        write_atomic(path, _svg(report).encode())
+    elif path.suffix.lower() == ".png":
+        write_atomic(path, _png(report))
+    else:
+        raise UsageError(f"{path}: a plot's name must end in .svg or .png")
+
+
+def _panels(report: MotionReport) -> Iterator[tuple[str, float, Array, tuple[float, float, float, float], bool]]:
+    """(title, y of the top, points (n, 2) in pixels, (t0, t1, low, high), whether dots are drawn) of each curve."""
+    for k, (title, (times, values)) in enumerate(report.curves.items()):
+        good = np.isfinite(values)
+        t, v = times[good], values[good]
+        if not len(t):
+            continue
+        low, high = float(v.min()), float(v.max())
+        high = high if high > low else low + 1.0
+        first, last = float(times.min()), float(max(times.max(), times.min() + 1e-3))
+        top = TOP + k * (PANEL + GAP)
+        x = LEFT + (t - first) / (last - first) * (WIDTH - LEFT - 20)
+        y = top + PANEL * (1.0 - (v - low) / (high - low))
+        yield title, top, np.column_stack((x, y)), (first, last, low, high), "contact" in title
+
+
+def _svg(report: MotionReport) -> str:
+    height = TOP + len(report.curves) * (PANEL + GAP)
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{height}" font-family="sans-serif">']
+    out.append('<rect width="100%" height="100%" fill="white"/>')
+    for title, top, points, (first, last, low, high), dots in _panels(report):
+        out.append(
+            f'<rect x="{LEFT}" y="{top}" width="{WIDTH - LEFT - 20}" height="{PANEL}" fill="none" stroke="{GRID}"/>'
+        )
+        for x, y, text in _labels(title, top, first, last, low, high):
+            out.append(f'<text x="{x}" y="{y}" font-size="12" fill="{INK}">{text}</text>')
+        if dots:
+            out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="1.6" fill="{LINE}"/>' for x, y in points]
+        else:
+            line = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+            out.append(f'<polyline points="{line}" fill="none" stroke="{LINE}" stroke-width="0.8"/>')
+    return "\n".join([*out, "</svg>", ""])
+
+
+def _png(report: MotionReport) -> bytes:
+    from PIL import Image, ImageDraw
+
+    image = Image.new("RGB", (WIDTH, TOP + len(report.curves) * (PANEL + GAP)), "white")
+    draw = ImageDraw.Draw(image)
+    for title, top, points, (first, last, low, high), dots in _panels(report):
+        draw.rectangle((LEFT, top, WIDTH - 20, top + PANEL), outline=GRID)
+        for x, y, text in _labels(title, top, first, last, low, high):
+            draw.text((x, y - 11), text, fill=INK)
+        if dots:
+            for x, y in points:
+                draw.ellipse((x - 1.6, y - 1.6, x + 1.6, y + 1.6), fill=LINE)
+        else:
+            draw.line([(float(x), float(y)) for x, y in points], fill=LINE)
+    return picture_bytes(np.asarray(image))
+
+
+def _labels(
+    title: str, top: float, first: float, last: float, low: float, high: float
+) -> list[tuple[float, float, str]]:
+    return [
+        (LEFT, top - 6, title),
+        (8, top + 12, f"{high:.4g}"),
+        (8, top + PANEL, f"{low:.4g}"),
+        (LEFT, top + PANEL + 16, f"{first:.1f} s"),
+        (WIDTH - 90, top + PANEL + 16, f"{last:.1f} s"),
+    ]

@@ -1,13 +1,43 @@
-"""How wide and in which colours a stream is written to; rich is asked only where it may be a terminal."""
+"""Text for terminals: made safe, as wide and colourful as they are; diffs, joined warnings, failures, progress."""
 
 from __future__ import annotations
 
 import os
+import re
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from types import TracebackType
 from typing import IO, TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from rich.color import ColorSystem
     from rich.console import Console
+    from rich.progress import Progress, TaskID
+
+
+# Text of other people's files, made safe to print: no control characters, no escapes, one line.
+
+# Controls (C0, DEL, C1), line and paragraph separators, and what turns the direction of text round.
+_UNSAFE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\u200e\u200f\u202a-\u202e\u2066-\u2069\ufeff\ufffe\uffff]+")
+
+
+def safe(text: str) -> str:
+    """`text` on one line, without what could move a cursor, change a colour or hide text."""
+    return _UNSAFE.sub(" ", text).encode("utf-8", "replace").decode("utf-8").strip()
+
+
+def safe_path(path: str) -> str:
+    """A path to print: as `safe`, and bytes that are no UTF-8 become "�"."""
+    try:
+        name = os.fsencode(path)
+    except UnicodeEncodeError:  # a name out of a cache that was written where names have more letters
+        name = path.encode("utf-8", "surrogateescape")
+    return _UNSAFE.sub("?", name.decode("utf-8", "replace"))
+
+
+# How wide and in which colours a stream is written to; rich is asked only where it may be a terminal.
 
 _WITHOUT_TERMINAL = 100  # characters of a line
 _SAY_MORE = ("FORCE_COLOR", "TTY_COMPATIBLE", "COLUMNS")  # variables that rich looks at for any stream
@@ -66,3 +96,162 @@ def _colours(console: Console) -> ColorSystem | None:
         "truecolor": ColorSystem.TRUECOLOR,
     }
     return systems.get(console.color_system or "") if not console.legacy_windows else None
+
+
+# A unified diff for people: in colours where reports have them.
+
+_STYLES = {"+": "green", "-": "red", "@": "cyan"}
+
+
+def coloured(diff: Iterable[str]) -> Iterator[str]:
+    """Its lines, as standard output shows them."""
+    paint = terminal_of(sys.stdout).paint
+    for line in diff:
+        style = _STYLES.get(line[:1])
+        yield paint(line, style) if style else line
+
+
+# A table of what failed in a run over many charts.
+
+
+def failures_table(rows: Iterable[tuple[str, str, str]]) -> None:
+    """Print (file, chart, error) to standard error."""
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title="Failed", title_justify="left")
+    for name in ("file", "chart", "why"):
+        table.add_column(name, overflow="fold")
+    for row in rows:
+        table.add_row(*(safe(cell) for cell in row))
+    Console(stderr=True, markup=False, highlight=False).print(table)
+
+
+# Warnings of a run over many files: what is the same of several is one line, with a count and the first names.
+
+_NAMED = 4  # files at most
+_PLACE = re.compile(r"(:\d+)*:\s*")
+_CHART = re.compile(r"[a-z]+-[a-z-]+ \S+ -?\d+: ")  # "dance-single Hard 9: "
+_NUMBER = re.compile(r"\d+")
+
+
+class JoinedWarnings:
+    """Takes warnings as they come, and tells them at the end.
+
+    every : each of them is a line of its own
+    """
+
+    def __init__(self, *, every: bool = False) -> None:
+        self._every = every
+        self._kinds: dict[tuple[Path, str] | str, list[tuple[Path, str]]] = {}
+
+    def add(self, path: Path, warning: str) -> None:
+        """Take note of what is said of a file, which may name it first; what is said twice is counted."""
+        if not warning.startswith(str(path)):
+            warning = f"{path}: {warning}"
+        kind = _NUMBER.sub("0", _CHART.sub("", _PLACE.sub("", warning.removeprefix(str(path)), count=1)))
+        self._kinds.setdefault((path, warning) if self._every else kind, []).append((path, warning))
+
+    def lines(self) -> Iterator[str]:
+        """The first of each kind, and of which files the same is true."""
+        for found in self._kinds.values():
+            path, warning = found[0]
+            others = list(dict.fromkeys(other for other, _ in found if other != path))
+            more = ""
+            if others:
+                named = others if len(others) <= _NAMED else others[: _NAMED - 1]
+                names = ", ".join(safe_path(str(other)) for other in named)
+                rest = f" and {len(others) - len(named)} others" if len(named) < len(others) else ""
+                more = f"; the same of {len(others)} more: {names}{rest}"
+            elif len(found) > 1:
+                times = "once" if len(found) == 2 else f"{len(found) - 1} times"
+                more = f"; the same {times} more in this file"
+            yield f"warning: {safe(warning)}{more}" + (" (-v tells each)" if more and not self._every else "")
+
+
+# How far a film is: a bar with speed and time left on a terminal, a line now and then elsewhere.
+
+EVERY = 30.0  # seconds between lines where there is no terminal
+ENOUGH = 0.03  # share of a film, and at least a second of it, whose drawing tells the speed
+
+
+class FilmProgress:
+    """Shows the progress of one film on standard error; `quiet` shows nothing. Use as a context manager."""
+
+    def __init__(self, name: str, quiet: bool = False) -> None:
+        self.name, self.quiet = name, quiet
+        self.terminal = sys.stderr.isatty() and not quiet
+        self.frames = self.fps = self.done = 0
+        self.began = self.told = 0.0
+        self.early = 0  # frames that were drawn before the clock of the speed began
+        self.bar: Progress | None = None
+        self.task: TaskID | None = None
+
+    def __enter__(self) -> FilmProgress:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.bar is not None:
+            self.bar.stop()
+
+    def begin(self, frames: int, fps: int) -> None:
+        """The film has that many frames."""
+        self.frames, self.fps = frames, fps
+        self.began = self.told = time.monotonic()
+        if self.terminal:
+            self._open_bar()
+
+    def _open_bar(self) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+        columns = (
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TaskProgressColumn(),
+            TextColumn("{task.fields[speed]}"),
+            TimeRemainingColumn(compact=True),
+        )
+        self.bar = Progress(*columns, console=Console(stderr=True), transient=True)
+        self.bar.start()
+        self.task = self.bar.add_task(self.name, total=self.frames, speed="")
+
+    def add(self, frames: int) -> None:
+        """That many more frames are to be drawn."""
+        self.frames += frames
+        if self.bar is not None and self.task is not None:
+            self.bar.update(self.task, total=self.frames)
+
+    def say(self, line: str) -> None:
+        """Write a line without breaking the bar."""
+        if self.bar is not None:
+            self.bar.console.print(line, markup=False, highlight=False)
+        else:
+            sys.stderr.write(f"{line}\n")
+            sys.stderr.flush()
+
+    def advance(self, frames: int) -> None:
+        """That many more frames are drawn."""
+        now = time.monotonic()
+        if not self.done:  # until now workers have started and compiled, which tells nothing about the rest
+            self.began, self.early = now, frames
+        self.done += frames
+        speed = self._speed(now)
+        if self.bar is not None and self.task is not None:
+            self.bar.update(self.task, advance=frames, speed="" if speed is None else f"{speed:.2f}x")
+        elif not self.quiet and self.fps and self.done and now - self.told >= EVERY:
+            self.told = now
+            line = f"{self.name}: {self.done / self.fps:.0f} of {self.frames / self.fps:.0f} s done"
+            if speed is not None:
+                line += f", {speed:.2f}x, {(self.frames - self.done) / self.fps / speed:.0f} s left"
+            sys.stderr.write(f"{line}\n")
+            sys.stderr.flush()
+
+    def _speed(self, now: float) -> float | None:
+        """Seconds of film per second; None until enough is drawn to tell."""
+        drawn = self.done - self.early
+        if not self.fps or drawn < max(self.fps, ENOUGH * self.frames) or now <= self.began:
+            return None
+        return drawn / self.fps / (now - self.began)

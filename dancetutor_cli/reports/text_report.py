@@ -1,16 +1,126 @@
-"""`--format text`: per chart a table and its findings in lint form, one line each."""
+"""`--format text`: per chart a table and its findings with rows drawn beside them; a rule explained."""
 
 from __future__ import annotations
 
-from typing import IO
+import inspect
+from collections.abc import Callable, Iterator, Sequence
+from functools import lru_cache
+from typing import IO, NamedTuple
 
-from dancetutor_cli.jobs.result import ChartResult, FileResult
-from dancetutor_cli.lint.finding import Finding
-from dancetutor_cli.reports.drawing import draw
-from dancetutor_cli.reports.safe import safe, safe_path
-from dancetutor_cli.reports.table import chart_table
-from dancetutor_cli.reports.tally import Tally
-from dancetutor_cli.reports.terminal import can_encode, terminal_of
+from dancetutor_cli.feet.limbs import hex_colour, limb_colours
+from dancetutor_cli.lint.findings import ExcerptRow, Finding
+from dancetutor_cli.lint.results import ChartResult, FileResult
+from dancetutor_cli.lint.rule import BY_METER, FAMILIES, Rule, TimedRule, all_rules
+from dancetutor_cli.lint.rule_settings import default_rules, default_severity, described
+from dancetutor_cli.reports.formats import Tally
+from dancetutor_cli.reports.terminal import Terminal, can_encode, safe, safe_path, terminal_of
+
+# The rows around a finding as arrows with L and R, in characters.
+
+_ASCII = str.maketrans("←↓↑→↙↖■↗↘│·●", "<v^>/\\o/\\|.*")
+_LIMB_OF = {"L": 0, "l": 0, "R": 1, "r": 1, "<": 2, ">": 3}
+Paint = Callable[[str, str], str]
+
+
+def draw(rows: Sequence[ExcerptRow], arrows: str, paint: Paint, *, plain: bool) -> Iterator[str]:
+    """A line for each row; `arrows` has a sign per column, `paint(text, style)` colours, `plain` keeps to ASCII."""
+    measure = -1
+    for row in rows:
+        shown = f"measure {int(row.beat // 4):<4}" if row.beat // 4 != measure else ""
+        measure = int(row.beat // 4)
+        mark = paint(">", "bold red") if row.here else " "
+        beat = f"beat {row.beat:<8.8g}"
+        cells = "".join(_cell(note, limb, sign, paint) for note, limb, sign in _columns(row, arrows))
+        line = f"    {mark} {paint(f'{shown:12} {beat}', 'dim')}{cells}"
+        yield line.translate(_ASCII) if plain else line
+
+
+def _columns(row: ExcerptRow, arrows: str) -> Iterator[tuple[str, str, str]]:
+    yield from zip(row.notes, row.limbs, arrows.ljust(len(row.notes), "■"), strict=False)
+
+
+def _cell(note: str, limb: str, sign: str, paint: Paint) -> str:
+    """Three characters: a blank, the sign, who presses it."""
+    if note == " ":
+        return paint(" · ", "dim")
+    if note == "|":
+        return paint(" │ ", "dim")
+    if note == "M":
+        return paint(" ● ", "red")
+    if limb in _LIMB_OF:
+        return " " + paint(f"{sign}{limb}", f"bold {hex_colour(limb_colours().by_limb[_LIMB_OF[limb]])}")
+    return " " + paint(f"{sign}?", "bold red")
+
+
+# The table of a chart: rows, cost and how often each move happens.
+
+
+class Column(NamedTuple):
+    """A column of the table. `moves` are those it counts; one that is not `always` shows where there are any."""
+
+    header: str
+    width: int
+    moves: tuple[str, ...]
+    always: bool = True
+
+
+MOVE_COLUMNS = (
+    Column("double\nsteps", 6, ("doublestep",)),
+    Column("forced\ndouble\nsteps", 6, ("forced-doublestep",)),
+    Column("cross\nover\n135°", 5, ("crossover-half",)),
+    Column("cross\nover\n180°", 5, ("crossover-full",)),
+    Column("spins", 5, ("spin",)),
+    Column("jump\nfoot\nswitch", 6, ("jump-footswitch",)),
+    Column("foot\nswitch", 6, ("footswitch-up", "footswitch-down"), always=False),
+    Column("side\nswitch", 6, ("sideswitch-left", "sideswitch-right"), always=False),
+    Column("hold\nswitch", 6, ("holdswitch",), always=False),
+    Column("brackets", 8, ("bracket",), always=False),
+    Column("jacks", 5, ("jack",)),
+    Column("candles", 7, ("candle",)),
+    Column("gallops", 7, ("gallop",)),
+    Column("hands", 5, ("hand",)),
+)
+_ROWS, _COST = Column("rows", 5, ()), Column("cost", 6, ())
+
+
+def chart_table(chart: ChartResult, terminal: Terminal) -> str:
+    """The table as text for this terminal, with a final newline."""
+    counts = {column: sum(chart.counts.get(move, 0) for move in column.moves) for column in MOVE_COLUMNS}
+    shown = tuple(column for column in MOVE_COLUMNS if column.always or counts[column])
+    columns = (_ROWS, _COST, *shown)
+    if sum(column.width + 1 for column in columns) > terminal.width:
+        return _listed(chart, counts, shown)
+    cells = [str(chart.row_count), str(chart.cost), *(str(counts[column] or "·") for column in shown)]
+    widths = tuple(max(column.width, len(cell)) for column, cell in zip(columns, cells, strict=True))
+    numbers = " ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True))
+    return f"{_header(terminal, columns, widths)}{numbers}\n"
+
+
+def _listed(chart: ChartResult, counts: dict[Column, int], shown: Sequence[Column]) -> str:
+    """The same numbers one below the other, for a terminal that is too narrow for the table."""
+    numbers = {"rows": chart.row_count, "cost": chart.cost}
+    numbers.update({" ".join(column.header.split("\n")): counts[column] for column in shown})
+    width = max(len(str(number)) for number in numbers.values())
+    return "".join(f"{number!s:>{width}} {name}\n" for name, number in numbers.items())
+
+
+@lru_cache(maxsize=64)
+def _header(terminal: Terminal, columns: Sequence[Column], widths: Sequence[int]) -> str:
+    """The names of the columns, each above its numbers' ends, and a line below."""
+    names = [column.header.split("\n") for column in columns]
+    height = max(map(len, names))
+    lines = zip(*([""] * (height - len(name)) + name for name in names), strict=True)
+    rule = ("-" if terminal.plain else "─") * (sum(widths) + len(widths) - 1)
+    return (
+        "".join(
+            " ".join(terminal.paint(word.rjust(width), "dim") for word, width in zip(line, widths, strict=True)) + "\n"
+            for line in lines
+        )
+        + f"{rule}\n"
+    )
+
+
+# `--format text`: per chart a table and its findings in lint form, one line each.
 
 STYLES = {"error": "bold red", "warning": "bold yellow", "info": "bold cyan"}
 _MOST_LETTERS = 16  # rows of another play that are written out
@@ -134,3 +244,42 @@ def clock(second: float) -> str:
     milliseconds = round(abs(second) * 1000)
     minutes, rest = divmod(milliseconds, 60_000)
     return f"{'-' if second < 0 and milliseconds else ''}{minutes}:{rest // 1000:02}.{rest % 1000:03}"
+
+
+# `--explain`: the documentation of a rule, from its docstring, with its severity and options.
+
+
+def explain(rule: type[Rule]) -> str:
+    """What a rule finds, how its bad and its better pattern look, and how it is set."""
+    settings = dict(default_rules()[rule.code])
+    del settings["severity"]
+    lines = [
+        f"{rule.code} {rule.name} ({FAMILIES[int(rule.code[2])]}, {default_severity(rule.code)})",
+        "",
+        inspect.getdoc(rule) or "",
+    ]
+    if settings:
+        lines += ["", "Options: " + ", ".join(f"{name} = {value}" for name, value in settings.items())]
+    if issubclass(rule, TimedRule) and settings.get("max_seconds") == BY_METER:
+        share = settings["share"]
+        lines += [
+            "",
+            f"How quick it is in at most {share:g} % of the charts of a meter, and is reported:",
+        ]
+        lines += [f"  {line}" for line in described(rule.times, share)]
+    return "\n".join(lines) + "\n"
+
+
+def explain_all() -> str:
+    """One line for each rule: code, name, severity, first sentence."""
+    lines: list[str] = []
+    family = ""
+    for code, rule in all_rules().items():
+        if FAMILIES[int(code[2])] != family:
+            family = FAMILIES[int(code[2])]
+            lines.append(f"{'' if not lines else chr(10)}{family}")
+        summary = (inspect.getdoc(rule) or "").splitlines()[0]
+        severity, more, _ = default_severity(code).partition(";")
+        lines.append(f"  {code} {rule.name:22} {severity + '*' * len(more):8} {summary}")
+    lines += ["", "* otherwise for some charts; --explain RULE tells which"]
+    return "\n".join(lines) + "\n"

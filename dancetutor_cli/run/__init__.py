@@ -1,1 +1,1 @@
-"""How the program runs on this machine: which folders it takes code from, and its compiled kernels."""
+"""What every room stands on: errors, files, bounded reading, YAML by schema, worker processes, compiled kernels."""

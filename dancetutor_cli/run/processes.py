@@ -19,9 +19,9 @@ from importlib import import_module
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
-from dancetutor_cli.errors import UnavailableError
+from dancetutor_cli.run.errors import UnavailableError
 from dancetutor_cli.run.pool import Finished, Task, WorkFailedError, attempt
-from dancetutor_cli.startup import collect_seldom, leave_garbage
+from dancetutor_cli.run.process import collect_seldom, leave_garbage
 
 SHARED = "DANCETUTOR_WORKERS_SHARE"  # names the module to the server that workers are forked off
 _SAFE_PATH = "PYTHONSAFEPATH"

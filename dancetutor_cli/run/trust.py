@@ -15,7 +15,7 @@ from contextlib import suppress
 from pathlib import Path
 from threading import get_ident
 
-from dancetutor_cli.resources import PACKAGE
+from dancetutor_cli.run.reading import PACKAGE
 
 CACHE_VARIABLE = "DANCETUTOR_CACHE"  # the user's choice of a folder for kept results
 TREES = "_DANCETUTOR_TREES"  # JSON: the trees that are read; in the environment, so that worker processes know, too

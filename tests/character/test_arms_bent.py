@@ -7,7 +7,7 @@ import pytest
 
 from dancetutor_cli.character import load_character
 from dancetutor_cli.character.mesh import Character, Mesh
-from dancetutor_cli.rig import quaternion as quat
+from dancetutor_cli.dance.rig import quaternion as quat
 
 Array = np.ndarray
 FLEXES = (2**-0.5, 2**-0.5, 0.0)  # the left elbow's axis: forearms bend to the front

@@ -14,21 +14,18 @@ from PIL import Image
 
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.character import load_character
-from dancetutor_cli.character.container import read_container
+from dancetutor_cli.character.container import read_container, read_nodes
 from dancetutor_cli.character.humanoid import find_humanoid
 from dancetutor_cli.character.mesh import rest_vertices
-from dancetutor_cli.character.nodes import read_nodes
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.feet import load_pad
+from dancetutor_cli.film.layout import FilmLook, load_layout
+from dancetutor_cli.film.media.encoder import Encoding
+from dancetutor_cli.film.scene.renderer import MOST_JOINTS, create
+from dancetutor_cli.film.scene.scene import Scene
+from dancetutor_cli.film.work.request import film_key, look_up
 from dancetutor_cli.formats.glb import read_glb
-from dancetutor_cli.jobs.film_key import film_key
-from dancetutor_cli.jobs.film_request import look_up
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.pads import load_pad
-from dancetutor_cli.rig.skeleton import Skeleton
-from dancetutor_cli.video.film_look import FilmLook
-from dancetutor_cli.video.layout import load_layout
-from dancetutor_cli.video.media.encoder import Encoding
-from dancetutor_cli.video.scene.renderer import MOST_JOINTS, create
-from dancetutor_cli.video.scene.scene import Scene
 
 SONG = "#TITLE:T;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n x:\n Hard:\n 9:\n 0:\n"
 
@@ -116,7 +113,7 @@ def test_the_camera_shows_all_of_a_tall_character(shared_data: Path) -> None:
 
 def test_a_character_with_many_joints_is_drawn_without_gl(monkeypatch: pytest.MonkeyPatch) -> None:
     """An avatar's hair may have hundreds of bones, more than the shaders hold: auto does not fail for it."""
-    monkeypatch.setattr("dancetutor_cli.video.scene.renderer._gpu", lambda: True)
+    monkeypatch.setattr("dancetutor_cli.film.scene.renderer._gpu", lambda: True)
     mannequin = load_character("mannequin")
     old, more = mannequin.skeleton, MOST_JOINTS
     skeleton = Skeleton(
@@ -135,7 +132,7 @@ def test_a_bad_character_is_one_line_before_the_work(
     def work(*_: object, **__: object) -> None:
         raise AssertionError("work began")
 
-    monkeypatch.setattr("dancetutor_cli.play.solver.solve", work)
+    monkeypatch.setattr("dancetutor_cli.feet.solver.solve.solve", work)
     monkeypatch.setattr("dancetutor_cli.dance.performance.planned", work)
     bad = shared_data / "characters" / "raylib_robot.glb"
     before = set(tmp_path.iterdir())

@@ -13,13 +13,13 @@ import pytest
 
 from dancetutor_cli.character import dressed, load_character, load_dancer
 from dancetutor_cli.character.mesh import Character, Mesh
-from dancetutor_cli.colours import limb_colours
-from dancetutor_cli.errors import UsageError
-from dancetutor_cli.motion.layers.fingers import finger_axis
-from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.skeleton import EYELID_CLOSING, FINGERS, KNUCKLES, dancer_skeleton
-from dancetutor_cli.rig.soles import hand_direction
-from dancetutor_cli.video.scene.geometry import pack
+from dancetutor_cli.dance.layers import finger_axis
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import hand_direction
+from dancetutor_cli.dance.rig.skeleton import EYELID_CLOSING, FINGERS, KNUCKLES, dancer_skeleton
+from dancetutor_cli.feet.limbs import limb_colours
+from dancetutor_cli.film.scene.geometry import pack
+from dancetutor_cli.run.errors import UsageError
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.character import load_character, load_dancer
-from dancetutor_cli.character.feet import on_foot, with_foot_colours
-from dancetutor_cli.character.mesh import rest_vertices
-from dancetutor_cli.colours import limb_colours
-from dancetutor_cli.pads import load_pad
-from dancetutor_cli.video.scene.hidden import feet_hidden
-from dancetutor_cli.video.scene.scene import Scene
+from dancetutor_cli.character.mesh import on_foot, rest_vertices, with_foot_colours
+from dancetutor_cli.feet import load_pad
+from dancetutor_cli.feet.limbs import limb_colours
+from dancetutor_cli.film.scene.scene import Scene
+from dancetutor_cli.film.scene.visibility import feet_hidden
 
 NAMES = ("kaykit_rogue.glb", "m2m_human_female.glb", "m2m_human_kenney.glb")
 

@@ -16,10 +16,10 @@ import pytest
 from glb_edit import edited, joined, parts_of
 
 from dancetutor_cli.character import load_character
-from dancetutor_cli.character.gltf_reader import unit_normals
-from dancetutor_cli.errors import FileError
+from dancetutor_cli.character.gltf import unit_normals
 from dancetutor_cli.formats.glb import read_glb
-from dancetutor_cli.resources import PACKAGE
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.reading import PACKAGE
 
 SOURCE = PACKAGE / "character" / "data" / "mannequin.glb"
 
@@ -146,7 +146,7 @@ def test_a_file_of_100_megabytes_is_refused_unread(tmp_path: Path, monkeypatch: 
     path = tmp_path / "large.glb"
     with path.open("wb") as file:
         file.truncate(100_000_000)  # a hole: takes no disk
-    monkeypatch.setattr("dancetutor_cli.bounded.open", lambda *how, **more: pytest.fail("was read"), raising=False)
+    monkeypatch.setattr("dancetutor_cli.run.reading.open", lambda *how, **more: pytest.fail("was read"), raising=False)
     with pytest.raises(FileError, match="100 MB"):
         load_character(str(path))
 

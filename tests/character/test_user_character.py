@@ -10,19 +10,17 @@ import pytest
 from glb_edit import edited, joined, parts_of
 
 from dancetutor_cli.character import load_character
-from dancetutor_cli.character.container import read_container
+from dancetutor_cli.character.container import read_container, read_nodes
 from dancetutor_cli.character.humanoid import REQUIRED, find_humanoid, words_of
 from dancetutor_cli.character.mesh import Character
-from dancetutor_cli.character.nodes import read_nodes
 from dancetutor_cli.character.retarget import retarget
-from dancetutor_cli.errors import FileError
+from dancetutor_cli.dance.motion import Contact, Motion
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import palm_points, world_transforms
+from dancetutor_cli.dance.rig.skeleton import Skeleton, dancer_skeleton
 from dancetutor_cli.formats.glb import read_glb
-from dancetutor_cli.motion.baked import Contact, Motion
-from dancetutor_cli.resources import PACKAGE
-from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.kinematics import world_transforms
-from dancetutor_cli.rig.skeleton import Skeleton, dancer_skeleton
-from dancetutor_cli.rig.soles import palm_points
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.reading import PACKAGE
 
 SOURCE = PACKAGE / "character" / "data" / "mannequin.glb"
 GOOD = ("kaykit_rogue.glb", "m2m_human_female.glb", "m2m_human_kenney.glb")

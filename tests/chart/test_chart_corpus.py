@@ -10,7 +10,7 @@ import pytest
 
 from dancetutor_cli import chart
 from dancetutor_cli.chart.model import Kind, Song
-from dancetutor_cli.errors import ChartError
+from dancetutor_cli.run.errors import ChartError
 
 STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT, Kind.MINE)
 

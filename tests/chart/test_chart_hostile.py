@@ -9,11 +9,10 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli import chart
-from dancetutor_cli.chart import msd
+from dancetutor_cli.chart import msd, music_file
 from dancetutor_cli.chart.model import Song
-from dancetutor_cli.errors import ChartError, FileError
-from dancetutor_cli.jobs.analyze import _unselected
-from dancetutor_cli.library import music_file
+from dancetutor_cli.lint.analysis import _unselected
+from dancetutor_cli.run.errors import ChartError, FileError
 
 HOSTILE = Path(__file__).resolve().parent.parent / "data" / "hostile"
 with (HOSTILE / "expectations.csv").open(encoding="utf-8", newline="") as table:

@@ -11,21 +11,20 @@ import pytest
 from click.testing import CliRunner
 
 from dancetutor_cli.chart import parse
+from dancetutor_cli.chart.edits import apply
 from dancetutor_cli.chart.model import Chart
-from dancetutor_cli.chart.players import parts, written_parts
+from dancetutor_cli.chart.note_data import parts, written_parts
 from dancetutor_cli.commands import cli
-from dancetutor_cli.errors import UsageError
-from dancetutor_cli.feet import overrides_for
+from dancetutor_cli.feet import load_preset, overrides_for
+from dancetutor_cli.feet.annotations import step_rows
 from dancetutor_cli.feet.limbs import Limb
-from dancetutor_cli.feet.measures import step_rows
-from dancetutor_cli.fixes.moved import moved
-from dancetutor_cli.jobs.analyze import analyze_file
-from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
-from dancetutor_cli.lint.finding import Finding
-from dancetutor_cli.lint.solved import solved_chart
+from dancetutor_cli.lint.analysis import analyze_file
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.fixes import moved
+from dancetutor_cli.lint.run import LintRequest, LintRun
+from dancetutor_cli.lint.subject import solved_chart
 from dancetutor_cli.lint.suggest import MovedNote
-from dancetutor_cli.markers.splice import apply
-from dancetutor_cli.play import load_preset
+from dancetutor_cli.run.errors import UsageError
 
 HEAD = "#TITLE:T;\n#ARTIST:A;\n#CREDIT:C;\n#OFFSET:0;\n#BPMS:0=120;\n"
 FIRST = "10000000\n01000000\n00010000\n00100000\n,\n10000000\n00010000\n10000000\n00010000\n"

@@ -12,10 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dancetutor_cli import chart
-from dancetutor_cli.chart import decoding as text
 from dancetutor_cli.chart import msd
 from dancetutor_cli.chart.model import Song
-from dancetutor_cli.errors import ChartError, FileError
+from dancetutor_cli.run.errors import ChartError, FileError
 
 CHART = b"#BPMS:0=120;#NOTES:dance-single:d:Hard:9:0:\n1000\n0100\n0010\n0001\n;"
 SSC = b"#VERSION:0.83;#TITLE:T;#BPMS:0=120;#NOTEDATA:;#STEPSTYPE:dance-single;#DIFFICULTY:Hard;#NOTES:\n1000\n;"
@@ -144,10 +143,8 @@ def test_sm_reads_timing_that_follows_the_notes() -> None:
 )
 def test_encodings(encoding: str, words: str) -> None:
     data = f"#TITLE:{words};".encode(encoding)
-    assert text.encoding_of(data + CHART) == encoding
-    assert text.decode(words.encode(encoding), encoding).lstrip("\ufeff") == words.replace(
-        "ソ", words[words.find("ソ")]
-    )
+    assert msd.encoding_of(data + CHART) == encoding
+    assert msd.decode(words.encode(encoding), encoding).lstrip("\ufeff") == words.replace("ソ", words[words.find("ソ")])
 
 
 @pytest.mark.parametrize(
@@ -214,7 +211,7 @@ def test_notes_outside_notedata_are_named() -> None:
 
 def test_reading_imports_nothing_slow() -> None:
     code = (
-        "import sys; from dancetutor_cli.chart import load; from dancetutor_cli.library import select; "
+        "import sys; from dancetutor_cli.chart import load; from dancetutor_cli.chart import select; "
         "print(*sorted(m.split('.')[0] for m in sys.modules))"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -10,7 +10,7 @@ import pytest
 
 from dancetutor_cli import chart
 from dancetutor_cli.chart.model import Chart, Kind, Song
-from dancetutor_cli.errors import ChartError
+from dancetutor_cli.run.errors import ChartError
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # it uses pkg_resources, which setuptools is about to drop

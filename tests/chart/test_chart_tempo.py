@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from dancetutor_cli.chart.density import bpm_text
 from dancetutor_cli.chart.reader import parse
-from dancetutor_cli.chart.tempo import bpm_text
 
 CHART = "#TITLE:x;%s#BPMS:0=60,4=240;#NOTES:dance-single::Easy:3:0:1000\n0100\n0010\n0001\n,1000\n1000\n1000\n1000;"
 

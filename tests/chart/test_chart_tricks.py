@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dancetutor_cli import chart
-from dancetutor_cli.chart.decimals import beat, number
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.timing import Timing
+from dancetutor_cli.chart.timing_tags import beat, number
 
 NOTES = "1000\n0100\n0010\n0001\n"
 

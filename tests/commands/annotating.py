@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from dancetutor_cli.commands.annotate import command
-from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.run.errors import DancetutorError
 
 SONG = Path(__file__).resolve().parent.parent.parent / "charts" / "two_left_feet"
 ALL = "measure,rows,sidecar,smeditor,edit,theme"

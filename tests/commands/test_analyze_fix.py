@@ -15,13 +15,13 @@ from click.testing import CliRunner
 
 from dancetutor_cli.commands.analyze import command
 from dancetutor_cli.commands.fixing import _Talk
-from dancetutor_cli.errors import DancetutorError, UsageError
-from dancetutor_cli.files import temporary_name
-from dancetutor_cli.fixes.mend import GONE, NO_MOVE, Left
-from dancetutor_cli.jobs.analyze import analyze_file
-from dancetutor_cli.jobs.fix import FixOutcome
-from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
-from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.lint.analysis import analyze_file
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.fix import FixOutcome
+from dancetutor_cli.lint.mend import GONE, NO_MOVE, Left
+from dancetutor_cli.lint.run import LintRequest, LintRun
+from dancetutor_cli.run.errors import DancetutorError, UsageError
+from dancetutor_cli.run.files import temporary_name
 
 HARD = ["--steps-type", "dance-single", "--difficulty", "hard"]
 BROKEN = (
@@ -153,7 +153,7 @@ def test_a_read_only_file_is_told_and_the_others_go_on(song: Path, ssc: Path) ->
 
 
 def test_a_file_that_changes_meanwhile_is_left_alone(ssc: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from dancetutor_cli.jobs import fix
+    from dancetutor_cli.lint import fix
 
     write, edited = fix.write_atomic, ssc.read_bytes() + b"// saved by an editor\n"
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from annotating import POSIX, Said, files_of
 
-from dancetutor_cli.files import temporary_name
+from dancetutor_cli.run.files import temporary_name
 
 
 def test_a_bad_file_in_a_folder_does_not_stop_the_others(song: Path, hostile: Path) -> None:
@@ -48,7 +48,7 @@ def test_what_a_killed_run_left_is_gone_after_the_next(song: Path, ssc: Path) ->
 
 
 def test_a_file_that_changes_while_it_is_worked_on_is_left_alone(ssc: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from dancetutor_cli.jobs import annotate
+    from dancetutor_cli.markers import annotate
 
     write = annotate.write_atomic
     edited = ssc.read_bytes() + b"// saved by an editor\n"
@@ -83,7 +83,7 @@ def test_two_commands_on_one_file_end_well(ssc: Path) -> None:
 
 
 def test_a_full_disk_is_told(ssc: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from dancetutor_cli import files
+    from dancetutor_cli.run import files
 
     original = ssc.read_bytes()
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from annotating import ALL, SONG, Said, files_of
 
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.run.errors import UsageError
 
 
 def test_what_is_not_written_would_change(song: Path) -> None:

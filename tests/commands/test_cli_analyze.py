@@ -14,7 +14,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from dancetutor_cli.commands.analyze import command
-from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.run.errors import DancetutorError
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 DEMO = ROOT / "charts" / "two_left_feet" / "two_left_feet.ssc"

@@ -12,9 +12,9 @@ from dance_requests import apart
 
 from dancetutor_cli.character.container import read_container
 from dancetutor_cli.commands.animate import command
-from dancetutor_cli.errors import DancetutorError
 from dancetutor_cli.formats.npz import read_npz
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.run.errors import DancetutorError
+from dancetutor_cli.run.reading import charts_path
 
 SONG = charts_path() / "two_left_feet" / "two_left_feet.ssc"
 HARD = ("--steps-type", "dance-single", "--difficulty", "hard")

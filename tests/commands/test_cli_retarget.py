@@ -12,12 +12,12 @@ from click.testing import CliRunner
 from physics_phrase import phrase
 
 from dancetutor_cli.commands.retarget import _CORRECTIONS, command
-from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.dance.physics.pipeline import CORRECTIONS
+from dancetutor_cli.film.media.encoder import Encoding, join
+from dancetutor_cli.film.work import render
 from dancetutor_cli.formats.bvh import read_bvh, write_bvh
 from dancetutor_cli.formats.npz import read_npz, write_npz
-from dancetutor_cli.jobs import motion_film
-from dancetutor_cli.physics.pipeline import CORRECTIONS
-from dancetutor_cli.video.media.encoder import Encoding, join
+from dancetutor_cli.run.errors import DancetutorError
 
 
 @pytest.fixture
@@ -69,7 +69,7 @@ def test_another_body_gets_springs_by_a_search_that_is_kept(
     tuning = json.loads(kept.read_text())
     assert 0.7 < tuning["stretch"] < 1.3 and min(tuning["density"].values()) >= 400
     first = out.read_bytes()
-    monkeypatch.setattr("dancetutor_cli.physics.tuning.tuned", None)  # it is not searched again
+    monkeypatch.setattr("dancetutor_cli.dance.physics.pipeline.tuned", None)  # it is not searched again
     run(bvh, "-o", out, "--character", character)
     assert out.read_bytes() == first
     assert read_npz(out).skeleton.rest[0, 1] < 0.7, "short legs"
@@ -121,8 +121,8 @@ def test_the_film_has_all_its_frames(bvh: Path, tmp_path: Path, monkeypatch: pyt
         joined.append((parts, output))
         join(parts, encoding, sound, work, output)
 
-    monkeypatch.setattr(motion_film, "SIZE", (64, 64))
-    monkeypatch.setattr(motion_film, "join", joining)
+    monkeypatch.setattr(render, "SIZE", (64, 64))
+    monkeypatch.setattr(render, "join", joining)
     film = tmp_path / "a.mp4"
     assert "31 frames, 1.0 s" in run(bvh, "-o", film, "--correct", "none")
     data = film.read_bytes()

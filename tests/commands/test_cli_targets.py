@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 
 from dancetutor_cli.__main__ import main
-from dancetutor_cli.errors import FileError, UsageError
-from dancetutor_cli.outputs import check_file, check_folder, make_folder
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.run.errors import FileError, UsageError
+from dancetutor_cli.run.files import check_file, check_folder, make_folder
+from dancetutor_cli.run.reading import charts_path
 
 FILM = ("--size", "64x64", "--layout", "highway", "--fps", "10", "--jobs", "1", "--mute", "--section", "4:5")
 ONE = ("--index", "3")
@@ -96,7 +96,7 @@ def test_a_pages_own_name_that_is_taken_is_told_before_the_work(
     def bake(*_: object) -> None:
         raise AssertionError("the work was begun, and there is no place for it")
 
-    monkeypatch.setattr("dancetutor_cli.jobs.page.perform", bake)
+    monkeypatch.setattr("dancetutor_cli.page.work.perform", bake)
     name = "two_left_feet-dance-single_hard_8.html"
     if players == 2:
         demo, name = Path("two.sm"), "two-dance-couple_hard_9.html"

@@ -15,8 +15,8 @@ from click.testing import CliRunner
 
 from dancetutor_cli.commands import COMMANDS, cli
 from dancetutor_cli.commands.completion import SHELLS, place_for, script_for
-from dancetutor_cli.commands.first_steps import first_steps
-from dancetutor_cli.errors import FileError, UsageError
+from dancetutor_cli.commands.first_run import first_steps
+from dancetutor_cli.run.errors import FileError, UsageError
 
 
 def run(*arguments: object, **environment: str) -> subprocess.CompletedProcess[bytes]:

@@ -9,8 +9,8 @@ import pytest
 from annotating import POSIX, Said
 from click.testing import CliRunner
 
+from dancetutor_cli.chart.selection import find_files, without_links_out
 from dancetutor_cli.commands.analyze import command as analyze
-from dancetutor_cli.library.chart_files import find_files, without_links_out
 
 NOTES = "1000\n0100\n0010\n0001\n"
 SONG = f"#TITLE:T;\n#ARTIST:A;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n{NOTES};\n"

@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from dancetutor_cli.commands import cli
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.run.errors import UsageError
 
 SONG = "#TITLE:T;\n#ARTIST:A;\n#CREDIT:C;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n1000\n0100\n0010\n0001\n;\n"
 

@@ -9,18 +9,17 @@ import pytest
 from dance_requests import film_request
 
 from dancetutor_cli.__main__ import main
-from dancetutor_cli.bake import pieces
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance import pieces
+from dancetutor_cli.dance.motion import Cut, Motion
 from dancetutor_cli.dance.performance import Performance, perform, solve
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.film.layout import FilmLook, load_layout
+from dancetutor_cli.film.work.planning import FilmDance, film_dance
+from dancetutor_cli.film.work.request import FilmRequest, look_up
 from dancetutor_cli.formats.npz import read_npz
-from dancetutor_cli.jobs.film_dance import FilmDance, film_dance
-from dancetutor_cli.jobs.film_request import FilmRequest, look_up
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.motion.baked import Cut, Motion
-from dancetutor_cli.resources import charts_path
-from dancetutor_cli.video.film_look import FilmLook
-from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.reading import charts_path
 
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
 HEAD = "#TITLE:x;\n#OFFSET:0;\n#BPMS:0=120;\n"

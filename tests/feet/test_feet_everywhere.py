@@ -9,10 +9,11 @@ import pytest
 from dance_requests import film_request, solved_one
 
 from dancetutor_cli.chart import load
-from dancetutor_cli.jobs.analyze import solved
-from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.play.played import Limb, Play
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.play import Play
+from dancetutor_cli.lint.analysis import solved
+from dancetutor_cli.lint.run import LintRequest, LintRun
 
 CHART = "#TITLE:x;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n :\n Hard:\n 8:\n :{}\n1000\n0001\n1000\n0001\n;\n"
 MIRRORED = [Limb.RIGHT_FOOT, Limb.LEFT_FOOT, Limb.RIGHT_FOOT, Limb.LEFT_FOOT]
@@ -47,11 +48,10 @@ def test_animate(song: Path) -> None:
 
 
 def test_render(song: Path) -> None:
-    from dancetutor_cli.jobs import film_plan
-    from dancetutor_cli.jobs.film_request import look_up
-    from dancetutor_cli.video.film_look import FilmLook
-    from dancetutor_cli.video.layout import load_layout
+    from dancetutor_cli.film.layout import FilmLook, load_layout
+    from dancetutor_cli.film.work import planning
+    from dancetutor_cli.film.work.request import look_up
 
     request = film_request(song, Selection(), FilmLook(load_layout("highway"), (64, 48)), fps=12, mute=True)
-    prepared = film_plan.prepare(request, look_up(request))
+    prepared = planning.prepare(request, look_up(request))
     assert [int(limb) for limb in prepared.plan.notes.limb] == MIRRORED

@@ -10,12 +10,10 @@ from hypothesis import strategies as st
 
 from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.model import Song
-from dancetutor_cli.feet import overrides_for
-from dancetutor_cli.feet.notation import LETTERS, NotationError, letter, marker
-from dancetutor_cli.feet.notation import parse as parse_tokens
-from dancetutor_cli.feet.pins import read_pins
-from dancetutor_cli.play import load_preset, solve_chart
-from dancetutor_cli.play.played import Limb, Part
+from dancetutor_cli.feet import load_preset, overrides_for, solve_chart
+from dancetutor_cli.feet.annotations import read_pins
+from dancetutor_cli.feet.limbs import LETTERS, Limb, NotationError, Part, letter, marker
+from dancetutor_cli.feet.limbs import parse as parse_tokens
 
 LEFT, RIGHT, LEFT_HAND, RIGHT_HAND = Limb.LEFT_FOOT, Limb.RIGHT_FOOT, Limb.LEFT_HAND, Limb.RIGHT_HAND
 HEAD = (

@@ -8,13 +8,12 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.chart import Song, load
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.feet import overrides_for
+from dancetutor_cli.feet import load_preset, overrides_for, solve_chart
 from dancetutor_cli.feet.limbs import Limb, Part
-from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
-from dancetutor_cli.jobs.cache import ResultCache
-from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
-from dancetutor_cli.play import load_preset, solve_chart
+from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
+from dancetutor_cli.lint.cache import ResultCache
+from dancetutor_cli.lint.run import LintRequest, LintRun
+from dancetutor_cli.run.errors import FileError
 
 LEFT, RIGHT = Limb.LEFT_FOOT, Limb.RIGHT_FOOT
 CHART = "#NOTES:dance-single::{}:9::\n1000\n0100\n0001\n1100\n,\n0010\n0000\n0000\n0000\n;\n"

@@ -11,7 +11,7 @@ import pytest
 from dancetutor_cli.chart import load
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.feet import overrides_for
-from dancetutor_cli.play.played import Limb, Part
+from dancetutor_cli.feet.limbs import Limb, Part
 
 LEFT, RIGHT = Limb.LEFT_FOOT, Limb.RIGHT_FOOT
 CHART = "#NOTES:\n {}:\n :\n {}:\n 8:\n :{}\n1000\n0100\n0011\n0001\n;\n"

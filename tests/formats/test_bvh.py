@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dancetutor_cli.errors import FileError
+from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.formats.bvh import read_bvh, write_bvh
-from dancetutor_cli.motion.baked import Motion
-from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.kinematics import world_transforms
-from dancetutor_cli.rig.skeleton import dancer_skeleton
+from dancetutor_cli.run.errors import FileError
 
 FILES = ("cmu_01_01_jumps.bvh", "pymo_8walk.bvh")
 

@@ -9,17 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.bake import bake, plan_of
 from dancetutor_cli.chart import load
+from dancetutor_cli.dance.bake import bake, plan_of
 from dancetutor_cli.dance.performance import as_heard
-from dancetutor_cli.errors import FileError
+from dancetutor_cli.dance.plan import Press
+from dancetutor_cli.feet import load_pad, load_preset, prepare, solve_chart
+from dancetutor_cli.feet.play_json import read_play
 from dancetutor_cli.formats.moves_json import moves_data, write_moves
 from dancetutor_cli.formats.npz import read_npz, write_npz
-from dancetutor_cli.formats.play_json import read_play
-from dancetutor_cli.motion.plan import Press
-from dancetutor_cli.pads import load_pad
-from dancetutor_cli.play import load_preset, prepare, solve_chart
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.reading import charts_path
 
 
 @pytest.fixture(scope="module")
@@ -143,7 +142,7 @@ def test_a_play_that_does_not_fit_is_refused(demo, spoil, said: str, tmp_path: P
 
 
 def test_half_speed_keeps_gravity(demo) -> None:  # type: ignore[no-untyped-def]
-    from dancetutor_cli.bake import report
+    from dancetutor_cli.dance.quality.report import report
 
     chart, play, pad = demo
     slow = chart.timing.at_rate(0.5)

@@ -17,8 +17,8 @@ from click.testing import CliRunner
 from physics_phrase import phrase
 
 from dancetutor_cli.commands.retarget import command
-from dancetutor_cli.errors import FileError
 from dancetutor_cli.formats.npz import FIELDS, read_npz, write_npz
+from dancetutor_cli.run.errors import FileError
 
 Arrays = dict[str, np.ndarray[Any, Any]]
 

@@ -15,11 +15,11 @@ from glb_channels import channels_of
 
 from dancetutor_cli.character import load_character, load_dancer
 from dancetutor_cli.character.mesh import Character, Material, Mesh
-from dancetutor_cli.errors import FileError
+from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.formats.glb import read_glb, write_glb
-from dancetutor_cli.motion.baked import Motion
-from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.skeleton import dancer_skeleton
+from dancetutor_cli.run.errors import FileError
 
 ROOT = Path(__file__).resolve().parents[2]
 VALIDATOR = "gltf-validator@2.0.0-dev.3.10"  # there are only pre-releases, which no range of versions matches

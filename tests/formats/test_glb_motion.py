@@ -9,19 +9,18 @@ import numpy as np
 import pytest
 from glb_channels import channels_of
 
-from dancetutor_cli.bake import bake, report
 from dancetutor_cli.character import load_dancer
 from dancetutor_cli.chart import load
+from dancetutor_cli.dance.bake import bake
+from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.performance import as_heard
+from dancetutor_cli.dance.quality.report import report
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import palm_points, points_in_world, sole_points, world_transforms
+from dancetutor_cli.feet import load_pad, load_preset, solve_chart
+from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.formats.glb import write_glb
-from dancetutor_cli.motion.baked import Motion
-from dancetutor_cli.pads import load_pad
-from dancetutor_cli.play import load_preset, solve_chart
-from dancetutor_cli.play.played import Limb
-from dancetutor_cli.resources import charts_path
-from dancetutor_cli.rig import quaternion as quat
-from dancetutor_cli.rig.kinematics import world_transforms
-from dancetutor_cli.rig.soles import palm_points, points_in_world, sole_points
+from dancetutor_cli.run.reading import charts_path
 
 ROOT = Path(__file__).resolve().parents[2]
 FASTER, STREAM = 2.0, (1.2, 3.5)  # 17 steps per second, more than any chart of the corpus keeps up

@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.jobs import analyze
-from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file, analyze_files
-from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
-from dancetutor_cli.jobs.result import ChartResult
+from dancetutor_cli.lint import analysis
+from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file, analyze_files
+from dancetutor_cli.lint.results import ChartResult
+from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.lint.subject import ChartSubject
+from dancetutor_cli.run.errors import FileError
 
 KINDS = {"dance-single": 4, "dance-double": 8, "pump-single": 5}
 DEMO = Path(__file__).resolve().parents[2] / "charts" / "two_left_feet" / "two_left_feet.ssc"
@@ -68,23 +68,23 @@ def tasks(tmp_path_factory: pytest.TempPathFactory) -> list[AnalyzeTask]:
 
 @pytest.mark.parametrize("rows", [700, 10**9])
 def test_windows_of_any_size_say_the_same(tasks: list[AnalyzeTask], rows: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(analyze, "_ROWS", 1)  # each chart alone
+    monkeypatch.setattr(analysis, "_ROWS", 1)  # each chart alone
     alone = [analyze_file(task) for task in tasks]
-    monkeypatch.setattr(analyze, "_ROWS", rows)
+    monkeypatch.setattr(analysis, "_ROWS", rows)
     assert list(analyze_files(tasks)) == alone
     rules = {finding.rule for result in alone for finding, _ in result.all_findings()}
     assert {"DT101", "DT201", "DT202", "DT206", "DT207", "DT213", "DT214", "DT302", "DT304", "DT305"} <= rules
 
 
 def test_what_was_analysed_is_told_before_an_error(tasks: list[AnalyzeTask], monkeypatch: pytest.MonkeyPatch) -> None:
-    solved = analyze.solved
+    solved = analysis.solved
 
     def fails(song: object, charts: object, task: AnalyzeTask) -> Iterator[object]:
         yield from solved(song, charts, task)  # type: ignore[arg-type]
         if task == tasks[2]:
             raise FileError(task.path, "is broken")
 
-    monkeypatch.setattr(analyze, "solved", fails)
+    monkeypatch.setattr(analysis, "solved", fails)
     results = analyze_files([replace(task, want_rows=False) for task in tasks[:2]] + tasks[2:])
     assert [next(results).path for _ in range(2)] == [str(task.path) for task in tasks[:2]]
     with pytest.raises(FileError, match="is broken"):
@@ -97,15 +97,15 @@ def test_after_a_fault_no_file_is_told_with_charts_twice_or_missing(
 ) -> None:
     few = [replace(task, want_rows=False) for task in tasks[:4]]
     alone = [analyze_file(task) for task in few]
-    told, numbers = analyze.chart_result, itertools.count()
+    told, numbers = analysis.chart_result, itertools.count()
 
     def fails(subject: ChartSubject, task: AnalyzeTask) -> ChartResult:
         if next(numbers) == broken:
             raise RuntimeError("a fault")
         return told(subject, task)
 
-    monkeypatch.setattr(analyze, "chart_result", fails)
-    monkeypatch.setattr(analyze, "_ROWS", 300)
+    monkeypatch.setattr(analysis, "chart_result", fails)
+    monkeypatch.setattr(analysis, "_ROWS", 300)
     results, found = analyze_files(few), []
     with pytest.raises(RuntimeError, match="a fault"):
         for result in results:

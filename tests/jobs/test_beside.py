@@ -10,12 +10,12 @@ from click.testing import CliRunner
 
 from dancetutor_cli.chart import load
 from dancetutor_cli.commands.analyze import command
-from dancetutor_cli.errors import FileError, UsageError
-from dancetutor_cli.jobs.beside import TEN, read_theirs
-from dancetutor_cli.lint.solved import solved_chart
-from dancetutor_cli.lint.tech_counts import tech_counts, tech_rows
-from dancetutor_cli.play import load_preset
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.feet import load_preset
+from dancetutor_cli.lint.figures import tech_counts, tech_rows
+from dancetutor_cli.lint.subject import solved_chart
+from dancetutor_cli.lint.versions import TEN, read_theirs
+from dancetutor_cli.run.errors import FileError, UsageError
+from dancetutor_cli.run.reading import charts_path
 
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
 # Left, down, right: the left foot crosses over; in 8ths at 180 BPM, then a jack.

@@ -9,8 +9,8 @@ import pytest
 from click.testing import CliRunner
 
 from dancetutor_cli.commands.analyze import command
-from dancetutor_cli.errors import UsageError
-from dancetutor_cli.jobs.compare import ChartChange, change_lines, compare
+from dancetutor_cli.lint.versions import ChartChange, change_lines, compare
+from dancetutor_cli.run.errors import UsageError
 
 SONG = (
     "#TITLE:T;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:dance-single:C:Easy:3::\n1000\n0000\n0001\n0000\n;\n"

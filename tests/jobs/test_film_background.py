@@ -11,14 +11,13 @@ from dance_requests import film_request
 
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.chart import load
+from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands import render
-from dancetutor_cli.jobs.film_request import look_up
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.resources import charts_path
-from dancetutor_cli.video.film_look import FilmLook
-from dancetutor_cli.video.layout import load_layout
-from dancetutor_cli.video.media import ffmpeg
-from dancetutor_cli.video.media.sound import seconds_of
+from dancetutor_cli.film.layout import FilmLook, load_layout
+from dancetutor_cli.film.media import ffmpeg
+from dancetutor_cli.film.media.sound import seconds_of
+from dancetutor_cli.film.work.request import look_up
+from dancetutor_cli.run.reading import charts_path
 
 DEMO = charts_path() / "two_left_feet"
 ROWS = "#NOTES:\n dance-single:\n x:\n Hard:\n 9:\n 0,0,0,0,0:\n1000\n0001\n0010\n0100\n;\n"

@@ -11,17 +11,15 @@ from pathlib import Path
 import pytest
 from dance_requests import film_request
 
-from dancetutor_cli.errors import FileError, UsageError
-from dancetutor_cli.jobs import film_segments, film_work
-from dancetutor_cli.jobs.batch import Batch
-from dancetutor_cli.jobs.film_list import BatchRequest, film_list, parse_meters, parse_shard
-from dancetutor_cli.jobs.film_records import WORK
-from dancetutor_cli.jobs.film_work import FilmJob, FilmOutcome
-from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.film.layout import FilmLook, load_layout
+from dancetutor_cli.film.media.encoder import Encoding
+from dancetutor_cli.film.work import segments
+from dancetutor_cli.film.work.batch import Batch, BatchRequest, film_list, parse_meters, parse_shard
+from dancetutor_cli.film.work.records import WORK
+from dancetutor_cli.film.work.segments import FilmJob, FilmOutcome
+from dancetutor_cli.run.errors import FileError, UsageError
 from dancetutor_cli.run.pool import Finished, SerialWorkers
-from dancetutor_cli.video.film_look import FilmLook
-from dancetutor_cli.video.layout import load_layout
-from dancetutor_cli.video.media.encoder import Encoding
 
 SIZE = (64, 64)
 NOTES = "1000\n0100\n0010\n0001\n,\n1000\n0010\n0100\n0001\n"
@@ -178,7 +176,7 @@ def test_a_full_disk_is_one_line_and_leaves_nothing(
         path.write_bytes(b"half of a")
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(film_work, "write_plan", full)
+    monkeypatch.setattr(segments, "write_plan", full)
     jobs, _, _ = film_list(batch_request((pack,), tmp_path / "videos"))
     outcomes = run(jobs)
     assert {o.status for o in outcomes.values()} == {"failed"}
@@ -231,11 +229,11 @@ def test_a_full_disk_leaves_no_frames_behind(tmp_path: Path, monkeypatch: pytest
             path.write_bytes(b"half a segment")
         raise FileError(path, "No space left on device")
 
-    monkeypatch.setattr(film_segments, "_film", lambda plan: Pictures())
-    monkeypatch.setattr("dancetutor_cli.video.media.encoder.encode_segment", full)
+    monkeypatch.setattr(segments, "_film", lambda plan: Pictures())
+    monkeypatch.setattr("dancetutor_cli.film.media.encoder.encode_segment", full)
     for target, name in (("mp4", "segment_00000.mp4"), ("png", "frames")):
         encoding = Encoding(target, (64, 64), 10, "draft", "x264")  # type: ignore[arg-type]
-        segment = film_segments.Segment(0, 0, 4, tmp_path / name)
+        segment = segments.Segment(0, 0, 4, tmp_path / name)
         with pytest.raises(FileError):
-            film_segments.render_segment(lambda n: None, tmp_path / "plan", segment, encoding)
+            segments.render_segment(lambda n: None, tmp_path / "plan", segment, encoding)
     assert [path.name for path in tmp_path.rglob("*") if path.is_file()] == []

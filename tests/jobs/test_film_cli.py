@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from dancetutor_cli.__main__ import main
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.run.reading import charts_path
 
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
 SONG = "#TITLE:T;\n#ARTIST:A;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n"

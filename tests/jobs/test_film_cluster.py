@@ -14,12 +14,10 @@ pytest.importorskip("distributed", reason="the extra 'cluster' is not installed"
 
 from test_film_batch import NOTES, batch_request, write_song
 
-from dancetutor_cli.errors import UnavailableError
-from dancetutor_cli.jobs.batch import Batch
-from dancetutor_cli.jobs.film_list import film_list
-from dancetutor_cli.jobs.film_segments import frames_of
-from dancetutor_cli.run.cluster import ClusterWorkers
-from dancetutor_cli.run.pool import SerialWorkers
+from dancetutor_cli.film.work.batch import Batch, film_list
+from dancetutor_cli.film.work.segments import frames_of
+from dancetutor_cli.run.errors import UnavailableError
+from dancetutor_cli.run.pool import ClusterWorkers, SerialWorkers
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills a process the POSIX way")

@@ -8,13 +8,11 @@ import numpy as np
 import pytest
 from dance_requests import film_request
 
-from dancetutor_cli.jobs.counted_in import notes_without, quiet_in
-from dancetutor_cli.jobs.film_plan import Prepared, prepare
-from dancetutor_cli.jobs.film_request import look_up
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.video.film_look import FilmLook
-from dancetutor_cli.video.layout import load_layout
-from dancetutor_cli.video.practice import Practice
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.film.clock import Practice
+from dancetutor_cli.film.layout import FilmLook, load_layout
+from dancetutor_cli.film.work.planning import Prepared, prepare
+from dancetutor_cli.film.work.request import look_up, notes_without, quiet_in
 
 STREAM = "1000\n0100\n0010\n0001\n0100\n1000\n0010\n0001\n"
 

@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.__main__ import main
-from dancetutor_cli.errors import UnavailableError
-from dancetutor_cli.jobs import doctor
-from dancetutor_cli.jobs.doctor import Check, examine
-from dancetutor_cli.video.media import probe
-from dancetutor_cli.video.overlay import text
-from dancetutor_cli.video.scene.gl import available as gl_available
+from dancetutor_cli.commands import doctor
+from dancetutor_cli.commands.doctor import Check, examine
+from dancetutor_cli.film.media import encoder as probe
+from dancetutor_cli.film.overlay import text
+from dancetutor_cli.film.scene.gl import available as gl_available
+from dancetutor_cli.run.errors import UnavailableError
 
 
 def by_name() -> dict[str, Check]:

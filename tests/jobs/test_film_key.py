@@ -9,20 +9,18 @@ from typing import Any
 
 import pytest
 
+from dancetutor_cli.chart.pack_files import places_of_feet
+from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.jobs.analyze import AnalyzeTask
-from dancetutor_cli.jobs.cache import ResultCache
-from dancetutor_cli.jobs.film_key import film_key
-from dancetutor_cli.jobs.film_request import FilmRequest, look_up
-from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
-from dancetutor_cli.library.feet_files import places_of_feet
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.video.ahead import parse_ahead
-from dancetutor_cli.video.film_look import FilmLook
-from dancetutor_cli.video.layout import load_layout
-from dancetutor_cli.video.media.encoder import Encoding
-from dancetutor_cli.video.practice import Practice
-from dancetutor_cli.video.scroll import parse_scroll
+from dancetutor_cli.film.choices import parse_ahead
+from dancetutor_cli.film.clock import Practice
+from dancetutor_cli.film.layout import FilmLook, load_layout
+from dancetutor_cli.film.media.encoder import Encoding
+from dancetutor_cli.film.scroll import parse_scroll
+from dancetutor_cli.film.work.request import FilmRequest, film_key, look_up
+from dancetutor_cli.lint.analysis import AnalyzeTask
+from dancetutor_cli.lint.cache import ResultCache
+from dancetutor_cli.lint.run import LintRequest, LintRun
 
 ENCODING = Encoding("mp4", (64, 64), 12)
 CHARTS = "".join(

@@ -8,17 +8,16 @@ import numpy as np
 import pytest
 from dance_requests import film_request
 
-from dancetutor_cli.jobs.film_plan import Prepared, prepare
-from dancetutor_cli.jobs.film_request import look_up
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.play.played import Limb
-from dancetutor_cli.video.film import Film
-from dancetutor_cli.video.film_look import FilmLook
-from dancetutor_cli.video.layout import load_layout
-from dancetutor_cli.video.lights import PanelLights
-from dancetutor_cli.video.overlay import sprites
-from dancetutor_cli.video.overlay.diagram import NextRows, PadView
-from dancetutor_cli.video.overlay.text import Typeface
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.film.film import Film
+from dancetutor_cli.film.layout import FilmLook, load_layout
+from dancetutor_cli.film.notes import PanelLights
+from dancetutor_cli.film.overlay import sprites
+from dancetutor_cli.film.overlay.diagram import NextRows, PadView
+from dancetutor_cli.film.overlay.text import Typeface
+from dancetutor_cli.film.work.planning import Prepared, prepare
+from dancetutor_cli.film.work.request import look_up
 
 # the left foot holds, and the right one is asked for up and down 75 ms apart
 TRILL = "2000\n0000\n0000\n0000\n0000\n0000\n0000\n0000\n0010\n0100\n0010\n0100\n0000\n3000\n0000\n0001\n"

@@ -10,14 +10,13 @@ import pytest
 from dance_requests import film_request
 
 from dancetutor_cli.chart.model import Kind
-from dancetutor_cli.jobs.film_plan import Prepared, prepare
-from dancetutor_cli.jobs.film_request import look_up
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.video.film import Film
-from dancetutor_cli.video.film_look import FilmLook
-from dancetutor_cli.video.layout import load_layout
-from dancetutor_cli.video.lights import PanelLights, lighting
-from dancetutor_cli.video.overlay import sprites
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.film.film import Film
+from dancetutor_cli.film.layout import FilmLook, load_layout
+from dancetutor_cli.film.notes import PanelLights, lighting
+from dancetutor_cli.film.overlay import sprites
+from dancetutor_cli.film.work.planning import Prepared, prepare
+from dancetutor_cli.film.work.request import look_up
 
 # the right foot holds, the left one steps, and 12 ms later mines pass on its panel and on another one
 ROWS = ["0001", *["0000"] * 23, "0002", *["0000"] * 23, "1000", "M0M0", *["0000"] * 38, "0003", *["0000"] * 7]

@@ -14,10 +14,10 @@ from typing import Any
 
 import pytest
 
-from dancetutor_cli.errors import FileError, UnavailableError, UsageError
+from dancetutor_cli.run.errors import FileError, UnavailableError, UsageError
 from dancetutor_cli.run.pool import Finished, Report, Task, WorkFailedError, open_workers
 
-COMMON = "dancetutor_cli.video.choices"
+COMMON = "dancetutor_cli.film.choices"
 
 
 def double(report: Report, number: int) -> int:

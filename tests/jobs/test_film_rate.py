@@ -9,16 +9,14 @@ import pytest
 from dance_requests import baked, film_request
 
 from dancetutor_cli.character import load_dancer
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance.motion import sample
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.jobs.film_plan import Prepared, prepare
-from dancetutor_cli.jobs.film_request import look_up
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.motion.sampling import sample
-from dancetutor_cli.rig.kinematics import joint_matrices, world_transforms
-from dancetutor_cli.rig.mass import centre_of_mass
-from dancetutor_cli.video.film import Film
-from dancetutor_cli.video.film_look import FilmLook
-from dancetutor_cli.video.layout import load_layout
+from dancetutor_cli.dance.rig.body import centre_of_mass, joint_matrices, world_transforms
+from dancetutor_cli.film.film import Film
+from dancetutor_cli.film.layout import FilmLook, load_layout
+from dancetutor_cli.film.work.planning import Prepared, prepare
+from dancetutor_cli.film.work.request import look_up
 
 RATES = (0.5, 1.0)
 JUMPS = "1001\n0000\n0110\n0000\n1001\n0000\n0110\n0000\n"

@@ -9,14 +9,12 @@ from pathlib import Path
 import pytest
 from test_film_batch import NOTES, Stopping, batch_request, run, write_song
 
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.jobs import film_segments
-from dancetutor_cli.jobs.film_key import film_key
-from dancetutor_cli.jobs.film_list import film_list
-from dancetutor_cli.jobs.film_records import WORK, FilmRecord, find_records
-from dancetutor_cli.jobs.film_request import look_up
-from dancetutor_cli.jobs.film_segments import PlanFile, segments
-from dancetutor_cli.jobs.film_work import FilmJob
+from dancetutor_cli.film.work import segments as film_segments
+from dancetutor_cli.film.work.batch import film_list
+from dancetutor_cli.film.work.records import WORK, FilmRecord, find_records
+from dancetutor_cli.film.work.request import film_key, look_up
+from dancetutor_cli.film.work.segments import FilmJob, PlanFile, segments
+from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.pool import SerialWorkers
 
 STATE_FILES = ("plan.pickle", "sound.wav", "film.mp4", "segments.txt", "segment_00000.mp4")

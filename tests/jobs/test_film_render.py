@@ -16,18 +16,18 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.jobs import film_segments
-from dancetutor_cli.jobs.film_plan import Prepared
-from dancetutor_cli.jobs.render import make_film
-from dancetutor_cli.video.choices import QUALITIES, Quality
-from dancetutor_cli.video.clock import Clock, Pass
-from dancetutor_cli.video.media import ffmpeg
-from dancetutor_cli.video.media.encoder import Encoding, join
-from dancetutor_cli.video.media.sound import SoundPlan
-from dancetutor_cli.video.notes import NoteTrack
+from dancetutor_cli.film.choices import QUALITIES, Quality
+from dancetutor_cli.film.clock import Clock, Pass
+from dancetutor_cli.film.media import ffmpeg
+from dancetutor_cli.film.media.encoder import Encoding, join
+from dancetutor_cli.film.media.sound import SoundPlan
+from dancetutor_cli.film.notes import NoteTrack
+from dancetutor_cli.film.work import segments
+from dancetutor_cli.film.work.planning import Prepared
+from dancetutor_cli.film.work.render import make_film
+from dancetutor_cli.run.errors import DancetutorError
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "video"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "film"))
 from film_plans import film_plan
 
 RATE = 48000
@@ -99,7 +99,7 @@ def test_the_receptor_lights_in_the_frame_of_the_click(tmp_path: Path, fps: int,
 
     pictures = decode_pictures(film, size)
     assert len(pictures) == clock.frames
-    from dancetutor_cli.video.film import Film
+    from dancetutor_cli.film.film import Film
 
     highway = Film(plan).highway
     assert highway is not None
@@ -153,7 +153,7 @@ def test_pictures_are_the_frames_and_replace_older_ones(tmp_path: Path) -> None:
     names = sorted(p.name for p in folder.iterdir())
     assert names == [*(f"frame_{k:06d}.png" for k in range(plan.clock.frames)), "mine.png"]
 
-    from dancetutor_cli.video.film import Film
+    from dancetutor_cli.film.film import Film
 
     shown = np.asarray(Image.open(folder / "frame_000017.png"))
     assert (shown == Film(plan).frame(17)).all()
@@ -211,12 +211,12 @@ def test_only_drafts_trade_sound_for_time(tmp_path: Path, monkeypatch, quality: 
 @pytest.mark.parametrize("kept", [True, False])
 def test_one_worker_compiles_for_all(monkeypatch, kept):
     monkeypatch.setattr("dancetutor_cli.run.kernels.compiling.is_kept", lambda kernel: kept)
-    assert bool(film_segments.common_to_workers("cpu")) == kept  # what is imported for all would be compiled by each
+    assert bool(segments.common_to_workers("cpu")) == kept  # what is imported for all would be compiled by each
 
 
 @pytest.mark.parametrize("device", [None, 0])
 def test_what_workers_that_draw_by_opengl_share_is_there(monkeypatch, device):
-    monkeypatch.setattr("dancetutor_cli.video.scene.gl.available.gpu_device", lambda: device)
-    name = film_segments.common_to_workers("gl")
+    monkeypatch.setattr("dancetutor_cli.film.scene.gl.available.gpu_device", lambda: device)
+    name = segments.common_to_workers("gl")
     assert importlib.util.find_spec(name) is not None
     assert name.endswith("_gl") == (device is None)  # what a card's driver loads would not survive a fork

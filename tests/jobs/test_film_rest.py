@@ -9,15 +9,13 @@ import numpy as np
 import pytest
 from dance_requests import film_request
 
-from dancetutor_cli.jobs.counted_in import quiet_after
-from dancetutor_cli.jobs.film_plan import Prepared, prepare
-from dancetutor_cli.jobs.film_request import FilmRequest, look_up
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.rig.kinematics import world_transforms
-from dancetutor_cli.video.film import BACKGROUND, Film
-from dancetutor_cli.video.film_look import FilmLook
-from dancetutor_cli.video.layout import load_layout
-from dancetutor_cli.video.practice import REST, Practice
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.film.clock import REST, Practice
+from dancetutor_cli.film.film import BACKGROUND, Film
+from dancetutor_cli.film.layout import FilmLook, load_layout
+from dancetutor_cli.film.work.planning import Prepared, prepare
+from dancetutor_cli.film.work.request import FilmRequest, look_up, quiet_after
 
 STREAM = "1000\n0100\n0010\n0001\n0100\n1000\n0010\n0001\n"
 RATES = (0.5, 1.25)

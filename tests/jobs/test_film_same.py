@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.run.reading import charts_path
 
 DEMO = charts_path() / "two_left_feet"
 WISH = ("--steps-type", "dance-single", "--difficulty", "hard", "--section", "3:17", "--size", "128x72", "--fps", "6")

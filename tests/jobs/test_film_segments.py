@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from dancetutor_cli.jobs import film_segments
-from dancetutor_cli.jobs.film_segments import PlanFile, Segment, render_segment
-from dancetutor_cli.video.media import encoder
-from dancetutor_cli.video.media.encoder import Encoding
-from dancetutor_cli.video.media.film_formats import PICTURES
+from dancetutor_cli.film.media import encoder
+from dancetutor_cli.film.media.encoder import Encoding
+from dancetutor_cli.film.media.ffmpeg import PICTURES
+from dancetutor_cli.film.work import segments
+from dancetutor_cli.film.work.segments import PlanFile, Segment, render_segment
 
 
 class _NoFilm:
@@ -33,7 +33,7 @@ def _fails(write: Callable[[Path], None], error: BaseException) -> Callable[...,
 
 @pytest.fixture(autouse=True)
 def no_film(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(film_segments, "_film", lambda plan: _NoFilm())
+    monkeypatch.setattr(segments, "_film", lambda plan: _NoFilm())
 
 
 @pytest.mark.parametrize("error", [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterrupt(), SystemExit()])

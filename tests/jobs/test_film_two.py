@@ -11,23 +11,20 @@ import pytest
 from dance_requests import film_request
 
 from dancetutor_cli.character import load_character, load_dancer
-from dancetutor_cli.character.partner import PREFIX, turned, with_partner
-from dancetutor_cli.colours import partner_colours
-from dancetutor_cli.errors import UsageError
-from dancetutor_cli.jobs import film_plan
-from dancetutor_cli.jobs.film_dance import FilmDance, film_dance
-from dancetutor_cli.jobs.film_plan import _dancers, prepare
-from dancetutor_cli.jobs.film_request import FilmRequest, look_up
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.video.clock import Moment
-from dancetutor_cli.video.film import Film
-from dancetutor_cli.video.film_look import FilmLook
-from dancetutor_cli.video.layout import load_layout
-from dancetutor_cli.video.notes import Callout
-from dancetutor_cli.video.overlay.diagram import step_rows
-from dancetutor_cli.video.scene.prepare import feet_on_floor
-from dancetutor_cli.video.scene.scene import FrameState
-from dancetutor_cli.video.scene.stage import PANEL
+from dancetutor_cli.character.mesh import PREFIX, turned, with_partner
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.feet.limbs import partner_colours
+from dancetutor_cli.film.clock import Moment
+from dancetutor_cli.film.film import Film
+from dancetutor_cli.film.layout import FilmLook, load_layout
+from dancetutor_cli.film.notes import Callout
+from dancetutor_cli.film.overlay.diagram import step_rows
+from dancetutor_cli.film.scene.renderer import feet_on_floor
+from dancetutor_cli.film.scene.scene import PANEL, FrameState
+from dancetutor_cli.film.work import planning
+from dancetutor_cli.film.work.planning import FilmDance, _dancers, film_dance, prepare
+from dancetutor_cli.film.work.request import FilmRequest, look_up
+from dancetutor_cli.run.errors import UsageError
 
 HEAD = "#TITLE:T;\n#OFFSET:0;\n#BPMS:0=120;\n"
 COUPLE = "10000001\n01000010\n00010100\n00101000\n"
@@ -125,10 +122,10 @@ def test_the_colour_of_a_note_says_whose_it_is(tmp_path: Path, kind: str) -> Non
 def test_what_both_do_is_called_out_and_what_one_does_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
     one, two, both = (Callout(at, at, "crossover", "move", at - 0.9, at, "crossover") for at in (1.0, 2.0, 3.0))
     told = {"first": (one, both), "second": (two, both)}
-    monkeypatch.setattr(film_plan, "callouts_of", lambda about, *_: told[about.chart])
-    monkeypatch.setattr(film_plan, "_mines_of_each", lambda *_: ())
+    monkeypatch.setattr(planning, "callouts_of", lambda about, *_: told[about.chart])
+    monkeypatch.setattr(planning, "_mines_of_each", lambda *_: ())
     dance = SimpleNamespace(solved=[SimpleNamespace(chart=name, pad=None) for name in told], plays=[None, None])
-    assert film_plan._callouts(dance, None, None) == (both,)  # type: ignore[arg-type]
+    assert planning._callouts(dance, None, None) == (both,)  # type: ignore[arg-type]
 
 
 def test_two_are_drawn_and_each_has_rings_under_her_feet(tmp_path: Path) -> None:

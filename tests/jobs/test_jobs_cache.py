@@ -12,14 +12,13 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.errors import UnavailableError
-from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
-from dancetutor_cli.jobs.analyze_all import _batches, analyze_all
-from dancetutor_cli.jobs.cache import ResultCache
-from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
-from dancetutor_cli.jobs.result_file import to_bytes
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
+from dancetutor_cli.lint.cache import ResultCache
+from dancetutor_cli.lint.results import to_bytes
+from dancetutor_cli.lint.run import LintRequest, LintRun, _batches, analyze_all
+from dancetutor_cli.run.errors import UnavailableError
 from dancetutor_cli.run.pool import Finished, SerialWorkers
+from dancetutor_cli.run.reading import charts_path
 
 NOTES = "#TITLE:{};\n#ARTIST:A;\n#CREDIT:C;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n1000\n0100\n0010\n0001\n;\n"
 
@@ -164,7 +163,7 @@ def test_a_breakdown_is_not_kept(song: Path, tmp_path: Path, monkeypatch: pytest
         def done(self) -> Iterator[Finished]:
             yield from (Finished(task.key, error=UnavailableError("killed")) for task in self._queue)
 
-    monkeypatch.setattr("dancetutor_cli.jobs.analyze_all._WORTH_WORKERS", 1)
+    monkeypatch.setattr("dancetutor_cli.lint.run._WORTH_WORKERS", 1)
     monkeypatch.setattr("dancetutor_cli.run.pool.open_workers", lambda jobs, report: Dying(report))
     cache = ResultCache(tmp_path / "cache")
     (result,) = analyze_all([LintRun(LintRequest()).task(song)], 2, cache)
@@ -239,7 +238,7 @@ def test_a_file_that_cannot_be_read_as_a_chart_is_kept_too(tmp_path: Path, monke
     cache = ResultCache(tmp_path / "cache")
     tasks = [LintRun(LintRequest()).task(path) for path in paths]
     first = list(analyze_all(tasks, 1, cache))
-    monkeypatch.setattr("dancetutor_cli.jobs.analyze_all.analyze_files", None)  # nothing is left to do
+    monkeypatch.setattr("dancetutor_cli.lint.run.analyze_files", None)  # nothing is left to do
     worked: list[Path] = []
     assert list(analyze_all(tasks, 1, cache, lambda task: worked.append(task.path))) == first
     assert all(result.error for result in first) and worked == []

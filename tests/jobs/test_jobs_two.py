@@ -8,16 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.bake import bake
-from dancetutor_cli.bake.quality.resampled import body_of
 from dancetutor_cli.character import load_dancer
-from dancetutor_cli.character.partner import partner_of
+from dancetutor_cli.character.mesh import partner_of
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance.bake import bake
+from dancetutor_cli.dance.motion import Motion, shifted
 from dancetutor_cli.dance.performance import Performance, perform, solve
+from dancetutor_cli.dance.quality.figures import body_of
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.jobs.animation import AnimatedDancer, Animation
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.motion.baked import Motion, shifted
-from dancetutor_cli.rig.capsules import Capsule, depth
+from dancetutor_cli.dance.rig.limbs import Capsule, depth
+from dancetutor_cli.formats.animation import AnimatedDancer, Animation
 
 Array = np.ndarray
 HEAD = "#TITLE:T;\n#OFFSET:0;\n#BPMS:0=120;\n"

@@ -12,15 +12,16 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.lint.presets import PresetChoice
-from dancetutor_cli.play import compiled, load_preset
+from dancetutor_cli.feet import load_preset
+from dancetutor_cli.feet.solver import compiled
+from dancetutor_cli.lint.configuration import PresetChoice
 from dancetutor_cli.run.kernels.store import Kept, kernel_folder
 
 
 @pytest.fixture
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Where kernels of modules that came without any are kept."""
-    here = tmp_path / "play"
+    here = tmp_path / "solver"
     here.mkdir()
     for path in Path(compiled.__file__).parent.glob("*.py"):
         shutil.copy2(path, here)
@@ -149,7 +150,7 @@ def test_kept_kernels_need_no_numba() -> None:
 
 def test_a_solve_leaves_the_files_that_are_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     from dancetutor_cli.chart import parse
-    from dancetutor_cli.play import solve_chart
+    from dancetutor_cli.feet import solve_chart
 
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     song = parse(b"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single::Hard:9::\n1000\n0001\n;\n", Path("x.sm"))
@@ -161,10 +162,10 @@ def test_a_solve_leaves_the_files_that_are_looked_for(monkeypatch: pytest.Monkey
 def test_the_stamp_covers_every_module_with_kernels_and_what_they_import() -> None:
     """A kernel module that is forgotten would leave old machine code in use after an edit."""
     room = Path(compiled.__file__).parent
-    imports = re.compile(r"^from dancetutor_cli\.play(?:\.(\w+))? import (\w+)", re.MULTILINE)
-    uses_njit = re.compile(r"^from dancetutor_cli\.play\.jit import .*\b(?:inner_)?kernel\b", re.MULTILINE)
+    imports = re.compile(r"^from dancetutor_cli\.feet\.solver(?:\.(\w+))? import (\w+)", re.MULTILINE)
+    uses_njit = re.compile(r"^from dancetutor_cli\.feet\.solver\.jit import .*\b(?:inner_)?kernel\b", re.MULTILINE)
     wanted = {path.stem for path in room.glob("*.py") if uses_njit.search(path.read_text())}
-    assert {"kernel", "explore"} <= wanted
+    assert {"kernel", "solvers"} <= wanted
     for name in list(wanted):
         wanted |= {module or first for module, first in imports.findall((room / f"{name}.py").read_text())}
     assert wanted - {"jit", "compiled"} == set(compiled._SOURCES)

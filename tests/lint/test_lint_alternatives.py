@@ -10,14 +10,11 @@ from click.testing import CliRunner
 
 from dancetutor_cli.chart import parse
 from dancetutor_cli.commands.analyze import command
-from dancetutor_cli.feet import Overrides
-from dancetutor_cli.feet.notation import MEANING
-from dancetutor_cli.lint.alternatives import alternatives_of
-from dancetutor_cli.lint.causes import causes_of, with_causes
-from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.feet import Overrides, load_pad, load_preset, solve_chart
+from dancetutor_cli.feet.limbs import MEANING
+from dancetutor_cli.lint.figures import alternatives_of, causes_of, with_causes
+from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.pads import load_pad
-from dancetutor_cli.play import load_preset, solve_chart
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 DEMO = ROOT / "charts" / "two_left_feet" / "two_left_feet.ssc"

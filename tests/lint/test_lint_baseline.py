@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.__main__ import main
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.lint.baseline import Baseline, load_baseline
-from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.lint.check import Baseline, load_baseline
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.run.errors import FileError
 
 SPIN = Finding("DT202", "spin", "warning", "spin", 10, 1, 0, 16.25, 4, 8.0, None, 0)
 TITLE = Finding("DT501", "title", "warning", "no title", 3)

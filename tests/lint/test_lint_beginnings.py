@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from dancetutor_cli.chart import load
-from dancetutor_cli.lint.beginnings import Beginnings
-from dancetutor_cli.play import Play, load_preset, solve_chart
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.feet import Play, load_preset, solve_chart
+from dancetutor_cli.lint.other_foot import Beginnings
+from dancetutor_cli.run.reading import charts_path
 
 
 def begins_anew(play: Play, rows: list[int], pauses: list[float], at: int, quick: float) -> bool:

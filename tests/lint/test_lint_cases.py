@@ -12,12 +12,12 @@ import pytest
 import yaml
 from numpy.typing import NDArray
 
-from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.lint.configuration import load_configuration, with_assignments, with_selection
-from dancetutor_cli.lint.presets import PresetChoice
-from dancetutor_cli.lint.registry import all_rules
-from dancetutor_cli.play import Play, load_preset, solver
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.feet import Play, load_preset
+from dancetutor_cli.feet.solver import solve
+from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
+from dancetutor_cli.lint.configuration import PresetChoice, load_configuration, with_assignments, with_selection
+from dancetutor_cli.lint.rule import all_rules
 
 CASES = Path(__file__).parent / "cases"
 KNOWN = {"rows", "pin", "notes", "steps-type", "difficulty", "meter", "bpms", "tags", "files", "analyse", "preset",
@@ -52,7 +52,7 @@ def test_case(code: str, case: dict[str, Any], tmp_path: Path, monkeypatch: pyte
     assert set(case) <= KNOWN
     if "confidence" in case:
         sure = np.array([float(one) for one in case["confidence"]]) / 100
-        monkeypatch.setattr(solver, "solve", _with(solver.solve, sure))
+        monkeypatch.setattr(solve, "solve", _with(solve.solve, sure))
     for name, content in case.get("files", {}).items():
         (tmp_path / name).write_text(content)
     path = tmp_path / "case.sm"

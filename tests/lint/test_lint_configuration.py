@@ -6,17 +6,17 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.errors import FileError, UsageError
-from dancetutor_cli.library.settings_file import Condition, find_settings_file
+from dancetutor_cli.chart.pack_files import Condition, find_settings_file
+from dancetutor_cli.feet import preset_names
 from dancetutor_cli.lint.configuration import (
     Configuration,
     load_configuration,
     with_assignments,
     with_selection,
 )
-from dancetutor_cli.lint.layers import default_rules
-from dancetutor_cli.lint.registry import all_rules
-from dancetutor_cli.play import preset_names
+from dancetutor_cli.lint.rule import all_rules
+from dancetutor_cli.lint.rule_settings import default_rules
+from dancetutor_cli.run.errors import FileError, UsageError
 
 
 def configured(text: str, folder: Path) -> Configuration:
@@ -36,7 +36,7 @@ def test_every_rule_has_defaults_and_every_default_a_rule() -> None:
 
 def test_a_rule_without_a_line_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     more = {**all_rules(), "DT299": all_rules()["DT202"]}
-    monkeypatch.setattr("dancetutor_cli.lint.layers.all_rules", lambda: more)
+    monkeypatch.setattr("dancetutor_cli.lint.rule_settings.all_rules", lambda: more)
     with pytest.raises(FileError, match=r"default\.yaml: rule DT299 has no line under 'rules'"):
         default_rules.__wrapped__()
 

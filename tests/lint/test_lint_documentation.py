@@ -15,13 +15,10 @@ import pytest
 import yaml
 
 from dancetutor_cli.chart import parse
-from dancetutor_cli.feet import Overrides
-from dancetutor_cli.lint.layers import default_rules
-from dancetutor_cli.lint.registry import all_rules
-from dancetutor_cli.lint.rule import ChartRule, ReaderRule
+from dancetutor_cli.feet import Overrides, load_pad, load_preset, solve_chart
+from dancetutor_cli.lint.rule import ChartRule, ReaderRule, all_rules
+from dancetutor_cli.lint.rule_settings import default_rules
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.pads import load_pad
-from dancetutor_cli.play import load_preset, solve_chart
 
 LIMBS = {"L": (0, 0), "R": (1, 0), "l": (0, 2), "r": (1, 2), "<": (2, 0), ">": (3, 0)}
 STEPS_TYPES = {4: "dance-single", 8: "dance-double"}
@@ -105,6 +102,6 @@ def test_most_chart_rules_draw_their_patterns() -> None:
 
 
 def _has_itg() -> bool:
-    from dancetutor_cli.play import preset_names
+    from dancetutor_cli.feet import preset_names
 
     return "itg" in preset_names()

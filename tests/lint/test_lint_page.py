@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from dancetutor_cli.lint.configuration import Configuration, load_configuration
-from dancetutor_cli.resources import config_path
+from dancetutor_cli.run.reading import config_path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PAGE = (ROOT / "docs" / "linter.md").read_text("utf-8")

@@ -12,11 +12,11 @@ import pytest
 from dancetutor_cli import chart as charts
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.chart.timing import FASTEST, SLOWEST
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.feet import load_preset
+from dancetutor_cli.film.clock import parse_rates
 from dancetutor_cli.lint.part import check_part, part_of
-from dancetutor_cli.play import load_preset
-from dancetutor_cli.resources import charts_path
-from dancetutor_cli.video.practice import parse_rates
+from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.reading import charts_path
 
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
 ENDS = 40.0

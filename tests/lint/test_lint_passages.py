@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from dancetutor_cli import chart as charts
-from dancetutor_cli.errors import UsageError
+from dancetutor_cli.feet import Play, load_preset
 from dancetutor_cli.lint.part import check_part, part_of
 from dancetutor_cli.lint.passages import Passage, hardest, passage_settings
-from dancetutor_cli.lint.solved import solved_chart
+from dancetutor_cli.lint.subject import solved_chart
 from dancetutor_cli.page.document import languages
-from dancetutor_cli.page.sentences import sentence
-from dancetutor_cli.play import Play, load_preset
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.page.facts import sentence
+from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.reading import charts_path
 
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
 

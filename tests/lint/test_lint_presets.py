@@ -16,22 +16,21 @@ from click.testing import CliRunner
 from dance_requests import film_request, solved_one
 
 from dancetutor_cli import chart as charts
+from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.analyze import command as analyze
 from dancetutor_cli.dance.request import DanceRequest, read_chart
-from dancetutor_cli.errors import DancetutorError
-from dancetutor_cli.jobs.analyze import solved
-from dancetutor_cli.jobs.annotate import Item, Order, _configured, annotate_song
-from dancetutor_cli.jobs.cache import ResultCache
-from dancetutor_cli.jobs.film_list import BatchRequest, film_list
-from dancetutor_cli.jobs.film_request import look_up
-from dancetutor_cli.jobs.lint_run import LintRequest, LintRun
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.lint import alternatives, causes, suggest
-from dancetutor_cli.lint.presets import PresetChoice, choice_for, choice_of, mismatch, preset_for
-from dancetutor_cli.play import Preset, load_preset, preset_names
-from dancetutor_cli.video.film_look import FilmLook
-from dancetutor_cli.video.layout import load_layout
-from dancetutor_cli.video.media.encoder import Encoding
+from dancetutor_cli.feet import Preset, load_preset, preset_names
+from dancetutor_cli.film.layout import FilmLook, load_layout
+from dancetutor_cli.film.media.encoder import Encoding
+from dancetutor_cli.film.work.batch import BatchRequest, film_list
+from dancetutor_cli.film.work.request import look_up
+from dancetutor_cli.lint import figures, suggest
+from dancetutor_cli.lint.analysis import solved
+from dancetutor_cli.lint.cache import ResultCache
+from dancetutor_cli.lint.configuration import PresetChoice, choice_for, choice_of, mismatch, preset_for
+from dancetutor_cli.lint.run import LintRequest, LintRun
+from dancetutor_cli.markers.annotate import Item, Order, _configured, annotate_song
+from dancetutor_cli.run.errors import DancetutorError
 
 CHART = "#NOTES:\n {}:\n :\n {}:\n {}:\n :\n{}\n;\n"
 DANCE, PUMP = "1000\n0001\n1000\n0001", "10000\n00001\n10000\n00001"
@@ -165,7 +164,7 @@ def test_a_batch_of_films_gives_each_chart_its_own(song: Path) -> None:
 def test_suggestions_and_alternatives_are_of_the_charts_own(song: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (song.parent.parent / "dancetutor.yaml").write_text(BY_DIFFICULTY.replace("presets/mine.yaml", "ddr"))
     used: list[str] = []
-    for module, name in ((suggest, "with_suggestions"), (alternatives, "alternatives_of"), (causes, "causes_of")):
+    for module, name in ((suggest, "with_suggestions"), (figures, "alternatives_of"), (figures, "causes_of")):
         monkeypatch.setattr(module, name, _noting(used, getattr(module, name)))
     run(song, "--suggest", "--alternatives", 1)
     assert used == [name for name in ("beginner", "stamina", "beginner", "ddr") for _ in range(3)]

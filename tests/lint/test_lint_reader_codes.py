@@ -10,13 +10,12 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli import chart as reader
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.lint.configuration import load_configuration, with_selection
-from dancetutor_cli.lint.presets import PresetChoice
-from dancetutor_cli.lint.registry import all_rules
-from dancetutor_cli.play import load_preset
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.feet import load_preset
+from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
+from dancetutor_cli.lint.configuration import PresetChoice, load_configuration, with_selection
+from dancetutor_cli.lint.rule import all_rules
+from dancetutor_cli.run.errors import FileError
 
 READER = Path(reader.__file__).parent
 CODE = re.compile(r"[a-z]+(-[a-z]+)+")

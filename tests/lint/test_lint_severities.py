@@ -7,13 +7,12 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.chart import parse
+from dancetutor_cli.feet import load_preset
 from dancetutor_cli.lint.check import check_chart, check_file
 from dancetutor_cli.lint.configuration import load_configuration, with_assignments
-from dancetutor_cli.lint.finding import Finding
-from dancetutor_cli.lint.layers import default_rules
-from dancetutor_cli.lint.solved import solved_chart
-from dancetutor_cli.lint.subject import ChartSubject, FileSubject
-from dancetutor_cli.play import load_preset
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.rule_settings import default_rules
+from dancetutor_cli.lint.subject import ChartSubject, FileSubject, solved_chart
 
 SPLIT = "#TITLE:T;#BPMS:0=120;#NOTEDATA:;#STEPSTYPE:{};#DIFFICULTY:Hard;#METER:9;#BPMS:{};#NOTES:\n{}\n;"
 

@@ -8,22 +8,19 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.chart import load, parse
-from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
-from dancetutor_cli.jobs.result import FileResult
-from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.feet import load_pad, load_preset, solve_chart
+from dancetutor_cli.feet.solver.engine import engine_for
+from dancetutor_cli.feet.solver.store import BASE
+from dancetutor_cli.feet.solver.vocabulary import EVENTS
+from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
 from dancetutor_cli.lint.check import check_chart
-from dancetutor_cli.lint.configuration import load_configuration
-from dancetutor_cli.lint.finding import Finding
-from dancetutor_cli.lint.presets import PresetChoice
-from dancetutor_cli.lint.solved import solved_chart
-from dancetutor_cli.lint.subject import ChartSubject
+from dancetutor_cli.lint.configuration import PresetChoice, load_configuration
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.results import FileResult
+from dancetutor_cli.lint.subject import ChartSubject, solved_chart
 from dancetutor_cli.lint.suggest import _Edited, _edits, mending_moves
-from dancetutor_cli.pads import load_pad
-from dancetutor_cli.play import load_preset, solve_chart
-from dancetutor_cli.play.engine import engine_for
-from dancetutor_cli.play.store import BASE
-from dancetutor_cli.play.vocabulary import EVENTS
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.run.reading import charts_path
 
 SETTINGS = load_configuration(None).settings
 PANELS = ("left", "down", "up", "right")

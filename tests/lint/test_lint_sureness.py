@@ -9,13 +9,11 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.chart import parse
-from dancetutor_cli.feet import Ignores, Overrides
+from dancetutor_cli.feet import Ignores, Overrides, load_pad, load_preset, solve_chart
 from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.configuration import load_configuration, with_assignments, with_selection
-from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.pads import load_pad
-from dancetutor_cli.play import load_preset, solve_chart
 
 ROWS = ["1000", "0001", "0100", "0010", "1000", "0001", "0010", "0000"]  # R R at beat 1.0
 FEET = {0: (0, 0), 1: (3, 1), 2: (1, 1), 3: (2, 0), 4: (0, 1), 5: (3, 0), 6: (2, 1)}
@@ -97,7 +95,7 @@ def test_how_sure_feet_must_be_is_a_matter_of_the_configuration() -> None:
 
 @pytest.mark.parametrize("value", ["sure-feet=101", "sure-feet=-1", "coin-toss=x", "sure-feet=true"])
 def test_nonsense_is_refused(value: str) -> None:
-    from dancetutor_cli.errors import UsageError
+    from dancetutor_cli.run.errors import UsageError
 
     with pytest.raises(UsageError, match="is a number from 0 to"):
         with_assignments(load_configuration(None), [value])

@@ -15,18 +15,15 @@ import pytest
 
 from dancetutor_cli.chart import load, parse
 from dancetutor_cli.chart.model import Kind
-from dancetutor_cli.feet import Overrides
-from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.lint.chart_figures import TECH_COUNTS
-from dancetutor_cli.lint.configuration import load_configuration
-from dancetutor_cli.lint.presets import PresetChoice
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.feet import Overrides, load_pad, load_preset, solve_chart
+from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
+from dancetutor_cli.lint.configuration import PresetChoice, load_configuration
+from dancetutor_cli.lint.figures import tech_counts
+from dancetutor_cli.lint.findings import TECH_COUNTS
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.lint.tech_counts import tech_counts
-from dancetutor_cli.pads import load_pad
-from dancetutor_cli.play import load_preset, solve_chart
-from dancetutor_cli.reports.csv_report import CsvReport
-from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.reports.data_formats import CsvReport
+from dancetutor_cli.reports.formats import Tally
 
 # Columns of a pad: x of its panel, and the way its arrow points.
 PADS = {"dance-single": [(-1, "L"), (0, "D"), (0, "U"), (1, "R")]}

@@ -6,13 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.errors import UsageError
-from dancetutor_cli.lint import times
+from dancetutor_cli.lint import rule_settings
 from dancetutor_cli.lint.configuration import load_configuration, with_assignments
-from dancetutor_cli.lint.layers import default_rules
-from dancetutor_cli.lint.registry import all_rules
-from dancetutor_cli.lint.rule import BY_METER, TimedRule
-from dancetutor_cli.reports.explain import explain
+from dancetutor_cli.lint.rule import BY_METER, TimedRule, all_rules
+from dancetutor_cli.lint.rule_settings import default_rules
+from dancetutor_cli.reports.text_report import explain
+from dancetutor_cli.run.errors import UsageError
 
 TIMED = [code for code, options in default_rules().items() if options.get("max_seconds") == BY_METER]
 
@@ -29,27 +28,29 @@ def test_rules_take_their_times_from_data() -> None:
 
 @pytest.mark.parametrize("code", TIMED)
 def test_the_table_is_whole(code: str) -> None:
-    found = list(times.bands(move(code)))
+    found = list(rule_settings.bands(move(code)))
     assert len(found) == 20 and sum(band.charts for band in found) > 1500
     for band in found:
-        assert len(band.within) == len(times.milliseconds())
+        assert len(band.within) == len(rule_settings.milliseconds())
         assert list(band.within) == sorted(band.within) and band.within[0] >= 0 and band.within[-1] <= 100
 
 
 def test_the_longest_time_that_few_enough_charts_have() -> None:
-    band = times.Band("dance-single", 1, 3, 100, (0, 3, 10, 11) + (11,) * (len(times.milliseconds()) - 4))
-    assert times.limit_of(band, 10) == times.milliseconds()[2]
-    assert times.limit_of(band, 2.9) == times.milliseconds()[0]
-    assert times.limit_of(band, 100) == times.milliseconds()[-1]
-    none = times.Band("dance-single", 1, 3, 100, (50,) * len(times.milliseconds()))
-    assert times.limit_of(none, 10) == 0
+    band = rule_settings.Band(
+        "dance-single", 1, 3, 100, (0, 3, 10, 11) + (11,) * (len(rule_settings.milliseconds()) - 4)
+    )
+    assert rule_settings.limit_of(band, 10) == rule_settings.milliseconds()[2]
+    assert rule_settings.limit_of(band, 2.9) == rule_settings.milliseconds()[0]
+    assert rule_settings.limit_of(band, 100) == rule_settings.milliseconds()[-1]
+    none = rule_settings.Band("dance-single", 1, 3, 100, (50,) * len(rule_settings.milliseconds()))
+    assert rule_settings.limit_of(none, 10) == 0
 
 
 def test_a_meter_finds_its_band() -> None:
-    bands = [band for band in times.bands("crossover") if band.pad == "dance-single"]
+    bands = [band for band in rule_settings.bands("crossover") if band.pad == "dance-single"]
     assert [(band.first, band.last) for band in bands] == [(1, 3), (4, 6), (7, 9), (10, 12), (13, None)]
     for meter, band in ((0, bands[0]), (3, bands[0]), (4, bands[1]), (12, bands[3]), (13, bands[4]), (420, bands[4])):
-        assert times.limit("crossover", 20, "dance-single", meter) == times.limit_of(band, 20) / 1000
+        assert rule_settings.limit("crossover", 20, "dance-single", meter) == rule_settings.limit_of(band, 20) / 1000
 
 
 @pytest.mark.parametrize(
@@ -63,15 +64,15 @@ def test_a_meter_finds_its_band() -> None:
     ],
 )
 def test_pads_nobody_has_measured_go_with_others(steps_type: str, pad: str) -> None:
-    assert times.pad_of(steps_type) == pad
+    assert rule_settings.pad_of(steps_type) == pad
 
 
 @pytest.mark.parametrize("code", TIMED)
 def test_explain_says_the_numbers(code: str) -> None:
     said = explain(all_rules()[code])
     share = default_rules()[code]["share"]
-    for band in times.bands(move(code)):
-        at = times.limit_of(band, share)
+    for band in rule_settings.bands(move(code)):
+        at = rule_settings.limit_of(band, share)
         line = next(
             one for one in said.splitlines() if f" {band.pad} " in f" {one} " and f"meter {band.meters} " in one
         )

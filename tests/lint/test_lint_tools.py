@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from dancetutor_cli.resources import charts_path, config_path
+from dancetutor_cli.run.reading import charts_path, config_path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tools"))

@@ -9,13 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from dancetutor_cli.chart import parse
+from dancetutor_cli.chart.edits import apply
 from dancetutor_cli.chart.model import Chart, Song
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.feet.measures import StepRows, step_rows
-from dancetutor_cli.feet.notation import LETTERS
-from dancetutor_cli.markers import measure
-from dancetutor_cli.markers import row_comments as rows
-from dancetutor_cli.markers.splice import apply
+from dancetutor_cli.feet.annotations import StepRows, step_rows
+from dancetutor_cli.feet.limbs import LETTERS
+from dancetutor_cli.markers import comments
+from dancetutor_cli.run.errors import FileError
 
 HEADER = b"#TITLE:Song;\n#OFFSET:0;\n#BPMS:0=120;\n"
 SM_CHART = b"#NOTES:\n     dance-single:\n     :\n     Hard:\n     8:\n     0,0,0,0,0:"
@@ -44,9 +43,9 @@ def annotated(song: Song, seed: int = 1, styles: Sequence[str] = ("measure",), f
         found = step_rows(song.data, chart)
         letters = random_letters(chart, found, seed)
         if "measure" in styles:
-            splices += measure.write(song.data, chart, found, letters, force)[0]
+            splices += comments.write_measures(song.data, chart, found, letters, force)[0]
         if "rows" in styles:
-            splices += rows.write(song.data, chart, found, letters)[0]
+            splices += comments.write_rows(song.data, chart, found, letters)[0]
     return apply(song.data, splices)
 
 
@@ -54,9 +53,9 @@ def stripped(song: Song, styles: Sequence[str] = ("measure",), force: bool = Fal
     splices = []
     for chart in song.charts:
         if "measure" in styles:
-            splices += measure.strip(song.data, chart, force)
+            splices += comments.strip_measures(song.data, chart, force)
         if "rows" in styles:
-            splices += rows.strip(song.data, chart)
+            splices += comments.strip_rows(song.data, chart)
     return apply(song.data, splices)
 
 

@@ -9,10 +9,10 @@ import pytest
 from markers_songs import SM_CHART, song_of
 
 from dancetutor_cli.chart import parse
+from dancetutor_cli.chart.edits import apply
 from dancetutor_cli.chart.model import Song
-from dancetutor_cli.errors import FileError, UsageError
 from dancetutor_cli.markers.background import add, check_name, entry, remove
-from dancetutor_cli.markers.splice import apply
+from dancetutor_cli.run.errors import FileError, UsageError
 
 FILM = "song-hard.dancetutor.mp4"
 ALONE = ",99999=-nosongbg-=1.000=0=0=0"

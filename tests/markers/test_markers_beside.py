@@ -13,12 +13,11 @@ from hypothesis import strategies as st
 from markers_songs import sm, song_of
 
 from dancetutor_cli.chart.model import Song
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.feet.measures import step_rows
-from dancetutor_cli.markers import sidecar, smeditor
-from dancetutor_cli.markers.changes import ChartFeet
-from dancetutor_cli.markers.letters import row_letters
-from dancetutor_cli.play import load_preset, solve_chart
+from dancetutor_cli.feet import load_preset, solve_chart
+from dancetutor_cli.feet.annotations import step_rows
+from dancetutor_cli.markers import sidecar
+from dancetutor_cli.markers.comments import ChartFeet, row_letters
+from dancetutor_cli.run.errors import FileError
 
 MEASURES = b"\n1000\n0001\n0110\n0M00\n,\n2002\n0000\n0010\n3003\n;\n"
 PATH = Path("data.sme")
@@ -42,7 +41,7 @@ def feet_of(song: Song) -> list[ChartFeet]:
 def test_the_sidecar_says_beat_column_and_limb() -> None:
     song = two_charts()
     feet = feet_of(song)
-    data = json.loads(sidecar.write(Path("song.dancetutor.json"), None, song, feet))
+    data = json.loads(sidecar.write_sidecar(Path("song.dancetutor.json"), None, song, feet))
     charts = data["files"]["song.sm"]["charts"]
     assert [(c["index"], c["steps_type"], c["difficulty"], c["meter"]) for c in charts] == [
         (0, "dance-single", "Hard", 8), (1, "dance-single", "Easy", 8),
@@ -59,24 +58,24 @@ def test_the_sidecar_says_beat_column_and_limb() -> None:
 def test_the_sidecar_is_for_both_files_of_a_song_and_keeps_other_charts() -> None:
     path, song = Path("song.dancetutor.json"), two_charts()
     feet = feet_of(song)
-    first = sidecar.write(path, None, song, feet)
-    assert sidecar.write(path, first, song, feet) == first
-    assert sidecar.write(path, first, song, feet[1:]) == first
+    first = sidecar.write_sidecar(path, None, song, feet)
+    assert sidecar.write_sidecar(path, first, song, feet) == first
+    assert sidecar.write_sidecar(path, first, song, feet[1:]) == first
     twin = song_of(sm(MEASURES), "song.SM")
-    both = sidecar.write(path, first, twin, feet_of(twin))
+    both = sidecar.write_sidecar(path, first, twin, feet_of(twin))
     assert set(json.loads(both)["files"]) == {"song.sm", "song.SM"}
-    assert sidecar.strip(path, both, twin, twin.charts) == first
-    half = sidecar.strip(path, first, song, song.charts[:1])
+    assert sidecar.strip_sidecar(path, both, twin, twin.charts) == first
+    half = sidecar.strip_sidecar(path, first, song, song.charts[:1])
     assert half is not None
     assert [c["index"] for c in json.loads(half)["files"]["song.sm"]["charts"]] == [1]
-    assert sidecar.strip(path, half, song, song.charts) is None
+    assert sidecar.strip_sidecar(path, half, song, song.charts) is None
 
 
 def test_the_sidecar_notices_that_notes_have_changed() -> None:
     path, song = Path("song.dancetutor.json"), song_of(sm(MEASURES))
-    old = sidecar.write(path, None, song, feet_of(song))
+    old = sidecar.write_sidecar(path, None, song, feet_of(song))
     edited = song_of(sm(MEASURES.replace(b"0001", b"0010")))
-    new = sidecar.write(path, old, edited, feet_of(edited))
+    new = sidecar.write_sidecar(path, old, edited, feet_of(edited))
     assert "its notes have changed" in str(sidecar.lack(path, old, edited, edited.charts[0], new))
     assert sidecar.lack(path, new, edited, edited.charts[0], new) is None
     # a comment, which an editor may drop, changes nothing
@@ -88,27 +87,27 @@ def test_the_sidecar_notices_that_notes_have_changed() -> None:
 def test_a_file_that_is_no_sidecar_is_left_alone(text: bytes) -> None:
     song = two_charts()
     with pytest.raises(FileError, match="not a sidecar"):
-        sidecar.write(Path("song.dancetutor.json"), text, song, feet_of(song))
+        sidecar.write_sidecar(Path("song.dancetutor.json"), text, song, feet_of(song))
 
 
 def test_data_sme_has_the_form_of_the_specification() -> None:
     song = two_charts()
-    new = smeditor.write(PATH, None, song, feet_of(song))
+    new = sidecar.write_editor_data(PATH, None, song, feet_of(song))
     assert new is not None
     assert new.startswith(
         b'{"version":1,"parity":{"dance-single":[{"overrides":[[0,0,"Left"],[1,3,"Right"],[2,1,"Right"],[2,2,"Left"],'
         b'[4,0,"Left"],[4,3,"Right"]],"ignores":{}},{"overrides":[[0,0,"Left"]'
     )
-    assert smeditor.write(PATH, new, song, feet_of(song)) == new
-    assert smeditor.strip(PATH, new, song, song.charts) is None
-    one = smeditor.strip(PATH, new, song, song.charts[:1])
+    assert sidecar.write_editor_data(PATH, new, song, feet_of(song)) == new
+    assert sidecar.strip_editor_data(PATH, new, song, song.charts) is None
+    one = sidecar.strip_editor_data(PATH, new, song, song.charts[:1])
     assert one is not None
-    assert smeditor.write(PATH, one, song, feet_of(song)[:1]) == new
+    assert sidecar.write_editor_data(PATH, one, song, feet_of(song)[:1]) == new
 
 
 def test_beats_have_three_digits() -> None:
     song = song_of(sm(b"\n" + b"".join(b"1000\n" if i == 1 else b"0000\n" for i in range(12)) + b";\n"))
-    assert smeditor.overrides(feet_of(song)[0]) == [[0.333, 0, "Left"]]
+    assert sidecar.overrides(feet_of(song)[0]) == [[0.333, 0, "Left"]]
 
 
 def test_what_a_person_set_is_never_touched() -> None:
@@ -122,7 +121,7 @@ def test_what_a_person_set_is_never_touched() -> None:
         "version": 1,
     }
     old = json.dumps(theirs, indent=3).encode()
-    new = smeditor.write(PATH, old, song, feet_of(song))
+    new = sidecar.write_editor_data(PATH, old, song, feet_of(song))
     assert new is not None
     data = json.loads(new)
     assert list(data) == ["future", "parity", "version", "dancetutor"]
@@ -132,17 +131,17 @@ def test_what_a_person_set_is_never_touched() -> None:
     assert entry["overrides"][:2] == [[2, 1, "Right"], [1.0, 3, 2]]
     assert [item[:2] for item in entry["overrides"][2:]] == [[0, 0], [2, 2], [4, 0], [4, 3]]
     assert (entry["ignores"], entry["note"]) == ({"1": ["DS"]}, "x")
-    assert smeditor.write(PATH, new, song, feet_of(song)) == new
-    assert smeditor.strip(PATH, new, song, song.charts) == old
+    assert sidecar.write_editor_data(PATH, new, song, feet_of(song)) == new
+    assert sidecar.strip_editor_data(PATH, new, song, song.charts) == old
 
 
 def test_a_change_by_a_person_after_us_is_theirs() -> None:
     song = song_of(sm(MEASURES))
-    data = json.loads(smeditor.write(PATH, None, song, feet_of(song)) or b"")
+    data = json.loads(sidecar.write_editor_data(PATH, None, song, feet_of(song)) or b"")
     overrides = data["parity"]["dance-single"][0]["overrides"]
     overrides[0] = [0, 0, "Right"]
     data["parity"]["dance-single"][0]["ignores"] = {"2": ["AM"]}
-    left = smeditor.strip(PATH, json.dumps(data).encode(), song, song.charts)
+    left = sidecar.strip_editor_data(PATH, json.dumps(data).encode(), song, song.charts)
     assert json.loads(left or b"") == {
         "version": 1, "parity": {"dance-single": [{"overrides": [[0, 0, "Right"]], "ignores": {"2": ["AM"]}}]},
     }  # fmt: skip
@@ -150,11 +149,11 @@ def test_a_change_by_a_person_after_us_is_theirs() -> None:
 
 def test_after_smeditor_has_saved_all_feet_are_a_persons() -> None:
     song = song_of(sm(MEASURES))
-    data = json.loads(smeditor.write(PATH, None, song, feet_of(song)) or b"")
+    data = json.loads(sidecar.write_editor_data(PATH, None, song, feet_of(song)) or b"")
     del data["dancetutor"]
     saved = json.dumps(data, separators=(",", ":")).encode()
-    assert smeditor.strip(PATH, saved, song, song.charts) == saved
-    assert smeditor.write(PATH, saved, song, feet_of(song)) == saved
+    assert sidecar.strip_editor_data(PATH, saved, song, song.charts) == saved
+    assert sidecar.write_editor_data(PATH, saved, song, feet_of(song)) == saved
 
 
 @pytest.mark.parametrize(
@@ -164,7 +163,7 @@ def test_after_smeditor_has_saved_all_feet_are_a_persons() -> None:
 def test_an_odd_file_is_left_alone(text: bytes) -> None:
     song = song_of(sm(MEASURES))
     with pytest.raises(FileError, match=r"left alone|did not write"):
-        smeditor.write(PATH, text, song, feet_of(song))
+        sidecar.write_editor_data(PATH, text, song, feet_of(song))
 
 
 _OVERRIDE = st.tuples(st.integers(0, 8), st.integers(0, 3), st.sampled_from(["Left", "Right", 1, 2, 3, 4])).map(list)
@@ -183,7 +182,7 @@ _FEET = feet_of(_SONG)
 
 @given(_SME)
 def test_any_data_sme_round_trips(old: bytes) -> None:
-    new = smeditor.write(PATH, old, _SONG, _FEET)
+    new = sidecar.write_editor_data(PATH, old, _SONG, _FEET)
     assert new is not None
-    assert smeditor.write(PATH, new, _SONG, _FEET) == new
-    assert smeditor.strip(PATH, new, _SONG, _SONG.charts) == old
+    assert sidecar.write_editor_data(PATH, new, _SONG, _FEET) == new
+    assert sidecar.strip_editor_data(PATH, new, _SONG, _SONG.charts) == old

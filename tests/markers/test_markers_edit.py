@@ -9,13 +9,13 @@ import pytest
 from markers_songs import chart_files, readable, sm, song_of
 
 from dancetutor_cli.chart import parse
+from dancetutor_cli.chart.edits import apply
 from dancetutor_cli.chart.model import Chart, Kind, Song
-from dancetutor_cli.markers import edit, lanes
-from dancetutor_cli.markers.changes import ChartFeet
+from dancetutor_cli.feet import load_preset, solve_chart
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.markers import edit
+from dancetutor_cli.markers.comments import ChartFeet
 from dancetutor_cli.markers.planning import solve_charts
-from dancetutor_cli.markers.splice import apply
-from dancetutor_cli.play import load_preset, solve_chart
-from dancetutor_cli.play.played import Limb
 
 THESIS = load_preset("thesis")
 SONG = Path(__file__).resolve().parents[2] / "charts" / "two_left_feet"
@@ -37,7 +37,7 @@ def test_feet_holds_rolls_and_mines_go_where_they_belong() -> None:
     song = song_of(sm(b"\n1000\n0002\n0100\n0003\n,\n0004\n0003\n1000\nM00M\n,\n0F00\n0000\n1001\n0000\n;\n"))
     (one,) = feet_of(song)
     assert one.letters == ("L", "R", "L", "R", "L", "LR")
-    assert lanes.note_data(one.chart, one.play, b"\n").split() == [
+    assert edit.note_data(one.chart, one.play, b"\n").split() == [
         b"10000000", b"00000002", b"01000000", b"00000003", b",",
         b"00000004", b"00000003", b"10000000", b"M000000M", b",",
         b"0F000000", b"00000000", b"10000001", b"00000000",
@@ -48,7 +48,7 @@ def test_hands_go_to_the_pad_of_their_side() -> None:
     song = song_of(sm(b"\n2002\n0000\n0010\n3003\n;\n"))
     (one,) = feet_of(song)
     assert one.letters[1] in "<>"
-    row = lanes.note_data(one.chart, one.play, b"\n").split()[2]
+    row = edit.note_data(one.chart, one.play, b"\n").split()[2]
     assert row == (b"00100000" if one.letters[1] == "<" else b"00000010")
 
 

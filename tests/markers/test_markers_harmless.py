@@ -13,9 +13,9 @@ from markers_readers import READERS
 from markers_songs import annotated, chart_files, readable, sm, song_of, stripped
 
 from dancetutor_cli.chart import parse
+from dancetutor_cli.chart.edits import HarmError, hash_input, unchanged
 from dancetutor_cli.chart.model import Song
-from dancetutor_cli.feet.measures import step_rows
-from dancetutor_cli.markers.verify import HarmError, hash_input, unchanged
+from dancetutor_cli.feet.annotations import step_rows
 
 DATA = sm(b"\r\n1000\r\n0100\r\n,  // measure 1\r\n0010\r\n0001\r\n;\r\n")
 

@@ -10,12 +10,12 @@ from typing import Any
 import pytest
 
 from dancetutor_cli.chart import parse
-from dancetutor_cli.errors import FileError
+from dancetutor_cli.feet import load_preset, solve_chart
 from dancetutor_cli.markers import theme
-from dancetutor_cli.markers.changes import Lack
-from dancetutor_cli.markers.cues import LEAST_TURN, ThemeCue, cues_of
+from dancetutor_cli.markers.comments import Lack
 from dancetutor_cli.markers.planning import solve_charts
-from dancetutor_cli.play import load_preset, solve_chart
+from dancetutor_cli.markers.theme import LEAST_TURN, ThemeCue, cues_of
+from dancetutor_cli.run.errors import FileError
 
 HEAD = '#TITLE:A \\"quoted\\" title;\n#OFFSET:-0.250;\n#BPMS:0=120;\n#NOTES:dance-single::Hard:9::\n'
 CROSSOVER = "1000\n0001\n0010\n1000\n0010\n0001\n0010\n1000"  # R L: the left foot steps on the right panel
@@ -59,7 +59,7 @@ def test_brackets_of_a_passage_are_one() -> None:
 
 def test_turns_say_to_which_side() -> None:
     from dancetutor_cli.chart import load
-    from dancetutor_cli.resources import charts_path
+    from dancetutor_cli.run.reading import charts_path
 
     song = load(charts_path() / "two_left_feet" / "two_left_feet.ssc")
     play = solve_chart(song.charts[3], load_preset("itg"))

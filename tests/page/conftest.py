@@ -9,9 +9,9 @@ import pytest
 from page_chromium import Browser
 from page_song import write_song
 
+from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.jobs.page import Page, PageRequest, make_page
-from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.page.work import Page, PageRequest, make_page
 
 
 @pytest.fixture(scope="session")

@@ -12,8 +12,8 @@ from page_chromium import NOW, Browser, pad_script, said, text
 from page_song import write_song
 from PIL import Image
 
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.play.played import Limb
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.feet.limbs import Limb
 
 pytestmark = pytest.mark.usefixtures("fresh")
 

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.page.bundle import bundle
-from dancetutor_cli.page.document import HERE
+from dancetutor_cli.page.document import HERE, bundle
 
 
 def _modules(folder: Path, **texts: str) -> Path:

@@ -14,14 +14,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dancetutor_cli.jobs.page import Page
-from dancetutor_cli.lint.registry import all_rules
-from dancetutor_cli.page.blob import Blob
-from dancetutor_cli.page.document import languages
-from dancetutor_cli.play.turned import HALF_TURNS
-from dancetutor_cli.play.vocabulary import EVENTS
-from dancetutor_cli.resources import config_path
-from dancetutor_cli.video.move_words import move_words
+from dancetutor_cli.feet.solver.techniques import HALF_TURNS
+from dancetutor_cli.feet.solver.vocabulary import EVENTS
+from dancetutor_cli.film.words import move_words
+from dancetutor_cli.lint.rule import all_rules
+from dancetutor_cli.page.document import Blob, languages
+from dancetutor_cli.page.work import Page
+from dancetutor_cli.run.reading import config_path
 
 
 def unpacked(html: bytes) -> dict[str, Any]:

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from dancetutor_cli import chart as charts
+from dancetutor_cli.feet import StepKind, load_pad, load_preset, prepare, solve
 from dancetutor_cli.feet.overrides import Overrides
-from dancetutor_cli.pads import load_pad
-from dancetutor_cli.page.flips import flips_of
-from dancetutor_cli.play import StepKind, load_preset, prepare, solve
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.page.facts import flips_of
+from dancetutor_cli.run.reading import charts_path
 
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
 

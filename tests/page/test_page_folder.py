@@ -9,12 +9,11 @@ import pytest
 from page_song import TITLE, write_song
 
 from dancetutor_cli.__main__ import main
+from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.jobs.page import PageRequest
-from dancetutor_cli.jobs.page_batch import page_jobs
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.page.index import IndexEntry, index_page
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.page.document import IndexEntry, index_page
+from dancetutor_cli.page.work import PageRequest, page_jobs
+from dancetutor_cli.run.reading import charts_path
 
 
 def test_every_chart_of_a_folder_gets_a_file_of_its_own(tmp_path: Path) -> None:

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from click.testing import CliRunner
 
+from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands import cli
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.jobs.page import PageRequest, make_page
-from dancetutor_cli.library.selection import Selection
+from dancetutor_cli.page.work import PageRequest, make_page
 
 NOTES = "1000\n0100\n0010\n0001\n,\n1000\n0010\n0100\n0001\n"
 SONG = f"#TITLE:T;\n#ARTIST:A;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n{NOTES};\n"

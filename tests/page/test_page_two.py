@@ -11,11 +11,11 @@ from page_chromium import Browser
 from PIL import Image
 from test_page_document import unpacked
 
+from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.errors import UsageError
-from dancetutor_cli.jobs.page import Page, PageRequest, make_page
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.video.overlay.sprites import highway_style
+from dancetutor_cli.film.overlay.sprites import highway_style
+from dancetutor_cli.page.work import Page, PageRequest, make_page
+from dancetutor_cli.run.errors import UsageError
 
 ROWS = ["10000001", "01000010", "00010100", "00101000", "10010001", "01000010", "00010100", "00101001"]
 SONG = "#TITLE:Two;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:dance-couple::Hard:9::\n" + "\n".join(ROWS) + "\n;\n"

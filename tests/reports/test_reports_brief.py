@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from dancetutor_cli.commands import cli
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.run.reading import charts_path
 
 SONG = charts_path() / "two_left_feet"
 HEAD = "#TITLE:T;\n#ARTIST:A;\n#CREDIT:C;\n#BPMS:0=120;\n"

@@ -18,18 +18,14 @@ from xml.etree import ElementTree
 
 import pytest
 
-from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
-from dancetutor_cli.jobs.result import ChartResult, FileResult
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.lint.configuration import load_configuration
-from dancetutor_cli.lint.finding import Finding
-from dancetutor_cli.lint.presets import PresetChoice
-from dancetutor_cli.play import load_preset
-from dancetutor_cli.reports import Report
-from dancetutor_cli.reports.github import GithubReport
-from dancetutor_cli.reports.gitlab import GitlabReport
-from dancetutor_cli.reports.junit import JunitReport
-from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.feet import load_preset
+from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
+from dancetutor_cli.lint.configuration import PresetChoice, load_configuration
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.results import ChartResult, FileResult
+from dancetutor_cli.reports.code_formats import GithubReport, GitlabReport, JunitReport
+from dancetutor_cli.reports.formats import Report, Tally
 
 ODD = 'a "<b>" & \x00\x1b[2J, 100 %: ]]> \uffff\ud800'
 SPIN = Finding("DT202", "spin", "warning", ODD, 133, 2, 1, 16.0, 4, 7.5, None, 0)

@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from dancetutor_cli.commands.analyze import command as analyze
-from dancetutor_cli.resources import charts_path
+from dancetutor_cli.run.reading import charts_path
 
 jsonschema = pytest.importorskip("jsonschema", reason="jsonschema is not installed; it is in the extra dev")
 

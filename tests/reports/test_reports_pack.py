@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from dancetutor_cli.chart.pack_files import read_pack_ini
 from dancetutor_cli.commands.analyze import command
-from dancetutor_cli.library.pack_ini import read_pack_ini
-from dancetutor_cli.reports.pack.text import LINES
+from dancetutor_cli.reports.pack import LINES
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "page"))

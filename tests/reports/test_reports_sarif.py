@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from dancetutor_cli.jobs.result import ChartResult, FileResult
-from dancetutor_cli.lint.finding import Finding
-from dancetutor_cli.reports.sarif import SarifReport, uri
-from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.results import ChartResult, FileResult
+from dancetutor_cli.reports.code_formats import SarifReport, uri
+from dancetutor_cli.reports.formats import Tally
 
 LEVELS = {"none", "note", "warning", "error"}
 MESSAGE = {"text": str}

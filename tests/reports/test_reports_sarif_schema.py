@@ -17,13 +17,12 @@ from typing import Any
 
 import pytest
 
-from dancetutor_cli.jobs.analyze import AnalyzeTask, analyze_file
-from dancetutor_cli.library.selection import Selection
-from dancetutor_cli.lint.configuration import load_configuration
-from dancetutor_cli.lint.presets import PresetChoice
-from dancetutor_cli.play import load_preset
-from dancetutor_cli.reports.sarif import SarifReport
-from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.feet import load_preset
+from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
+from dancetutor_cli.lint.configuration import PresetChoice, load_configuration
+from dancetutor_cli.reports.code_formats import SarifReport
+from dancetutor_cli.reports.formats import Tally
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PACKAGE = "@microsoft/jest-sarif@1.0.0-beta.0"

@@ -15,14 +15,12 @@ import pytest
 from PIL import Image
 
 from dancetutor_cli.chart import parse
-from dancetutor_cli.colours import hex_colour, limb_colours
-from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.feet import load_pad, load_preset, solve_chart
+from dancetutor_cli.feet.limbs import hex_colour, limb_colours
+from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.pads import load_pad
-from dancetutor_cli.play import load_preset, solve_chart
 from dancetutor_cli.reports.sheet import html_page, make_sheet, svg_sheet
-from dancetutor_cli.reports.sheet.places import lay_out
-from dancetutor_cli.reports.sheet.sheet_style import sheet_style
+from dancetutor_cli.reports.sheet_places import lay_out, sheet_style
 
 SVG = "{http://www.w3.org/2000/svg}"
 ROWS = ["1000", "0100", "0001", "0010", "2000", "00M0", "3000", "0F00"]

@@ -14,13 +14,12 @@ from rich.color import ColorSystem
 from rich.console import Console
 from rich.table import Table
 
-from dancetutor_cli.jobs.result import ChartResult, FileResult
-from dancetutor_cli.lint.finding import Finding
-from dancetutor_cli.reports import table
-from dancetutor_cli.reports.table import chart_table
-from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.results import ChartResult, FileResult
+from dancetutor_cli.reports import text_report
+from dancetutor_cli.reports.formats import Tally
 from dancetutor_cli.reports.terminal import Terminal, terminal_of
-from dancetutor_cli.reports.text_report import TextReport, clock
+from dancetutor_cli.reports.text_report import TextReport, chart_table, clock
 
 FINDING = Finding("DT201", "doublestep", "warning", "twice", 133, 2, 1, 16.0, 4, 7.512, 12, 0)
 CHART = ChartResult(
@@ -76,8 +75,8 @@ def test_the_table_is_as_rich_draws_it() -> None:
         drawing = io.StringIO()
         console = Console(file=drawing, width=100, color_system="standard" if colours else None, force_terminal=True)
         drawn = Table(box=box.SIMPLE_HEAD, padding=0, show_edge=False, header_style="dim")
-        columns = [column for column in table.MOVE_COLUMNS if column.always or CHART.counts.get(column.moves[0])]
-        for column in (table._ROWS, table._COST, *columns):
+        columns = [column for column in text_report.MOVE_COLUMNS if column.always or CHART.counts.get(column.moves[0])]
+        for column in (text_report._ROWS, text_report._COST, *columns):
             options = {"min_width": column.width, "vertical": "bottom", "no_wrap": True}
             drawn.add_column(column.header, justify="right", **options)
         counts = [sum(CHART.counts.get(move, 0) for move in column.moves) for column in columns]

@@ -14,9 +14,9 @@ from pathlib import Path
 import pytest
 from module_file import loaded
 
+from dancetutor_cli.commands.doctor import _cache
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.jobs.doctor import _cache
-from dancetutor_cli.lint.presets import PresetChoice
+from dancetutor_cli.lint.configuration import PresetChoice
 from dancetutor_cli.run import trust
 from dancetutor_cli.run.kernels import compiling, store
 
@@ -163,18 +163,18 @@ def test_a_kernel_is_compiled_again_when_what_it_is_made_of_changes(tmp_path: Pa
     """Kernels go into each other, also from room to room, and constants of other modules into kernels."""
     shutil.copytree(store.PACKAGE, tmp_path / "p", ignore=shutil.ignore_patterns("__pycache__", "_data"))
     for source, others in (
-        ("video/scene/cpu/floor.py", ["video/scene/cpu/standing.py", "video/scene/cpu/uncounted.py"]),
-        ("physics/hair.py", ["rig/limb.py", "rig/kinematics.py"]),
-        ("motion/ik/ik_kernels.py", ["rig/limb.py", "rig/dimensions.py", "rig/soles.py"]),
-        ("video/scene/cpu/shade.py", ["video/scene/textures.py", "colours.py"]),
-        ("numerics/qp.py", ["numerics/banded.py"]),
+        ("film/scene/cpu/floor.py", ["film/scene/cpu/standing.py", "film/scene/cpu/raster.py"]),
+        ("dance/physics/hair.py", ["dance/rig/limbs.py", "dance/rig/body.py"]),
+        ("dance/ik/full_body.py", ["dance/rig/limbs.py", "dance/rig/body.py", "dance/rig/body.py"]),
+        ("film/scene/cpu/shade.py", ["film/scene/geometry.py", "feet/limbs.py"]),
+        ("dance/quadratic.py", ["dance/quadratic.py"]),
     ):
         found = {
             path.relative_to(tmp_path / "p").as_posix()
             for path in compiling.made_of(tmp_path / "p" / source, tmp_path / "p")
         }
         assert found >= {source, *others}
-    source = tmp_path / "p" / "physics" / "hair.py"
+    source = tmp_path / "p" / "dance" / "physics" / "hair.py"
     before = compiling.stamp_of.__wrapped__(source)
     source.write_text(source.read_text("utf-8") + "# more\n", "utf-8")
     assert compiling.stamp_of.__wrapped__(source) != before
@@ -265,7 +265,7 @@ def test_doctor_counts_the_kernels_of_each_place(tmp_path: Path, monkeypatch: py
     package, mine = tmp_path / "package", tmp_path / "mine"
     for folder in (package, mine):
         folder.mkdir()
-    monkeypatch.setattr("dancetutor_cli.resources.PACKAGE", package)
+    monkeypatch.setattr("dancetutor_cli.run.reading.PACKAGE", package)
     monkeypatch.setattr(store, "PACKAGE", package)
     monkeypatch.setattr(store, "kernel_folder", lambda: store.KernelFolder(mine, True, ""))
     for name in ("a.f.1.kernel", "a.f.2.kernel", "b.f.1.kernel"):

@@ -16,7 +16,7 @@ import pytest
 from module_file import loaded
 from numpy.typing import NDArray
 
-from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.kernels import compiling, native, store, target
 from dancetutor_cli.run.kernels.native import Kernel, MachineCode
 

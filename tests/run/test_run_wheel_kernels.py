@@ -18,9 +18,9 @@ import pytest
 from hatchling.builders.wheel import WheelBuilder
 from module_file import loaded
 
+from dancetutor_cli.commands.doctor import _cache
 from dancetutor_cli.commands.first_run import tell_of_compiling
-from dancetutor_cli.jobs.doctor import _cache
-from dancetutor_cli.lint.presets import PresetChoice
+from dancetutor_cli.lint.configuration import PresetChoice
 from dancetutor_cli.run.kernels import compiling, store, target
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -187,8 +187,8 @@ USE = """
 import numpy as np
 import dancetutor_cli
 from dancetutor_cli.run.kernels.compiling import is_kept
-from dancetutor_cli.rig.kinematics import _forward, world_transforms
-from dancetutor_cli.rig.skeleton import dancer_skeleton
+from dancetutor_cli.dance.rig.body import _forward, world_transforms
+from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 
 skeleton, came = dancer_skeleton(), is_kept(_forward)
 turns = np.zeros((1, len(skeleton.parents), 4))
@@ -226,7 +226,9 @@ def test_a_platform_wheel_brings_its_kernels(tmp_path: Path, monkeypatch: pytest
     with zipfile.ZipFile(wheel) as file:
         file.extractall(site)
     came = [path.relative_to(site).as_posix() for path in site.rglob("*.kernel")]
-    assert {Path(one).parent.as_posix() for one in came} == {"dancetutor_cli/_data/kernels/rig"} and len(came) == 1
+    assert {Path(one).parent.as_posix() for one in came} == {"dancetutor_cli/_data/kernels/dance/rig"} and len(
+        came
+    ) == 1
     said = next(site.glob("*.dist-info/WHEEL")).read_text("utf-8")
     assert "Root-Is-Purelib: false" in said
     plain = {key: value for key, value in os.environ.items() if not key.startswith("NUMBA_")}

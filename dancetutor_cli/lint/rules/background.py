@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dancetutor_cli.lint.pictures import PictureRule
+from dancetutor_cli.lint.rule import PictureRule
 
 
 class BackgroundSize(PictureRule):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.rule import ReaderRule
 from dancetutor_cli.lint.rules.odd_notes import OddNotes
 

@@ -60,8 +60,7 @@ class Crossover(TimedRule):
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each step after which the feet are newly crossed."""
-        from dancetutor_cli.lint.freely import Freedom, fewest_crossed
-        from dancetutor_cli.lint.other_foot import goes_on_the_other_foot
+        from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, goes_on_the_other_foot
 
         slow = Freedom(self.longest(subject), switch=_SLOW, slip=_SLOW, lead=_LEAD)
         found = [first for first, _ in subject.feet.crossed_runs()] if subject.feet else []

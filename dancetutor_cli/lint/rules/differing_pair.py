@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.rule import FileRule
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ class DifferingPair(FileRule):
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """One finding for the pair, at the first chart that is different or missing."""
-        from dancetutor_cli.lint.pairs import differences
+        from dancetutor_cli.lint.note_questions import differences
 
         if found := list(differences(subject.song)):
             _, line, index = found[0]

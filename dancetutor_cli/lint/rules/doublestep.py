@@ -68,7 +68,7 @@ class Doublestep(MoveRule):
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Doublesteps from one panel to another, no mine between them."""
-        from dancetutor_cli.lint.freely import Freedom, fewest_crossed, in_groups
+        from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, in_groups
 
         longest = self.longest(subject)
         return [
@@ -80,7 +80,7 @@ class Doublestep(MoveRule):
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
         """Whether players expect it: a Pump centre, one crossover to a jump, a way between two pads after a jack."""
-        from dancetutor_cli.lint.freely import Freedom, fewest_crossed, led_by_a_jack
+        from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, led_by_a_jack
 
         if all(
             _round_the_centre(subject, row) or _crosses_to_jump(subject, row, self.longest(subject)) for row in rows

@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.feet.preset import Why
+from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.rule import EPSILON, ChartRule
-from dancetutor_cli.play.unplayable import Why
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
@@ -93,7 +93,7 @@ class FastStep(ChartRule):
 
     def _leaps(self, subject: ChartSubject, told: set[int]) -> Iterable[Finding]:
         """One finding for each passage of steps that are let go and of which nothing is told yet."""
-        from dancetutor_cli.play.played import StepKind  # numpy comes with it, which a kept result does not need
+        from dancetutor_cli.feet.play import StepKind  # numpy comes with it, which a kept result does not need
 
         end = -math.inf
         known = [subject.beat(row) for row in sorted(told)]

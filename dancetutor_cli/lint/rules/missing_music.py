@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.errors import FileError
-from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.rule import FileRule
+from dancetutor_cli.run.errors import FileError
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import FileSubject
@@ -27,7 +27,7 @@ class MissingMusic(FileRule):
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """At most one finding."""
-        from dancetutor_cli.library import music_file
+        from dancetutor_cli.chart import music_file
 
         try:
             music_file(subject.song)

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.rule import ReaderRule
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from dancetutor_cli.lint.finding import Finding
+from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.rule import Played, SongRule
 
 

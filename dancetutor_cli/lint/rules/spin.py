@@ -61,7 +61,7 @@ class Spin(MoveRule):
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each spin, with the longest time between steps since the feet were not crossed: who has time uncrosses."""
-        from dancetutor_cli.lint.freely import Freedom, fewest_crossed
+        from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed
 
         play, longest = subject.play, self.longest(subject)
         if play is None:

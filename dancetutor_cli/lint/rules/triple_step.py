@@ -45,7 +45,7 @@ class TripleStep(TimedRule):
 
     def happens(self, subject: ChartSubject) -> Iterable[Happening]:
         """Each third step that is quick enough: where a run begins depends on that."""
-        from dancetutor_cli.lint.freely import Freedom, fewest_crossed, led_by_a_jack
+        from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, led_by_a_jack
 
         spans = self.options["min_seconds"], self.longest(subject)
         for row, seconds in subject.feet.triple_steps(*spans) if subject.feet else ():

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from dancetutor_cli.feet.preset import HAND, Why
 from dancetutor_cli.lint.rule import MoveRule
-from dancetutor_cli.play.unplayable import HAND, Why
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject

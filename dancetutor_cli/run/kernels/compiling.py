@@ -23,10 +23,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from llvmlite import binding
 
-from dancetutor_cli.resources import PACKAGE
 from dancetutor_cli.run.kernels import target
 from dancetutor_cli.run.kernels.native import INNER_KERNELS, RESULTS, MachineCode
 from dancetutor_cli.run.kernels.store import Kept
+from dancetutor_cli.run.reading import PACKAGE
 
 _ASKS_FOR_BLAS = "numba.np.arraymath"  # the module of numba that imports scipy.linalg, once
 
@@ -246,7 +246,7 @@ def _of_inner_kernel(function: FunctionType) -> Any:
     return uncounted(function, **INNER_KERNELS[function])
 
 
-_KERNEL = re.compile(r"njit|@kernel\b|@inner_kernel\b|\buncounted\b")  # the middle two are `video.scene.cpu.uncounted`
+_KERNEL = re.compile(r"njit|@kernel\b|@inner_kernel\b|\buncounted\b")  # the middle two are `film.scene.cpu.raster`
 _IMPORT = re.compile(r"^from dancetutor_cli\.([\w.]+) import (\([^)]*\)|.*)", re.MULTILINE)
 _WORD = re.compile(r"\w+")
 _CONSTANT = re.compile(r"\b[A-Z][A-Z0-9_]+\b")

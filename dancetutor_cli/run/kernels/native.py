@@ -21,7 +21,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.errors import DancetutorError
+from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.kernels.store import Kept
 
 RESULTS = 2  # places for what a kernel gives, before its arguments

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from dancetutor_cli.resources import PACKAGE
 from dancetutor_cli.run.kernels.target import fits_shipped, maker
+from dancetutor_cli.run.reading import PACKAGE
 from dancetutor_cli.run.trust import (
     TREES,
     fault_of,

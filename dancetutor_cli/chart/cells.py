@@ -1,0 +1,202 @@
+"""Cells of the note grid -> notes: holds with their tails, whose a note is, and what StepF2 writes beside."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.chart.model import Kind, ReadWarning
+
+# What StepF2, a game for Pump charts, writes beside the other games' notes.
+#
+# `{note|look|fake|0}` is one note of one column, however it looks; a 1 in the third place makes it a fake. X, Y and Z
+# are steps, and x, y and z heads of holds, of the first, second and third player of a chart for several; the game shows
+# each player's in a colour of their own. A chart with steps of the first and the second player and none of a third one
+# is read as one for two. What else stands in it (the third one's holds, plain notes) is for whoever has that half of
+# the pad. One with steps of all three is for them and more, see `chart.cells`.
+
+PLAYERS = b"XYZxyz"
+SAID = {
+    "{": "notes in {...} are StepF2's: here each is one note, the other games read them letter by letter",
+    "X": "X, Y and Z are steps of several players in StepF2, of whom the first or the second has none here: no notes",
+}
+_SEVERAL = "the chart is for {} players ({} mark their notes, as in StepF2); each has feet of their own"
+_NOTE = re.compile(rb"\{([0-4MLFKXYZxyz])\|[A-Za-z]\|([01])\|[0-9]\}")
+FAKE_HEAD = ord("f")  # of a hold that is none, so that its end goes with it
+_FAKED = {b"0": "0", b"2": "f", b"3": "3", b"4": "f", b"x": "f", b"y": "f", b"z": "f"}
+_COLUMNS = (5, 6, 10)  # of Pump's pads
+_BOTH_PADS = 10
+
+
+def letters_of(text: bytes, columns: int) -> bytes:
+    """The letters that mark players' notes, XY or XYZ, in note data without its comments; none if it is for one."""
+    if columns != _BOTH_PADS or b"X" not in text or b"Y" not in text:
+        return b""
+    return b"XYZ" if b"Z" in text else b"XY"
+
+
+def for_several(players: int, letters: bytes) -> str:
+    """That a chart is for several, in a sentence."""
+    return _SEVERAL.format("two" if players == 2 else players, "X and Y" if len(letters) == 2 else "X, Y and Z")
+
+
+def player_of(letter: int) -> int:
+    """Whose a letter is, from 1; 0: nobody's in particular."""
+    return PLAYERS.find(letter) % 3 + 1 if letter in PLAYERS else 0
+
+
+def note_at(text: bytes, at: int, columns: int) -> tuple[int, int, str] | None:
+    """The letter of StepF2's note at an offset of a row, where it ends, which of `SAID` it is; None if it is none."""
+    if found := _NOTE.match(text, at):
+        letter = _FAKED.get(found[1], "F") if found[2] == b"1" else found[1].decode("ascii")
+        return ord(letter), found.end(), "{"
+    if columns in _COLUMNS and text[at] in PLAYERS:
+        return text[at], at + 1, "X"
+    return None
+
+
+# Cells of the note grid -> notes: of two on one tick the last counts, heads find their tails, the rest is dropped.
+
+TAIL = 100  # the cell '3', which is no note of its own
+OTHERS_HEAD = 102  # of a hold of another player (StepF2): no note here, nor is its end
+_KEYSOUND, _HOLD, _ROLL = int(Kind.KEYSOUND), int(Kind.HOLD), int(Kind.ROLL)
+_MOST_COLUMNS = 64
+_MOST = 20  # warnings of one sort; the rest is only counted
+
+
+@dataclass(frozen=True, slots=True)
+class Cells:
+    """Non-empty cells, arrays of one length: part of the file (a chart, or one of its players), tick, column, kind (a
+    `Kind` or `TAIL`), line, end."""
+
+    part: NDArray[np.int64]
+    tick: NDArray[np.int64]
+    column: NDArray[np.int64]
+    kind: NDArray[np.uint8]
+    line: NDArray[np.int32]
+    end: NDArray[np.int64]
+
+    def __getitem__(self, which: NDArray[np.intp] | NDArray[np.bool_] | slice) -> Cells:
+        return Cells(*(getattr(self, name)[which] for name in Cells.__slots__))
+
+    @staticmethod
+    def joined(several: Sequence[Cells]) -> Cells:
+        """Cells after cells."""
+        return Cells(*(np.concatenate([getattr(one, name) for one in several]) for name in Cells.__slots__))
+
+    @property
+    def lane(self) -> NDArray[np.int16]:
+        """The same number for cells of one part and column, ascending."""
+        return (self.part * _MOST_COLUMNS + self.column).astype(np.int16)
+
+
+def joined(cells: Cells, warnings: Sequence[list[ReadWarning]]) -> Cells:
+    """The notes of all parts: no tails, `end` set for holds and rolls; sorted by part, column, then tick.
+
+    cells : those of a part by tick; warnings : for each part those about it, to which is added
+
+    A tail belongs to the nearest note before it in its column, if that is an open head; keysounds do not count. So a
+    tap or a second head inside a hold deletes the first head. A tail looks only at earlier ticks: on the tick of a
+    head it comes first.
+    """
+    cells = cells[np.argsort(cells.lane, kind="stable")]
+    lane = cells.lane
+    if ((cells.tick[1:] == cells.tick[:-1]) & (lane[1:] == lane[:-1])).any():
+        cells = _last_of_each(cells, warnings)
+        lane = cells.lane
+    acting = np.flatnonzero(cells.kind != _KEYSOUND)
+    kind, column = cells.kind[acting], lane[acting]
+    others = kind == OTHERS_HEAD
+    head, tail = (kind == _HOLD) | (kind == _ROLL) | others, kind == TAIL
+    if not head.any() and not tail.any():
+        return cells
+    pair = np.flatnonzero(head[:-1] & tail[1:] & (column[:-1] == column[1:]))
+    cells.end[acting[pair]] = cells.tick[acting[pair + 1]]
+    open_head, lone_tail = head.copy(), tail.copy()
+    open_head[pair] = False
+    open_head[others] = False
+    lone_tail[pair + 1] = False
+    for which, code, text in (
+        (open_head, "unmatched-head", "a hold or roll has no end and is dropped"),
+        (lone_tail, "unmatched-tail", "the end of a hold or roll has no head and is dropped"),
+    ):
+        found = cells[acting[which]]
+        for part in np.flatnonzero(np.bincount(found.part)).tolist():  # `np.unique` imports np.ma, for long
+            report(warnings[part], code, text, np.sort(found.line[found.part == part]))
+    keep = (cells.kind != TAIL) & (cells.kind != OTHERS_HEAD)
+    keep[acting[open_head]] = False
+    return cells[keep]
+
+
+def _last_of_each(cells: Cells, warnings: Sequence[list[ReadWarning]]) -> Cells:
+    """Of several cells on one tick of a column the last, and the last tail before it; sorted by column, then tick."""
+    is_tail = cells.kind == TAIL
+    cells = cells[np.lexsort((~is_tail, cells.tick, cells.lane))]  # stable: file order within a tick
+    is_tail, lane = cells.kind == TAIL, cells.lane
+    last = np.ones(len(cells.tick), dtype=bool)
+    last[:-1] = (np.diff(cells.tick) != 0) | (lane[1:] != lane[:-1]) | (is_tail[1:] != is_tail[:-1])
+    lost = cells[~last & ~is_tail]
+    for part in np.unique(lost.part).tolist():
+        lines = lost.line[lost.part == part]
+        what = "note is" if len(lines) == 1 else "notes are"
+        text = f"{len(lines)} {what} lost: a later row falls on the same 192nd"
+        warnings[part].append(ReadWarning("row-collision", text, int(lines.min())))
+    return cells[last]
+
+
+def report(warnings: list[ReadWarning], code: str, text: str, lines: NDArray[np.integer]) -> None:
+    """One warning a line, the first 20; one more says how many others there are."""
+    warnings.extend(ReadWarning(code, text, line) for line in lines[:_MOST].tolist())
+    if len(lines) > _MOST:
+        warnings.append(ReadWarning(code, f"{len(lines) - _MOST} more: {text}", int(lines[_MOST])))
+
+
+# Whose a note is where letters mark it: the parts of all players whose notes stand in the same rows.
+
+_STEPS = [Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT]
+_PLAIN = 4  # the colour of plain notes beside three letters
+_LEAST = 0.5  # times as many as a letter that is there least: so many plain notes are a fourth player's
+
+
+def parts_of(cells: Cells, marks: Mapping[tuple[int, int], int], columns: int, letters: bytes) -> list[Cells]:
+    """What each player has, in the order of their letters, left before right; every mine is everybody's.
+
+    Of two players each has the notes with one's letter, and what nothing marks on one's half of the pads. With a third
+    one plain notes are a fourth player's, as StepF2 colours them, if there are enough of them, else of whoever mostly
+    steps that panel. A colour that mostly stands on both pads at once is that of two players, one on either. Whoever
+    has fakes alone does not dance.
+
+    marks : (tick, column) -> player whose letter stands there
+    """
+    places = zip(cells.tick.tolist(), cells.column.tolist(), strict=True)
+    said = np.array([marks.get(place, 0) for place in places], dtype=np.int64)
+    right = (cells.column >= columns // 2).astype(np.int64)
+    mine = cells.kind == Kind.MINE
+    if len(letters) == 2:
+        whose = np.where((said == 1) | (said == 2), said, 1 + right)
+        return [cells[(whose == player) | mine] for player in (1, 2)]
+    step, plain = np.isin(cells.kind, _STEPS), said == 0
+    colour = np.where(plain, _PLAIN, said)
+    whose = 2 * colour + right * np.isin(colour, _of_two(colour[step], cells.tick[step], right[step]))
+    counts = np.bincount(said[step & ~plain], minlength=1)
+    if (step & plain).sum() < _LEAST * counts[counts > 0].min(initial=len(said)) and counts.any():
+        players = np.unique(whose[step & ~plain])
+        steps = np.array([np.bincount(cells.column[step & (whose == one)], minlength=columns) for one in players])
+        whose[plain] = players[steps.argmax(axis=0)][cells.column[plain]]
+    everybodys = mine | (~step & plain)
+    return [cells[(whose == player) | everybodys] for player in np.unique(whose[step]).tolist()]
+
+
+def _of_two(colour: NDArray[np.int64], tick: NDArray[np.int64], right: NDArray[np.int64]) -> list[int]:
+    """Colours with steps on both pads in most of their rows: no one is on both at once all the time."""
+    found = []
+    for one in np.unique(colour).tolist():
+        left_rows, right_rows = (np.unique(tick[(colour == one) & (right == side)]) for side in (0, 1))
+        both = len(np.intersect1d(left_rows, right_rows))
+        if 2 * both > len(left_rows) + len(right_rows) - both:
+            found.append(one)
+    return found

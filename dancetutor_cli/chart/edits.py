@@ -1,0 +1,183 @@
+"""A chart file changed in places: bytes replaced, their diff, and whether every reader still sees the same song."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator
+from dataclasses import dataclass
+from itertools import zip_longest
+from pathlib import Path
+
+import numpy as np
+
+from dancetutor_cli.chart.model import Chart, NoteTable, RowTable, Song
+from dancetutor_cli.chart.msd import decode, encoding_of
+from dancetutor_cli.chart.reader import parse
+from dancetutor_cli.run.errors import FileError
+
+# Changes to a file's bytes as a list of small replacements; everything between them stays as it is.
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Splice:
+    """Put `text` in place of `data[start:end]`."""
+
+    start: int
+    end: int
+    text: bytes
+
+
+def apply(data: bytes, splices: Iterable[Splice]) -> bytes:
+    """`data` with all replacements made. They must not overlap."""
+    out: list[bytes] = []
+    at = 0
+    for splice in sorted(splices):
+        if splice.start < at:
+            raise ValueError(f"replacements overlap at byte {splice.start}")
+        out += (data[at : splice.start], splice.text)
+        at = splice.end
+    out.append(data[at:])
+    return b"".join(out)
+
+
+# A unified diff of two versions of a file that differ in some lines and in what is added at the end.
+#
+# Markers never add a line in the middle of a file, so lines are compared one to one: exact and quick on any size.
+
+CONTEXT = 3
+
+
+def unified(name: str, old: bytes | None, new: bytes | None) -> Iterator[str]:
+    """The lines of the diff, without line ends; nothing if both are the same."""
+    pairs = list(zip_longest(_lines(old), _lines(new)))
+    different = [i for i, (a, b) in enumerate(pairs) if a != b]
+    if not different:
+        return
+    encoding = encoding_of(old or new or b"")
+    yield f"--- {'/dev/null' if old is None else name}"
+    yield f"+++ {'/dev/null' if new is None else name}"
+    for start, end in _hunks(different, len(pairs)):
+        part = pairs[start:end]
+        counts = [sum(1 for pair in part if pair[side] is not None) for side in (0, 1)]
+        yield f"@@ -{_range(start, counts[0])} +{_range(start, counts[1])} @@"
+        yield from _body(part, encoding)
+
+
+def _lines(data: bytes | None) -> list[bytes]:
+    lines = (data or b"").split(b"\n")
+    return lines[:-1] if not lines[-1] else lines
+
+
+def _hunks(different: list[int], total: int) -> Iterator[tuple[int, int]]:
+    start, end = different[0], different[0] + 1
+    for i in different[1:]:
+        if i - end > 2 * CONTEXT:
+            yield max(start - CONTEXT, 0), min(end + CONTEXT, total)
+            start = i
+        end = i + 1
+    yield max(start - CONTEXT, 0), min(end + CONTEXT, total)
+
+
+def _range(start: int, count: int) -> str:
+    return f"{start + 1 if count else start},{count}"
+
+
+def _body(pairs: list[tuple[bytes | None, bytes | None]], encoding: str) -> Iterator[str]:
+    removed: list[str] = []
+    added: list[str] = []
+    for a, b in pairs:
+        if a == b:
+            yield from (*removed, *added)
+            removed, added = [], []
+            yield " " + _shown(a, encoding)
+        else:
+            removed += [] if a is None else ["-" + _shown(a, encoding)]
+            added += [] if b is None else ["+" + _shown(b, encoding)]
+    yield from (*removed, *added)
+
+
+def _shown(line: bytes | None, encoding: str) -> str:
+    return decode((line or b"").removesuffix(b"\r"), encoding).replace("\r", " ")
+
+
+# The last look before a file is written: does every reader still see the same song in it?
+
+_COMMENT = re.compile(rb"//[^\n]*")
+_BPMS = re.compile(rb"#BPMS:([^;]*)", re.IGNORECASE)
+
+
+class HarmError(FileError):
+    """A change would alter what a game reads; it is not written. A fault of the program, or a very odd file."""
+
+
+def unchanged(
+    before: Song, after: bytes, ours: Callable[[Chart], bool] = lambda chart: False, free: Collection[str] = ()
+) -> Song:
+    """Read `after` back and compare it with the song it was made from.
+
+    Parameters
+    ----------
+    before : the song as it was read
+    after : the bytes to be written in its place
+    ours : which charts the program itself has added, and which therefore do not count
+    free : the song's tags that may differ
+
+    Returns the song as read from `after`. Raises `HarmError` naming the first difference.
+    """
+    try:
+        song = parse(after, before.path)
+    except FileError as error:
+        raise _harm(before.path, error.message) from error
+    for what in _differences(before, song, ours, free):
+        raise _harm(before.path, f"{what} would change")
+    return song
+
+
+def _harm(path: Path, what: str) -> HarmError:
+    return HarmError(path, f"refused, nothing was written: {what}; please report this file")
+
+
+def _differences(before: Song, after: Song, ours: Callable[[Chart], bool], free: Collection[str]) -> Iterator[str]:
+    for name in ("format", "title", "subtitle", "artist", "music", "timing"):
+        if getattr(before, name) != getattr(after, name):
+            yield f"the song's {name}"
+    tags = ({key: value for key, value in song.tags.items() if key not in free} for song in (before, after))
+    if next(tags) != next(tags):
+        yield "the song's tags"
+    old, new = ([c for c in song.charts if not ours(c)] for song in (before, after))
+    if len(old) != len(new):
+        yield "the number of charts"
+    for a, b in zip(old, new, strict=False):
+        for name in ("steps_type", "difficulty", "meter", "description", "columns", "timing", "tags"):
+            if getattr(a, name) != getattr(b, name):
+                yield f"the {name.replace('_', ' ')} of {a.label}"
+        if not _same_notes(a.notes, b.notes) or not _same_rows(a.rows, b.rows):
+            yield f"the note data of {a.label}"
+        if hash_input(before.data, a) != hash_input(after.data, b):
+            yield f"the score hash of {a.label}"
+    if _bpms(before.data) != _bpms(after.data)[: len(_bpms(before.data))]:
+        yield "the BPMs"
+
+
+def _same_notes(a: NoteTable, b: NoteTable) -> bool:
+    names = ("tick", "column", "kind", "end", "judged")
+    return all(np.array_equal(getattr(a, name), getattr(b, name)) for name in names)
+
+
+def _same_rows(a: RowTable, b: RowTable) -> bool:
+    return np.array_equal(a.tick, b.tick) and np.array_equal(a.measure, b.measure)
+
+
+def hash_input(data: bytes, chart: Chart) -> bytes:
+    """What the Simply Love theme hashes of a chart's note data, before it shortens the measures.
+
+    It looks for the field by cutting at every `:` and `;`, also those in comments, and only then drops comments and
+    blanks. So a `:` that got into a comment would cut the notes short here, as it does there.
+    """
+    start, end = chart.notes_span
+    text = re.split(rb"[:;]", data[start:end], maxsplit=1)[0].replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    return re.sub(rb"[\r\t\f\v ]+", b"", _COMMENT.sub(b"", text))
+
+
+def _bpms(data: bytes) -> list[bytes]:
+    return [re.sub(rb"\s+", b"", _COMMENT.sub(b"", text)) for text in _BPMS.findall(data)]

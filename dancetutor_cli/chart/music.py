@@ -1,0 +1,86 @@
+"""The song's music: a file inside the song's folder, and nothing else."""
+
+from __future__ import annotations
+
+import os
+import unicodedata
+from pathlib import Path
+
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.chart.msd import shown
+from dancetutor_cli.chart.reader import suspicious_music
+from dancetutor_cli.run.errors import FileError, MissingFileError
+
+SUFFIXES = (".ogg", ".oga", ".mp3", ".wav", ".flac", ".opus")
+
+
+def music_file(song: Song, chart: Chart | None = None) -> Path:
+    """The music of a song, or of one of its charts that names its own.
+
+    A name is found in any case, like the games do on Windows; with an empty tag it is the only audio file there.
+
+    Raises
+    ------
+    FileError : the name leaves the song's folder (absolute, `..`, a network name, a link), looks like an option or a
+        protocol, or is no kind of audio file
+    MissingFileError : there is no such file
+    """
+    folder = song.path.parent.resolve()
+    name = ((chart.tags.get("MUSIC") if chart else None) or song.music).strip()
+    if not name:
+        return _only_audio_file(song, folder)
+    if suspicious_music(name):
+        raise FileError(
+            song.path, f"music '{shown(name)}' is refused: it must be a plain file name in the song's folder"
+        )
+    current = folder
+    for part in name.replace("\\", "/").split("/"):
+        if part not in ("", "."):
+            current = _entry(current, part)
+    if not os.path.isfile(current):  # noqa: PTH113 (Path.is_file may raise)
+        raise MissingFileError(song.path, f"music '{shown(name)}' is not there; put it into the song's folder")
+    return _inside(song, current, folder)
+
+
+def find_music(song: Song, chart: Chart) -> tuple[Path | None, str | None]:
+    """The chart's own or the song's music; None and a line for people if it is missing. FileError as `music_file`."""
+    try:
+        return music_file(song, chart), None
+    except MissingFileError as error:
+        return None, str(error)
+
+
+def _only_audio_file(song: Song, folder: Path) -> Path:
+    audio = [name for name in _names(folder) if name.lower().endswith(SUFFIXES) and not name.startswith("._")]
+    if len(audio) != 1:
+        raise MissingFileError(song.path, f"the file names no music, and its folder has {len(audio)} audio files")
+    return _inside(song, folder / audio[0], folder)
+
+
+def _entry(folder: Path, name: str) -> Path:
+    exact = folder / name
+    if os.path.exists(exact):  # noqa: PTH110 (Path.exists may raise)
+        return exact
+    wanted = _plain(name)
+    same = sorted(folder / entry for entry in _names(folder) if _plain(entry) == wanted)
+    return same[0] if same else exact
+
+
+def _plain(name: str) -> str:
+    return name.lower() if name.isascii() else unicodedata.normalize("NFC", name).casefold()
+
+
+def _names(folder: Path) -> list[str]:
+    try:
+        return os.listdir(folder)  # noqa: PTH208 (many times quicker)
+    except OSError:
+        return []
+
+
+def _inside(song: Song, path: Path, folder: Path) -> Path:
+    real = path.resolve()
+    if not real.is_relative_to(folder):
+        raise FileError(song.path, f"music '{shown(path.name)}' is refused: it is a link that leaves the song's folder")
+    if real.suffix.lower() not in SUFFIXES:
+        raise FileError(song.path, f"music '{shown(path.name)}' is no audio file ({', '.join(SUFFIXES)})")
+    return real

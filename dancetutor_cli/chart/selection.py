@@ -1,0 +1,202 @@
+"""What a path means: files, folders, pairs of .sm and .ssc; which charts of a file are meant, and how much that is."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.run.errors import DancetutorError, UsageError
+from dancetutor_cli.run.files import SONG_SUFFIXES
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart, Song
+
+
+# Which chart files a path means: files as given, folders with all below them, .sm and .ssc of one song.
+
+_RESOURCE_FORK = "._"  # what macOS leaves beside files on foreign disks; the games skip it too
+
+
+def find_files(paths: Sequence[Path]) -> list[Path]:
+    """The chart files that paths name: a file as it is, a folder with every .sm and .ssc below it, sorted; none twice.
+
+    Symbolic links to folders are not followed. What cannot be looked into stands for itself in the list (a path that
+    is not there, a folder that cannot be read or holds no charts): `chart.load` says what is wrong with it, and the
+    other files go on.
+    """
+    found: dict[str, Path] = {}
+    for path in paths:
+        for file in _below(path) if os.path.isdir(path) else (path,):  # noqa: PTH112 (Path.is_dir may raise)
+            found.setdefault(os.path.normcase(os.path.abspath(file)), file)  # noqa: PTH100 (links stay links)
+    return list(found.values())
+
+
+def _below(folder: Path) -> Iterable[Path]:
+    closed: list[Path] = []
+    files: list[Path] = []
+    for root, folders, names in os.walk(folder, onerror=lambda error: closed.append(Path(error.filename or folder))):
+        folders.sort()
+        files.extend(Path(root) / name for name in sorted(names) if is_chart_name(name))
+    return [*files, *sorted(closed)] or [folder]
+
+
+def without_links_out(paths: Sequence[Path], files: Sequence[Path]) -> tuple[list[Path], list[Path]]:
+    """Of what `find_files` has found: files to write, and links by which a search would leave its folders.
+
+    A folder of songs may be a stranger's, and a link in it lead to any file of the user's. Who names a link means it.
+    """
+    named = {os.path.abspath(path) for path in paths}  # noqa: PTH100 (links stay links)
+    folders = [path.resolve() for path in paths if os.path.isdir(path)]  # noqa: PTH112 (Path.is_dir may raise)
+    out = {
+        file
+        for file in files
+        if file.is_symlink() and os.path.abspath(file) not in named and _is_outside(file, folders)  # noqa: PTH100
+    }
+    return [file for file in files if file not in out], sorted(out)
+
+
+def _is_outside(link: Path, folders: Sequence[Path]) -> bool:
+    """Whether a link leads to a file outside of all folders; one to nowhere or to a device is an error of its own."""
+    try:
+        target = link.resolve(strict=True)
+    except (OSError, RuntimeError):
+        return False
+    return target.is_file() and not any(target.is_relative_to(folder) for folder in folders)
+
+
+def is_chart_name(name: str) -> bool:
+    """Whether a file of this name in a song's folder is a chart file."""
+    return name.lower().endswith(SONG_SUFFIXES) and not name.startswith(_RESOURCE_FORK)
+
+
+def twin(path: Path) -> Path | None:
+    """The .ssc beside a .sm of the same name, or the .sm beside a .ssc; None if there is none. Games load the .ssc."""
+    other = ".sm" if path.suffix.lower() == ".ssc" else ".ssc"
+    for candidate in (path.with_suffix(other), path.with_suffix(other.upper())):
+        if os.path.isfile(candidate):  # noqa: PTH113 (Path.is_file may raise)
+            return candidate
+    return None
+
+
+def one_song(path: Path) -> Path:
+    """The chart file a folder of one song stands for: its .ssc or .sm. Any other path is given back as it is."""
+    if not os.path.isdir(path):  # noqa: PTH112 (Path.is_dir may raise)
+        return path
+    found = find_files([path])
+    songs = [file for file in found if file.suffix.lower() == ".ssc" or (twin(file) is None and file != path)]
+    return songs[0] if len(songs) == 1 else path
+
+
+# Which charts of a file are meant, and how much there is to solve in them; imports no reader of charts.
+
+_LARGE = 200_000  # bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """Which charts are meant: values as the user typed them, several with commas; None stands for all.
+
+    player : of charts for several, whose part is meant
+    """
+
+    steps_type: str | None = None
+    difficulty: str | None = None
+    index: int | None = None
+    player: int | None = None
+
+    @property
+    def is_all(self) -> bool:
+        """Whether every chart is meant."""
+        return self == Selection()
+
+    def charts(self, song: Song) -> tuple[Chart, ...]:
+        """The charts of `song` that match, in file order; may be empty."""
+        return tuple(select(song, _parts(self.steps_type), _parts(self.difficulty), self.index))
+
+    def one(self, song: Song) -> Chart:
+        """The one chart of `song` that matches; UsageError lists the charts there are if none or several do.
+
+        Of a chart for several the part of the player that is meant, else of the first.
+        """
+        chart = select_one(song, _parts(self.steps_type), _parts(self.difficulty), self.index)
+        found = self.parts(chart)
+        if not found:
+            raise UsageError(f"{song.path}: {chart.label} has no notes for player {self.player}")
+        return found[0]
+
+    def parts(self, chart: Chart) -> tuple[Chart, ...]:
+        """What feet are found for in a chart: itself, or of one for several each player's part that is meant."""
+        from dancetutor_cli.chart.note_data import parts
+
+        return parts(chart, self.player)
+
+
+def note_bytes(path: Path, selection: Selection, data: bytes | None = None) -> int:
+    """How much there is to solve in a chart file: bytes of the note data that is meant; 0 where it cannot be read.
+
+    data : what to read in place of the file. A large file that is meant in part is not read only for this.
+    """
+    from dancetutor_cli import chart
+
+    try:
+        size = path.stat().st_size if data is None else len(data)
+        if selection.is_all or size > _LARGE:
+            return size
+        song = chart.load(path) if data is None else chart.parse(data, path)
+        return sum(end - start for start, end in (one.notes_span for one in selection.charts(song)))
+    except (OSError, DancetutorError):
+        return 0
+
+
+def _parts(text: str | None) -> list[str]:
+    return [part.strip() for part in text.split(",")] if text else []
+
+
+def select(
+    song: Song, steps_types: Sequence[str] = (), difficulties: Sequence[str] = (), index: int | None = None
+) -> list[Chart]:
+    """The charts of a song that match, in file order; nothing given matches all.
+
+    Names in any case, old ones too ("Heavy", "Oni"); several of a kind mean either. Raises `UsageError` for a
+    difficulty that no game has.
+    """
+    from dancetutor_cli.chart import names
+
+    types = {names.steps_type(text) for text in steps_types}
+    levels = {_difficulty(text) for text in difficulties}
+    return [
+        chart
+        for chart in song.charts
+        if (not types or chart.steps_type in types)
+        and (not levels or chart.difficulty in levels)
+        and (index is None or chart.index == index)
+    ]
+
+
+def select_one(
+    song: Song, steps_types: Sequence[str] = (), difficulties: Sequence[str] = (), index: int | None = None
+) -> Chart:
+    """The one chart that matches. Raises `UsageError` with what the file has when none or several do."""
+    found = select(song, steps_types, difficulties, index)
+    if len(found) == 1:
+        return found[0]
+    if not found:
+        raise UsageError(f"{song.path}: no such chart; the file has {_listed(song.charts)}")
+    how = "--index" if len({(c.steps_type, c.difficulty) for c in found}) < len(found) else "--steps-type, --difficulty"
+    raise UsageError(f"{song.path}: several charts match; choose one with {how}: {_listed(found)}")
+
+
+def _difficulty(text: str) -> str:
+    from dancetutor_cli.chart import names
+
+    name, known = names.difficulty(text, "", 0, old=True)
+    if not known:
+        raise UsageError(f"difficulty '{text}' is none; there are {', '.join(names.DIFFICULTIES)}")
+    return name
+
+
+def _listed(charts: Iterable[Chart]) -> str:
+    return "; ".join(f"{chart.index}: {chart.label}" for chart in charts)

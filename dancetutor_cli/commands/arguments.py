@@ -1,0 +1,171 @@
+"""What options take: names for the Tab key, paths, the charts of `analyze`; options as a record; hours of work."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import fields
+from functools import wraps
+from pathlib import Path
+from typing import Any
+
+import click
+from click.shell_completion import CompletionItem
+
+from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.trust import exclude
+
+# The names that options take, for the Tab key: asked for only while a shell completes.
+
+_Completer = Callable[[click.Context, click.Parameter, str], list[CompletionItem]]
+
+
+def named(names: Callable[[], Iterable[str]], files: bool = True) -> _Completer:
+    """Completes an option from `names`; where none fits and `files` may be given, the shell completes those."""
+
+    def complete(_context: click.Context, _option: click.Parameter, begun: str) -> list[CompletionItem]:
+        found = [CompletionItem(name) for name in sorted(names()) if name.lower().startswith(begun.lower())]
+        return found or ([CompletionItem(begun, type="file")] if files else [])
+
+    return complete
+
+
+def rules() -> Iterable[str]:
+    """Codes and names of the rules."""
+    from dancetutor_cli.lint.rule import all_rules
+
+    return [word for code, rule in all_rules().items() for word in (code, rule.name)]
+
+
+def fixes() -> Iterable[str]:
+    """What --fix takes."""
+    from dancetutor_cli.lint.mend import FIXABLE
+
+    return ["safe", *FIXABLE]
+
+
+def folder(name: str) -> Callable[[], Iterable[str]]:
+    """The files of a folder of configs, without their suffix."""
+
+    def names() -> Iterable[str]:
+        from dancetutor_cli.run.reading import config_path
+
+        return [path.stem for path in config_path(name).glob("*.yaml")]
+
+    return names
+
+
+def steps_types() -> Iterable[str]:
+    """Those that have a name."""
+    from dancetutor_cli.chart.names import COLUMNS
+
+    return COLUMNS
+
+
+def difficulties() -> Iterable[str]:
+    """As the games name them."""
+    return ["beginner", "easy", "medium", "hard", "challenge", "edit"]
+
+
+def characters() -> Iterable[str]:
+    """Who is built in."""
+    from dancetutor_cli.character import BUILT_IN
+
+    return BUILT_IN
+
+
+# Paths on the command line.
+
+
+class GivenPath(click.Path):
+    """A path of the user's, as a `Path`.
+
+    An empty one, as of a variable that is not set in a shell, is refused: it would mean the folder one stands in, and
+    `annotate ""` wrote into every file below it.
+    """
+
+    def __init__(self, *, holds_charts: bool = False, **options: Any) -> None:
+        """holds_charts : charts are read there, so that no code is taken from there."""
+        super().__init__(path_type=Path, **options)
+        self._holds_charts = holds_charts
+
+    def convert(
+        self, value: str | os.PathLike[str], param: click.Parameter | None, ctx: click.Context | None
+    ) -> str | bytes | os.PathLike[str]:
+        if value == "":
+            self.fail("the name is empty; write . for the folder you are in", param, ctx)
+        path = super().convert(value, param, ctx)
+        if self._holds_charts and value != "-":
+            exclude(Path(os.fsdecode(path)))
+        return path
+
+
+def within_folders(paths: Sequence[Path], files: Sequence[Path]) -> list[Path]:
+    """The files that may be written of those that a search has found; each link out of its folders is one line."""
+    from dancetutor_cli.chart.selection import without_links_out
+    from dancetutor_cli.reports.terminal import safe
+
+    kept, links = without_links_out(paths, files)
+    for link in links:
+        where = safe(f"{link}: is a link to {os.path.realpath(link)}")
+        click.echo(
+            f"warning: {where}, outside the folder that is searched; it is left alone, name it to write it", err=True
+        )
+    return kept
+
+
+# The charts that `analyze` is given: files, folders that are searched, or one on standard input.
+
+Source = tuple[Path, bytes | None]  # a chart file, and what standard input had of it
+
+
+def sources(paths: tuple[Path, ...], stdin_filename: Path | None) -> list[Source]:
+    """The chart files that the paths mean; standard input with its bytes."""
+    from dancetutor_cli.chart import find_files
+
+    if any(str(path) == "-" for path in paths):
+        if len(paths) > 1:
+            raise UsageError("standard input (-) goes alone, without other paths")
+        if sys.stdin is None:
+            raise UsageError("standard input (-) is closed; send a chart to it, or name a file")
+        data = sys.stdin.buffer.read()
+        name = "stdin.ssc" if b"#NOTEDATA" in data.upper() else "stdin.sm"
+        return [(stdin_filename or Path(name), data)]
+    if stdin_filename is not None:
+        raise UsageError("--stdin-filename names the chart on standard input: give - as PATH")
+    return [(path, None) for path in find_files(paths)]
+
+
+# Options of a command as one record: a dataclass whose fields are named like them.
+
+
+def into(name: str, kind: type) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Give a command one argument `name`, a `kind`, in place of the options that are called like its fields.
+
+    To stand below the options: ``@options`` first, then ``@into("wish", Wish)``, then the function.
+    """
+    known = tuple(field.name for field in fields(kind))
+
+    def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(command)
+        def gathered(**given: Any) -> Any:
+            record = kind(**{field: given.pop(field) for field in known if field in given})
+            return command(**given, **{name: record})
+
+        return gathered
+
+    return decorate
+
+
+# Asks before hours of work: films and dances longer than anybody means.
+
+LONG = 20 * 60.0  # seconds of film or motion; more than this is asked about first
+
+
+def confirm_long(what: str, verb: str) -> None:
+    """Ask a person whether they mean it; without a terminal nobody can answer, so refuse. verb : "Render", "Bake" """
+    if sys.stdin is not None and sys.stdin.isatty() and sys.stderr.isatty():
+        click.confirm(f"{what}. {verb} it?", abort=True, err=True)
+    else:
+        raise UsageError(f"{what}; choose a part with --section, or say --yes")

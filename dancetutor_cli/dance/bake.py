@@ -1,0 +1,244 @@
+"""The one place that orders the work of a bake: plan, trajectory, inverse kinematics, layers, ragdoll, hair."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypedDict, Unpack
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.dance.context import Context, bar_of, context_of, holding, panels_on_ground
+from dancetutor_cli.dance.foot_path import both_feet
+from dancetutor_cli.dance.footwork.planner import plan_footwork
+from dancetutor_cli.dance.grips import grips_of
+from dancetutor_cli.dance.ik.ankles import ease_ankles, rolled_soles
+from dancetutor_cli.dance.ik.full_body import Poses, solve
+from dancetutor_cli.dance.ik.targets import free_hands, moved
+from dancetutor_cli.dance.layers import Doing, add_fingers, add_layers, curls, glances_at, hand_use, look
+from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.physics.hair import add_hair
+from dancetutor_cli.dance.pieces import (
+    BakedPiece,
+    Each,
+    Keys,
+    Piece,
+    RagdollStyle,
+    Span,
+    doubtful,
+    in_turn,
+    joined,
+    key_times,
+    needed,
+    pieces_of,
+    refined,
+)
+from dancetutor_cli.dance.plan import Plan
+from dancetutor_cli.dance.settings import MotionSettings, default_settings
+from dancetutor_cli.dance.settings_feet import WalkSettings
+from dancetutor_cli.dance.settle import heels_may_rise, mass_of, settle, targets_at
+from dancetutor_cli.dance.smoothing import sample_path
+from dancetutor_cli.dance.trajectory.posture import Trajectory, stepping
+from dancetutor_cli.dance.waits import waiting_at
+from dancetutor_cli.feet.play import LetGo, without_unplayable
+from dancetutor_cli.run.errors import DancetutorError
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.timing import Timing
+    from dancetutor_cli.feet import Pad
+    from dancetutor_cli.feet.play import Play
+
+Array = NDArray[np.float64]
+BEATS_AFTER = 16  # beats after the last row that she still hears
+CORRECTIONS = 6  # rounds of moving the body until its centre of mass is on its path
+REFINEMENTS = 2  # rounds of adding keys half-way between others
+
+
+class Manner(TypedDict, total=False):
+    """How a play is danced.
+
+    settings : numbers of the motion, those of `configs/motion.yaml` unless given
+    bar : whether she holds the bar behind the pad; gait : how she walks on and off, a name or file as for `load_gait`
+    sides : from which she comes and to which she goes, 0 left or 1 right, where another one dances beside her
+    let_go : why notes that no limb has in the play are let go, where the caller has decided that
+    """
+
+    settings: MotionSettings | None
+    bar: bool
+    gait: str
+    sides: tuple[int, int] | None
+    let_go: tuple[LetGo, ...]
+
+
+def bake(
+    timing: Timing,
+    play: Play,
+    pad: Pad,
+    *,
+    fps: float = 60.0,
+    section: Span | None = None,
+    **manner: Unpack[Manner],
+) -> Motion:
+    """Make the dancer play a chart.
+
+    Parameters
+    ----------
+    timing : gives the times of beats; play : who steps what; pad : where the panels are. Timing and play are those of
+        the music as it is heard (`Timing.at_rate`), so jumps keep real gravity
+    fps : frames per second of the result, which gets extra keys at every contact
+    section : (start, end) in seconds of the music; None: from before the first step to after the last. It is cut out
+        of the dance of the whole chart
+    manner : as in `Manner`
+
+    Returns
+    -------
+    Motion whose feet and palms touch their panels at the notes' times.
+
+    Raises
+    ------
+    DancetutorError if the play has no steps or the section is empty.
+    """
+    plan, context = planned(timing, play, pad, **manner)
+    return bake_plan(plan, context, fps, section)
+
+
+def plan_of(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> Plan:
+    """Only the moves of a play, without a body: what moves when, from where to where. Arguments as in `bake`."""
+    return planned(timing, play, pad, **manner)[0]
+
+
+def planned(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> tuple[Plan, Context]:
+    """The plan of a play, with the context that it is danced in. Arguments as in `bake`."""
+    settings, bar = manner.get("settings") or default_settings(), manner.get("bar", False)
+    rail = bar_of(pad, settings.bar) if bar else None
+    context = context_of(pad, holding(settings) if bar else settings, _beats(timing, play), rail)
+    context = replace(context, sides=manner.get("sides"))
+
+    def second(tick: int) -> float:
+        return float(timing.seconds(np.array([tick], dtype=np.int64))[0])
+
+    play, gone = without_unplayable(play, pad, manner.get("let_go", ()))
+    plan = replace(plan_footwork(play, second, manner.get("gait", "flat"), context), let_go=gone)
+    return (plan if rail is None else grips_of(plan, _standing(plan, context.settings.walk), context)), context
+
+
+def _standing(plan: Plan, walk: WalkSettings) -> tuple[float, float]:
+    """When she has arrived and when she leaves, seconds."""
+    arrived = max((w.end for w in plan.walks if w.end < plan.first), default=plan.first - walk.lead_in)
+    return arrived, min((w.start for w in plan.walks if w.start > plan.last), default=plan.last + walk.lead_out)
+
+
+def mines_of(play: Play, pad: Pad) -> Array:
+    """Second and place (x, z) in the world of every mine of a play, (m, 3), for the quality report."""
+    row, column = np.nonzero(play.rows.mines)
+    return np.column_stack((play.rows.second[row], panels_on_ground(pad)[column]))
+
+
+def bake_plan(plan: Plan, context: Context, fps: float, section: Span | None = None, each: Each = in_turn) -> Motion:
+    """Bake a plan, or what is within a section of it, seconds; the work behind `bake`. Arguments as there.
+
+    each : does the pieces of a long song, in turn or in several processes; the result is the same
+    """
+    pieces = pieces_of(plan, context, fps)
+    return cut(pieces, section or (pieces[0].kept[0], pieces[-1].kept[1]), each).motion
+
+
+def cut(pieces: list[Piece], section: Span, each: Each = in_turn) -> BakedPiece:
+    """A section, seconds, of the dance that all these pieces make; only those that it needs are baked."""
+    start, end = section
+    if not start < end:
+        raise DancetutorError(
+            f"the section from {start:.3f} s to {end:.3f} s is empty; its start must come before its end"
+        )
+    some = pieces[needed(pieces, start, end)]
+    return joined(some, list(each(bake_piece, some)), start, end)
+
+
+def bake_piece(piece: Piece) -> BakedPiece:
+    """One piece of work; may run in any process."""
+    plan, context = piece.plan, piece.context
+    skeleton, settings = context.skeleton, context.settings
+    rate = settings.sampling.work_rate
+    grid = np.arange(np.floor(piece.span[0] * rate), np.ceil(piece.span[1] * rate) + 1) / rate
+    body = settle(plan, grid, both_feet(plan.feet, grid, settings), context).trajectory
+    body = replace(body, hands=free_hands(plan, body, context))  # all keys ask for them, and each round of more keys
+    at = key_times(plan, piece.fps, *piece.baked)
+    keys = (at, *posed(plan, body, at, context))
+    for _ in range(REFINEMENTS):
+        middles = doubtful(skeleton, keys, plan.grips)
+        if len(middles):
+            between = (middles, *posed(plan, body, middles, context))
+            keys = refined(skeleton, keys, between, plan.grips)
+    first, last = piece.baked
+    notes = tuple(
+        f"from {first:.1f} s to {last:.1f} s no path of {what} keeps within the limits of legs and soles; they gave way"
+        for what in body.softened
+    )
+    motion = _motion(piece, keys, notes)
+    add_hair(skeleton, motion.times, motion.rotations, motion.root, settings.hair)
+    return BakedPiece(motion) if piece.ragdoll is None else _followed(motion, piece, piece.ragdoll)
+
+
+def _motion(piece: Piece, keys: Keys, notes: tuple[str, ...]) -> Motion:
+    plan, context, (first, last) = piece.plan, piece.context, piece.baked
+    grips = tuple(g for g in plan.grips if g.end > first and g.start < last)
+    return Motion(context.skeleton, piece.fps, *keys, piece.contacts, context.bar, grips, piece.ground, notes)
+
+
+def _followed(motion: Motion, piece: Piece, ragdoll: RagdollStyle) -> BakedPiece:
+    """The motion as a ragdoll follows it, and the braid again, for its head now moves otherwise.
+
+    What befalls her beside the piece's end is told by the piece in which it does: the other one sees less of it.
+    """
+    from dancetutor_cli.dance.physics.pipeline import through_ragdoll
+
+    wishes, (first, last) = ragdoll.wishes.within(motion.times[0], motion.times[-1]), piece.kept
+    passed = through_ragdoll(motion, ragdoll.style, wishes)
+    add_hair(motion.skeleton, motion.times, passed.motion.rotations, passed.motion.root, piece.context.settings.hair)
+    seconds = [*(trip.second for trip in wishes.trips), *(push.second for push in wishes.pushes)]
+    lines = zip(seconds, passed.motion.notes[len(motion.notes) :], strict=True)
+    notes = (*motion.notes, *(line for second, line in lines if first <= second < last))
+    return BakedPiece(replace(passed.motion, notes=notes), passed.distances)
+
+
+def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
+    """Solve the body at times `at` (f,), and move it so that its centre of mass, head and all, is where it shall be."""
+    skeleton, settings, reach = context.skeleton, context.settings, context.settings.body.reach
+    targets = targets_at(plan, body, at, context)
+    poses = solve(skeleton, targets, reach, 0.0)
+    ground = sample_path(body.mass, body.times, at)
+    goal = np.column_stack((ground[:, 0], body.mass_height.at(at), ground[:, 1]))
+    feet, waiting = both_feet(plan.feet, at, context.settings), waiting_at(plan, at, context)
+    hands = hand_use(plan, body, at, waiting, context)
+    glances = glances_at(plan, body, at, context)
+    free = (1.0 - hands.floor.max(axis=1)) * (1.0 - hands.bar.max(axis=1))
+    doing = Doing(
+        stepping(feet, context.settings), free, plan.lead, plan.last, sample_path(body.beat, body.times, at), waiting,
+        glances,
+    )  # fmt: skip
+    dressed = Poses(poses.rotations.copy(), poses.root)
+    look(dressed, body, at, context)
+    add_layers(dressed, at, doing, context)
+    mass = mass_of(skeleton, poses)
+    head = mass_of(skeleton, dressed) - mass  # hardly changes as the body is moved
+    for k in range(CORRECTIONS):
+        targets = moved(targets, goal - head - (mass if k == 0 else mass_of(skeleton, poses)))
+        poses = solve(skeleton, targets, reach, 0.0)
+    rises = heels_may_rise(plan, at, settings.step.press_time)
+    rolled = rolled_soles(skeleton, plan, (at, feet, targets, poses), rises)
+    if rolled is not None:
+        poses = solve(skeleton, rolled, reach, 0.0)
+    ease_ankles(skeleton, poses, feet)
+    look(poses, body, at, context)
+    add_layers(poses, at, doing, context)
+    add_fingers(skeleton, poses, curls(at, hands, context.settings.fingers))
+    return poses
+
+
+def _beats(timing: Timing, play: Play) -> tuple[float, ...]:
+    """Seconds of all beats from the first measure to a while after the last row."""
+    if not len(play.rows):
+        return ()
+    ticks = np.arange(0, int(play.rows.tick[-1]) + BEATS_AFTER * TICKS_PER_BEAT, TICKS_PER_BEAT, dtype=np.int64)
+    return tuple(timing.seconds(ticks).tolist())

@@ -1,0 +1,246 @@
+"""A foot on its way: at which pace, and around the standing one, past which the path bends as little as it must."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from dancetutor_cli.dance.context import HALF_PANEL
+from dancetutor_cli.dance.plan import STRAIGHT, Bulge
+from dancetutor_cli.dance.rig.body import BALL_AHEAD, HALF_SHOE, SHOE_OUTLINE, ball_to_ankle
+from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
+from dancetutor_cli.dance.settings_feet import StepSettings
+from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
+
+# How far a swing has come at each part of its time, and how much there is of it if time is short.
+
+Array = NDArray[np.float64]
+
+
+def reduction(duration: ArrayLike, fast: float, longest: float) -> Array:
+    """How much a move is cut for lack of time: 0 at `longest`, 1 at `fast` or less, growing as a cube
+    (thesis 5.6.1)."""
+    s = np.clip((longest - np.asarray(duration, dtype=np.float64)) / max(longest - fast, 1e-9), 0.0, 1.0)
+    return np.asarray(s**3)
+
+
+def evenness(duration: ArrayLike, step: StepSettings) -> Array:
+    """How evenly a foot goes that has so many seconds for a step: 0 slow at both ends, 1 at one speed all the way."""
+    missing = step.even_slow - np.asarray(duration, dtype=np.float64)
+    return np.asarray(np.clip(missing / max(step.even_slow - step.even_quick, 1e-9), 0.0, 1.0))
+
+
+def travelled(s: ArrayLike, step: StepSettings, even: ArrayLike = 0.0, low: ArrayLike = 0.0) -> Array:
+    """How far over the ground a swing has come at each part of its time.
+
+    Slow at both ends, a cubic: of the ways from rest to rest that were tried its quick parts throw the body aside
+    least. That holds for what lasts longer than a tenth of a second; steps as short as that are gone at one speed, and
+    what their ends do the body, which is heavy, does not feel.
+
+    even : as of `evenness`; low : the last part of the time, in which it comes straight down, if that is longer than an
+    even step's
+    """
+    share = np.asarray(even, dtype=np.float64)
+    late = np.maximum(step.on_ground * share, low)
+    free = np.clip((np.asarray(s, dtype=np.float64) - step.off_ground) / (1.0 - step.off_ground - late), 0.0, 1.0)
+    slow = free * free * (3.0 - 2.0 * free)
+    return np.asarray(slow + share * (_at_one_speed(free, step.even_ends) - slow))
+
+
+def _at_one_speed(s: Array, ends: float) -> Array:
+    """From rest to rest, gaining speed and losing it in so long a part of the time at both ends."""
+    speed = 1.0 / (1.0 - ends)
+    first, last = np.minimum(s, ends), np.maximum(s - (1.0 - ends), 0.0)
+    return np.asarray(speed * (s - ends / 2 + ((ends - first) ** 2 - last**2) / (2.0 * ends)))
+
+
+def risen(s: Array, step: StepSettings, even: ArrayLike = 0.0) -> Array:
+    """How high a foot is in a step, 0 to 1, at each part of its time; it meets the ground at a definite speed.
+
+    The more evenly it goes the sooner it is up and the later down: what is near the ground must not slide.
+    """
+    shape = np.sin(np.pi * s**step.rising)
+    return np.asarray(shape + step.even_up * np.asarray(even, dtype=np.float64) * (hovering(s) - shape))
+
+
+def hovering(s: Array) -> Array:
+    """How high a foot is that is up at once and down late, 0 to 1."""
+    return np.asarray(1.0 - (2.0 * s - 1.0) ** 4)
+
+
+def swung(s: ArrayLike, step: StepSettings) -> Array:
+    """How far a foot has turned at each part of its swing: a little sooner than it lands."""
+    return smooth(np.asarray(s, dtype=np.float64) / step.turned)
+
+
+# A swinging foot goes around the standing one: shoes are capsules, and the path bends as little as it must.
+
+LATE_PRICE = 1.0  # metres of a detour that being late by all of the way counts as
+
+
+def _ways(sides: ArrayLike, ahead: int, late: tuple[float, ...]) -> Array:
+    """Detours (k, 3), least first: metres beside a path's middle, and along it (so many steps of 6 cm to each side),
+    and how late they are, as in `Bulge`."""
+    grid = np.meshgrid(sides, np.arange(-ahead, ahead + 1) * 0.06, late)
+    ways = np.column_stack([axis.ravel() for axis in grid])
+    return np.asarray(ways[np.argsort(np.abs(ways) @ [1.0, 1.0, LATE_PRICE], kind="stable")])
+
+
+_WAYS = (  # far ones, and late ones, which are quick in between, are asked only where none of the others will do
+    _ways(np.arange(-12, 13) * 0.03, 2, (0.0,)),
+    _ways(np.arange(-16, 17) * 0.03, 5, (0.0,)),
+    _ways(np.arange(-8, 9) * 0.06, 4, (0.08, 0.16, 0.24, 0.36)),
+)
+SHARES = np.linspace(0.05, 0.95, 37)  # of a swing's time, at which shoes are looked at
+ANKLE = ball_to_ankle(dancer_skeleton()) - BALL_AHEAD  # metres by which the ankle lies behind the middle of the shoe
+WRONG = 0.10  # metres of room that a radian of legs crossed too far counts as
+TOLERATED = 0.004, 0.006, 0.0  # metres of room that a way may lack before farther or later ones are tried
+SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on it
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """A swing from one place of the ball (2,) to another, and how the foot is turned at both, radians.
+
+    hips : yaw of the body at both, None where legs are not looked at; even : as of `evenness`
+    """
+
+    start: Array
+    start_yaw: float
+    end: Array
+    end_yaw: float
+    hips: tuple[float, float] | None = None
+    even: float = 0.0
+
+
+def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings, outward: float) -> Bulge:
+    """What to add to a straight path, so that the shoes stay `step.apart` between their middle lines.
+
+    And so that legs do not go through each other: it leads around the other foot on the side on which the hips turn.
+
+    Parameters
+    ----------
+    way : of the swinging foot
+    other, other_yaw : ball of the other foot and its yaw, (2,) and one number, or (k, 2) and (k,) at the `SHARES`
+    step : how feet step; where no detour is enough, the best one is taken
+    outward : 1 for the left foot, -1 for the right one: of equal detours each takes the other's mirror image
+    """
+    start, start_yaw, path = way.start, way.start_yaw, way.end - way.start
+    length = float(np.linalg.norm(path))
+    axes = np.eye(2) if length < SHORT else np.array([[path[1], -path[0]], path]) / length
+    axes = axes * [[outward], [1.0]]
+    e = travelled(SHARES, step, way.even)
+    ahead = headings(start_yaw + swung(SHARES, step) * (way.end_yaw - start_yaw))
+    straight = start + e[:, None] * path - BALL_AHEAD * ahead
+    aim = headings(np.broadcast_to(np.asarray(other_yaw), e.shape))
+    still = shoe_line(other - BALL_AHEAD * aim, aim)
+    gaps = segment_gaps(*shoe_line(straight, ahead), *still)
+    need = enough(gaps, e, step.apart) - 1e-3
+    ankle = outward * (other - BALL_AHEAD * aim - ANKLE * aim)
+    free = wrung(way, outward * (straight - ANKLE * ahead) - ankle, step)
+    if (gaps >= need).all() and free <= 0.0:
+        return STRAIGHT
+    most, chosen = -np.inf, STRAIGHT
+    for ways, tolerated in zip(_WAYS, TOLERATED, strict=True):
+        aside = ways[:, :2] @ axes
+        places = straight + bend(e)[:, None] * aside[:, None] - lag(e)[:, None] * (ways[:, 2:] * path)[:, None]
+        room = (segment_gaps(*shoe_line(places, ahead), *still) - need).min(axis=1)
+        room = np.minimum(room, 0.0) - WRONG * wrung(way, outward * (places - ANKLE * ahead) - ankle, step)
+        if room.max() > most:
+            most, k = float(room.max()), int(np.argmax(room >= min(0.0, room.max())))
+            chosen = Bulge(float(aside[k, 0]), float(aside[k, 1]), float(ways[k, 2]))
+        if most >= -tolerated:
+            break
+    return chosen
+
+
+def wrung(way: Way, line: Array, step: StepSettings) -> Array:
+    """How much farther (...) than legs may cross they do on the way, radians, 0 for not at all.
+
+    line : (..., k, 2) from the right ankle to the left one at the `SHARES`. Its angle is followed from the start on:
+    who goes around the wrong side of the other foot has gone through the other leg, and is wrung ever more.
+    """
+    if way.hips is None:
+        return np.zeros(line.shape[:-2])
+    hips = way.hips[0] + swung(SHARES, step) * (way.hips[1] - way.hips[0])
+    angle = np.arctan2(-line[..., 1], line[..., 0]) - hips
+    angle[..., 0] = (angle[..., 0] + np.pi) % (2 * np.pi) - np.pi
+    most = np.abs(np.unwrap(angle, axis=-1)).max(axis=-1)
+    allowed = max(np.radians(step.cross), abs(float(angle.reshape(-1, len(hips))[0, 0])))
+    return np.asarray(np.maximum(most - allowed, 0.0))
+
+
+def enough(gaps: Array, e: Array, apart: float) -> Array:
+    """Room (k,) to ask for on a way: its ends are given, so it is no more than there is at both; e : how far it is."""
+    return np.asarray(np.minimum(apart, gaps[0] + e * (gaps[-1] - gaps[0])))
+
+
+def shoe_line(middle: Array, ahead: Array) -> tuple[Array, Array]:
+    """Both ends (..., 2) of a shoe's middle line; ahead (..., 2) : unit vectors along it."""
+    return middle - HALF_SHOE * ahead, middle + HALF_SHOE * ahead
+
+
+def bend(share: Array) -> Array:
+    """How much of a detour there is (...) at each share (...) of the way: it starts at once, for shoes are long."""
+    return np.asarray(np.sin(np.pi * share))
+
+
+def lag(share: Array) -> Array:
+    """How much of its being late a way has (...) at each share (...) of it."""
+    return np.asarray(np.sin(2.0 * np.pi * share))
+
+
+def headings(yaw: Array) -> Array:
+    """Unit vectors (..., 2), x and z, of yaws (...)."""
+    return np.stack((np.sin(yaw), np.cos(yaw)), axis=-1)
+
+
+def gaps_at(balls: Array, yaws: Array, other: Array, other_yaw: float) -> Array:
+    """Least distance (k,) in metres between the middle lines of shoes, balls (k, 2) and yaws (k,), and another shoe."""
+    ahead = headings(yaws)
+    middle, still = balls - BALL_AHEAD * ahead, headings(np.array(other_yaw))
+    rest = other - BALL_AHEAD * still
+    return segment_gaps(*shoe_line(middle, ahead), *shoe_line(rest, still))
+
+
+def over(panels: Array, balls: Array, toes: Array, air: float) -> NDArray[np.bool_]:
+    """Which shoes, balls (k, 2) and toes (k,) in radians, are nearer than `air`, metres, to some panels (p, 2)."""
+    ahead = headings(toes)
+    across = np.column_stack((ahead[:, 1], -ahead[:, 0]))
+    points = balls[:, None] + SHOE_OUTLINE[:, :1] * ahead[:, None] + SHOE_OUTLINE[:, 1:] * across[:, None]
+    inside = np.abs(points[:, :, None] - panels).max(axis=3) <= HALF_PANEL + air
+    return np.asarray(inside.any(axis=(1, 2)))
+
+
+def segment_gaps(a: Array, b: Array, c: Array, d: Array) -> Array:
+    """Least distance (...) between segments a-b and c-d in the plane, (..., 2) each; c-d may be one for all."""
+    p, q, r, t = (np.ascontiguousarray(np.broadcast_to(x, a.shape)).reshape(-1, 2) for x in (a, b, c, d))
+    out = np.empty(a.size // 2)
+    _segment_gaps(p, q, r, t, out)
+    return out.reshape(a.shape[:-1])
+
+
+@njit(cache=True)
+def _segment_gaps(a: Array, b: Array, c: Array, d: Array, out: Array) -> None:
+    for k in range(len(out)):
+        ax, ay, bx, by, cx, cy, dx, dy = a[k, 0], a[k, 1], b[k, 0], b[k, 1], c[k, 0], c[k, 1], d[k, 0], d[k, 1]
+        here = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax), (bx - ax) * (dy - ay) - (by - ay) * (dx - ax)
+        there = (dx - cx) * (ay - cy) - (dy - cy) * (ax - cx), (dx - cx) * (by - cy) - (dy - cy) * (bx - cx)
+        if here[0] * here[1] < 0.0 and there[0] * there[1] < 0.0:
+            out[k] = 0.0
+            continue
+        first = min(_point_gap(ax, ay, (cx, cy, dx, dy)), _point_gap(bx, by, (cx, cy, dx, dy)))
+        out[k] = min(first, _point_gap(cx, cy, (ax, ay, bx, by)), _point_gap(dx, dy, (ax, ay, bx, by)))
+
+
+@inner_kernel
+def _point_gap(x: float, y: float, line: tuple[float, float, float, float]) -> float:
+    """From a point to a segment, given as the places of its ends."""
+    px, py = x - line[0], y - line[1]
+    ux, uy = line[2] - line[0], line[3] - line[1]
+    s = min(max((px * ux + py * uy) / (ux * ux + uy * uy), 0.0), 1.0)
+    return math.hypot(px - s * ux, py - s * uy)

@@ -1,0 +1,199 @@
+"""What stands around the dancer while a song is danced: panels, the bar behind her, settings, her skeleton."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.motion import Bar, Grip, Ground
+from dancetutor_cli.dance.rig.body import BALL_AHEAD
+from dancetutor_cli.dance.rig.skeleton import Skeleton, dancer_skeleton
+from dancetutor_cli.dance.settings import MotionSettings
+from dancetutor_cli.dance.settings_arms import BarSettings
+from dancetutor_cli.dance.settings_feet import StepSettings
+from dancetutor_cli.dance.smoothing import smooth
+
+if TYPE_CHECKING:
+    from dancetutor_cli.dance.plan import Plan
+    from dancetutor_cli.feet.pads import Pad
+
+
+# Where things are in the world: panels on the ground, and where on a panel a foot comes down.
+
+Array = NDArray[np.float64]
+PANEL = 0.28  # metres, width of one panel
+HALF_PANEL = PANEL / 2
+
+
+def panels_on_ground(pad: Pad) -> Array:
+    """World (x, z) of every panel's centre, (c, 2); the pad's centre is the origin and +Z the screen."""
+    centre = np.asarray(pad.centre, dtype=np.float64)
+    panels = np.asarray(pad.panels, dtype=np.float64) - centre
+    return np.asarray(panels * np.array([-PANEL, PANEL]))
+
+
+def squares_on_ground(pad: Pad) -> Array:
+    """World (x, z) of the middle of each square of three by three panels, (s, 2)."""
+    return np.asarray((pad.squares - np.asarray(pad.centre, dtype=np.float64)) * np.array([-PANEL, PANEL]))
+
+
+def heading(yaw: float) -> Array:
+    """Unit vector (x, z) that somebody turned by `yaw` radians looks along."""
+    return np.array([np.sin(yaw), np.cos(yaw)])
+
+
+def ball_of(middle: Array, yaw: float) -> Array:
+    """The ball of a foot whose sole has its middle there."""
+    return np.asarray(middle + BALL_AHEAD * heading(yaw))
+
+
+def middle_of(ball: Array, yaw: float) -> Array:
+    """The middle of the sole of a foot whose ball is there."""
+    return np.asarray(ball - BALL_AHEAD * heading(yaw))
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """Where a foot may be: a centre (2,), and how far (2,) along x and z its ball and its sole's middle may be off."""
+
+    centre: Array
+    room: Array
+    middle_room: Array | float = np.inf
+
+
+def room_on(panels: Array, column: int, step: StepSettings) -> Array:
+    """How far (2,) along x and z the ball of a foot may be from a panel's centre; panels (c, 2)."""
+    away = np.abs(panels - panels[column])
+    beside = [((np.abs(away[:, k] - PANEL) < 0.01) & (away[:, 1 - k] < HALF_PANEL)).any() for k in (0, 1)]
+    return HALF_PANEL - np.where(beside, step.neighbour_margin, step.ball_margin)
+
+
+def on_panel(ball: Array, toes: float, spot: Spot) -> Array:
+    """The place of a ball (2,) near this one from which it and the middle of the sole are where they may be."""
+    centre, room, ahead = spot.centre, spot.room, BALL_AHEAD * heading(toes)
+    ball = np.minimum(np.maximum(ball, centre - room), centre + room)  # np.clip takes three times as long
+    low, high = centre - spot.middle_room, centre + spot.middle_room
+    return np.asarray(np.minimum(np.maximum(ball - ahead, low), high) + ahead)
+
+
+# What does not change while a song is danced: handed on as one to every stage.
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """Who dances, how, and where. Pickles.
+
+    skeleton : hers; settings : the numbers of her motion
+    panels : (c, 2) world x and z of every panel's centre; squares : (s, 2) of the middle of each square of nine panels
+    ground : the pad as a rectangle, and the floor around it
+    beats : seconds of the song's beats, in order; bar : what she holds on to, None for no bar
+    stays : she does not walk off after the last step
+    sides : from which she comes and to which she goes, 0 left or 1 right, None: as the notes say
+    """
+
+    skeleton: Skeleton
+    settings: MotionSettings
+    panels: Array
+    squares: Array
+    ground: Ground
+    beats: tuple[float, ...] = ()
+    bar: Bar | None = None
+    sides: tuple[int, int] | None = None
+    stays: bool = False
+
+
+def context_of(pad: Pad, settings: MotionSettings, beats: tuple[float, ...] = (), bar: Bar | None = None) -> Context:
+    """The context of the project's own dancer on a pad."""
+    panels = panels_on_ground(pad)
+    low, high = panels.min(axis=0) - HALF_PANEL, panels.max(axis=0) + HALF_PANEL
+    ground = Ground((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), settings.walk.floor)
+    return Context(dancer_skeleton(), settings, panels, squares_on_ground(pad), ground, beats, bar)
+
+
+# The bar behind the dancer: where it stands, how she stands who holds it, and when a hand is on it.
+
+Flags = NDArray[np.bool_]
+SEED = 19981121
+ACROSS_SLOWER = 1.5  # as long a hand takes to the rail that crosses over
+
+
+def bar_of(pad: Pad, settings: BarSettings) -> Bar:
+    """The bar of a pad: a rail behind each of its squares of nine panels."""
+    spans = tuple((float(x - settings.posts), float(x + settings.posts)) for x in np.sort(squares_on_ground(pad)[:, 0]))
+    rear = float(panels_on_ground(pad)[:, 1].min()) - HALF_PANEL
+    return Bar(settings.height, rear - settings.behind, settings.radius, spans)
+
+
+def holding(settings: MotionSettings) -> MotionSettings:
+    """The settings for somebody who holds the bar: she stands a little lower, for her feet are far before her.
+
+    In streams she goes down a little, and her chest keeps more to the screen, for both hands hold it; and she goes down
+    half as far for jumps, for the bar bears a part of that.
+    """
+    body, jump, look, bar = settings.body, settings.jump, settings.look, settings.bar
+    body = replace(body, leg=body.leg - bar.knees, soft_reach=body.soft_reach - bar.knees)
+    body = replace(body, stream_crouch=bar.stream_crouch)
+    jump = replace(jump, crouch=jump.crouch / 2, follow=jump.follow / 2)
+    return replace(settings, body=body, jump=jump, look=replace(look, torso_weight=bar.square))
+
+
+def on_rail(x: Array, bar: Bar, from_end: float) -> Array:
+    """The nearest place on the rail, so far from its ends, metres."""
+    choices = np.stack([np.clip(x, low + from_end, high - from_end) for low, high in bar.spans])
+    nearest = np.argmin(np.abs(choices - x), axis=0)
+    return np.asarray(np.take_along_axis(choices, nearest[None], axis=0)[0])
+
+
+def grip_phrases(plan: Plan, times: Array, yaw: Array, settings: BarSettings) -> tuple[Flags, Array]:
+    """Which hands (n, 2) may be on the rail at even times (n,), and how far (n,) each is beside the body then, metres.
+
+    A song has phrases of some seconds. In each she holds on with both hands, as mostly in quick ones, or with one:
+    where she is turned, with the one on the rail's side, else with either. Chance decides, always the same way for a
+    song.
+    yaw : (n,) radians that the chest is turned
+    """
+    chance = np.random.default_rng([SEED, round(1000 * plan.first), round(1000 * plan.last) & 0xFFFFFFFF])
+    holds, apart = np.ones((len(times), 2), dtype=bool), np.full(len(times), settings.apart)
+    notes, start = np.array([touch.start for touch in plan.touches]), float(times[0])
+    while start < times[-1]:
+        end = start + chance.uniform(settings.phrase_least, settings.phrase_most)
+        near = slice(*np.searchsorted(times, (start, end)).tolist())
+        quick = float(((notes >= start) & (notes < end)).sum()) / (end - start) > settings.quick
+        one, side, nearer = chance.random(), int(chance.integers(2)) ^ plan.lead, chance.uniform(-1.0, 1.0)
+        apart[near] += nearer * settings.nearer
+        if one < (settings.one_quick if quick else settings.one_slow):
+            turned = float(yaw[near].mean())
+            if abs(turned) > np.radians(settings.turned):
+                side = int(turned < 0.0)  # turned to the left she has the rail at her left
+            holds[near, 1 - side] = False
+        start = end
+    return holds, apart
+
+
+def hold_share(grips: tuple[Grip, ...], times: Array, reach: float) -> Array:
+    """How much each hand is at the rail, (n, 2), 0 to 1: all of it from a grip's start to its end."""
+    out = np.zeros((len(times), 2))
+    for grip in grips:
+        near = around(grip, times, reach)
+        out[near, grip.side] += grip_share(grip, times[near], reach)
+    return np.minimum(out, 1.0)
+
+
+def around(grip: Grip, times: Array, reach: float) -> slice:
+    """Those of the times (n,) at which the hand of a grip is on its way or there."""
+    long = way_time(grip, reach)
+    return slice(*np.searchsorted(times, (grip.start - long, grip.end + long)).tolist())
+
+
+def way_time(grip: Grip, reach: float) -> float:
+    """Seconds that the hand of a grip takes to the rail and from it: before her it has farther to go."""
+    return ACROSS_SLOWER * reach if grip.across else reach
+
+
+def grip_share(grip: Grip, times: Array, reach: float) -> Array:
+    """How much of a grip there is at each time (n,), 0 to 1; reach : seconds to the rail and from it."""
+    long = way_time(grip, reach)
+    return smooth((times - grip.start + long) / long) * smooth((grip.end + long - times) / long)

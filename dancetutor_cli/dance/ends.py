@@ -1,0 +1,160 @@
+"""The ends of a cut where the dancer does not play on: she waits for its first step, and comes to rest after its last.
+
+Both are small dances of their own in which the feet step as in the dance itself, but none of the steps before the first
+one, or after the last. Within a second the one becomes the other; the feet, which are the same there, stay where they
+are while the body moves over.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.motion import Cut, Motion, sample
+from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
+from dancetutor_cli.dance.pieces import MARGIN, OVERLAP, Keys, Piece, RagdollStyle, Span, piece_of, track_from
+from dancetutor_cli.dance.plan import FootTrack, Plan
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.smoothing import smooth
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+CROSSING = 1.0  # seconds in which an end becomes the dance
+OWN_FEET = 0.8  # share of the dance below which feet are where the end has them
+SAME_PLACE = 0.002  # metres
+LONG_AGO = 60.0  # seconds before a cut at which what has happened before it is put
+NOW = 1e-6  # seconds
+
+
+def entrance_of(plan: Plan, cut: Cut) -> Plan | None:
+    """The plan of who stands until the first step of a cut; None where the dance itself does."""
+    begin = cut.steps_from
+    if not any(cut.start < one.end and one.start < begin - NOW for one in plan.touches):
+        return None
+    tracks = [_from(track, begin) for track in plan.feet]
+    before = [turn for turn in plan.turns if turn.end < begin]
+    turns = [replace(turn, start=begin - LONG_AGO - 1.0, end=begin - LONG_AGO) for turn in before[-1:]]
+    touches = tuple(one for one in plan.touches if one.start >= begin - NOW)
+    return replace(
+        plan,
+        feet=(tracks[0], tracks[1]),
+        turns=(*turns, *(turn for turn in plan.turns if turn.end >= begin)),
+        presses=tuple(one for one in plan.presses if one.start >= begin - NOW),
+        touches=touches,
+        first=min((one.start for one in touches), default=plan.last),
+        walks=tuple(walk for walk in plan.walks if walk.end >= begin),
+        grips=tuple(
+            replace(grip, start=begin - LONG_AGO) if grip.start < begin else grip
+            for grip in plan.grips
+            if grip.end > begin
+        ),
+        let_go=(),
+    )
+
+
+def _from(track: FootTrack, second: float) -> FootTrack:
+    first = sum(move.land < second - NOW for move in track.moves)
+    return track_from(track, first, track.moves[first:])
+
+
+def rest_from(plan: Plan, cut: Cut, walks_off: bool) -> float | None:
+    """The second from which on she comes to rest at the end of a cut; None where she dances on to its end.
+
+    walks_off : she may leave after the last note
+    """
+    walks = [walk.start for walk in plan.walks if walk.start > plan.last and not walks_off]
+    until = min([cut.steps_until, *walks])
+    starts = [*(touch.start for touch in plan.touches), *(walk.start for walk in plan.walks)]
+    return until if any(until - NOW <= start < cut.end for start in starts) else None
+
+
+def exit_of(plan: Plan, until: float) -> Plan:
+    """The plan of who makes no step from a second on."""
+    touches = tuple(one for one in plan.touches if one.start < until - NOW)
+    left, right = (
+        replace(track, moves=tuple(move for move in track.moves if move.land <= until + NOW)) for track in plan.feet
+    )
+    return replace(
+        plan,
+        feet=(left, right),
+        turns=tuple(turn for turn in plan.turns if turn.end <= until + NOW),
+        presses=tuple(one for one in plan.presses if one.start < until - NOW),
+        touches=touches,
+        last=max((min(one.end, until) for one in touches), default=until),
+        walks=tuple(walk for walk in plan.walks if walk.start < until - NOW),
+        grips=tuple(grip for grip in plan.grips if grip.start < until),
+        let_go=(),
+    )
+
+
+def entrance_piece(plan: Plan, context: Context, fps: float, cut: Cut, ragdoll: RagdollStyle | None) -> Piece:
+    """The piece of an entrance: it stands before the cut, and dances on until it has become the dance."""
+    baked = (cut.start - MARGIN, min(cut.steps_from + CROSSING, cut.end) + MARGIN)
+    return piece_of(plan, context, fps, (baked, baked, OVERLAP), ragdoll)
+
+
+def exit_piece(plan: Plan, context: Context, fps: float, span: Span, ragdoll: RagdollStyle | None = None) -> Piece:
+    """The piece of an exit. span : from which second on it is the exit, to the end of the cut"""
+    baked = (span[0] - CROSSING - OVERLAP, span[1])
+    return piece_of(plan, replace(context, stays=True), fps, (baked, baked, MARGIN), ragdoll)
+
+
+def entered(dance: Motion, entrance: Motion, cut: Cut) -> Motion:
+    """The dance with an entrance before its first step."""
+    begin, end = cut.steps_from, min(cut.steps_from + CROSSING, cut.end)
+    after, before = dance.times >= begin, (entrance.times >= cut.start - NOW) & (entrance.times < begin)
+    share = smooth((dance.times[after] - begin) / max(end - begin, NOW))
+    contacts = tuple(one for one in dance.contacts if one.start >= begin - NOW)
+    return _together(
+        _keys(entrance, before), _crossing(dance, after, entrance, share), replace(dance, contacts=contacts)
+    )
+
+
+def left(dance: Motion, rest: Motion, until: float, cut: Cut) -> Motion:
+    """The dance with an exit from second `until` on, before which its last step is."""
+    begin = max(until - CROSSING, cut.start)
+    before, after = dance.times < until, (rest.times >= until) & (rest.times <= cut.end + NOW)
+    share = 1.0 - smooth((dance.times[before] - begin) / max(until - begin, NOW))
+    contacts = tuple(one for one in dance.contacts if one.start < until - NOW)
+    return _together(_crossing(dance, before, rest, share), _keys(rest, after), replace(dance, contacts=contacts))
+
+
+def _keys(motion: Motion, which: Flags) -> Keys:
+    return motion.times[which], motion.rotations[which], motion.root[which]
+
+
+def _together(first: Keys, second: Keys, motion: Motion) -> Motion:
+    times, rotations, root = (np.concatenate(arrays) for arrays in zip(first, second, strict=True))
+    return replace(motion, times=times, rotations=quat.continuous(rotations), root=root)
+
+
+def _crossing(dance: Motion, which: Flags, other: Motion, share: Array) -> Keys:
+    """Some keys of the dance, of which only a share (f,) is the dance and the rest another motion of the same feet."""
+    times, rotations, root = _keys(dance, which)
+    mixed = share < 1.0
+    if mixed.any():
+        poses = rotations[mixed], root[mixed]
+        rotations[mixed], root[mixed] = _mixed(dance, poses, sample(other, times[mixed]), share[mixed])
+    return times, rotations, root
+
+
+def _mixed(dance: Motion, poses: Sequence[Array], others: Sequence[Array], share: Array) -> tuple[Array, Array]:
+    """Poses that are a share of the dance's and else of others'. Their feet are the others', for they differ only where
+    a foot is on its way to a step that is left out; one that was on it already turns back."""
+    skeleton = dance.skeleton
+    mine, theirs = feet_of(skeleton, poses[0], poses[1]), feet_of(skeleton, others[0], others[1])
+    own = smooth((share - OWN_FEET) / (1.0 - OWN_FEET))
+    beside = int(np.argmax(share))  # the key beside the dance, where feet are elsewhere only on a long way
+    away = np.linalg.norm(mine.places[beside] - theirs.places[beside], axis=1) > SAME_PLACE
+    own = own[:, None] * away
+    feet = AnkleTracks(
+        theirs.places + own[..., None] * (mine.places - theirs.places), quat.slerp(theirs.turns, mine.turns, own)
+    )
+    rotations = quat.slerp(others[0], poses[0], share[:, None])
+    toes = [skeleton.index(f"{side}_metatarsal") for side in "lr"]
+    rotations[:, toes] = quat.slerp(others[0][:, toes], poses[0][:, toes], own)
+    return repinned(skeleton, (rotations, others[1] + share[:, None] * (poses[1] - others[1])), feet)

@@ -1,0 +1,224 @@
+"""Footsteps: from one stand to another, at a pace that arrives in time, each foot on one level and past the other."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.clearance import Way, bend, detour, gaps_at, lag
+from dancetutor_cli.dance.context import Context, ball_of, middle_of
+from dancetutor_cli.dance.gait import STANCE, Gait, blended, load_gait
+from dancetutor_cli.dance.motion import Ground
+from dancetutor_cli.dance.plan import Bulge, FootTrack, Route, Turn, Walk
+from dancetutor_cli.dance.settings import MotionSettings
+from dancetutor_cli.dance.smoothing import smooth
+
+Array = NDArray[np.float64]
+SPEEDS = np.linspace(0.0, 1.0, 11)  # shares of the quick gait that are tried, slowest first
+ALONG, ACROSS = 0.155, 0.05  # half length and half width that a shoe needs on one level, metres
+
+
+@dataclass(frozen=True, slots=True)
+class Stand:
+    """Both feet on the ground: places of their balls (2, 2) and their yaws with toe-out (2,), left and right.
+
+    heading : yaw of the body, radians
+    """
+
+    balls: Array
+    yaws: Array
+    heading: float
+
+    @property
+    def middle(self) -> Array:
+        """Between the feet, (2,)."""
+        left, right = (middle_of(b, float(y)) for b, y in zip(self.balls, self.yaws, strict=True))
+        return np.asarray((left + right) / 2)
+
+
+def standing(feet: tuple[FootTrack, FootTrack], time: float, turns: tuple[Turn, ...] = ()) -> Stand:
+    """How she stands at a time: after all that landed before it."""
+    balls, yaws = [], []
+    for track in feet:
+        done = bisect_right(track.moves, time, key=lambda s: s.land)
+        balls.append(track.moves[done - 1].target if done else track.start)
+        yaws.append(track.moves[done - 1].yaw if done else track.start_yaw)
+    before = [t.yaw for t in turns if t.end <= time]
+    return Stand(np.array(balls), np.array(yaws), before[-1] if before else 0.0)
+
+
+def stand_at(middle: Array, heading: float, settings: MotionSettings) -> Stand:
+    """Feet side by side around a place."""
+    out = np.radians(settings.step.toe_out)
+    left = np.array([np.cos(heading), -np.sin(heading)])
+    yaws = np.array([heading + out, heading - out])
+    sides = (settings.walk.width, -settings.walk.width)
+    balls = np.array([ball_of(middle + w * left, y) for w, y in zip(sides, yaws, strict=True)])
+    return Stand(balls, yaws, heading)
+
+
+@dataclass(frozen=True, slots=True)
+class WalkSteps:
+    """A walk, ready to be put into a plan. room : least distance between the middle lines of her shoes, metres."""
+
+    walk: Route
+    swings: tuple[tuple[Walk, ...], tuple[Walk, ...]]
+    turns: tuple[Turn, ...]
+    room: float
+
+
+@dataclass(frozen=True, slots=True)
+class Trip:
+    """From where to where she walks, facing `heading` (radians) on the way, from `start` until `ready`, seconds."""
+
+    begin: Stand
+    goal: Stand
+    heading: float
+    start: float
+    ready: float
+
+
+def footsteps(trip: Trip, gait: str, lead: int, context: Context) -> WalkSteps | None:
+    """Footsteps from one stand to another, at the slowest pace that arrives in time; None if none does.
+
+    lead : the foot that goes first where both have the same room
+    """
+    slow, quick = load_gait(gait)
+    begin, goal, most = trip.begin, trip.goal, context.settings.walk.turn
+    distance = float(np.linalg.norm(goal.middle - begin.middle))
+    turning = _steps_to_turn(begin.heading, trip.heading, most) + _steps_to_turn(trip.heading, goal.heading, most)
+    for share in SPEEDS:
+        pace = blended(slow, quick, float(share))
+        count = max(int(np.ceil(2 * distance / pace.stride - 1e-6)), turning + 1, 2) + 1
+        last = trip.start + (1.0 - STANCE) * pace.period + (count - 1) * pace.period / 2
+        if last <= trip.ready:
+            how = Pace(gait, float(share), pace)
+            both = []
+            for side in (lead, 1 - lead):
+                falls = _footfalls(trip, count, side, context)
+                both.append(_as_swings(trip, falls, side, how, context))
+            return max(both, key=lambda s: round(s.room, 6))
+    return None
+
+
+def _steps_to_turn(a: float, b: float, most: float) -> int:
+    """Steps that it takes to turn from one heading to another, at most `most` degrees in each."""
+    return int(np.ceil(abs(b - a) / np.radians(most) - 1e-6))
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """How quickly she walks: a gait's name, the share of its quick form, and the gait that this makes."""
+
+    name: str
+    share: float
+    gait: Gait
+
+
+@dataclass(frozen=True, slots=True)
+class Footfall:
+    """Where a foot comes down: its ball, its yaw with toe-out, and which way the body then points."""
+
+    ball: Array
+    yaw: float
+    heading: float
+
+
+def _footfalls(trip: Trip, count: int, first: int, context: Context) -> list[Footfall]:
+    """`count` footfalls, the first of foot `first`; the last two are the goal's."""
+    begin, goal, ground, settings = trip.begin, trip.goal, context.ground, context.settings
+    out = np.radians(settings.step.toe_out)
+    ways = _ways(trip, count, np.radians(settings.walk.turn))
+    travel = goal.middle - begin.middle
+    along = float(np.arctan2(travel[0], travel[1]))
+    # steps across the way she faces are short, or ankles would bend aside
+    ahead = np.maximum(np.cos(np.array([begin.heading, *ways, goal.heading]) - along), 0.0)
+    aside = settings.walk.sidestep
+    lengths = np.cumsum(aside + (1.0 - aside) * np.minimum(ahead[1:], ahead[:-1]))
+    steps = []
+    for k in range(1, count + 1):
+        side = (first + k - 1) % 2
+        if k >= count - 1:
+            steps.append(Footfall(goal.balls[side], float(goal.yaws[side]), goal.heading))
+            continue
+        way = ways[k - 1]
+        off = (settings.walk.width if side == 0 else -settings.walk.width) * np.array([np.cos(way), -np.sin(way)])
+        middle = begin.middle + travel * lengths[k - 1] / lengths[-1] + off
+        yaw = way + (out if side == 0 else -out)
+        steps.append(Footfall(ball_of(_on_one_level(middle, yaw, ground), yaw), yaw, way))
+    return steps
+
+
+def _ways(trip: Trip, count: int, most: float) -> list[float]:
+    """Which way the body points at each footfall but the last two: to `heading` as soon and as long as turns allow."""
+    begin, goal, out = trip.begin, trip.goal, []
+    for k in range(1, count - 1):
+        way = np.clip(trip.heading, begin.heading - k * most, begin.heading + k * most)
+        left = (count - 1 - k) * most
+        out.append(float(np.clip(way, goal.heading - left, goal.heading + left)))
+    return out
+
+
+def _on_one_level(middle: Array, yaw: float, ground: Ground) -> Array:
+    """A place for a foot at which all of it is on the pad, or all of it beside it."""
+    need = ALONG * np.abs([np.sin(yaw), np.cos(yaw)]) + ACROSS * np.abs([np.cos(yaw), np.sin(yaw)])
+    out = middle.copy()
+    inside = np.array(ground.low) - need < out
+    if not (inside & (out < np.array(ground.high) + need)).all():
+        return out
+    for axis in (0, 1):
+        for edge, outward in ((ground.low[axis], -1.0), (ground.high[axis], 1.0)):
+            beyond = outward * (out[axis] - edge)
+            if abs(beyond) < need[axis]:
+                out[axis] = edge + outward * (need[axis] if beyond > 0 else -need[axis])
+    return out
+
+
+def room(start: tuple[Array, float], step: Footfall, bulge: Bulge, other: tuple[Array, float]) -> float:
+    """Least distance between a swinging shoe and the standing one, metres."""
+    share = smooth(np.linspace(0.1, 1.0, 10))
+    way = (share - bulge.late * lag(share))[:, None] * (step.ball - start[0])
+    balls = start[0] + way + bend(share)[:, None] * np.array(bulge[:2])
+    return float(gaps_at(balls, start[1] + share * (step.yaw - start[1]), *other).min())
+
+
+def _as_swings(trip: Trip, steps: list[Footfall], first: int, how: Pace, context: Context) -> WalkSteps:
+    begin, pace, ground, walk = trip.begin, how.gait, context.ground, context.settings.walk
+    push, heel = np.radians((pace.push_pitch, pace.heel_pitch))
+    places = [(begin.balls[s], float(begin.yaws[s])) for s in (0, 1)]
+    swings: tuple[list[Walk], list[Walk]] = ([], [])
+    turns, landings, before, least = [], [], begin.heading, np.inf
+    for k, step in enumerate(steps):
+        side = (first + k) % 2
+        land = trip.start + (1.0 - STANCE) * pace.period + k * pace.period / 2
+        lift = land - (1.0 - STANCE) * pace.period
+        far = float(np.linalg.norm(step.ball - places[side][0]))
+        share = min(far / (walk.short * pace.stride), 1.0)  # a short step neither pushes off nor lands on its heel
+        pitches = (walk.push_share * share * push, max(share, 0.3) * push, -share * heel, 0.0)
+        (ball, yaw), (other, standing) = places[side], places[1 - side]
+        way = Way(ball, yaw, step.ball, step.yaw)
+        bulge = detour(way, other, standing, context.settings.step, 1.0 - 2.0 * side)
+        least = min(least, room(places[side], step, bulge, places[1 - side]))
+        level = ground.level(*middle_of(step.ball, step.yaw))
+        edge = abs(level - ground.level(*middle_of(ball, yaw))) > 0.0
+        target = (float(step.ball[0]), float(step.ball[1]))
+        height = pace.height + walk.over_edge * edge
+        swings[side].append(Walk(lift, land, target, step.yaw, pitches, height, bulge, level))
+        places[side] = (step.ball, step.yaw)
+        turns.append(Turn(lift, land, (before + step.heading) / 2 if k + 1 < len(steps) else step.heading))
+        before = step.heading
+        landings.append(land)
+    route = Route(trip.start, landings[-1], tuple(landings), first, how.share, how.name)
+    return WalkSteps(route, (tuple(swings[0]), tuple(swings[1])), tuple(_joined(turns)), least)
+
+
+def _joined(turns: list[Turn]) -> list[Turn]:
+    """Turns that follow each other without overlapping."""
+    out = []
+    for k, turn in enumerate(turns):
+        end = turns[k + 1].start if k + 1 < len(turns) else turn.end
+        out.append(replace(turn, end=max(min(turn.end, end), turn.start + 0.05)))
+    return out

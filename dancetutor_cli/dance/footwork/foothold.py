@@ -1,0 +1,236 @@
+"""How a foot comes down: where on its panel, how it is turned, how its heel is raised, and around which way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.clearance import ANKLE, SHARES, Way, detour, evenness, gaps_at, headings, over
+from dancetutor_cli.dance.context import HALF_PANEL, Spot, ball_of, middle_of, on_panel, room_on
+from dancetutor_cli.dance.foot_path import foot_path
+from dancetutor_cli.dance.footwork.footing import Footing, FootState
+from dancetutor_cli.dance.motion import Ground
+from dancetutor_cli.dance.plan import Bulge
+from dancetutor_cli.dance.rig.body import BALL_AHEAD, SHOE_OUTLINE
+from dancetutor_cli.dance.settings_feet import StepSettings
+from dancetutor_cli.feet.limbs import Part
+
+Array = NDArray[np.float64]
+Pitches = tuple[float, float, float, float]
+HALF_BALL = float(SHOE_OUTLINE[:, 1].max())  # metres from the middle of a shoe at the ball to its side
+_ACROSS = np.arange(-5, 6) / 5
+PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a left ball in its room on a panel
+TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
+LATEST = 4  # swings of a foot that are looked at to see where it is
+CROSSED_PRICE = 3e3  # of a radian that legs cross too far
+MIDDLE_PRICE = 1e2  # of a metre that the middle of a shoe is off its panel
+EDGE_PRICE = 4e2  # of a metre that a shoe would reach over the edge of the pad
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """A foot that stands: its ball (2,), and where its toes point, radians."""
+
+    ball: Array
+    toes: float
+
+    @property
+    def middle(self) -> Array:
+        """The middle of the sole."""
+        return middle_of(self.ball, self.toes)
+
+
+def pose(footing: Footing, foot: FootState) -> Pose:
+    """How a foot stands now."""
+    return Pose(foot.ball, footing.toes(foot))
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """What a foot is asked for at a row.
+
+    columns : those that it presses; parts : (c,) which part of a foot presses each column
+    yaw : wanted, without toe-out; cut : 0 for the panel's centre to 1 for its inner edge
+    following : (2,) the panel that this foot steps on next, None if that is far off
+    haste : 0 to 1, how much faster than fast it is
+    """
+
+    columns: list[int]
+    parts: Array
+    yaw: float
+    cut: float
+    following: Array | None
+    haste: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Heel:
+    """How far a heel is raised in a slow move: as the toes leave, at most, at landing, degrees.
+
+    flat : by which parts the first two are less in the fastest
+    """
+
+    degrees: tuple[float, float, float]
+    flat: tuple[float, float]
+
+
+def heel_of_step(step: StepSettings) -> Heel:
+    """Of a step."""
+    return Heel((step.lift_pitch, step.swing_pitch, step.land_pitch), (step.lift_flat, step.swing_flat))
+
+
+def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple[Array, float]:
+    """Where the ball lands and how the foot is turned (without toe-out). other : the other foot then"""
+    step = footing.settings.step
+    if len(goal.columns) > 1:
+        return _bracket(footing, foot, goal)
+    panels, following = footing.context.panels, goal.following
+    panel, room = panels[goal.columns[0]], room_on(panels, goal.columns[0], step)
+    hurry = goal.cut * (step.resting if following is None else 1.0)  # who stays a while stands on the panel's middle
+    far = float(np.linalg.norm(panel - other.middle))
+    wide = float(np.clip((far - step.wide) / max(step.wide_most - step.wide, 1e-9), 0.0, 1.0))
+    wide *= far < step.leap + HALF_PANEL  # beyond, the other foot comes along
+    cut = max(hurry, step.edge, wide * step.wide_inward)
+    yaw = footing.limited(goal.yaw + foot.outward * wide * np.radians(step.wide_turn), footing.body_yaw())
+    toes = footing.toes(foot, yaw)
+    beyond = (far - 2 * HALF_PANEL) / max(step.wide - 2 * HALF_PANEL, 1e-9)
+    hard = max(goal.haste, float(np.clip(beyond, 0.0, 1.0)))
+    inside = step.middle_inside + hard * (step.middle_inside_hasty - step.middle_inside)
+    spot = Spot(panel, room, np.maximum(room, room + hurry * (HALF_PANEL - inside - room)))
+    ball = landing_ball(spot, toes, other.middle, cut, step.edge_margin)
+    # in a stream a foot goes the shortest way: it lands where its panel is nearest to its last place and its next one
+    way = (foot.ball + (foot.ball if following is None else following)) / 2
+    ball = ball + step.on_the_way * hurry * (on_panel(way, toes, spot) - ball)
+    if (np.abs(foot.ball - panel) <= room).all() and following is not None:  # a jack need not move
+        ball = on_panel(ball + max(step.staying, wide) * (foot.ball - ball), toes, spot)
+    return beside(footing, foot, spot, ball, yaw, other)
+
+
+def landing_ball(spot: Spot, yaw: float, other: Array, cut: float, edge_margin: float) -> Array:
+    """Where the ball of a foot would like to land on a panel.
+
+    Parameters
+    ----------
+    spot : the panel; yaw : of the toes; other : (2,) middle of the other foot
+    cut : 0 for the centre of the panel, 1 for the edge nearest to the other foot (less `edge_margin`)
+    """
+    panel = spot.centre
+    middle = panel.copy()
+    away = other - panel
+    distance = float(np.linalg.norm(away))
+    if distance > 1e-6:
+        direction = away / distance
+        to_edge = HALF_PANEL / max(abs(direction[0]), abs(direction[1])) - edge_margin
+        middle = panel + direction * min(cut * to_edge, distance)
+    return on_panel(ball_of(middle, yaw), yaw, spot)
+
+
+def beside(footing: Footing, foot: FootState, spot: Spot, ball: Array, yaw: float, other: Pose) -> tuple[Array, float]:
+    """The place on the panel nearest to the wanted one, and the yaw, that leave the other shoe its room.
+
+    Nor do the legs cross there farther than they must.
+    """
+    step, air = footing.settings.step, footing.settings.mines.keep_off
+    apart, still = step.apart, other.toes + foot.outward * footing.toe_out
+    body = footing.turned_to((yaw, still) if foot.side == 0 else (still, yaw))
+    toes = np.array([footing.toes(foot, yaw)])
+    free = gaps_at(ball[None], toes, other.ball, other.toes)[0] >= apart
+    crossed = legs_crossed(foot.outward, ball[None], toes, other, body, step)[0]
+    if free and crossed <= 0.0 and not over(footing.mined, ball[None], toes, air)[0]:
+        return ball, yaw
+    balls = spot.centre + spot.room * PLACES * [foot.outward, 1.0]
+    turned = np.array([footing.limited(yaw + foot.outward * turn, footing.body_yaw()) for turn in TURNS])
+    grid, yaws = np.repeat(balls, len(turned), axis=0), np.tile(turned, len(balls))
+    gaps = gaps_at(grid, yaws + foot.outward * footing.toe_out, other.ball, other.toes)
+    price = np.sum((grid - ball) ** 2, axis=1) / step.place_off**2 + ((yaws - yaw) / np.radians(step.turn_off)) ** 2
+    price += np.maximum(apart - gaps, 0.0) * 1e6
+    price += CROSSED_PRICE * legs_crossed(
+        foot.outward, grid, toes, other, body, step
+    )  # whichever way the foot is turned
+    price += MIDDLE_PRICE * off_the_middle(spot, grid, yaws + foot.outward * footing.toe_out)
+    price += EDGE_PRICE * beyond_the_edge(footing.context.ground, grid)
+    price += over(footing.mined, grid, yaws + foot.outward * footing.toe_out, air) * 1e4
+    best = int(np.argmin(price))
+    return grid[best], float(yaws[best])
+
+
+def beyond_the_edge(ground: Ground, balls: Array) -> Array:
+    """How much nearer (k,) balls (k, 2) are to the edge of the pad than half a shoe, metres; what is beyond it carries
+    nothing."""
+    near = np.maximum(np.array(ground.low) + HALF_BALL - balls, balls - np.array(ground.high) + HALF_BALL)
+    return np.asarray(np.maximum(near, 0.0).sum(axis=1))
+
+
+def off_the_middle(spot: Spot, balls: Array, toes: Array) -> Array:
+    """How far (k,) the middles of shoes, balls (k, 2) and toes (k,), are out of where they may be, metres."""
+    middles = balls - BALL_AHEAD * headings(toes)
+    return np.asarray(np.maximum(np.abs(middles - spot.centre) - spot.middle_room, 0.0).sum(axis=1))
+
+
+def legs_crossed(outward: float, balls: Array, toes: Array, other: Pose, body: float, step: StepSettings) -> Array:
+    """How much farther (k,) legs cross than they may, radians, as a foot stands at balls (k, 2) with its toes (k,) so.
+
+    outward : as of the foot; body : yaw of the hips
+    """
+    own = balls - (BALL_AHEAD + ANKLE) * headings(toes)
+    line = outward * (own - (other.ball - (BALL_AHEAD + ANKLE) * headings(np.array(other.toes))))
+    angle = np.arctan2(-line[:, 1], line[:, 0]) - body
+    most = np.radians(step.cross - step.stand_cross)
+    return np.asarray(np.maximum(np.abs((angle + np.pi) % (2 * np.pi) - np.pi) - most, 0.0))
+
+
+def _bracket(footing: Footing, foot: FootState, goal: Goal) -> tuple[Array, float]:
+    """Heel on one panel, toes on the other; a foot that lies across her turns a little back to where hips allow."""
+    step, body = footing.settings.step, footing.body_yaw()
+    panels, parts, columns = footing.context.panels, goal.parts, goal.columns
+    toe = next((c for c in columns if parts[c] == Part.TOE), None)
+    heel = next((c for c in columns if parts[c] == Part.HEEL and c != toe), None)
+    if heel is None:
+        heel = next(c for c in columns if c != toe)
+    toe = next(c for c in columns if c != heel)
+    along = panels[toe] - panels[heel]
+    toes = float(np.arctan2(along[0], along[1]))
+    toes += 2 * np.pi * round((goal.yaw - toes) / (2 * np.pi))
+    yaw, most = toes - foot.outward * footing.toe_out, np.radians(step.bracket_turn)
+    askew = np.radians(step.bracket_askew)
+    yaw += float(np.clip(np.clip(yaw, body - most, body + most) - yaw, -askew, askew))
+    return ball_of((panels[toe] + panels[heel]) / 2, footing.toes(foot, yaw)), yaw
+
+
+def heel_up(step: StepSettings, cut: float, heel: Heel, columns: list[int]) -> Pitches:
+    """Pitches of a swing, radians: as the toes leave, at most, at landing and afterwards; fast steps stay flat."""
+    lift, most, land = heel.degrees
+    rest = step.stream_pitch * cut
+    if len(columns) > 1:
+        land = rest = 0.0  # heel and toes of a bracket come down together
+    out = np.radians(
+        [
+            lift * (1.0 - heel.flat[0] * cut),
+            most * (1.0 - heel.flat[1] * cut),
+            land + step.land_stream * rest,
+            rest,
+        ]
+    )
+    return float(out[0]), float(max(out[0], out[1])), float(max(out[2], out[3])), float(out[3])
+
+
+def shoes_apart(a: Pose, b: Pose) -> float:
+    """Least distance between the middle lines of two standing shoes, metres."""
+    return float(gaps_at(a.ball[None], np.array([a.toes]), b.ball, b.toes)[0])
+
+
+def around(
+    footing: Footing, foot: FootState, span: tuple[float, float], target: Array, yaw: float, other: FootState
+) -> Bulge:
+    """Sideways detour of a swing, from lift to landing, that keeps clear of the other foot, as planned so far."""
+    step = footing.settings.step
+    after = footing.turned_to((yaw, other.yaw) if foot.side == 0 else (other.yaw, yaw))
+    even = float(evenness(span[1] - span[0], step))
+    way = Way(foot.ball, footing.toes(foot), target, footing.toes(foot, yaw), (footing.faced, after), even)
+    if max(other.landed, other.turned) <= span[0]:
+        return detour(way, other.ball, footing.toes(other), step, foot.outward)
+    times = span[0] + SHARES * (span[1] - span[0])
+    there = foot_path(other.track(LATEST), times, footing.settings)
+    return detour(way, there.ball[:, [0, 2]], there.yaw, step, foot.outward)

@@ -1,0 +1,363 @@
+"""Both feet as a song is planned row by row, the row as rules are asked about it, holds, and palms on panels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.clearance import gaps_at, over, reduction
+from dancetutor_cli.dance.context import Context, ball_of, middle_of
+from dancetutor_cli.dance.plan import FootTrack, Move, Pivot, Press, Turn
+from dancetutor_cli.dance.settings import MotionSettings
+from dancetutor_cli.dance.settings_feet import StepSettings
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.play import Play
+
+# A row of a play as rules are asked about it, and what comes before and after it.
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One row of a play. index : of it; time : seconds of the music; pressed : the columns of each limb that steps
+
+    duration : seconds since the last move, at most the longest of a move; turned : degrees that the feet normal turns
+    """
+
+    play: Play
+    context: Context
+    index: int
+    time: float
+    pressed: Mapping[int, list[int]]
+    duration: float = 0.0
+    turned: float = 0.0
+
+    @property
+    def feet(self) -> list[int]:
+        """The feet that step, 0 left."""
+        return sorted(limb for limb in self.pressed if limb < Limb.LEFT_HAND)
+
+    @property
+    def hands(self) -> bool:
+        """Whether a palm comes down."""
+        return any(limb >= Limb.LEFT_HAND for limb in self.pressed)
+
+    @property
+    def cut(self) -> float:
+        """How much the move is cut for lack of time, 0 to 1."""
+        step = self.context.settings.step
+        return float(reduction(self.duration, step.fast, step.longest))
+
+    @property
+    def jump_cut(self) -> float:
+        """The same of a jump, which is quick sooner: both legs throw the body at once."""
+        jump = self.context.settings.jump
+        missing = (jump.inward_slow - self.duration) / max(jump.inward_slow - jump.inward_quick, 1e-9)
+        return max(self.cut, float(np.clip(missing, 0.0, 1.0)))
+
+    @property
+    def hurry(self) -> float:
+        """How short its time is, from the longest move to a fast one, 0 to 1; `cut` grows as its cube."""
+        step = self.context.settings.step
+        return float(np.clip((step.longest - self.duration) / max(step.longest - step.fast, 1e-9), 0.0, 1.0))
+
+    @property
+    def haste(self) -> float:
+        """How much faster than fast it is, 0 to 1."""
+        step = self.context.settings.step
+        return float(np.clip((step.fast - self.duration) / (step.fast - step.hasty), 0.0, 1.0))
+
+    def following(self, side: int) -> Array | None:
+        """The place (2,) of the next step of a foot, if it comes soon."""
+        second, limb = self.play.rows.second, self.play.limb
+        soon = second[self.index] + self.context.settings.step.following
+        for j in range(self.index + 1, int(np.searchsorted(second, soon))):
+            columns = np.flatnonzero(limb[j] == side)
+            if len(columns):
+                return np.asarray(self.context.panels[columns].mean(axis=0))
+        return None
+
+
+def pressed_by(play: Play, index: int) -> dict[int, list[int]]:
+    """The columns of each limb that steps at a row."""
+    out: dict[int, list[int]] = {}
+    for column in np.flatnonzero(play.limb[index] >= 0):
+        out.setdefault(int(play.limb[index, column]), []).append(int(column))
+    return out
+
+
+# Both feet as a song is planned row by row: where they stand, until when they must, which way the body faces.
+#
+# Nothing here changes: a rule makes another footing of the one it is given, and the planner takes it or leaves it.
+
+SHORTEST = 0.02  # seconds; no swing is shorter
+FREE_WINDOW = 0.001
+
+
+@dataclass(frozen=True, slots=True)
+class Evading:
+    """A foot that goes up over mines: seconds of the first and the last one, and where it stood before."""
+
+    first: float
+    last: float
+    ball: Array
+    yaw: float
+
+
+@dataclass(frozen=True, slots=True)
+class FootState:
+    """Where a foot is while the plan is made. side 0 is left; ball : (2,), x and z on the ground.
+
+    yaw : without toe-out, radians; start, start_toes : where it stood before the first of `moves`, the newest ones
+    free : it may not leave before; landed : when it came down; turned : when it last ended a pivot, seconds
+    step : the numbers of how it steps
+    holds : columns that it holds, each with until when; evading : until its next step
+    """
+
+    side: int
+    ball: Array
+    yaw: float
+    start: tuple[float, float]
+    start_toes: float
+    step: StepSettings
+    free: float = -np.inf
+    landed: float = -np.inf
+    turned: float = -np.inf
+    moves: tuple[Move, ...] = ()
+    holds: tuple[tuple[int, float], ...] = ()
+    evading: Evading | None = None
+
+    @property
+    def outward(self) -> float:
+        """1 for the left foot, -1 for the right one: which way its toes turn out."""
+        return 1.0 if self.side == 0 else -1.0
+
+    def moved(self, move: Move, target: Array, yaw: float) -> FootState:
+        """The foot after one more move, standing at its target."""
+        if self.moves and move.lift - self.moves[-1].land < self.step.heel_stays:
+            heel = self.moves[-1].pitches[2]
+            move = replace(move, pitches=(heel, max(heel, move.pitches[1]), *move.pitches[2:]))
+        return replace(
+            self, ball=target, yaw=yaw, free=move.land + FREE_WINDOW, landed=move.land, moves=(*self.moves, move)
+        )
+
+    def moved_otherwise(self, last: Move) -> FootState:
+        """The foot with another last move."""
+        return replace(self, moves=(*self.moves[:-1], last))
+
+    def not_moved(self, evading: Evading) -> FootState:
+        """The foot as if its last move, over a mine, had not begun."""
+        return replace(self, ball=evading.ball, yaw=evading.yaw, moves=self.moves[:-1], evading=None)
+
+    def settled(self, newest: int) -> tuple[tuple[Move, ...], FootState]:
+        """Moves that are older than the newest ones, and the foot without them."""
+        old = self.moves[:-newest]
+        if not old:
+            return (), self
+        return old, replace(self, moves=self.moves[-newest:], start=old[-1].target, start_toes=old[-1].yaw)
+
+    def track(self, newest: int | None = None) -> FootTrack:
+        """What the foot has done, as far as it knows, or only its newest moves."""
+        foot = self if newest is None else self.settled(newest)[1]
+        return FootTrack(foot.start, foot.start_toes, foot.moves)
+
+    def holding(self, time: float) -> bool:
+        """Whether it is in the middle of a hold."""
+        return any(end > time + FREE_WINDOW for _, end in self.holds)
+
+    def latest(self, time: float, let_go: float) -> float:
+        """When the foot leaves at the latest for a note: a hold that ends too late is let go a little early."""
+        late = max(time - SHORTEST, self.rested(time))
+        early = max(time - let_go, self.rested(time))
+        return min(early, late) if self.free > early else late
+
+    def earliest(self, time: float) -> float:
+        """When the foot may leave for a note: it has come to rest, and no hold needs it."""
+        return max(self.free, self.rested(time))
+
+    def rested(self, time: float) -> float:
+        """When the foot has come to rest after its last landing, as far as the next one leaves it the time."""
+        return max(self.landed + min(self.step.stand, (time - self.landed) / 3), self.turned + FREE_WINDOW)
+
+
+@dataclass(frozen=True, slots=True)
+class TakeOff:
+    """In a gallop: the row at which a foot comes down, and when it leaves the ground, seconds."""
+
+    row: int
+    time: float
+
+
+@dataclass(frozen=True, slots=True)
+class Footing:
+    """Both feet and the unwrapped feet normal, degrees; what the body and the toes make of it.
+
+    lead : the foot that leads, as in `Plan`; aim : which way the body would face; faced : which way it faced after the
+    last row, radians
+    resting : feet that stand where she went home, until each steps again
+    mined : (m, 2) panels beside which feet land that mines pass soon; take_offs : of the last gallop, left and right
+    """
+
+    context: Context
+    lead: int
+    feet: tuple[FootState, FootState]
+    normal: float = 0.0
+    aim: float = 0.0
+    faced: float = 0.0
+    resting: tuple[bool, bool] = (False, False)
+    mined: Array = field(default_factory=lambda: np.empty((0, 2)))
+    take_offs: tuple[TakeOff, TakeOff] | None = None
+
+    @classmethod
+    def at_home(cls, context: Context, lead: int, place: float = 0.0) -> Footing:
+        """Both feet where she waits, facing the screen. place : along x, metres; the pad's middle unless given"""
+        return cls(context, lead, (_at_home(0, place, context.settings), _at_home(1, place, context.settings)))
+
+    @property
+    def settings(self) -> MotionSettings:
+        """The numbers of her motion."""
+        return self.context.settings
+
+    @property
+    def toe_out(self) -> float:
+        """How far toes point outward, radians."""
+        return float(np.radians(self.context.settings.step.toe_out))
+
+    def other(self, foot: FootState) -> FootState:
+        """The foot that is not this one."""
+        return self.feet[1 - foot.side]
+
+    def with_foot(self, foot: FootState) -> Footing:
+        """The footing in which one foot has done something."""
+        return replace(self, feet=(foot, self.feet[1]) if foot.side == 0 else (self.feet[0], foot))
+
+    def toes(self, foot: FootState, yaw: float | None = None) -> float:
+        """Where the toes of a foot point, at its own yaw or at another one; radians."""
+        return float((foot.yaw if yaw is None else yaw) + foot.outward * self.toe_out)
+
+    def line(self) -> float:
+        """Which way the line between the feet faces as they stand, degrees; the feet normal goes by panels."""
+        left, right = (middle_of(f.ball, self.toes(f)) for f in self.feet)
+        return float(np.degrees(np.arctan2(right[1] - left[1], left[0] - right[0])))
+
+    def body_yaw(self) -> float:
+        """The yaw that the body aims at, radians."""
+        return self.aim
+
+    def turned_to(self, yaws: tuple[float, float] | None = None) -> float:
+        """The yaw that the body turns to for the feet's yaws, those of now or others, radians.
+
+        Where both stand, it is no farther from either than hips and ankles turn.
+        """
+        left, right = yaws or (self.feet[0].yaw, self.feet[1].yaw)
+        mean, farthest = (left + right) / 2, np.radians(self.settings.step.body_turn)
+        wanted = mean + self.settings.body.turn_to_feet * (self.body_yaw() - mean)
+        if yaws is not None:
+            return float(wanted)
+        low, high = max(left, right) - farthest, min(left, right) + farthest
+        return float(np.clip(wanted, min(low, mean), max(high, mean)))
+
+    def limited(self, yaw: float, body: float) -> float:
+        """A foot's yaw, not farther from the body's than hips allow."""
+        limit = np.radians(self.settings.step.foot_turn)
+        return float(np.clip(yaw, body - limit, body + limit))
+
+    def pivot_yaw(self, foot: FootState, body: float, other: Array, other_toes: float) -> float:
+        """How a standing foot is turned after it gave way to the body's yaw, as far as the other shoe leaves it room.
+
+        Nor does it turn over a panel with a mine, or for a few degrees.
+
+        other, other_toes : ball and toes of the other foot after its step
+        """
+        step = self.settings.step
+        if abs(foot.yaw - body) <= np.radians(step.pivot_from):
+            return foot.yaw
+        wanted = float(np.clip(foot.yaw, body - np.radians(step.pivot_to), body + np.radians(step.pivot_to)))
+        yaws = foot.yaw + np.linspace(1.0, 0.0, 9) * (wanted - foot.yaw)
+        balls, toes = np.tile(foot.ball, (9, 1)), yaws + foot.outward * self.toe_out
+        gaps = gaps_at(balls, toes, other, other_toes)
+        mined = over(self.mined, balls, toes, self.settings.mines.keep_off)
+        clear = ~mined | mined[-1]  # the last one is how it stands: over a mine already, it may turn
+        found = float(yaws[np.argmax(clear & (gaps >= min(step.apart, gaps[clear].max())))])
+        return found if abs(found - foot.yaw) > np.radians(step.pivot_few) else foot.yaw
+
+    def pivoted(self, foot: FootState, yaw: float, start: float, time: float) -> Footing:
+        """The footing in which a standing foot has turned on its ball to a yaw, if there is time for it."""
+        begin = max(start, foot.moves[-1].land + FREE_WINDOW if foot.moves else start)
+        if yaw == foot.yaw or begin > time - self.settings.step.pivot_least:
+            return self
+        up = float(np.radians(self.settings.step.pivot_pitch))
+        rest = foot.moves[-1].pitches[3] if foot.moves else 0.0
+        pitches = (rest, max(up, rest), rest, rest)
+        move = Pivot(begin, time, pair(foot.ball), self.toes(foot, yaw), pitches)
+        done = foot.moved(move, foot.ball, yaw)
+        return self.with_foot(replace(done, free=max(foot.free, done.free), landed=foot.landed, turned=time))
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """What a rule would have her do: both feet as they would be then.
+
+    leaves : when a foot leaves the ground for it, seconds; turn : how the body turns for it, if the rule says so
+    """
+
+    footing: Footing
+    leaves: float = np.inf
+    turn: Turn | None = None
+
+
+def _at_home(side: int, place: float, settings: MotionSettings) -> FootState:
+    out = 1.0 if side == 0 else -1.0
+    toes = out * float(np.radians(settings.step.toe_out))
+    ball = ball_of(np.array([place + out * settings.step.home, 0.0]), toes)
+    return FootState(side, ball, 0.0, pair(ball), toes, settings.step)
+
+
+def pair(v: Array) -> tuple[float, float]:
+    """An array of two as a tuple of floats."""
+    return float(v[0]), float(v[1])
+
+
+# Holds: a foot that holds a panel may not leave it before the hold ends.
+
+FORGOTTEN = 1.0  # seconds after which a hold that has ended is of no account
+
+
+def hold(footing: Footing, limb: int, column: int, time: float, end: float) -> Proposal:
+    """A limb holds a column from `time` to `end`, seconds; only feet are bound by it."""
+    if limb >= Limb.LEFT_HAND:
+        return Proposal(footing)
+    foot: FootState = footing.feet[limb]
+    holds = {c: e for c, e in foot.holds if e > time - FORGOTTEN} | {column: end}
+    return Proposal(footing.with_foot(replace(foot, free=max(foot.free, end), holds=tuple(holds.items()))))
+
+
+# Palms that come down on panels: how long they press, and how far the body turns for a panel that is not before it.
+
+
+def press(
+    footing: Footing, side: int, panel: tuple[float, float], span: tuple[float, float], earlier: Sequence[Press]
+) -> Press:
+    """A palm on a panel.
+
+    side : 0 left, 1 right; span : when it comes down, and when a hold ends, infinite for a tap, seconds
+    earlier : all presses so far
+    """
+    hands, (time, end) = footing.settings.hands, span
+    end = max(time + hands.press, end if end < np.inf else 0.0)
+    before = [p.end for p in earlier if p.side == side]
+    lead = min(hands.reach_down, max(time - before[-1], SHORTEST) if before else np.inf)
+    return Press(time, end, side, panel, _turn_to_panel(footing, side, panel), lead)
+
+
+def _turn_to_panel(footing: Footing, side: int, panel: tuple[float, float]) -> float:
+    """How far the body turns to the hand's side, radians, for a panel that is not before it."""
+    hands, feet = footing.settings.hands, footing.feet
+    away = np.array(panel) - (feet[0].ball + feet[1].ball) / 2
+    off = (np.arctan2(away[0], away[1]) - footing.turned_to() + np.pi) % (2 * np.pi) - np.pi
+    beyond = np.clip(abs(np.degrees(off)) - hands.turn_from, 0.0, hands.turn_most)
+    return float(np.radians(beyond) * (1.0 if side == 0 else -1.0))

@@ -1,0 +1,203 @@
+"""Waits of the feet: steps back to where one rests, and legs shaken out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.clearance import Way, detour
+from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.footwork.footfalls import Footfall, Stand, room, stand_at, standing
+from dancetutor_cli.dance.footwork.foothold import Pose, legs_crossed
+from dancetutor_cli.dance.footwork.footing import Footing, Proposal, Row
+from dancetutor_cli.dance.footwork.walks import StepsInWaits, stand_of, stepped, waits, walks_there
+from dancetutor_cli.dance.plan import Bulge, Plan, Press, Shake, Turn
+
+# Home: in a long wait she steps back to where one rests: on the pad's middle, feet at hip width, facing the screen.
+
+Array = NDArray[np.float64]
+Falls = list[tuple[int, Footfall]]  # the foot of each, 0 left
+
+
+class _Home(NamedTuple):
+    """A way home. crossed : how far legs cross; room : metres between shoes where they come nearest"""
+
+    crossed: float
+    room: float
+    falls: Falls
+
+
+class HomeSteps(StepsInWaits):
+    """Proposes the way home before a row that comes after a long wait."""
+
+    def before(self, row: Row, presses: Sequence[Press], footing: Footing) -> Proposal | None:
+        """Both feet step home in the wait before a row, the body turns with them; or None: she stays as she stands.
+
+        At the bar she stays, and so she does for a walk to the other pad. presses : of palms, so far
+        """
+        settings, home = self.settings, self.settings.home
+        if row.context.bar is not None or row.hands:
+            return None
+        before = self.mines[: int(np.searchsorted(self.mines, row.time))]
+        free = max(
+            *(foot.free for foot in footing.feet),
+            *(p.end + settings.hands.reach_down for p in presses[-2:]),
+            before[-1] if len(before) else -np.inf,
+        )
+        wait = row.time - free
+        if wait < home.after or self._walks(row, free, footing):
+            return None
+        begin = stand_of(footing)
+        whole = 360.0 * round(footing.normal / 360.0)
+        goal = stand_at(np.array([self._place(begin), 0.0]), float(np.radians(whole)), settings)
+        falls = self._falls(begin, goal, footing.lead, row)
+        pause, step = self._pace(wait - settings.walk.settle, len(falls))
+        if not falls or pause + len(falls) * step > wait - settings.walk.settle + 1e-9:
+            return None
+        start = free + pause
+        for k, (side, fall) in enumerate(falls):
+            footing = stepped(footing, footing.feet[side], fall, start + k * step, step)
+        turn = Turn(start, start + len(falls) * step, goal.heading)
+        footing = replace(footing, normal=whole, aim=goal.heading, faced=goal.heading, resting=(True, True))
+        return Proposal(footing, start, turn)
+
+    def _pace(self, time: float, count: int) -> tuple[float, float]:
+        """How long she stands before so many steps, and how long each takes, seconds: where there is little `time` she
+        stands less, and where there is less than that her steps are quicker."""
+        home = self.settings.home
+        pause = float(np.clip(time - count * home.step - home.rest, home.pause_least, home.pause))
+        step = float(np.clip((time - pause) / max(count, 1), home.step_least, home.step))
+        return pause, step
+
+    def _walks(self, row: Row, free: float, footing: Footing) -> bool:
+        """Whether she will walk to the other pad in this wait."""
+        if len(self.places) == 1:
+            return False
+        places = np.full((2, 2), np.nan)
+        for side in (0, 1):
+            k = int(np.searchsorted(self.steps[side], row.index))
+            if k < len(self.steps[side]):
+                places[side] = self.panels[self.play.limb[self.steps[side][k]] == side].mean(axis=0)
+        return walks_there(stand_of(footing), places, (free, row.time), footing)
+
+    def _place(self, begin: Stand) -> float:
+        """Where along x she waits: the nearest of the places for that."""
+        return float(self.places[np.argmin(np.round(np.abs(self.places - begin.middle[0]), 6))])
+
+    def _falls(self, begin: Stand, goal: Stand, lead: int, row: Row) -> Falls:
+        """The fewest steps home in which no foot turns too far or meets the other; none if she is there, or none do.
+
+        Of two ways it is that on which legs cross less, then that which does not end with the foot of the next note.
+        """
+        home = self.settings.home
+        off = np.linalg.norm(begin.balls - goal.balls, axis=1).max()
+        if off < home.near and np.abs(begin.yaws - goal.yaws).max() < np.radians(home.facing):
+            return []
+        for count in range(2, int(home.most) + 1):
+            ways = [self._way(begin, goal, count, first) for first in (lead, 1 - lead)]
+            free = [way for way in ways if way is not None]
+            if free:
+                again = [row.feet == [way.falls[-1][0]] for way in free]
+                return min(zip(free, again, strict=True), key=lambda w: (w[0].crossed, w[1], -w[0].room))[0].falls
+        return []
+
+    def _way(self, begin: Stand, goal: Stand, count: int, first: int) -> _Home | None:
+        """So many steps home, a foot first; or None where a foot turns too far or meets the other."""
+        apart, most = self.settings.step.apart, np.radians(self.settings.home.turn)
+        places = [(ball, float(yaw)) for ball, yaw in zip(begin.balls, begin.yaws, strict=True)]
+        falls, crossed, least = [], 0.0, np.inf
+        for k in range(count):
+            side, share = (first + k) % 2, min((k + 1) / (count - 1), 1.0)
+            heading = begin.heading + share * (goal.heading - begin.heading)
+            there = stand_at(begin.middle + share * (goal.middle - begin.middle), heading, self.settings)
+            fall = Footfall(there.balls[side], float(there.yaws[side]), heading)
+            (ball, yaw), other, outward = places[side], places[1 - side], 1.0 - 2.0 * side
+            if abs(fall.yaw - yaw) > most:
+                return None
+            bulge = detour(Way(ball, yaw, fall.ball, fall.yaw), *other, self.settings.step, outward)
+            least = min(least, room(places[side], fall, bulge, other))
+            toes = np.array([fall.yaw])
+            crossed += float(legs_crossed(outward, fall.ball[None], toes, Pose(*other), heading, self.settings.step)[0])
+            places[side] = (fall.ball, fall.yaw)
+            falls.append((side, fall))
+        return _Home(round(crossed, 6), round(least, 6), falls) if least >= apart - 1e-9 else None
+
+
+def faces_as_at_home(row: Row, footing: Footing) -> bool:
+    """Whether a foot steps on its own side of the one that still rests: the play, which has that one on a panel, would
+    turn her for nothing."""
+    if len(row.feet) != 1 or not footing.resting[1 - row.feet[0]]:
+        return False
+    side = row.feet[0]
+    foot, other = footing.feet[side], footing.feet[1 - side]
+    across = row.context.panels[row.pressed[side]].mean(axis=0)[0] - other.ball[0]
+    return bool(foot.outward * across >= 0.0)
+
+
+# Legs shaken out in waits: a foot hangs loosely in the air behind her for a moment, the weight on the other one. Ahead
+# of her it would look like a step.
+
+SEED = 20210423
+LEAST = 0.3  # seconds of a shake, and from one to the next
+
+
+def leg_shakes(plan: Plan, mines: Array, context: Context) -> list[tuple[int, Shake]]:
+    """Which foot, 0 left, is shaken when and how, in all waits that are long enough; mines : (m,) seconds.
+
+    Chance decides, always in the same way for the same song; in its mirror image it is the other foot.
+    """
+    loose, found = context.settings.loose, []
+    for number, (free, lift) in enumerate(waits(plan, mines, loose.least)):
+        chance = np.random.default_rng([SEED, round(1000 * plan.first), round(1000 * plan.last) & 0xFFFFFFFF, number])
+        time, side = free + loose.pause * chance.uniform(1.0, 2.0), int(chance.integers(2))
+        while True:
+            legs = 2 if chance.random() < loose.both else 1
+            wanted = chance.random() < loose.share
+            for leg in range(legs):
+                foot = (side + leg) % 2 ^ plan.lead
+                shake = _shake(foot, time, standing(plan.feet, time), chance, context)
+                if shake.land > lift - loose.ready:
+                    break
+                if wanted and not _moves(plan, shake.lift - loose.between, shake.land + loose.between):
+                    found.append((foot, shake))
+                time = shake.land + loose.between
+            else:
+                side ^= legs % 2
+                time += max(loose.every, LEAST) * chance.uniform(0.7, 1.3)
+                continue
+            break
+    return found
+
+
+def _shake(foot: int, lift: float, stand: Stand, chance: np.random.Generator, context: Context) -> Shake:
+    """One leg's, from `lift` on: never twice as long, as high or as quick."""
+    loose, step = context.settings.loose, context.settings.step
+    long = max(loose.up + chance.uniform(loose.shortest, loose.longest), LEAST)
+    ball, yaw = stand.balls[foot], float(stand.yaws[foot])
+    inward = (-1.0, 1.0)[foot] * np.array([np.cos(stand.heading), -np.sin(stand.heading)])
+    away, behind = loose.inward * inward, loose.behind * chance.uniform(0.85, 1.0)
+    lifted, hangs = np.radians(step.lift_pitch), np.radians(loose.hangs * chance.uniform(0.9, 1.1))
+    return Shake(
+        lift,
+        lift + long,
+        (float(ball[0]), float(ball[1])),
+        yaw,
+        (float(lifted), float(lifted), float(np.radians(step.land_pitch)), 0.0),
+        loose.height * chance.uniform(0.8, 1.25),
+        Bulge(float(away[0]), float(away[1])),
+        behind=behind,
+        hangs=float(hangs),
+        rate=loose.rate * chance.uniform(0.85, 1.15),
+        far=loose.far * chance.uniform(0.75, 1.25),
+        flap=float(np.radians(loose.flap * chance.uniform(0.75, 1.25))),
+        heading=stand.heading,
+    )
+
+
+def _moves(plan: Plan, start: float, end: float) -> bool:
+    """Whether a foot moves at all between two seconds, if it only turns."""
+    return any(move.lift < end and move.land > start for track in plan.feet for move in track.moves)

@@ -1,0 +1,235 @@
+"""Mines: a foot goes up in time and comes down behind them; both at once hop (docs/motion.md).
+
+Where the other foot steps at the same time, a foot goes up later and comes down sooner, so that one of both stands as
+long as it can.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.clearance import over
+from dancetutor_cli.dance.context import HALF_PANEL, Spot, ball_of, room_on
+from dancetutor_cli.dance.footwork.flights import Flight, flown
+from dancetutor_cli.dance.footwork.foothold import Pitches, around, beside, landing_ball, pose
+from dancetutor_cli.dance.footwork.footing import (
+    FREE_WINDOW,
+    SHORTEST,
+    Evading,
+    Footing,
+    FootState,
+    Proposal,
+    Row,
+    pair,
+)
+from dancetutor_cli.dance.plan import Hover, Jump
+from dancetutor_cli.dance.settings import MotionSettings
+from dancetutor_cli.dance.settings_feet import MineSettings
+
+Array = NDArray[np.float64]
+
+
+def avoid_mines(row: Row, footing: Footing) -> Proposal:
+    """Lift the feet that stand where mines of the row pass, unless they step at that row anyway.
+
+    Where a foot stands is asked of the plan, not of the play: it may reach over a neighbour panel, and who has gone
+    to the middle of the pad already may stay there.
+    """
+    mined, time = row.context.panels[row.play.rows.mines[row.index]], row.time
+    if not len(mined):
+        return Proposal(footing)
+    threatened = [
+        f
+        for f in footing.feet
+        if f.side not in row.pressed
+        and not f.holding(time)
+        and over(mined, f.ball[None], np.array([footing.toes(f)]), footing.settings.mines.keep_off)[0]
+    ]
+    if len(threatened) == 2:
+        return Proposal(_hopped(footing, time))
+    if threatened:
+        return Proposal(_lifted(footing, threatened[0], time, int(row.play.feet[row.index - 1, threatened[0].side])))
+    return Proposal(footing)
+
+
+def _hopped(footing: Footing, time: float) -> Footing:
+    """A hop of both feet to the middle of the pad, if there is still time to leave the ground."""
+    half, stand = footing.settings.mines.hop / 2, footing.settings.step.stand
+    pushed = min(time - footing.settings.mines.push, max(f.landed for f in footing.feet) + stand)
+    take_off = max(time - half, pushed, *(f.earliest(time) for f in footing.feet))
+    if take_off > time - SHORTEST:
+        return footing
+    goals, before = [_home(footing, foot) for foot in footing.feet], footing.feet
+    footing = flown(footing, Flight(take_off, time + half, mined=True), goals, [_pitches(footing.settings.mines)] * 2)
+    for foot, stood in zip(footing.feet, before, strict=True):
+        footing = footing.with_foot(replace(foot, evading=Evading(time, time, stood.ball, stood.yaw)))
+    return footing
+
+
+def _pitches(mines: MineSettings) -> Pitches:
+    lift, most, land = np.radians((mines.lift_pitch, mines.swing_pitch, mines.land_pitch)).tolist()
+    return lift, most, land, 0.0
+
+
+def _home(footing: Footing, foot: FootState) -> tuple[Array, float]:
+    """Ball and yaw of a foot that waits in the middle of the pad, or of the nearest pad of two: on no panel."""
+    squares = footing.context.squares
+    middle = np.mean([f.ball for f in footing.feet], axis=0)
+    squares = squares[np.argsort(-squares[:, 0] if footing.lead else squares[:, 0], kind="stable")]
+    nearest = squares[np.argmin(np.round(np.linalg.norm(squares - middle, axis=1), 6))]
+    square = round(footing.body_yaw() / (np.pi / 2)) * np.pi / 2
+    aside = foot.outward * footing.settings.step.home * np.array([np.cos(square), -np.sin(square)])
+    yaw = footing.limited(square, footing.body_yaw())
+    return ball_of(nearest + aside, footing.toes(foot, yaw)), yaw
+
+
+def _lifted(footing: Footing, foot: FootState, time: float, column: int) -> Footing:
+    """One foot goes up while the other stands, and comes down on the inner edge of its panel.
+
+    If more mines come there, or `column` is -1 and it has none, it goes to the middle of the pad.
+    """
+    mines = footing.settings.mines
+    half, first = mines.before + mines.rise, time
+    lift = min(max(time - half, foot.free), max(time - SHORTEST, foot.landed + FREE_WINDOW))
+    if foot.evading is not None and foot.landed > time - half and isinstance(foot.moves[-1], Hover):
+        # it stays up from the last mine
+        first, lift = foot.evading.first, foot.moves[-1].lift
+        foot = foot.not_moved(foot.evading)
+        footing = footing.with_foot(foot)
+    elif lift > time:
+        return footing
+    other = footing.other(foot)
+    target, yaw = _beside_the_mines(footing, foot, column)
+    bulge = around(footing, foot, (lift, time + half), target, yaw, other)
+    toes = footing.toes(foot, yaw)
+    up = foot.moved(Hover(lift, time + half, pair(target), toes, _pitches(mines), mines.height, bulge), target, yaw)
+    up = replace(up, evading=Evading(first, time, foot.ball, foot.yaw))
+    return _one_after_the_other(footing.with_foot(up), up, other)
+
+
+def _beside_the_mines(footing: Footing, foot: FootState, column: int) -> tuple[Array, float]:
+    """Where a foot comes down that is up over a mine on a column, -1 for none, and its yaw."""
+    panels, other, mines = footing.context.panels, footing.other(foot), footing.settings.mines
+    there = panels[column] if column >= 0 else None
+    if there is None or (len(footing.mined) and (np.abs(footing.mined - there).max(axis=1) < HALF_PANEL).any()):
+        target, yaw = _home(footing, foot)
+        spot = Spot(target, np.full(2, mines.roam))
+        if np.linalg.norm(target - foot.ball) > mines.far_home:  # off the mines is enough
+            target, yaw, spot = foot.ball, foot.yaw, Spot(foot.ball, np.full(2, mines.far_home))
+    else:
+        spot, yaw = Spot(there, room_on(panels, column, footing.settings.step)), foot.yaw
+        middle, edge = pose(footing, other).middle, footing.settings.step.edge_margin
+        target = landing_ball(spot, footing.toes(foot), middle, 1.0, edge)
+    return beside(footing, foot, spot, target, yaw, pose(footing, other))
+
+
+def _one_after_the_other(footing: Footing, foot: FootState, other: FootState) -> Footing:
+    """A foot goes up over a mine only when the other one is down from its step or its own mine, if it can wait."""
+    settings = footing.settings
+    need = settings.mines.before + settings.mines.steep
+    swing, evading = foot.moves[-1], foot.evading
+    if evading is None or not swing.lift < other.landed:
+        return footing
+    if other.evading is not None and isinstance(other.moves[-1], Hover):
+        other = _hurried(other, settings, other.moves[-1].lift, swing.lift)
+    foot = _hurried(foot, settings, min(other.landed, evading.first - need), swing.land)
+    return footing.with_foot(other).with_foot(foot)
+
+
+def _hurried(foot: FootState, settings: MotionSettings, lift: float, land: float) -> FootState:
+    """A foot that evades goes up not before `lift` and is down at `land`, as far as its mines allow."""
+    evading, swing = foot.evading, foot.moves[-1]
+    assert evading is not None
+    need = settings.mines.before + settings.mines.steep
+    lift = max(swing.lift, min(lift, evading.first - need))
+    land = min(swing.land, max(land, evading.last + need))
+    sooner = foot.moved_otherwise(replace(swing, lift=lift, land=land))
+    return replace(sooner, landed=land, free=land + (foot.free - swing.land))
+
+
+def left_standing(other: FootState, settings: MotionSettings, lift: float, time: float) -> tuple[FootState, float]:
+    """When a foot leaves for its step at `time`, at `lift` or later: when the other one is down again from a mine.
+
+    And what that other foot does for it.
+    """
+    if other.evading is None or other.landed <= lift or not isinstance(other.moves[-1], Hover):
+        return other, lift
+    need = settings.mines.before + settings.mines.steep
+    if other.evading.last + need > time - settings.mines.haste:  # no time: both are in the air for a moment
+        return _hurried(other, settings, other.evading.first - need, time), lift
+    sooner = _hurried(other, settings, lift, max(lift, other.evading.last + need))
+    return sooner, max(lift, sooner.landed)
+
+
+def resumed(foot: FootState, other: FootState, time: float, settings: MotionSettings) -> tuple[FootState, float | None]:
+    """A step soon after a mine: the foot stays up and goes straight to it, unless the other one stepped meanwhile.
+
+    Even then it does so if it would be down for no time at all. So does a foot whose hop with the other one would not
+    be over by then.
+
+    Returns the foot, evading nothing any more, and when it left the ground.
+    """
+    over = foot.moves and (isinstance(foot.moves[-1], Hover) or foot.landed > time - settings.mines.push)
+    evading = foot.evading if over else None
+    stepped = evading is not None and other.landed > evading.last and time - foot.landed > settings.mines.push
+    if evading is None or time - evading.last > settings.step.longest or stepped:
+        return replace(foot, evading=None), None
+    return foot.not_moved(evading), foot.moves[-1].lift
+
+
+def _hopping(foot: FootState) -> bool:
+    """Whether a foot has hopped over a mine with the other one, and not stepped since."""
+    return foot.evading is not None and isinstance(foot.moves[-1], Jump)
+
+
+def flown_on(footing: Footing, time: float) -> tuple[Footing, float]:
+    """A jump at `time` so soon after a hop over a mine that there is no time to push off: one flight is both.
+
+    Returns the footing without that hop, and when both feet take off for the jump at the latest.
+    """
+    numbers = footing.settings.mines
+    left, right = (f.evading if _hopping(f) else None for f in footing.feet)
+    landed = max(f.landed for f in footing.feet)
+    if left is None or right is None or left.first != right.first or landed <= time - numbers.haste - numbers.push:
+        return footing, time
+    for foot, evading in zip(footing.feet, (left, right), strict=True):
+        up, swing = foot.not_moved(evading), foot.moves[-1]
+        landed = up.moves[-1].land if up.moves else -np.inf
+        footing = footing.with_foot(replace(up, landed=landed, free=min(swing.lift, foot.free)))
+    return footing, left.first - numbers.before
+
+
+def landed_early(foot: FootState, settings: MotionSettings, time: float) -> tuple[FootState, float]:
+    """Before a jump at `time` a foot that hovers over a mine comes down in time to push off, or flies from there on.
+
+    Returns the foot, and when both take off at the latest.
+    """
+    evading, need = foot.evading, settings.mines.before + settings.mines.steep
+    ready = time - settings.mines.haste - settings.mines.push
+    if evading is None or foot.landed <= ready or not isinstance(foot.moves[-1], Hover):
+        return replace(foot, evading=None), time
+    if evading.last + need <= ready:
+        return replace(_hurried(foot, settings, foot.moves[-1].lift, ready), evading=None), time
+    swing = foot.moves[-1]
+    up = foot.not_moved(evading)
+    up = replace(up, landed=up.moves[-1].land if up.moves else -np.inf, free=min(swing.lift, foot.free))
+    return up, max(evading.first - need, swing.lift)
+
+
+def stayed_up(before: Footing, after: Footing, until: list[float], take_off: float) -> Footing:
+    """The footing `after` a jump in which a foot that must be up over a mine before both can take off, for the other
+    one was up itself, stays up and comes down at its note.
+
+    until : when each foot must be up at the latest, seconds
+    """
+    for stood, foot, lift in zip(before.feet, after.feet, until, strict=True):
+        if lift < take_off - SHORTEST:
+            jump = foot.moves[-1]
+            bulge = around(before, stood, (lift, jump.land), foot.ball, foot.yaw, after.other(foot))
+            height = before.settings.mines.height
+            up = Hover(lift, jump.land, jump.target, jump.yaw, jump.pitches, height, bulge)
+            after = after.with_foot(foot.moved_otherwise(up))
+    return after

@@ -1,0 +1,212 @@
+"""Steps, brackets and jumps: feet go to their notes, when they leave, how high they go and where they land."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.clearance import evenness
+from dancetutor_cli.dance.context import HALF_PANEL, PANEL
+from dancetutor_cli.dance.footwork.flights import Goals, galloping, hop, leap, take_off_for, tuck_for
+from dancetutor_cli.dance.footwork.foothold import Goal, Pose, around, heel_of_step, heel_up, landing, pose
+from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, Row, TakeOff, pair
+from dancetutor_cli.dance.footwork.mines import flown_on, landed_early, left_standing, resumed, stayed_up
+from dancetutor_cli.dance.plan import Gallop, Hover, Jump, Step, Swing
+from dancetutor_cli.dance.rig.body import GRAVITY
+from dancetutor_cli.feet.limbs import Part
+
+# Brackets: one foot on two panels, heel on one and toes on the other, also where they tap by turns.
+
+NEIGHBOURS = 1.6 * PANEL  # metres between panels that one foot can press together
+
+
+def under_the_foot(row: Row, foot: FootState) -> list[int]:
+    """The columns that a foot stands over after a row: those that it presses, and one that its other end holds.
+
+    A heel or toe that taps alone does so beside a panel that the rest of the foot holds: a bracket.
+    """
+    columns, panels = row.pressed[foot.side], row.context.panels
+    if len(columns) != 1 or row.play.part[row.index, columns[0]] == Part.WHOLE:
+        return columns
+    here = panels[columns[0]]
+    held = [c for c, end in foot.holds if end > row.time - row.context.settings.step.bracket_late and c != columns[0]]
+    near = [c for c in held if np.linalg.norm(panels[c] - here) < NEIGHBOURS]
+    return columns + (near[-1:] or _other_part(row, foot.side, columns[0]))
+
+
+def _other_part(row: Row, side: int, column: int) -> list[int]:
+    """The panel beside one that a heel or toe taps alone, where the other end of the foot taps soon: two rolls."""
+    rows, part, i, panels = row.play.rows, row.play.part, row.index, row.context.panels
+    for j in (i + 1, i - 1, i + 2, i - 2):
+        if not 0 <= j < len(rows) or abs(rows.second[j] - rows.second[i]) > row.context.settings.step.bracket_between:
+            continue
+        for c in np.flatnonzero(row.play.limb[j] == side):
+            other = part[j, c] not in (Part.WHOLE, part[i, column]) and c != column
+            if other and np.linalg.norm(panels[c] - panels[column]) < NEIGHBOURS:
+                return [int(c)]
+    return []
+
+
+# Jumps: both feet land at one row; where, and how high they go for it (thesis 5.5, 5.6).
+
+Array = NDArray[np.float64]
+
+
+def jump(row: Row, footing: Footing) -> Proposal:
+    """Both feet land at a row."""
+    numbers, time = footing.settings.jump, row.time
+    footing, latest = flown_on(footing, time)
+    until = [time, time]
+    for foot in footing.feet:
+        down, until[foot.side] = landed_early(foot, footing.settings, time)
+        footing = footing.with_foot(down)
+    latest = min(latest, *until)
+    columns = [under_the_foot(row, f) for f in footing.feet]
+    goals = _goals(row, footing, columns)
+    far = max(float(np.linalg.norm(g - f.ball)) for (g, _), f in zip(goals, footing.feet, strict=True))
+    way = min(far / numbers.far, 1.0)
+    apex = numbers.apex_near + way * (numbers.apex_far - numbers.apex_near)
+    if row.hands:  # bending down to a panel: feet only just leave the ground
+        apex = numbers.apex_hands
+    share = numbers.flight_share - row.jump_cut * (1.0 - way) * (numbers.flight_share - numbers.flight_near)
+    take_off = take_off_for(footing, time, min(float(np.sqrt(8 * apex / GRAVITY)), share * row.duration))
+    if latest < take_off:  # over a mine
+        take_off = max(latest, *(f.rested(time) for f in footing.feet))
+    found = hop(row, footing, take_off, goals, columns, row.turned)
+    return replace(found, footing=stayed_up(footing, found.footing, until, take_off))
+
+
+def _goals(row: Row, footing: Footing, columns: list[list[int]]) -> Goals:
+    """Where both balls land, and the feet's yaws."""
+    body, panels = footing.body_yaw(), row.context.panels
+    share = footing.settings.jump.yaw_to_normal
+    yaws = [footing.limited(f.yaw + share * (body - f.yaw), body) for f in footing.feet]
+    goals: dict[int, tuple[Array, float]] = {}
+    # brackets have no choice: they are first
+    for foot in sorted(footing.feet, key=lambda f: (-len(columns[f.side]), f.side != footing.lead)):
+        side = 1 - foot.side
+        ball, yaw = goals.get(side, (panels[columns[side]].mean(axis=0), yaws[side]))
+        other = Pose(ball, footing.toes(footing.feet[side], yaw))
+        wish = columns[foot.side], row.play.part[row.index], yaws[foot.side], row.jump_cut, row.following(foot.side)
+        goals[foot.side] = landing(footing, foot, Goal(*wish), other)
+    return [goals[0], goals[1]]
+
+
+# Steps: one foot goes to its note, when it leaves, how high it goes and where it lands (thesis 5.5, 5.6).
+
+
+def step(row: Row, side: int, footing: Footing) -> Proposal:
+    """One foot steps at a row: from the ground, out of the air over a mine, or as a part of a gallop."""
+    numbers, time = footing.settings.step, row.time
+    footing = galloping(row, side, footing)
+    resuming, up = resumed(footing.feet[side], footing.feet[1 - side], time, footing.settings)
+    footing = _room_made(row, side, footing.with_foot(resuming))
+    foot, other = footing.feet[side], footing.feet[1 - side]
+    body = footing.body_yaw()
+    wanted = footing.limited(other.yaw + numbers.yaw_to_normal * (body - other.yaw), body)
+    columns = under_the_foot(row, foot)
+    goal = Goal(columns, row.play.part[row.index], wanted, row.cut, row.following(side), row.haste)
+    target, yaw = landing(footing, foot, goal, pose(footing, other))
+    if _taps_again(row, foot, columns):
+        target, yaw = foot.ball, foot.yaw
+    gallop = _gallop(row, side, footing)
+    if gallop is not None:
+        lift = gallop.time
+    else:
+        standing, lift = left_standing(
+            other, footing.settings, _lift(row, footing, float(np.linalg.norm(target - foot.ball))), time
+        )
+        footing = footing.with_foot(standing)
+    lift = min(max(lift, foot.earliest(time)), foot.latest(time, numbers.let_go)) if up is None else up
+    kind, height = _kind(row, footing, (foot, time - lift), target, up is not None)
+    if kind is Jump:
+        height = GRAVITY * (time - lift) ** 2 / 8
+    if kind is Step:
+        leapt = leap(row, foot, (target, yaw), columns, footing)
+        if leapt is not None:
+            return replace(leapt, leaves=leapt.footing.feet[side].moves[-1].lift)
+        footing = _given_way(footing, foot, (target, yaw), (lift, time))
+    heel = heel_of_step(numbers)
+    if kind is Jump:  # legs that push off need it
+        heel = replace(heel, flat=(footing.settings.jump.lift_flat, footing.settings.jump.swing_flat))
+    pitches = heel_up(numbers, row.cut, heel, columns)
+    bulge = around(footing, foot, (lift, time), target, yaw, footing.other(foot))
+    height += numbers.height_far * float(np.hypot(bulge.x, bulge.z)) * (kind is Step)
+    swing = kind(lift, time, pair(target), footing.toes(foot, yaw), pitches, height, bulge)
+    if isinstance(swing, Jump):
+        jump = footing.settings.jump
+        tuck = tuck_for(float(np.linalg.norm(target - foot.ball)), time - lift, jump)
+        swing = replace(swing, tuck=tuck, middles=(pair(foot.ball), pair(target)))
+    return Proposal(footing.with_foot(foot.moved(swing, target, yaw)), lift)
+
+
+def _room_made(row: Row, side: int, footing: Footing) -> Footing:
+    """The footing in which the other foot turns with the body, if this one comes to stay beside it on its panel.
+
+    One that lies across the panel would leave room for half a shoe, and the rest would hang over the pad's edge.
+    """
+    foot, other = footing.feet[side], footing.feet[1 - side]
+    panel = row.context.panels[row.pressed[side]].mean(axis=0)
+    if row.following(side) is not None or (np.abs(other.ball - panel) > HALF_PANEL).any():
+        return footing
+    turned = footing.pivot_yaw(other, footing.body_yaw(), foot.ball, footing.toes(foot))
+    return footing.pivoted(other, turned, row.time - row.duration, row.time)
+
+
+def _taps_again(row: Row, foot: FootState, columns: list[int]) -> bool:
+    """Whether a foot has come down on the row's panel so shortly before that there is no time to shift it."""
+    on = (np.abs(foot.ball - row.context.panels[columns]) <= HALF_PANEL).all(axis=1).any()
+    return bool(on) and row.time - foot.landed < row.context.settings.step.again
+
+
+def _gallop(row: Row, side: int, footing: Footing) -> TakeOff | None:
+    """The take-off of the foot that steps at a row, if it does so in a gallop."""
+    found = footing.take_offs
+    return found[side] if found is not None and found[side].row == row.index else None
+
+
+def _lift(row: Row, footing: Footing, far: float) -> float:
+    """When a foot would leave for its note, so far away, metres: it has a least time, and both feet stand for a part of
+    what there is, of a fast step the less the farther it is."""
+    numbers = footing.settings.step
+    least = numbers.double_support_near * max(1.0 - far / numbers.double_support_far, 0.0)
+    fast = numbers.double_support_fast + row.haste * (least - numbers.double_support_fast)
+    both = numbers.double_support + row.cut * (fast - numbers.double_support)
+    return row.time - max(row.duration * (1.0 - both), min(numbers.least_swing, row.duration + numbers.overlap))
+
+
+def _kind(
+    row: Row, footing: Footing, going: tuple[FootState, float], target: Array, hovering: bool
+) -> tuple[type[Swing], float]:
+    """What kind of swing it is, and how high the foot goes, metres; the height of a jump follows from its time.
+
+    going : the foot and how many seconds it takes
+    """
+    numbers, mines, (foot, duration) = footing.settings.step, footing.settings.mines, going
+    far = float(np.linalg.norm(target - foot.ball))
+    fast = numbers.height_fast + row.haste * (numbers.height_hasty - numbers.height_fast)
+    fast += row.haste * float(evenness(duration, numbers)) * (numbers.height_even - numbers.height_hasty)
+    fast += numbers.height_far * max(far - numbers.far, 0.0)
+    height = numbers.height_slow + row.cut * (fast - numbers.height_slow)
+    if far < numbers.on_the_spot:
+        height = max(height * numbers.jack_height, fast)
+    kind: type[Swing] = Step
+    if hovering:
+        kind, height = Hover, max(height, mines.height)
+    if _gallop(row, foot.side, footing) is not None:
+        jump = footing.settings.jump
+        kind, height = Gallop, max(height, mines.height, jump.apex_near + 2 * jump.tuck)  # up with the body
+        assert footing.take_offs is not None
+        if footing.take_offs[1 - foot.side].row > row.index:  # the first of the two
+            kind = Jump
+    return kind, height
+
+
+def _given_way(footing: Footing, foot: FootState, goal: tuple[Array, float], span: tuple[float, float]) -> Footing:
+    """The standing foot turns with the body while the other one goes to its goal, from lift to landing."""
+    other, (target, yaw) = footing.other(foot), goal
+    after = footing.turned_to((yaw, other.yaw) if foot.side == 0 else (other.yaw, yaw))
+    turned = footing.pivot_yaw(other, after, target, footing.toes(foot, yaw))
+    return footing.pivoted(other, turned, *span)

@@ -1,0 +1,195 @@
+"""How the body turns with the feet: by how much at a row, from when on, and which foot decides where both could."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.footwork.footing import Footing, Row
+from dancetutor_cli.dance.settings import MotionSettings
+from dancetutor_cli.dance.settings_feet import StepSettings
+from dancetutor_cli.dance.smoothing import STEEPEST
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.play import Play
+
+Array = NDArray[np.float64]
+NO_WAY = 1e-6  # metres
+HALF_TURN = 1e-6  # degrees from half a turn
+ALL_ROUND = 180.0  # degrees; farther apart in time than the body takes for it, rows know nothing of each other
+SPIN = 1.1  # times as fast as the feet, on average, may a body go that spins
+ASIDE = 15.0  # degrees from the feet normal from which on it matters how the feet really stand
+
+
+def shorter(normal: float, facing: float) -> float:
+    """By how many degrees, positive left, from one to the other the shorter way; half a turn is negative."""
+    return float((facing - normal + 180.0) % 360.0 - 180.0)
+
+
+def is_half(turn: float) -> bool:
+    """Whether either way round is as far, degrees."""
+    return abs(abs(turn) - 180.0) < HALF_TURN
+
+
+def rounds(normal: float, turn: float, rounded: float) -> float:
+    """How far all the way round, a multiple of 360 degrees, she has gone after a turn from a feet normal.
+
+    rounded : before the turn. Her back to the screen she is in the round that she came from.
+    """
+    after = normal + turn
+    if is_half(shorter(0.0, after)):
+        return rounded if turn == 0.0 else after - float(np.copysign(180.0, turn))
+    return 360.0 * round(after / 360.0)
+
+
+def passing(turn: float, normal: float, foot: int, seconds: float, step: StepSettings) -> float:
+    """The way round, degrees, on which one foot passes the other one on the side that the form likes, if it can.
+
+    turn : the way it goes without a form; normal : of the feet before; foot : that steps, 0 left; seconds : it has
+    """
+    other = turn - float(np.copysign(360.0, turn))
+    enough = max(180.0 + HALF_TURN, step.turn_rate * seconds)
+    if step.crossing == 0.0 or abs(turn) < step.crossing_from or abs(other) > enough:
+        return turn
+    # Half-way the line from the standing foot to this one points to the screen, or away from it.
+    ahead = float(np.sin(np.radians(normal + turn / 2))) * (2 * foot - 1)
+    return turn if ahead * (1.5 - step.crossing) >= -NO_WAY else other
+
+
+def body_yaw(normal: float, settings: MotionSettings) -> float:
+    """Which way the body faces for a feet normal, degrees both: crossed feet turn it less."""
+    whole = 360.0 * round(normal / 360.0)
+    rest = abs(normal - whole)
+    step = settings.step
+    first, last = step.crossover_from, step.crossover_to
+    there = first + (last - first) * step.crossover_turn
+    if rest > last:
+        rest = there + (rest - last) / (180.0 - last) * (180.0 - there)
+    elif rest > first:
+        rest = first + (rest - first) * step.crossover_turn
+    return float(whole + np.copysign(rest, normal - whole))
+
+
+class Facing:
+    """Which way the body faces at each row: with the feet, but no faster than people turn who know what is coming.
+
+    Where feet turn faster than the body likes to, it begins earlier and ends later, and of a turn that is undone at
+    once it makes less; meanwhile the legs cross, at most as far as legs like to. Of all ways that slow, the one that is
+    least far from the feet at worst is half-way between the lowest over them and the highest under them.
+    """
+
+    def __init__(self, play: Play, settings: MotionSettings) -> None:
+        self.play, self.settings = play, settings
+        steps = ((play.limb == Limb.LEFT_FOOT) | (play.limb == Limb.RIGHT_FOOT)).any(axis=1)
+        self.rows = np.flatnonzero(steps)
+        # Which way round she goes at rows that turn half around, as she saw it coming.
+        self.halves: dict[int, float] = {}
+        self.past: list[tuple[float, float]] = []  # seconds and where it would face, degrees, row by row
+        self.rounded = 0.0  # degrees that she has gone all the way round, 360 for each spin to the left
+
+    def aim(self, row: Row, normal: float, lead: int) -> float:
+        """The yaw to aim at for a row's feet normal, degrees; rows are asked for in order."""
+        step = self.settings.step
+        wanted = body_yaw(normal, self.settings)
+        self.past = [was for was in self.past if was[0] > row.time - ALL_ROUND / step.turn_rate]
+        self.past.append((row.time, wanted))
+        around = [*self.past, *self._coming(row, normal, lead)]
+        # who spins goes round evenly, as fast as the feet do on average: slower, she would only catch up in jerks
+        spin = SPIN * abs(around[-1][1] - self.past[0][1]) * step.turn_rate / (2.0 * ALL_ROUND)
+        slack = [max(step.turn_rate, spin) * abs(time - row.time) for time, _ in around]
+        low = max(yaw - free for (_, yaw), free in zip(around, slack, strict=True))
+        high = min(yaw + free for (_, yaw), free in zip(around, slack, strict=True))
+        return float(np.clip((low + high) / 2, normal - step.turn_crossed, normal + step.turn_crossed))
+
+    def turn(self, row: Row, footing: Footing) -> float:
+        """By how many degrees the feet normal turns at a row, positive left: a form's way, the play's or the shorter.
+
+        Rows are asked for in order, each before its aim.
+        """
+        j, normal = row.index, footing.normal
+        self.rounded = rounds(normal, 0.0, self.rounded)  # she may have gone home meanwhile
+        turn = shorter(normal, float(self.play.facing[j]))
+        if is_half(turn):
+            # where the play leaves it open, how the feet stand decides, unless she saw it coming
+            stand = shorter(footing.normal, footing.line())
+            first = float(np.sign(stand)) if ASIDE < abs(stand) < 180.0 - ASIDE else 0.0
+            turn = self.halves.get(j, self._half(j, normal, self.rounded, first or self._side(j, footing.lead)))
+        turn = self._as_formed(j, turn, normal)
+        self.rounded = rounds(normal, turn, self.rounded)
+        return turn
+
+    def _half(self, j: int, normal: float, rounded: float, side: float) -> float:
+        """The way of half a turn at row `j`: not on round the back, for in the play that were a spin.
+
+        side : 1 left, -1 right, where she turns her back to the screen straight from it and not aside from there
+        """
+        facing = self.play.facing[self.rows[self.rows >= j]]
+        if not is_half(float(facing[0])):
+            return 180.0 * float(np.sign(rounded + facing[0] - normal))
+        aside = facing[~np.isclose(np.abs(facing), 180.0)]
+        return 180.0 * float(np.sign(aside[0]) if len(aside) and abs(aside[0]) > ASIDE else side)
+
+    def _as_formed(self, j: int, turn: float, normal: float) -> float:
+        """The turn at row `j` of the play as the form has it, where one foot steps."""
+        feet = [side for side in (0, 1) if (self.play.limb[j] == side).any()]
+        k = int(np.searchsorted(self.rows, j))
+        if len(feet) != 1 or k == 0:
+            return turn
+        second = self.play.rows.second
+        return passing(turn, normal, feet[0], float(second[j] - second[self.rows[k - 1]]), self.settings.step)
+
+    def _side(self, j: int, lead: int) -> float:
+        """The side, 1 left, to which the foot that steps at row `j` passes ahead of the other one."""
+        feet = [side for side in (0, 1) if (self.play.limb[j] == side).any()]
+        return 2.0 * (feet[0] if len(feet) == 1 else lead) - 1.0
+
+    def begin_anew(self) -> None:
+        """What was before a stand is of no account: she has turned to the screen."""
+        self.past = []
+
+    def _coming(self, row: Row, normal: float, lead: int) -> Iterator[tuple[float, float]]:
+        """The rows to come, as far as they matter."""
+        second, facing = self.play.rows.second, self.play.facing
+        k, rounded = int(np.searchsorted(self.rows, row.index, side="right")), self.rounded
+        for j in self.rows[k:].tolist():
+            if second[j] > row.time + ALL_ROUND / self.settings.step.turn_rate:
+                return
+            turn = shorter(normal, float(facing[j]))
+            if is_half(turn):
+                turn = self.halves.setdefault(j, self._half(j, normal, rounded, self._side(j, lead)))
+            turn = self._as_formed(j, turn, normal)
+            rounded, normal = rounds(normal, turn, rounded), normal + turn
+            yield float(second[j]), body_yaw(normal, self.settings)
+
+
+def turn_start(move: tuple[float, float], leaves: float, far: float, step: StepSettings) -> float:
+    """When the body begins to turn `far` degrees for a move: as that begins, but not so long before the foot leaves the
+    ground that body and foot would ever be turned much farther from each other than they are anyway.
+
+    move : when it lands, and how long it lasts; leaves : when a foot does, seconds
+    """
+    time, duration = move
+    ahead = 2.0 * step.turn_ahead / (STEEPEST * max(far, step.turn_ahead)) * (time - leaves)
+    late = step.turn_late * float(
+        np.clip(far / step.turn_wide - 1.0, 0.0, 1.0)
+    )  # for the body's path is smooth: it turns before it begins
+    return max(time - duration, leaves - ahead + late)
+
+
+def leading_foot(play: Play, panels: Array) -> int:
+    """The foot that steps first alone, 0 left or 1 right; else the first lopsided jump tells.
+
+    It leads: wherever both sides are equal, what it asks for is done, so a mirrored play is danced mirrored.
+    panels : (c, 2) on the ground. A play that is its own mirror image is led by the left foot.
+    """
+    feet = [(play.limb == side).any(axis=1) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
+    alone = np.flatnonzero(feet[0] != feet[1])
+    if len(alone):
+        return int(feet[1][alone[0]])
+    left, right = (np.asarray(play.limb == side) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT))
+    aside, ahead = (left | right) @ panels[:, 0], (left.astype(np.int8) - right) @ panels[:, 1]
+    for x, z in zip(aside, ahead, strict=True):  # each changes its sign in the mirror
+        if max(abs(x), abs(z)) > NO_WAY:
+            return int(x < 0) if abs(x) > NO_WAY else int(z < 0)
+    return 0

@@ -1,0 +1,378 @@
+"""Walking: onto the pad before the song, off it afterwards, between pads, and step by step aside in short waits."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.clearance import reduction
+from dancetutor_cli.dance.context import HALF_PANEL, Context
+from dancetutor_cli.dance.footwork.footfalls import (
+    Footfall,
+    Stand,
+    Trip,
+    WalkSteps,
+    footsteps,
+    room,
+    stand_at,
+    standing,
+)
+from dancetutor_cli.dance.footwork.foothold import around, heel_of_step, heel_up
+from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, Row, pair
+from dancetutor_cli.dance.motion import Ground
+from dancetutor_cli.dance.plan import STRAIGHT, FootTrack, Hover, Plan, Press, Sidestep, Swing, Turn
+from dancetutor_cli.dance.settings_feet import AsideSettings
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.play import Play, StepKind
+
+# Walking: when, and from where to where she walks onto the pad before the song, off it afterwards, between pads.
+#
+# What is proposed here are footsteps; `insertion` puts them into a plan. They are swings like all others, so feet stand
+# as exactly, the body's path keeps its balance over them, and what the gait adds to pelvis, chest and hands
+# (`dance.gait`) comes on top.
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class WalkProposal:
+    """A walk that a rule would put into a plan.
+
+    goal : how she stands after it; begin : where she stands before it, if the plan begins with it
+    """
+
+    steps: WalkSteps
+    goal: Stand
+    begin: Stand | None = None
+
+
+def walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> WalkProposal | None:
+    """She comes from one side as the song begins, if there is time before the first note."""
+    ground, settings, walk = context.ground, context.settings, context.settings.walk
+    busy = min(plan.first, *(s.lift + walk.settle for t in plan.feet for s in t.moves[:1]))
+    if busy < walk.least or (mines < busy).any():
+        return None
+    goal = standing(plan.feet, -np.inf)
+    side = side_of(plan, context)
+    heading = (side - 0.5) * np.pi
+    away = np.array([_beside(ground, side, walk.beside), goal.middle[1]])
+    begin = stand_at(away, heading, settings)
+    ready = min(plan.first - walk.settle, busy - walk.settle - walk.arrived)
+    steps = footsteps(Trip(begin, goal, heading, -walk.early, ready), gait, plan.lead, context)
+    return None if steps is None else WalkProposal(steps, goal, begin)
+
+
+def walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> WalkProposal | None:
+    """After the last note she goes on to the other side, or back if her feet would be in each other's way.
+
+    Beside another dancer she goes to her own side, or stays.
+    """
+    if context.stays:
+        return None
+    ground, settings, walk = context.ground, context.settings, context.settings.walk
+    start = max(plan.last, mines.max(initial=-np.inf), *(s.land for t in plan.feet for s in t.moves[-1:])) + walk.pause
+    begin = standing(plan.feet, np.inf, plan.turns)
+    whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
+    found = []
+    came = side_of(plan, context)
+    for side in (1 - came, came) if context.sides is None else context.sides[1:]:
+        heading = (0.5 - side) * np.pi
+        goal = stand_at(np.array([_beside(ground, side, walk.beside), 0.0]), whole + heading, settings)
+        for late in (0.0, 0.5, 1.0, np.inf):
+            ready = plan.last + walk.leave + late
+            steps = footsteps(Trip(begin, goal, whole + heading, start, ready), gait, plan.lead, context)
+            if steps is not None:
+                found.append(WalkProposal(steps, goal))
+                break
+    if not found:
+        return None
+    free = [way for way in found if way.steps.room >= settings.step.apart]
+    return free[0] if free else max(found, key=lambda way: way.steps.room)
+
+
+def side_of(plan: Plan, context: Context) -> int:
+    """The side from which she comes, 0 left or 1 right: by chance, but always the same one for the same notes.
+
+    For the mirror image of a play it is the other one. On two pads it is the side of the foot that leads; beside
+    another dancer her own (`Context.sides`).
+    """
+    if context.sides is not None:
+        return context.sides[0]
+    if len(context.squares) > 1:
+        return plan.lead
+    notes = np.round([touch.start for touch in plan.touches], 3)
+    return plan.lead ^ (zlib.crc32(notes.tobytes()) & 1)
+
+
+def _beside(ground: Ground, side: int, far: float) -> float:
+    """A place along x so far beside the pad, on her left (0) or right (1) as she looks to the screen."""
+    return ground.high[0] + far if side == 0 else ground.low[0] - far
+
+
+def walk_over(plan: Plan, wait: tuple[float, float], gait: str, context: Context) -> WalkProposal | None:
+    """Where a long wait ends with steps of both feet on the other pad she walks there, rather than stretch.
+
+    wait : one of `waits`, seconds
+    """
+    if len(places_along(context.squares, plan.lead)) == 1:
+        return None
+    start, ready = wait
+    begin = standing(plan.feet, start, plan.turns)
+    following = [next_step(track, ready) for track in plan.feet]
+    targets = np.array([s.target for s in following if s is not None and not isinstance(s, Hover)])
+    if len(targets) < len(following):
+        return None
+    return walk_there(begin, targets, (start, ready), gait, plan.lead, context)
+
+
+def walk_there(
+    begin: Stand, targets: Array, wait: tuple[float, float], gait: str, lead: int, context: Context
+) -> WalkProposal | None:
+    """A walk in a wait to where both feet will step next, targets (2, 2), if they are far and there is time for it."""
+    settings, walk = context.settings, context.settings.walk
+    if wait[1] - wait[0] < walk.wait or np.linalg.norm(targets - begin.balls, axis=1).min() < walk.far:
+        return None
+    whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
+    goal = stand_at(np.array([_nearest(places_along(context.squares, lead), targets), 0.0]), whole, settings)
+    way = whole + np.copysign(np.radians(walk.sideways), goal.middle[0] - begin.middle[0])
+    steps = footsteps(Trip(begin, goal, way, wait[0] + walk.pause, wait[1] - walk.rest), gait, lead, context)
+    if steps is None or steps.room < settings.step.apart - walk.narrower:
+        return None
+    return WalkProposal(steps, goal)
+
+
+def next_step(track: FootTrack, time: float) -> Swing | None:
+    """A foot's first swing that begins at a time or later."""
+    return next((m for m in track.moves if m.lift >= time - 1e-9 and isinstance(m, Swing)), None)
+
+
+def first_place(play: Play, context: Context, lead: int) -> float:
+    """Where along x she waits for the first note: of the places for that the nearest to both feet's first panels.
+
+    The pad's middle on a single pad, and where only one foot ever steps. Steps are planned from there: those planned
+    from elsewhere would come down on the foot that waits. lead : as in `Plan`
+    """
+    places = places_along(context.squares, lead)
+    own = [np.flatnonzero((play.limb == side).any(axis=1)) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
+    if len(places) < 2 or not all(len(rows) for rows in own):
+        return 0.0
+    panels = [context.panels[play.limb[rows[0]] == side].mean(axis=0) for side, rows in enumerate(own)]
+    return _nearest(places, np.array(panels))
+
+
+def _nearest(places: Array, targets: Array) -> float:
+    """Which of the places is nearest to where both feet will step next, (2, 2)."""
+    return float(places[np.argmin(np.round(np.abs(places - targets[:, 0].mean()), 6))])
+
+
+def places_along(squares: Array, lead: int) -> Array:
+    """Places (k,) along x where she may wait: the middle of each square of panels (s, 2), and between two of them.
+
+    lead : as in `Plan`; that foot's side is last, and so second choice
+    """
+    middles = np.sort(squares[:, 0])
+    places = np.sort(np.concatenate((middles, (middles[1:] + middles[:-1]) / 2)))
+    return places if lead == 0 else places[::-1]
+
+
+def waits(plan: Plan, mines: Array, least: float) -> list[tuple[float, float]]:
+    """Stretches from when both feet are free to when one lifts, at least so long, without mines and hands."""
+    lifts = sorted((s.lift, s.land) for t in plan.feet for s in t.moves if isinstance(s, Swing))
+    held = [(c.start, c.end) for c in plan.contacts if c.kind == StepKind.HOLD]
+    busy = [(p.start - p.lead, p.end + 1.0) for p in plan.presses]
+    out, free = [], np.inf
+    for lift, land in lifts:
+        if lift - free >= least:
+            start = max([free, *(end for begin, end in held if begin < lift and end < np.inf)])
+            clear = not ((mines > start - 0.2) & (mines < lift + 0.2)).any()
+            if lift - start >= least and clear and not any(a < lift and b > start for a, b in busy):
+                out.append((start, lift))
+        free = land if free == np.inf else max(free, land)
+    return out
+
+
+# Side-steps: in a short wait before notes of the other pad she goes there step by step, the near foot first.
+#
+# A walk between the pads takes about three seconds. In a shorter wait dancers step aside, close, and step aside again;
+# so the notes are reached by a normal step and not by a leap. Nor do they wait with one foot on each pad.
+
+SPREAD_STEP = 0.04  # metres between the ways of stepping aside that are tried
+
+
+@dataclass(frozen=True, slots=True)
+class _Next:
+    """What feet do next: when (2,), at which panel each (nan: nothing soon), and who does so in the next row."""
+
+    times: Array
+    places: Array
+    first: tuple[int, ...]
+
+
+class StepsInWaits:
+    """What is asked of a play by who steps where no note is: places to stand, mines, rows of each foot."""
+
+    def __init__(self, play: Play, context: Context, lead: int) -> None:
+        self.play, self.panels, self.settings = play, context.panels, context.settings
+        self.places = places_along(context.squares, lead)
+        self.mines = play.rows.second[play.rows.mines.any(axis=1)]
+        self.steps = [np.flatnonzero((play.limb == side).any(axis=1)) for side in (0, 1)]  # rows of each foot
+
+
+class SideSteps(StepsInWaits):
+    """Proposes side-steps before a row whose notes are far from where she stands."""
+
+    def before(self, row: Row, presses: Sequence[Press], footing: Footing) -> Proposal | None:
+        """Step aside before a row if that helps and there is time, and the body's turn meanwhile; or None.
+
+        presses : of palms, so far
+        """
+        settings, time = self.settings, row.time
+        whole = 360.0 * round(footing.normal / 360.0)
+        if len(self.places) == 1 or row.hands or abs(footing.normal - whole) > settings.aside.facing:
+            return None
+        begin = stand_of(footing)
+        following = self._next(row)
+        if self._far(begin.balls, following) <= settings.aside.far:
+            return None
+        free = max([*(foot.free for foot in footing.feet), *(p.end + settings.hands.reach_down for p in presses[-1:])])
+        start, ready = free + settings.aside.pause, time - settings.walk.settle
+        busy = (self.mines > start - settings.aside.mine) & (
+            self.mines < np.nanmax(following.times) + settings.aside.mine
+        )
+        if ready - start < 2 * settings.aside.quick or busy.any():
+            return None
+        if walks_there(begin, following.places, (free, time), footing):
+            return None
+        found = self._goal(begin, following, float(np.radians(whole)), ready - start)
+        if found is None:
+            return None
+        falls, duration = found
+        for k, (side, fall) in enumerate(falls):
+            footing = stepped(footing, footing.feet[side], fall, start + k * duration, duration)
+        turn = Turn(start, start + min(2, len(falls)) * duration, float(np.radians(whole)))
+        return Proposal(replace(footing, normal=whole, aim=turn.yaw, faced=turn.yaw), start, turn)
+
+    def _next(self, row: Row) -> _Next:
+        rows = self.play.rows
+        times, places = np.full(2, np.nan), np.full((2, 2), np.nan)
+        for side in (0, 1):
+            k = int(np.searchsorted(self.steps[side], row.index))
+            if k < len(self.steps[side]):
+                found = int(self.steps[side][k])
+                times[side] = row.time if found == row.index else rows.second[found]
+                if times[side] < row.time + self.settings.aside.soon:
+                    places[side] = self.panels[self.play.limb[found] == side].mean(axis=0)
+        return _Next(times, places, tuple(row.feet))
+
+    def _far(self, balls: Array, following: _Next) -> float:
+        """How far she would stretch: between the feet now, and for the next row, in a step from the other foot, in a
+        jump from either foot's place."""
+        if len(following.first) == 2:
+            far = np.linalg.norm(following.places - balls, axis=1).max()
+        else:
+            far = np.linalg.norm(following.places[following.first[0]] - balls[1 - following.first[0]])
+        return float(max(far, np.linalg.norm(balls[0] - balls[1])))
+
+    def _goal(
+        self, begin: Stand, following: _Next, heading: float, time: float
+    ) -> tuple[list[tuple[int, Footfall]], float] | None:
+        """Where to go, as footfalls of feet (0 left), and how long each step takes; None if nothing is nearer."""
+        aside, settings = self.settings.aside, self.settings
+        best, least = None, self._far(begin.balls, following) - aside.gain
+        for x in _between(self.places):
+            goal = stand_at(np.array([x, 0.0]), heading, settings)
+            own = np.linalg.norm(following.places - goal.balls, axis=1)
+            price = max(self._far(goal.balls, following), float(np.nanmax(own)))
+            price += aside.travel * abs(float(goal.middle[0] - begin.middle[0]))
+            if price < least - 1e-9:
+                found = self._falls(begin, goal, time)
+                best, least = (found, price) if found is not None else (best, least)
+        return best
+
+    def _falls(self, begin: Stand, goal: Stand, time: float) -> tuple[list[tuple[int, Footfall]], float] | None:
+        """Footfalls no farther than is comfortable, if there is time; otherwise the smallest that there is time for."""
+        aside = self.settings.aside
+        few = len(footfalls(begin, goal, aside.comfortable, aside)) or aside.most
+        for spread in np.arange(aside.narrow, aside.wide + 1e-6, SPREAD_STEP):
+            falls = footfalls(begin, goal, float(spread), aside)
+            if 0 < len(falls) <= few and time / len(falls) >= aside.quick and self._free(begin, falls):
+                return falls, min(aside.slow, time / len(falls))
+        return None
+
+    def _free(self, begin: Stand, falls: list[tuple[int, Footfall]]) -> bool:
+        """Whether no shoe comes too near the other."""
+        places = [(ball, float(yaw)) for ball, yaw in zip(begin.balls, begin.yaws, strict=True)]
+        for side, fall in falls:
+            if room(places[side], fall, STRAIGHT, places[1 - side]) < self.settings.step.apart:
+                return False
+            places[side] = (fall.ball, fall.yaw)
+        return True
+
+
+def stand_of(footing: Footing) -> Stand:
+    """How both feet stand."""
+    yaws = np.array([footing.toes(foot) for foot in footing.feet])
+    return Stand(np.array([foot.ball for foot in footing.feet]), yaws, footing.turned_to())
+
+
+def walks_there(begin: Stand, targets: Array, wait: tuple[float, float], footing: Footing) -> bool:
+    """Whether there is time to walk, and reason to; wait : from when feet are free to the row, seconds."""
+    if np.isnan(targets).any():
+        return False
+    step = footing.settings.step
+    ready = wait[1] - step.longest * (1.0 - step.double_support)
+    return walk_there(begin, targets, (wait[0], ready), "flat", footing.lead, footing.context) is not None
+
+
+def stepped(footing: Footing, foot: FootState, fall: Footfall, start: float, duration: float) -> Footing:
+    """The footing in which a foot has stepped aside."""
+    step = footing.settings.step
+    cut = float(reduction(duration, step.fast, step.longest))
+    height = step.height_slow + cut * (step.height_fast - step.height_slow)
+    pitches = heel_up(step, cut, heel_of_step(step), [0])
+    lift = max(start + step.double_support * duration, foot.free)
+    bulge = around(footing, foot, (lift, start + duration), fall.ball, fall.heading, footing.other(foot))
+    aside = Sidestep(lift, start + duration, pair(fall.ball), fall.yaw, pitches, height, bulge)
+    return footing.with_foot(replace(foot.moved(aside, fall.ball, fall.heading), evading=None))
+
+
+def _between(places: Array) -> Array:
+    """Places (k,) half a panel apart from the first to the last of some along a line."""
+    count = round(abs(float(places[-1] - places[0])) / HALF_PANEL)
+    middle, way = (places[0] + places[-1]) / 2, np.sign(places[-1] - places[0])
+    return np.asarray(middle + way * HALF_PANEL * (np.arange(count + 1) - count / 2))
+
+
+def footfalls(begin: Stand, goal: Stand, spread: float, aside: AsideSettings) -> list[tuple[int, Footfall]]:
+    """Steps to the side along x: the near foot goes, at most `spread` from the other one, which follows.
+
+    Returns foot (0 left) and footfall of each; none if more than `aside.most` are needed.
+    """
+    way = float(np.sign(goal.middle[0] - begin.middle[0]))
+    near = 0 if way > 0 else 1
+    at, to = way * begin.balls[:, 0], way * goal.balls[:, 0]
+    close = to[near] - to[1 - near]
+    out: list[tuple[int, Footfall]] = []
+    for k in range(2 * int(aside.most)):
+        side = near if k % 2 == 0 else 1 - near
+        reach = at[1 - near] + spread if side == near else at[near] - close
+        place = to[side] if to[side] - reach < aside.same else reach
+        last = place == to[side]
+        if place > at[side] + aside.same or (last and _off(begin, goal, out, (side, aside.same))):
+            ball = np.array([way * place, goal.balls[side, 1]])
+            out.append((side, Footfall(ball, float(goal.yaws[side]), goal.heading)))
+            at[side] = place
+        if all(not _off(begin, goal, out, (s, aside.same)) for s in (0, 1)):
+            return out if len(out) <= aside.most else []
+    return []
+
+
+def _off(begin: Stand, goal: Stand, falls: list[tuple[int, Footfall]], foot: tuple[int, float]) -> bool:
+    """Whether a foot is not yet where it shall be. foot : which, and how near is there, metres"""
+    side, same = foot
+    done = [fall.ball for s, fall in falls if s == side]
+    return bool(np.linalg.norm((done[-1] if done else begin.balls[side]) - goal.balls[side]) > same)

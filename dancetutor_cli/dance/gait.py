@@ -1,0 +1,163 @@
+"""Gaits: how pelvis, chest and hands go with the steps of a walk, and how two gaits are blended.
+
+A gait's curves are over normalised time: 0 is a landing of the left foot, 0.5 one of the right foot, 1 the left foot
+again. Two gaits are blended pose by pose at the same normalised time, and the blend's cycle takes  (T2 - T1) a + T1
+seconds (the blog of the project's sources), so feet that land at one normalised time in both land there in the blend.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.plan import Plan, Route
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import half_hips
+from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
+from dancetutor_cli.dance.settings import numbers
+from dancetutor_cli.dance.settings_feet import WalkSettings
+from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.run.errors import UsageError, did_you_mean
+from dancetutor_cli.run.reading import config_path
+from dancetutor_cli.run.yaml_files import read
+
+Array = NDArray[np.float64]
+STANCE = 0.6  # part of a cycle that a foot stands
+
+
+@dataclass(frozen=True, slots=True)
+class Gait:
+    """A way to walk: a cycle of two steps, from one landing of the left foot to the next; see `configs/gaits`."""
+
+    period: float
+    stride: float
+    height: float
+    push_pitch: float
+    heel_pitch: float
+    hip_drop: float
+    pelvis_yaw: float
+    chest_yaw: float
+    hips: float
+    arch: float
+    arms: float
+    plant: float
+
+
+@dataclass(frozen=True, slots=True)
+class GaitPose:
+    """What a gait adds at f times; angles in radians.
+
+    roll : left hip up; pelvis_yaw, chest_yaw : to the left; hips : the pelvis leans forward; arch : the chest back
+    hands : (f, 2) metres that the left and right hand are swung forward; own : (f,) 0 to 1, how much of the hands' way
+    is the gait's; sink : metres that the body is lower
+    """
+
+    roll: Array
+    pelvis_yaw: Array
+    chest_yaw: Array
+    hips: Array
+    arch: Array
+    hands: Array
+    own: Array
+    sink: Array
+
+
+def gait_pose(gait: Gait, phase: Array, walk: WalkSettings) -> GaitPose:
+    """The pose of a gait at normalised times (f,)."""
+    angle = 2 * np.pi * phase
+    ones = np.ones_like(phase)
+    # the left foot lands at 0 and bears the body until 0.6: its hip is highest half-way through that
+    roll = np.radians(gait.hip_drop) * np.sin(angle - 0.1 * np.pi)
+    forward = np.cos(angle)  # 1 as the left foot lands, far ahead
+    step = (2 * phase) % 1.0
+    low = half_hips(dancer_skeleton()) * np.sin(np.radians(gait.hip_drop))  # legs must reach down from a raised hip too
+    sink = low + gait.plant * np.sin(np.pi * np.minimum(step / walk.sinking, 1.0)) ** 2
+    return GaitPose(
+        roll,
+        -np.radians(gait.pelvis_yaw) * forward,
+        np.radians(gait.chest_yaw) * forward,
+        np.radians(gait.hips) * ones,
+        np.radians(gait.arch) * ones,
+        gait.arms * np.column_stack((-forward, forward)) - walk.hands_back,
+        ones,
+        sink,
+    )
+
+
+def blended_pose(gaits: tuple[Gait, Gait], share: float, phase: Array, walk: WalkSettings) -> GaitPose:
+    """Both gaits' poses at the same normalised times (f,), `share` (0 to 1) of the quick one."""
+    a, b = (gait_pose(gait, phase, walk) for gait in gaits)
+    mixed = (getattr(a, f.name) + share * (getattr(b, f.name) - getattr(a, f.name)) for f in fields(GaitPose))
+    return GaitPose(*mixed)
+
+
+def blended(slow: Gait, quick: Gait, share: float) -> Gait:
+    """The numbers of the blend; its period is (T2 - T1) share + T1."""
+    values = {f.name: getattr(slow, f.name) for f in fields(Gait)}
+    return Gait(**{name: (getattr(quick, name) - value) * share + value for name, value in values.items()})
+
+
+def gait_names() -> list[str]:
+    """The gaits that the program comes with."""
+    return sorted(path.stem for path in config_path("gaits").glob("*.yaml"))
+
+
+@cache
+def load_gait(name: str) -> tuple[Gait, Gait]:
+    """The slow and the quick form of a gait: one of `configs/gaits` by name, or a file.
+
+    Raises UsageError for a name that there is not, FileError with the line for a file that is wrong.
+    """
+    path = config_path(f"gaits/{name}.yaml") if name in gait_names() else Path(name)
+    if path.suffix.lower() not in (".yaml", ".yml") and not path.is_file():
+        near = did_you_mean(name, gait_names())
+        raise UsageError(f"there is no gait '{name}'{near}; there are: {', '.join(gait_names())}, or give a .yaml file")
+    source = read(path)
+    source.only((), ("slow", "quick"))
+    return numbers(source, "slow", Gait), numbers(source, "quick", Gait)
+
+
+def walking(walks: tuple[Route, ...], times: Array, settings: WalkSettings) -> GaitPose | None:
+    """What all walks add at `times` (f,), fading in and out; None where nobody walks."""
+    total: GaitPose | None = None
+    for walk in walks:
+        first_at, end_at = np.searchsorted(times, (walk.start, walk.end))
+        if first_at == end_at:
+            continue
+        near = slice(int(first_at), int(end_at))
+        fade = smooth((times[near] - walk.start) / settings.fade) * smooth((walk.end - times[near]) / settings.fade)
+        landings = np.array([walk.start, *walk.landings])
+        first = 0.5 if walk.first == 1 else 1.0
+        phases = first + np.array([STANCE - 1.0, *(0.5 * np.arange(len(walk.landings)))])
+        phase = np.interp(times[near], landings, phases)
+        pose = blended_pose(load_gait(walk.gait), walk.share, phase, settings)
+        total = total or _standing_pose(len(times))
+        for f in fields(GaitPose):
+            value = getattr(pose, f.name)
+            getattr(total, f.name)[near] += value * (fade if value.ndim == 1 else fade[:, None])
+    return total
+
+
+def gaze_ahead(plan: Plan, times: Array, settings: WalkSettings) -> Array:
+    """How much (f,) of her look is where she goes and not at the screen: on her way to the pad and from it."""
+    walks = tuple(w for w in plan.walks if w.end <= plan.first or w.start >= plan.last)
+    gait = walking(walks, times + settings.gaze_ahead, settings)
+    return np.zeros(len(times)) if gait is None else gait.own
+
+
+def _standing_pose(count: int) -> GaitPose:
+    return GaitPose(*(np.zeros((count, 2) if f.name == "hands" else count) for f in fields(GaitPose)))
+
+
+def with_gait(pose: GaitPose, pelvis: Array, chest: Array) -> tuple[Array, Array]:
+    """Rotations of pelvis and chest (f, 4) with the gait on top, in local space, main rotation first."""
+    across, up, front = np.eye(3)
+    low = quat.multiply(quat.from_axis_angle(up, pose.pelvis_yaw), quat.from_axis_angle(front, pose.roll))
+    low = quat.multiply(low, quat.from_axis_angle(across, pose.hips))
+    high = quat.multiply(quat.from_axis_angle(up, pose.chest_yaw), quat.from_axis_angle(front, -0.5 * pose.roll))
+    high = quat.multiply(high, quat.from_axis_angle(across, -pose.arch))
+    return quat.multiply(pelvis, low), quat.multiply(chest, high)

@@ -1,0 +1,341 @@
+"""Hands on the bar behind the dancer: what an arm reaches in comfort, where the far hand crosses over, when."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.context import ACROSS_SLOWER, Context, grip_phrases, on_rail, way_time
+from dancetutor_cli.dance.foot_path import both_feet
+from dancetutor_cli.dance.ik.full_body import ArmGoal, arm_rotations, solve
+from dancetutor_cli.dance.ik.hands import Torso, elbows_across, elbows_on_bar, inward, rest_on_bar
+from dancetutor_cli.dance.ik.targets import ik_targets
+from dancetutor_cli.dance.motion import Grip
+from dancetutor_cli.dance.plan import Plan
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import SIDES, centre_of_mass, world_transforms
+from dancetutor_cli.dance.rig.quaternion import UP
+from dancetutor_cli.dance.rig.skeleton import beyond
+from dancetutor_cli.dance.settings import MotionSettings
+from dancetutor_cli.dance.settings_arms import BarSettings
+from dancetutor_cli.dance.trajectory.facing import wrapped
+from dancetutor_cli.dance.trajectory.posture import Known, body_trajectory
+
+# An arm beside the bar behind the dancer: where on the rail its hand may rest, at which times, by a rough bake.
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+RATE, BODY_RATE = 30.0, 60.0  # looks per second at whether the rail is within reach, and samples of the body's path
+PART, MARGIN = 60.0, 4.0  # seconds of a song that are looked at together, and beyond which they begin and end
+TRUNK_ASIDE, TRUNK_DEEP = 0.195, 0.155  # metres, half axes of the trunk with a forearm's thickness and some air
+ALONG = np.linspace(0.15, 1.0, 5)  # of the forearm and the hand, where they are looked at
+ARMS_BACK = 0.022  # metres that the centre of mass lies farther back when the hands are on the rail
+MOST_INWARD = np.radians(145.0)  # a hand on its way that is farther from straight outward would go through the trunk
+# the same for one that crosses over before her: last part of its way, and between which angles the rail must be then
+ACROSS = ((0.5, np.radians(60.0), np.radians(172.0)), (1.0, np.radians(60.0), np.radians(330.0)))
+HAND = 0.10  # metres that a hand reaches beyond its wrist
+
+
+@dataclass(frozen=True, slots=True)
+class BarTrunk:
+    """The upper body at n times. pelvis (n, 3), chest (n, 4), shoulders (n, 2, 3), yaw (n,) of the chest, radians.
+
+    turned : (n,) radians, of the pelvis
+    """
+
+    pelvis: Array
+    chest: Array
+    shoulders: Array
+    yaw: Array
+    turned: Array
+
+
+def trunk_of(plan: Plan, times: Array, context: Context) -> BarTrunk:
+    """Where the upper body will be, found in parts so that an hour needs little memory."""
+    parts = []
+    for first in np.arange(times[0], times[-1] + 1e-9, PART):
+        parts.append(_part(plan, times[(times >= first) & (times < first + PART)], context))
+    return BarTrunk(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(BarTrunk)))
+
+
+def _part(plan: Plan, at: Array, context: Context) -> BarTrunk:
+    """The upper body at the times `at`, by a rough bake without the hands on the bar."""
+    skeleton = context.skeleton
+    grid = np.arange(np.floor((at[0] - MARGIN) * BODY_RATE), np.ceil((at[-1] + MARGIN) * BODY_RATE) + 1) / BODY_RATE
+    feet = both_feet(plan.feet, grid, context.settings)
+    body = body_trajectory(plan, grid, feet, context)
+    targets = ik_targets(replace(plan, grips=()), body, feet, grid, context)
+    poses = solve(skeleton, targets, context.settings.body.reach)
+    places, world = world_transforms(skeleton, *poses)
+    above = centre_of_mass(skeleton, places, world) - poses.root
+    above[:, 2] -= ARMS_BACK
+    body = body_trajectory(plan, grid, feet, context, Known(body, above))
+    now = np.round((at - grid[0]) * BODY_RATE).astype(np.int64)
+    pelvis = np.column_stack((body.ground[now, 0], body.height[now], body.ground[now, 1]))
+    shoulders = [places[now, skeleton.index(f"{s}_shoulder")] - poses.root[now] + pelvis for s in SIDES]
+    return BarTrunk(
+        pelvis, world[now, skeleton.index("vt4")], np.stack(shoulders, axis=1), body.chest_yaw[now], body.yaw[now]
+    )
+
+
+class Arm:
+    """One arm, and where on the rail its hand can be at which of the n times.
+
+    apart : (n,) metres beside the pelvis, outward, where it would like to be; across : it crosses over before her
+    """
+
+    def __init__(
+        self, side: int, trunk: BarTrunk, busy: Flags, apart: Array, context: Context, across: bool = False
+    ) -> None:
+        assert context.bar is not None
+        self.across = across
+        self.side, self.bar, self.trunk, self.busy = side, context.bar, trunk, busy
+        self.skeleton, self.settings = context.skeleton, context.settings
+        self.place = on_rail(trunk.pelvis[:, 0] + (1.0, -1.0)[side] * apart, self.bar, self.settings.bar.from_end)
+
+    def fits(self, x: Array, when: slice) -> Flags:
+        """Whether the hand may rest on the rail at x (k,) at the times `when`, k of them."""
+        side, bar, skeleton, trunk = self.side, self.bar, self.skeleton, self.trunk
+        shoulder, chest = trunk.shoulders[when, side], trunk.chest[when]
+        wrist, hand = rest_on_bar(bar, side, x, skeleton, self.settings.bar, self.across)
+        near = np.linalg.norm(wrist - shoulder, axis=1) <= self.settings.bar.let_go
+        if self.across:
+            elbow = elbows_across(chest)[:, side]
+        else:
+            aside = quat.rotate(quat.from_axis_angle(UP, -trunk.yaw[when]), wrist - shoulder)[:, 0]
+            near &= (aside if side == 0 else -aside) > -self.settings.bar.inward  # no arm goes across the back
+            elbow = elbows_on_bar(chest, self.settings.bar)[:, side]
+        hands = np.tile(hand, (len(wrist), 1))
+        joints = arm_rotations(skeleton, side, ArmGoal(shoulder, chest, wrist, hands, elbow))
+        names = [f"{SIDES[side]}_{n}" for n in ("shoulder", "elbow", "radiocarpal")]
+        for name, rotation in zip(names, joints, strict=True):
+            near &= beyond(skeleton, name, rotation) < -self.settings.bar.comfort if name[2:] != "elbow" else True
+        upper = skeleton.offsets[skeleton.index(names[1])]
+        joint = shoulder + quat.rotate(quat.multiply(chest, joints[0]), upper)
+        return np.asarray(near & ~self._in_trunk(joint, wrist, when) & ~self.busy[when])
+
+    def reached(self, x: float, start: int, stop: int) -> tuple[int, int]:
+        """From which look on until which one the hand may rest at x of those from `start` to `stop`, so that it gets
+        there and away beside the trunk: while she turns quickly it comes later, or leaves earlier."""
+        wrist, _ = rest_on_bar(self.bar, self.side, x, self.skeleton, self.settings.bar, self.across)
+        middle, begin, end = (start + stop) // 2, start, stop
+        for part, least, most in ACROSS if self.across else ((1.0, 0.0, MOST_INWARD),):
+            reach = round(part * self.settings.bar.reach_time * RATE * (ACROSS_SLOWER if self.across else 1.0))
+            first, last = max(start - reach, 0), min(stop + reach, len(self.place))
+            torso = Torso(self.trunk.shoulders[first:last], self.trunk.chest[first:last])
+            angle = inward(np.broadcast_to(wrist, (last - first, 3)), self.side, torso, self.across)
+            through = first + np.flatnonzero((angle < least) | (angle > most))
+            begin = max([begin, *(through[through < middle][-1:] + 1 + reach)])
+            end = min([end, *(through[through >= middle][:1] - reach)])
+        return begin, end
+
+    def _in_trunk(self, elbow: Array, wrist: Array, when: slice) -> Flags:
+        """Whether a forearm from elbow to wrist (k, 3), or its hand, is in the trunk, an upright cylinder that is wrung
+        from the hips to the chest."""
+        trunk = self.trunk
+        top = trunk.shoulders[when].mean(axis=1)
+        along = (wrist - elbow) / np.linalg.norm(wrist - elbow, axis=1, keepdims=True)
+        end = wrist + HAND * along
+        out = np.zeros(len(elbow), dtype=bool)
+        hips, wrung = trunk.turned[when], trunk.yaw[when] - trunk.turned[when]
+        for share in ALONG:
+            point = elbow + share * (end - elbow)
+            low = trunk.pelvis[when]
+            up = np.clip((point[:, 1] - low[:, 1]) / np.maximum(top[:, 1] - low[:, 1], 0.1), 0.0, 1.0)
+            off = quat.rotate(quat.from_axis_angle(UP, -hips - up * wrung), point - low - up[:, None] * (top - low))
+            out |= (off[:, 0] / TRUNK_ASIDE) ** 2 + (off[:, 2] / TRUNK_DEEP) ** 2 < 1.0
+        return out
+
+
+def firm(free: Flags, early: float) -> Flags:
+    """Free also so many seconds before and after."""
+    width = max(1, round(early * RATE))
+    held = np.concatenate((np.repeat(free[:1], width), free, np.repeat(free[-1:], width)))
+    return np.asarray(np.convolve(~held, np.ones(2 * width + 1), "valid") < 0.5)
+
+
+def runs(flags: Flags) -> list[tuple[int, int]]:
+    """Runs of True as (first, one past the last)."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8))).reshape(-1, 2)
+    return [(int(a), int(b)) for a, b in edges]
+
+
+# Turns on the bar in which the far hand crosses over before her: which, from when to when, and where on the rail.
+
+SEED = 20011109
+JUMP = 0.08  # seconds; what is shorter is a quick step
+APART = 0.8  # of the way of a hand that crosses over, in which the other one is not where it comes to
+FARTHER_AHEAD = (0.0, -0.03, 0.03, -0.06)  # metres farther ahead where it may be better, as a hand stays there longer
+
+
+def turns(plan: Plan, times: Array, trunk: BarTrunk, busy: Flags, context: Context) -> tuple[Grip, ...]:
+    """Grips as long as the turns in which a hand may cross over, for a body that turns and leans for them.
+
+    She does not in all of them; chance decides, always the same way for a song.
+    """
+    out, numbers, reach = [], context.settings.across, context.settings.bar.reach_time
+    free = firm(~busy, (ACROSS_SLOWER - 1.0) * reach)  # nor is a hand on its way when it still has a panel
+    for start, end in plan.flights:
+        if end - start > JUMP:  # who jumps is upright
+            free[_between(times, start - numbers.ease - numbers.early, end + numbers.ease + numbers.early)] = False
+    turned = np.degrees(wrapped(trunk.turned))
+    for side, yaw in ((1, turned), (0, -turned)):  # turned to the left, the right hand is the far one
+        for a, b in runs((yaw >= numbers.turned) & (yaw <= numbers.past) & free):
+            first, last = float(times[a]) + numbers.settle, float(times[b - 1]) - numbers.settle
+            if last - first >= numbers.shortest and _chance(plan, float(times[a]))[0] < numbers.often:
+                out.append(Grip(first, last, side, 0.0, True))
+    return tuple(sorted(out, key=lambda grip: grip.start))
+
+
+def crossings(wanted: tuple[Grip, ...], times: Array, trunk: BarTrunk, busy: Flags, context: Context) -> Iterator[Grip]:
+    """Of the grips that are `wanted`, in order of time, those, or as much of each, that an arm reaches from a body that
+    turned for all of them; with their places on the rail. A hand has gone before the next one comes."""
+    numbers, reach = context.settings.across, context.settings.bar.reach_time
+    apart = np.full(len(times), -numbers.ahead)
+    arms = [Arm(side, trunk, busy, apart, context, across=True) for side in (0, 1)]
+    free = -np.inf
+    for grip in wanted:
+        a, b = np.searchsorted(times, (max(grip.start, free), grip.end)).tolist()
+        start, stop, x = _longest_crossing(arms[grip.side], a, b) if a < b else (a, a, 0.0)
+        if stop - start >= max(1, round(numbers.shortest * RATE)):
+            found = Grip(float(times[start]), float(times[stop - 1]), grip.side, x, True)
+            free = found.end + 2 * way_time(found, reach)
+            yield found
+
+
+def _longest_crossing(arm: Arm, a: int, b: int) -> tuple[int, int, float]:
+    """From which look of those from a to b until which one a hand may stay longest, and where on the rail."""
+    best, bar = (a, a, 0.0), arm.settings.bar
+    for farther in FARTHER_AHEAD:
+        middle = float(np.median(arm.place[a:b])) + (-1.0, 1.0)[arm.side] * farther
+        x = float(on_rail(np.array([middle]), arm.bar, bar.from_end)[0])
+        for first, end in runs(firm(arm.fits(np.full(b - a, x), slice(a, b)), bar.early)):
+            start, stop = arm.reached(x, a + first, a + end)
+            if stop - start > best[1] - best[0]:
+                best = start, stop, x
+    return best
+
+
+def around_crossings(
+    plan: Plan, times: Array, grips: tuple[Grip, ...], places: tuple[Flags, Array], context: Context
+) -> tuple[Flags, Array]:
+    """Which hands (n, 2) may be on the rail on their own side, and how far (n, 2) each is beside the body there, when
+    others cross over.
+
+    The far hand is away before and after. The near one holds on behind it, or lets go, by chance.
+    places : both without crossings
+    """
+    numbers, reach = context.settings.across, context.settings.bar.reach_time
+    holds, apart = places[0].copy(), places[1].copy()
+    for grip in grips:
+        near, far = 1 - grip.side, grip.side
+        away = reach + way_time(grip, reach)
+        holds[_between(times, grip.start - away, grip.end + away), far] = False
+        gone = APART * way_time(grip, reach)
+        holds[_between(times, grip.start - gone, grip.end + gone), near] = False
+        if _chance(plan, grip.start)[1] < numbers.both:  # it takes the rail anew
+            holds[_between(times, grip.start, grip.end), near] = True
+            apart[_between(times, grip.start, grip.end), near] = -numbers.near
+    return holds, apart
+
+
+def _between(times: Array, start: float, end: float) -> slice:
+    return slice(*np.searchsorted(times, (start, end)).tolist())
+
+
+def _chance(plan: Plan, second: float) -> tuple[float, float]:
+    """Two numbers from 0 to 1, always the same ones for a second of a song."""
+    song = [round(1000 * t) & 0xFFFFFFFF for t in (plan.first, plan.last, second)]
+    one, other = np.random.default_rng([SEED, *song]).random(2)
+    return float(one), float(other)
+
+
+# When each hand rests on the bar behind the dancer: as long as its arm gets there in comfort.
+
+BESIDE = (0.0, 0.05, -0.05, 0.1, -0.1)  # metres beside it where it may be better, as a hand stays there longer
+ROUNDS = 2  # of finding out how long a hand that crosses over may stay
+LOOK = 10.0  # seconds that are looked at together for how long a hand may stay
+
+
+def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
+    """The plan with when each hand rests on the bar between the seconds of `span`, in order of start.
+
+    She holds it with both hands or with one, by turns as `bar.grip_phrases` says. A hand lets go before the body goes
+    or turns so far that its arm would not reach, would bend beyond its joints' limits or go through the trunk, and
+    whenever a hand goes to a panel; it takes the rail anew, farther on, when the body has travelled along. In turns
+    that are long enough the far hand may cross over before her.
+    """
+    times = np.arange(span[0], span[1], 1.0 / RATE)
+    if len(times) < 2:
+        return plan
+    busy = _busy(plan, times, context.settings)
+    leaning_back = tuple(Grip(float(times[a]), float(times[b - 1]), 0, 0.0) for a, b in runs(~busy))
+    trunk = trunk_of(replace(plan, grips=leaning_back), times, context)
+    holds, apart = grip_phrases(plan, times, trunk.yaw, context.settings.bar)
+    places = holds, np.tile(apart[:, None], 2)
+    found: list[Grip] = []
+    wanted = turns(plan, times, trunk, busy, context)
+    for _ in range(ROUNDS):
+        if wanted:  # the body turns for those that were found in place of those that were looked for
+            trunk = trunk_of(replace(plan, grips=(*leaning_back, *wanted)), times, context)
+            found = list(crossings(wanted, times, trunk, busy, context))
+            wanted = tuple(found)
+    places = around_crossings(plan, times, wanted, places, context)
+    for side in (0, 1):
+        arm = Arm(side, trunk, busy | ~places[0][:, side], places[1][:, side], context)
+        found += list(_pieces(times, arm, context.settings.bar))
+    return replace(plan, grips=tuple(sorted(found, key=lambda g: (g.start, g.side))))
+
+
+def _busy(plan: Plan, times: Array, settings: MotionSettings) -> Flags:
+    """Whether a hand is at a panel or on its way to or from it, or she walks; then both are off the bar."""
+    out = np.zeros(len(times), dtype=bool)
+    down, reach = settings.hands.reach_down, settings.bar.reach_time
+    for press in plan.presses:
+        first, last = press.start - down - reach, press.end + down + reach
+        out[np.searchsorted(times, first) : np.searchsorted(times, last)] = True
+    for walk in plan.walks:
+        out[np.searchsorted(times, walk.start - reach) : np.searchsorted(times, walk.end + reach)] = True
+    return out
+
+
+def _pieces(times: Array, arm: Arm, bar: BarSettings) -> Iterator[Grip]:
+    """Grips in the stretches in which the rail is within reach, divided where the body has gone on along it."""
+    least, pause = max(1, round(bar.shortest * RATE)), max(1, round(bar.reach_time * RATE))
+    last = 0
+    for first, end in runs(firm(arm.fits(arm.place, slice(None)), bar.early)):
+        start = max(first, last)
+        while end - start >= least:
+            x, stop = _longest(arm, start, end)
+            start, stop = arm.reached(x, start, stop)
+            if stop - start >= least:
+                yield Grip(float(times[start]), float(times[stop - 1]), arm.side, x)
+                start = last = stop + pause
+            else:
+                start += max(least // 4, 1)
+
+
+def _longest(arm: Arm, start: int, end: int) -> tuple[float, int]:
+    """Where a hand that takes the rail at look `start` may stay longest, and the look at which it must have gone."""
+    soon = arm.place[start : min(start + round(arm.settings.bar.place_time * RATE), end)].mean()
+    best, stop = float(soon), start
+    for aside in BESIDE:
+        x = float(on_rail(np.array([soon + (1.0, -1.0)[arm.side] * aside]), arm.bar, arm.settings.bar.from_end)[0])
+        k = start
+        while k < end:
+            until = min(k + round(LOOK * RATE), end)
+            free = firm(arm.fits(np.full(until - k, x), slice(k, until)), arm.settings.bar.early)
+            k += _first(~free)
+            if k < until:
+                break
+        if k > stop:
+            best, stop = x, k
+    return best, stop
+
+
+def _first(flags: Flags) -> int:
+    """Index of the first True, or how many there are."""
+    return int(np.argmax(flags)) if flags.any() else len(flags)

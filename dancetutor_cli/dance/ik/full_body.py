@@ -1,0 +1,370 @@
+"""Full-body inverse kinematics: from targets of pelvis, shoulders, hands and feet to joint rotations of all frames."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.rig.body import SPINE_SHARES
+from dancetutor_cli.dance.rig.limbs import (
+    Quat,
+    Vec,
+    add,
+    cross,
+    dot,
+    length,
+    limb,
+    qbetween,
+    qconj,
+    qframe,
+    qlerp,
+    qmul,
+    qrot,
+    scale,
+    sub,
+    unit,
+)
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
+
+# The kernels of the full-body inverse kinematics: on plain arrays, grouped by what they are about.
+
+Array = NDArray[np.float64]
+ARM_REACH = 0.990  # part of the arm's length that a hand is led to at most
+LOW, HIGH = SPINE_SHARES
+ROUNDING = 0.03  # metres that the spine's middle is bent backward before it is solved
+PULL_LEGS = 60  # rounds of pulling the root until both legs reach
+PULL_ROUNDS = 24  # rounds of pulling the body after a pinned palm
+
+
+NAMES = (
+    "HumanoidRoot", "vl5", "vt10", "vt4",
+    "l_hip", "l_knee", "l_talocrural", "l_metatarsal", "r_hip", "r_knee", "r_talocrural", "r_metatarsal",
+    "l_sternoclavicular", "l_shoulder", "l_elbow", "l_radiocarpal",
+    "r_sternoclavicular", "r_shoulder", "r_elbow", "r_radiocarpal",
+)  # fmt: skip
+# places of the names above in the index array; the legs are one after the other, and so are the arms
+VL5, VT10, VT4, LEG, ARM = (NAMES.index(n) for n in ("vl5", "vt10", "vt4", "l_hip", "l_sternoclavicular"))
+
+
+class Rig(NamedTuple):
+    """What the kernels know of a skeleton: offsets (j, 3), indices of `NAMES`, axes (2, 3) of the elbows.
+
+    arm : its length; reach, follow : as in `solve`
+    """
+
+    offsets: Array
+    joints: NDArray[np.int64]
+    hinges: Array
+    arm: float
+    reach: float
+    follow: float
+
+
+class Trunk(NamedTuple):
+    """The part of `Targets` between pelvis and shoulders; the root is moved in place."""
+
+    root: Array
+    pelvis: Array
+    chest: Array
+    shoulders: Array
+
+
+class ArmTargets(NamedTuple):
+    """The part of `Targets` that is about hands."""
+
+    wrists: Array
+    rotation: Array
+    pinned: Array
+    pull: Array
+    elbows: Array
+
+
+class LegTargets(NamedTuple):
+    """The part of `Targets` that is about legs."""
+
+    ankles: Array
+    soles: Array
+    toes: Array
+    knees: Array
+
+
+class ArmGoal(NamedTuple):
+    """Where one arm begins and its pinned hand shall be, in f cases.
+
+    shoulders, wrists : (f, 3) places; chest, hands : (f, 4) world rotations; elbows : (f, 3) directions
+    """
+
+    shoulders: Array
+    chest: Array
+    wrists: Array
+    hands: Array
+    elbows: Array
+
+
+def rig_of(skeleton: Skeleton, reach: float = 0.0, follow: float = 0.0) -> Rig:
+    joints = np.array([skeleton.index(name) for name in NAMES])
+    upper, lower = (float(np.linalg.norm(skeleton.offsets[joints[ARM + k]])) for k in (2, 3))
+    return Rig(skeleton.offsets, joints, _hinges(skeleton, joints), upper + lower, float(reach), float(follow))
+
+
+def _hinges(skeleton: Skeleton, joints: NDArray[np.int64]) -> Array:
+    """Axes (2, 3) of the elbows, which bend forward: square to the arm and to the front."""
+    out = np.zeros((2, 3))
+    for side in (0, 1):
+        arm = skeleton.offsets[joints[ARM + 4 * side + 2]]
+        out[side] = np.cross(arm, [0.0, 0.0, 1.0]) / np.linalg.norm(np.cross(arm, [0.0, 0.0, 1.0]))
+    return out
+
+
+@inner_kernel
+def _vec(a: Array) -> Vec:
+    return (a[0], a[1], a[2])
+
+
+@inner_kernel
+def _quat(a: Array) -> Quat:
+    return (a[0], a[1], a[2], a[3])
+
+
+@inner_kernel
+def _put(out: Array, q: Quat) -> None:
+    out[0], out[1], out[2], out[3] = q
+
+
+@inner_kernel
+def _pull_root(root: Vec, pelvis: Quat, hips: tuple[Vec, Vec], ankles: tuple[Vec, Vec], reach: float) -> Vec:
+    """Move the root as little as needed until both ankles are within reach of their hips."""
+    left, right = qrot(pelvis, hips[0]), qrot(pelvis, hips[1])
+    for _ in range(PULL_LEGS):
+        a, b = sub(ankles[0], add(root, left)), sub(ankles[1], add(root, right))
+        far_a, far_b = length(a) - reach, length(b) - reach
+        if far_a < 1e-6 and far_b < 1e-6:
+            break
+        # where both legs are too short each draws half: neither comes first
+        share = 0.5 if far_a > 0.0 and far_b > 0.0 else 1.0
+        if far_a > 0.0:
+            root = add(root, scale(a, share * far_a / length(a)))
+        if far_b > 0.0:
+            root = add(root, scale(b, share * far_b / length(b)))
+    return root
+
+
+@inner_kernel
+def _chain(start: Vec, between: tuple[Vec, Vec], end: Vec, lengths: tuple[float, float, float]) -> tuple[Vec, Vec, Vec]:
+    """FABRIK on a chain of three bones from the fixed `start` to the wanted `end`, and the two joints between."""
+    p2, p3 = between
+    l1, l2, l3 = lengths
+    p4 = end
+    for _ in range(6):
+        p4 = end  # backward: from the end to the start
+        p3 = add(p4, scale(unit(sub(p3, p4)), l3))
+        p2 = add(p3, scale(unit(sub(p2, p3)), l2))
+        p2 = add(start, scale(unit(sub(p2, start)), l1))  # forward again
+        p3 = add(p2, scale(unit(sub(p3, p2)), l2))
+        p4 = add(p3, scale(unit(sub(end, p3)), l3))
+        if length(sub(p4, end)) < 1e-5:
+            break
+    return p2, p3, p4
+
+
+@inner_kernel
+def _chest(up: Vec, across: Vec, rest_up: Vec) -> Quat:
+    """Chest rotation from where its middle line and its shoulder line point."""
+    x = unit(sub(across, scale(up, dot(across, up))))
+    rest_x = (1.0, 0.0, 0.0)
+    return qmul(qframe(x, up, cross(x, up)), qconj(qframe(rest_x, rest_up, cross(rest_x, rest_up))))
+
+
+@inner_kernel
+def _torso(
+    root: Vec, pelvis: Quat, chest: Quat, shoulders: tuple[Vec, Vec], rig: Rig
+) -> tuple[Quat, Quat, Quat, Vec, Vec]:
+    """Rotations of vl5, vt10, vt4 (world) and the shoulders' positions for wanted shoulder positions."""
+    offsets, joints = rig.offsets, rig.joints
+    left, right = shoulders
+    o10, o4 = _vec(offsets[joints[2]]), _vec(offsets[joints[3]])
+    lo = add(_vec(offsets[joints[ARM]]), _vec(offsets[joints[ARM + 1]]))
+    ro = add(_vec(offsets[joints[ARM + 4]]), _vec(offsets[joints[ARM + 5]]))
+    rest_mid = scale(add(lo, ro), 0.5)
+    p1 = add(root, qrot(pelvis, _vec(offsets[joints[VL5]])))
+    q1, q2 = qlerp(pelvis, chest, LOW), qlerp(pelvis, chest, HIGH)
+    # a back that is pushed together always rounds backward: without this it would snap from side to side
+    p2 = add(p1, add(qrot(q1, o10), qrot(q1, (0.0, 0.0, -ROUNDING))))
+    p3 = add(p2, add(qrot(q2, o4), qrot(q2, (0.0, 0.0, -0.5 * ROUNDING))))
+    middle = scale(add(left, right), 0.5)
+    p2, p3, p4 = _chain(p1, (p2, p3), middle, (length(o10), length(o4), length(rest_mid)))
+    q3 = _chest(unit(sub(p4, p3)), sub(left, right), unit(rest_mid))
+    q1 = _aim(qlerp(pelvis, q3, LOW), o10, sub(p2, p1))
+    q2 = _aim(qlerp(pelvis, q3, HIGH), o4, sub(p3, p2))
+    return q1, q2, q3, add(p3, qrot(q3, lo)), add(p3, qrot(q3, ro))
+
+
+@inner_kernel
+def _aim(q: Quat, bone: Vec, direction: Vec) -> Quat:
+    """q, swung by as little as needed so that the bone points in the direction."""
+    return qmul(qbetween(unit(qrot(q, bone)), unit(direction)), q)
+
+
+@njit(cache=True)
+def solve_frames(rig: Rig, trunk: Trunk, hands: ArmTargets, legs: LegTargets, rotations: Array) -> None:
+    offsets, joints = rig.offsets, rig.joints
+    hips = (_vec(offsets[joints[LEG]]), _vec(offsets[joints[LEG + 4]]))
+    most = rig.arm * ARM_REACH
+    for f in range(len(trunk.root)):
+        pelvis, chest = _quat(trunk.pelvis[f]), _quat(trunk.chest[f])
+        place, out = _vec(trunk.root[f]), rotations[f]
+        goals = (_vec(legs.ankles[f, 0]), _vec(legs.ankles[f, 1]))
+        left, right = _vec(trunk.shoulders[f, 0]), _vec(trunk.shoulders[f, 1])
+        place = _pull_root(place, pelvis, hips, goals, rig.reach)
+        q1, q2, q3, sl, sr = _torso(place, pelvis, chest, (left, right), rig)
+        if hands.pull[f, 0] > 0.0 or hands.pull[f, 1] > 0.0:
+            for _ in range(PULL_ROUNDS):
+                gl = _excess(sl, _vec(hands.wrists[f, 0]), most, hands.pull[f, 0])
+                gr = _excess(sr, _vec(hands.wrists[f, 1]), most, hands.pull[f, 1])
+                if length(gl) + length(gr) < 1e-5:
+                    break
+                both = add(gl, gr)
+                place = _pull_root(add(place, scale(both, rig.follow)), pelvis, hips, goals, rig.reach)
+                left = add(left, add(scale(gl, 1.2), scale(gr, 0.4)))
+                right = add(right, add(scale(gr, 1.2), scale(gl, 0.4)))
+                q1, q2, q3, sl, sr = _torso(place, pelvis, chest, (left, right), rig)
+        trunk.root[f, 0], trunk.root[f, 1], trunk.root[f, 2] = place
+        _put(out[joints[0]], pelvis)
+        _put(out[joints[VL5]], qmul(qconj(pelvis), q1))
+        _put(out[joints[VT10]], qmul(qconj(q1), q2))
+        _put(out[joints[VT4]], qmul(qconj(q2), q3))
+        for side in range(2):
+            _arm((f, side), sl if side == 0 else sr, q3, rig, hands, out)
+            _leg((f, side), add(place, qrot(pelvis, hips[side])), pelvis, rig, legs, out)
+
+
+@inner_kernel
+def _excess(shoulder: Vec, wrist: Vec, most: float, weight: float) -> Vec:
+    """How far a shoulder is from where its arm could reach the wrist's target."""
+    v = sub(wrist, shoulder)
+    d = length(v)
+    return scale(v, weight * weight * max(0.0, d - most) / max(d, 1e-9))
+
+
+@inner_kernel
+def _arm(at: tuple[int, int], shoulder: Vec, chest: Quat, rig: Rig, hands: ArmTargets, out: Array) -> None:
+    """One arm; at : frame and side."""
+    f, side = at
+    offsets, joints, base = rig.offsets, rig.joints, ARM + 4 * side
+    upper, lower = _vec(offsets[joints[base + 2]]), _vec(offsets[joints[base + 3]])
+    pinned = hands.pinned[f, side]
+    most = rig.arm * (0.985 + 0.0145 * pinned)
+    reach = sub(_vec(hands.wrists[f, side]), shoulder)
+    world, bend = limb(upper, lower, _vec(rig.hinges[side]), reach, _vec(hands.elbows[f, side]), most)
+    _put(out[joints[base + 1]], qmul(qconj(chest), world))
+    _put(out[joints[base + 2]], bend)
+    forearm = qmul(world, bend)
+    free = (1.0, 0.0, 0.0, 0.0)
+    pin = qmul(qconj(forearm), _quat(hands.rotation[f, side]))
+    _put(out[joints[base + 3]], qlerp(free, pin, pinned) if pinned > 0.0 else free)
+
+
+@inner_kernel
+def _leg(at: tuple[int, int], hip: Vec, pelvis: Quat, rig: Rig, legs: LegTargets, out: Array) -> None:
+    """One leg; at : frame and side."""
+    f, side = at
+    offsets, joints, base = rig.offsets, rig.joints, LEG + 4 * side
+    upper, lower = _vec(offsets[joints[base + 1]]), _vec(offsets[joints[base + 2]])
+    reach = sub(_vec(legs.ankles[f, side]), hip)
+    world, bend = limb(upper, lower, (1.0, 0.0, 0.0), reach, _vec(legs.knees[f, side]), rig.reach + 1e-5)
+    shank, foot = qmul(world, bend), _quat(legs.soles[f, side])
+    _put(out[joints[base]], qmul(qconj(pelvis), world))
+    _put(out[joints[base + 1]], bend)
+    _put(out[joints[base + 2]], qmul(qconj(shank), foot))
+    _put(out[joints[base + 3]], qmul(qconj(foot), _quat(legs.toes[f, side])))
+
+
+@njit(cache=True)
+def one_arm(rig: Rig, side: int, goal: ArmGoal, out: Array) -> None:
+    hands = ArmTargets(np.zeros((1, 2, 3)), np.zeros((1, 2, 4)), np.ones((1, 2)), np.zeros((1, 2)), np.zeros((1, 2, 3)))
+    for f in range(len(goal.shoulders)):
+        hands.wrists[0, side] = goal.wrists[f]
+        hands.rotation[0, side] = goal.hands[f]
+        hands.elbows[0, side] = goal.elbows[f]
+        _arm((0, side), _vec(goal.shoulders[f]), _quat(goal.chest[f]), rig, hands, out[f])
+
+
+# Full-body inverse kinematics: from targets of pelvis, shoulders, hands and feet to joint rotations of all frames.
+#
+# Order of work in a frame (docs/motion.md): the root is pulled until both legs reach their feet; FABRIK (Aristidou and
+# Lasenby 2011) bends the torso, a chain that forks into two shoulders; shoulders whose pinned palm is out of reach are
+# pulled after it; then rotations of the torso, and closed-form limbs with a pole and a knee that stays soft.
+
+
+@dataclass(frozen=True, slots=True)
+class Targets:
+    """What the body shall reach in f frames; the second axis of pairs is left, right. World, metres, unit quaternions.
+
+    pelvis : (f, 3) position of the root joint; pelvis_rotation : (f, 4); chest : (f, 4) its rotation
+    shoulders : (f, 2, 3); wrists : (f, 2, 3); hand_rotation : (f, 2, 4) of a pinned hand
+    pinned : (f, 2), 0 for a free hand to 1 for a palm that must be where `wrists` says, with that rotation
+    elbows : (f, 2, 3) directions; ankles : (f, 2, 3); soles, toes : (f, 2, 4) rotations
+    knees : (f, 2, 3) directions
+    pull : (f, 2), 0 to 1, how much of a pinned hand's missing distance the body goes; None: as `pinned`
+    """
+
+    pelvis: Array
+    pelvis_rotation: Array
+    chest: Array
+    shoulders: Array
+    wrists: Array
+    hand_rotation: Array
+    pinned: Array
+    elbows: Array
+    ankles: Array
+    soles: Array
+    toes: Array
+    knees: Array
+    pull: Array | None = None
+
+
+class Poses(NamedTuple):
+    """f solved frames: local rotations (f, j, 4), unit quaternions, and the root's place (f, 3), metres."""
+
+    rotations: Array
+    root: Array
+
+
+def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.4) -> Poses:
+    """Solve all frames.
+
+    Parameters
+    ----------
+    skeleton : one with the dancer's joints; targets : f frames; reach : longest distance hip to ankle, metres
+    follow : part of a missing distance to a pinned palm that the root moves in each round; the torso bends for the rest
+
+    Returns
+    -------
+    The poses. Feet are on their targets wherever the root could be pulled; a palm
+    pinned by 1 is on its target if torso and pelvis could follow it within `PULL_ROUNDS`.
+    """
+    rotations = np.zeros((len(targets.pelvis), len(skeleton.names), 4))
+    rotations[..., 0] = 1.0
+    root = np.array(targets.pelvis, dtype=np.float64)
+    pull = targets.pinned if targets.pull is None else targets.pull
+    solve_frames(
+        rig_of(skeleton, reach, follow),
+        Trunk(root, targets.pelvis_rotation, targets.chest, targets.shoulders),
+        ArmTargets(targets.wrists, targets.hand_rotation, targets.pinned, pull, targets.elbows),
+        LegTargets(targets.ankles, targets.soles, targets.toes, targets.knees),
+        rotations,
+    )
+    return Poses(rotations, root)
+
+
+def arm_rotations(skeleton: Skeleton, side: int, goal: ArmGoal) -> tuple[Array, Array, Array]:
+    """Only one arm whose hand is pinned: local rotations (f, 4) of its shoulder, elbow and wrist."""
+    rig = rig_of(skeleton)
+    out = np.zeros((len(goal.shoulders), len(skeleton.names), 4))
+    one_arm(rig, side, goal, out)
+    first = ARM + 4 * side
+    return out[:, rig.joints[first + 1]], out[:, rig.joints[first + 2]], out[:, rig.joints[first + 3]]

@@ -1,0 +1,276 @@
+"""Hands: how palms lie, on the bar and on the way to it; those that hang keep off hips, thighs and knees."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.context import Context, around, grip_share
+from dancetutor_cli.dance.ik.knees import Legs, middle_joint, square_to
+from dancetutor_cli.dance.motion import Bar, Grip
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import SIDES, hand_direction, palm_normal, palm_points
+from dancetutor_cli.dance.rig.limbs import KNEE, THIGH
+from dancetutor_cli.dance.rig.quaternion import UP
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.settings_arms import ArmSettings, BarSettings
+from dancetutor_cli.dance.smoothing import smooth
+
+# What hands are asked for, and the upper body that they hang from.
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Torso:
+    """The upper body at f times: shoulders (f, 2, 3), left and right, and the chest's world rotation (f, 4)."""
+
+    shoulders: Array
+    chest: Array
+
+
+@dataclass(frozen=True, slots=True)
+class HandTargets:
+    """Targets of both hands at f times, as in `full_body.Targets`; the second axis is left, right.
+
+    Arrays are changed in place by what leads a hand elsewhere: the bar first, then panels.
+    """
+
+    wrists: Array
+    rotation: Array
+    pinned: Array
+    pull: Array
+    elbows: Array
+
+
+# Which way a hand is turned whose palm lies on something: on a panel, or on the rail behind the dancer.
+
+BACKWARD = np.array([[0.57, 0.0, -0.8216], [-0.57, 0.0, -0.8216]])  # where the fingers of a hand on the bar point
+STRAIGHT_BACK = np.array([0.0, 0.0, -1.0])  # and those of one that has crossed over before her
+ACROSS = np.array([[0.4, -0.55, 0.7], [-0.4, -0.55, 0.7]])  # where its elbow points: outward, down, ahead of the chest
+
+
+def palm_down(skeleton: Skeleton, side: int, fingers: Array) -> Array:
+    """World rotation (4,) of a hand whose palm faces the ground, fingers along the horizontal unit vector (3,)."""
+    along, normal = hand_direction(skeleton, SIDES[side]), palm_normal(skeleton, SIDES[side])
+    down = np.array([0.0, -1.0, 0.0])
+    rest = np.column_stack((along, normal, np.cross(along, normal)))
+    goal = np.column_stack((fingers, down, np.cross(fingers, down)))
+    return _from_matrix(goal @ rest.T)
+
+
+def _from_matrix(m: Array) -> Array:
+    """Quaternion of a rotation matrix, by its largest component."""
+    k = np.array([
+        [m[0, 0] + m[1, 1] + m[2, 2], m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]],
+        [0, m[0, 0] - m[1, 1] - m[2, 2], m[1, 0] + m[0, 1], m[0, 2] + m[2, 0]],
+        [0, 0, m[1, 1] - m[0, 0] - m[2, 2], m[2, 1] + m[1, 2]],
+        [0, 0, 0, m[2, 2] - m[0, 0] - m[1, 1]],
+    ])  # fmt: skip
+    values, vectors = np.linalg.eigh(k, UPLO="U")
+    q = vectors[:, np.argmax(values)]
+    return np.asarray(q if q[0] >= 0 else -q)
+
+
+def rest_on_bar(
+    bar: Bar, side: int, x: float | Array, skeleton: Skeleton, settings: BarSettings, across: bool = False
+) -> tuple[Array, Array]:
+    """Wrist (3,), or (f, 3) for x (f,), and rotation (4,) of a hand whose palm lies on the rail at x.
+
+    The fingers point back, a little outward, and down behind the rail; straight back where it has come `across` her.
+    """
+    dip = quat.from_axis_angle(np.array([1.0, 0.0, 0.0]), -np.radians(settings.dip))
+    hand = quat.multiply(dip, palm_down(skeleton, side, STRAIGHT_BACK if across else BACKWARD[side]))
+    out = quat.rotate(dip, np.array([0.0, bar.radius, 0.0]))  # from the rail's middle to where the palm lies on it
+    along = np.asarray(x)[..., None] * np.array([1.0, 0.0, 0.0])
+    over = np.array([0.0, bar.height, bar.behind]) + out - quat.rotate(hand, palm_points(skeleton)[side].offset)
+    return along + over, hand
+
+
+def elbows_on_bar(chest: Array, settings: BarSettings) -> Array:
+    """Where elbows of hands on the bar point (f, 2, 3), for chests turned by (f, 4): back, and a little inward.
+
+    Otherwise forearms would turn past their limit.
+    """
+    inward = settings.elbows_in
+    upright = quat.swing_twist(chest, UP)[1]
+    return quat.rotate(upright[:, None], np.array([[-inward, 0.0, -1.0], [inward, 0.0, -1.0]]))
+
+
+def elbows_across(chest: Array) -> Array:
+    """Where elbows of hands point (f, 2, 3) that have crossed over to the bar before a chest turned by (f, 4)."""
+    return quat.rotate(quat.swing_twist(chest, UP)[1][:, None], ACROSS)
+
+
+# Hands on the bar behind the dancer, and on their way to it: around the body.
+
+Flags = NDArray[np.bool_]
+CLEAR = (0.34, 0.30)  # metres, half axes, aside and ahead, of what a hand on its way keeps clear of: trunk and forearm
+TRUNK = np.array([0.0, -0.30, 0.02])  # its middle as seen from the middle of the shoulders
+INWARD = 0.3  # radians from straight inward within which a hand ahead counts as behind
+LEAST = np.pi / 4  # radians inward from straight outward that the rail is at least for a hand that crosses over
+SOFT, FIRST, LAST = 8.0, 0.4, 2  # how sharply it is pushed out of there; how soon, and how long, as it goes to the rail
+PIN = 2  # power of a hand's share in the rail with which it turns to lie on it: later than the elbow, for the wrist
+
+
+def hold(grips: tuple[Grip, ...], at: Array, hands: HandTargets, torso: Torso, context: Context) -> None:
+    """Lead hands to the bar at times `at` (f,): change their wrists, elbows, rotations and pins in place."""
+    bar, settings = context.bar, context.settings.bar
+    if bar is None:
+        return
+    goal, weight, across = np.zeros_like(hands.wrists), np.zeros_like(hands.pinned), np.zeros_like(hands.pinned)
+    for grip in grips:
+        near = around(grip, at, settings.reach_time)
+        wrist, hand = rest_on_bar(bar, grip.side, grip.x, context.skeleton, settings, grip.across)
+        share = grip_share(grip, at[near], settings.reach_time)
+        weight[near, grip.side] += share
+        across[near, grip.side] += share * grip.across
+        goal[near, grip.side] += share[:, None] * (wrist + [0.0, settings.lift, 0.0] * (1.0 - share[:, None]))
+        hands.rotation[near, grip.side] = hand
+    goal /= np.maximum(weight, 1e-9)[..., None]
+    weight = np.minimum(weight, 1.0)
+    hands.wrists[:] += _around(hands.wrists, goal, weight, torso, across > 0.0)
+    hands.pinned[:] = np.maximum(hands.pinned, weight**PIN)
+    poles = np.where(across[..., None] > 0.0, elbows_across(torso.chest), elbows_on_bar(torso.chest, settings))
+    hands.elbows[:] += weight[..., None] * (poles - hands.elbows)
+
+
+def _around(wrists: Array, goal: Array, weight: Array, torso: Torso, across: Flags) -> Array:
+    """How far (f, 2, 3) wrists have come to the rail, a share `weight` (f, 2) of the way: around the trunk, each on its
+    own side of it or, where `across` (f, 2), before it to the other one.
+
+    In the ellipse's measure they go evenly about its middle and outward or inward; both ends are where they are.
+    """
+    going = (weight > 0.0) & (weight < 1.0)
+    upright, middle = _trunk_of(torso)
+    scale = np.array([CLEAR[0], 1.0, CLEAR[1]])
+    begin, end = (quat.rotate(quat.conjugate(upright), place - middle) / scale for place in (wrists, goal))
+    far = np.stack([_distance(begin), _distance(end)])
+    along = np.stack([_bearing(begin, across, -np.pi), _bearing(end, across, LEAST)])
+    share = weight[..., None]
+    there = begin + share * (end - begin)
+    distance = far[0] + weight * (far[1] - far[0])
+    free = smooth(weight / FIRST) * (1.0 - weight**LAST)
+    distance += free * np.logaddexp(0.0, SOFT * (1.0 - distance)) / SOFT
+    bearing = along[0] + weight * (along[1] - along[0])
+    there[..., 0] = distance * np.cos(bearing) * [1.0, -1.0]
+    there[..., 2] = distance * np.sin(bearing)
+    placed = middle + quat.rotate(upright, there * scale)
+    return np.where(going[..., None], placed - wrists, share * (goal - wrists))
+
+
+def inward(place: Array, side: int, torso: Torso, across: bool = False) -> Array:
+    """How far (f,) a place (f, 3) for a hand is from straight outward of the trunk, radians: pi is straight inward.
+
+    across : by the way before her, from `LEAST` on; else by the shorter way
+    """
+    upright, middle = _trunk_of(torso)
+    off = quat.rotate(quat.conjugate(upright), place[:, None] - middle)[:, 0]
+    angle = np.arctan2(off[:, 2] / CLEAR[1], off[:, 0] * (1.0, -1.0)[side] / CLEAR[0])
+    return (angle - LEAST) % (2 * np.pi) + LEAST if across else np.abs(angle)
+
+
+def _distance(off: Array) -> Array:
+    """Of places (f, 2, 3) from an axis, (f, 2)."""
+    return np.hypot(off[..., 0], off[..., 2])
+
+
+def _bearing(off: Array, across: Flags, least: float) -> Array:
+    """How far (f, 2) places (f, 2, 3) of the left and right hand are ahead of where is straight outward, radians; what
+    is straight inward counts as behind the back, but of hands that cross over, for which it is from `least` on."""
+    turned = np.arctan2(off[..., 2], off[..., 0] * [1.0, -1.0])
+    before = (turned - least) % (2 * np.pi) + least
+    return np.where(across, before, np.where(turned > np.pi - INWARD, turned - 2 * np.pi, turned))
+
+
+def _trunk_of(torso: Torso) -> tuple[Array, Array]:
+    """Which way the trunk faces (f, 1, 4), upright, and its middle (f, 1, 3)."""
+    upright = quat.swing_twist(torso.chest, UP)[1][:, None]
+    return upright, torso.shoulders.mean(axis=1, keepdims=True) + quat.rotate(torso.chest, TRUNK)[:, None]
+
+
+def kept_clear(wrists: Array, torso: Torso, axes: tuple[float, float]) -> Array:
+    """By how much wrists (f, 2, 3) are pushed out of an upright ellipse about the trunk, softly, (f, 2, 3).
+
+    axes : its half axes aside and ahead, metres
+    """
+    upright, middle = _trunk_of(torso)
+    off = quat.rotate(quat.conjugate(upright), wrists - middle) * [1.0 / axes[0], 0.0, 1.0 / axes[1]]
+    far = np.maximum(np.linalg.norm(off, axis=2, keepdims=True), 0.05)
+    beyond = np.logaddexp(0.0, SOFT * (1.0 - far)) / SOFT  # a soft most of 0 and 1 - far
+    return quat.rotate(upright, off / far * beyond * [axes[0], 0.0, axes[1]])
+
+
+# Hands that hang keep beside the hips: the trunk leans and turns over them, and takes the shoulders along.
+
+SOFT_AT_HIPS = 0.015  # metres over which a hand comes to its least distance
+
+
+@dataclass(frozen=True, slots=True)
+class Hips:
+    """The pelvis at f times: its place (f, 3) in the world and its rotation (f, 4)."""
+
+    place: Array
+    rotation: Array
+
+
+def beside_hips(wrists: Array, hips: Hips, arms: ArmSettings) -> Array:
+    """How wrists (f, 2, 3) give way to the hips, (f, 2, 3) level: softly, away from the nearest place of a line across
+    them; one that is raised does not.
+    """
+    upright = quat.swing_twist(hips.rotation, UP)[1][:, None]
+    off = quat.rotate(quat.conjugate(upright), wrists - hips.place[:, None])
+    low = smooth((arms.hips_high - off[..., 1]) / arms.hips_ease)
+    way = off.copy()
+    way[..., 0] -= np.clip(off[..., 0], -arms.hips_half, arms.hips_half)
+    way[..., 1] = 0.0
+    far = np.linalg.norm(way, axis=2)
+    missing = SOFT_AT_HIPS * np.logaddexp(0.0, (arms.hips_clear - far) / SOFT_AT_HIPS) * low
+    return np.asarray(quat.rotate(upright, way * (missing / np.maximum(far, 1e-3))[..., None]))
+
+
+# Hands that hang keep off thighs and knees: in a wide stand these come up and aside to where hands hang.
+
+HAND = 0.10  # metres from the wrist to the end of the hand
+HALF_HAND = 0.026  # metres, half of how thick it is
+SOFT_AT_LEGS = 0.012  # metres over which a hand comes to its least distance
+ROUNDS, LEAST_GIVEN = 2, 1e-4  # of giving way; who gave way by fewer metres is left alone then
+
+
+def beside_legs(wrists: Array, shoulders: Array, elbows: Array, legs: Legs, skeleton: Skeleton, room: float) -> Array:
+    """How wrists (f, 2, 3) give way, (f, 2, 3), so that hands come off thighs, softly and with some room.
+
+    shoulders : (f, 2, 3); elbows : (f, 2, 3) where they point
+    """
+    near, out = np.arange(len(wrists)), np.zeros_like(wrists)
+    hips, thighs = legs.hips, legs.knees() - legs.hips
+    for _ in range(ROUNDS):  # a forearm that was raised points another way
+        place = (wrists + out)[near]
+        given = np.zeros_like(place)
+        for points in (_hand_ends(place, shoulders[near], elbows[near], skeleton), place):
+            for side in (0, 1):
+                given += _off_the_thigh(points + given, hips[near, None, side], thighs[near, None, side], room)
+        out[near] += given
+        near = near[np.abs(given).max(axis=(1, 2)) > LEAST_GIVEN]
+    return out
+
+
+def _hand_ends(wrists: Array, shoulders: Array, elbows: Array, skeleton: Skeleton) -> Array:
+    """Where hands end (f, 2, 3) that go on as their forearms do; elbows : (f, 2, 3) where they point."""
+    upper, lower = (float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("elbow", "radiocarpal"))
+    reach = wrists - shoulders
+    forearm = reach - middle_joint(reach, square_to(reach, elbows), (upper, lower))
+    return np.asarray(wrists + HAND * forearm / np.linalg.norm(forearm, axis=2, keepdims=True))
+
+
+def _off_the_thigh(points: Array, hip: Array, thigh: Array, room: float) -> Array:
+    """Ways (f, 2, 3) by which points (f, 2, 3) of hands come so far off a thigh that begins at a hip, (f, 1, 3)."""
+    away = points - hip
+    part = np.clip(np.sum(away * thigh, axis=2) / np.sum(thigh * thigh, axis=2), 0.0, 1.0)[..., None]
+    way = away - part * thigh
+    far = np.linalg.norm(way, axis=2, keepdims=True)
+    least = THIGH + part * (KNEE - THIGH) + HALF_HAND + room
+    missing = SOFT_AT_LEGS * np.logaddexp(0.0, (least - far) / SOFT_AT_LEGS)
+    return np.asarray(way * (missing / np.maximum(far, 1e-3)))

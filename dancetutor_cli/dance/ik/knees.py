@@ -1,0 +1,177 @@
+"""Where knees point, and how pelvis, spine and chest share a lean."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.foot_path import Feet
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import SIDES, SPINE_SHARES
+from dancetutor_cli.dance.rig.limbs import depth, leg_capsules
+from dancetutor_cli.dance.rig.quaternion import leaning
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.settings_body import BodySettings, KneeSettings
+from dancetutor_cli.dance.smoothing import smooth
+
+# Where knees point: between the body's front and the toes, and out of each other's way.
+
+Array = NDArray[np.float64]
+OUTSIDE = 0.002  # metres that a leg which does not lean lies outside its hip
+LOOKED = 0.03  # metres; legs farther apart are left alone
+TRIED = np.radians(1.5)  # how far a knee is turned to see what that does
+FLAT = 1e-4  # square metres per radian; where turning a knee does less it is no use
+ROUNDS, STEPS = 3, 10  # of giving way, and of looking how deep legs are in each other
+
+
+@dataclass(frozen=True, slots=True)
+class Hung:
+    """What legs hang between: pelvis (f, 3) and its rotation (f, 4), ankles (f, 2, 3)."""
+
+    pelvis: Array
+    rotation: Array
+    ankles: Array
+
+    def legs(self, skeleton: Skeleton, poles: Array) -> Legs:
+        """The legs, knees pointing as poles (f, 2, 3) say."""
+        hips = np.stack([skeleton.offsets[skeleton.index(f"{s}_hip")] for s in "lr"])
+        hips = self.pelvis[:, None] + quat.rotate(self.rotation[:, None], hips)
+        bones = [float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("knee", "talocrural")]
+        return Legs(hips, self.ankles, poles, (bones[0], bones[1]))
+
+
+def knee_poles(yaw: Array, feet: Feet, legs: Array, hips: float, knees: KneeSettings) -> Array:
+    """Knees point between the body's front and the toes, a little outward, and no farther aside than hips turn.
+
+    legs : (f, 2, 3) from the pelvis to each ankle; hips : metres from the middle of the pelvis to a hip
+    In a straddle they point farther outward: shanks stay more upright, and ankles bend less aside.
+    """
+    left = np.column_stack((np.cos(yaw), np.zeros_like(yaw), -np.sin(yaw)))
+    out, most_aside = [], np.radians(knees.most)
+    begin, full = np.radians((knees.straddle, knees.straddle_most))
+    for side, foot in enumerate(feet):
+        outward = 1.0 if side == 0 else -1.0
+        leg = legs[:, side]
+        lean = np.arctan2(outward * np.sum(leg * left, axis=1) - hips - OUTSIDE, -leg[:, 1])
+        toes = (foot.yaw - yaw + np.pi) % (2 * np.pi) - np.pi
+        aside = np.arctan2(knees.to_toes * np.sin(toes), 1.0 - knees.to_toes + knees.to_toes * np.cos(toes))
+        aside = outward * np.clip(aside, -most_aside, most_aside) + np.radians(knees.out)
+        most = np.minimum(outward * toes + np.radians(knees.straddle_out), most_aside)
+        straddled = smooth((lean - begin) / (full - begin))
+        aside = outward * (aside + straddled * np.maximum(most - aside, 0.0))
+        out.append(np.column_stack((np.sin(yaw + aside), np.zeros_like(yaw), np.cos(yaw + aside))))
+    return np.stack(out, axis=1)
+
+
+def knees_apart(skeleton: Skeleton, hung: Hung, poles: Array, knees: KneeSettings) -> Array:
+    """Poles (f, 2, 3) turned about the lines from hips to ankles, as little as it takes to part legs that meet.
+
+    Each frame is parted by itself, and smoothly: the same at whichever times it is asked.
+    """
+    both = hung.legs(skeleton, poles)
+    near, most = np.arange(len(poles)), np.radians(knees.give)
+    given = np.zeros((len(poles), 2))
+    for _ in range(ROUNDS):
+        legs = both.some(near)
+        deep = legs.depth(given[near])
+        close = deep > -LOOKED
+        near, legs, deep = near[close], legs.some(close), deep[close]
+        if not len(near):
+            break
+        slope = np.stack([legs.depth(given[near] + TRIED * one) - deep for one in np.eye(2)], axis=1) / TRIED
+        need = np.maximum(deep + knees.room, 0.0) / np.maximum(np.sum(slope**2, axis=1), FLAT)
+        given[near] = np.clip(given[near] - need[:, None] * slope, -most, most)
+    return both.turned(given)
+
+
+@dataclass(frozen=True, slots=True)
+class Legs:
+    """Legs in f frames: hips, ankles, poles (f, 2, 3), lengths of thigh and shank."""
+
+    hips: Array
+    ankles: Array
+    poles: Array
+    bones: tuple[float, float]
+
+    def some(self, keep: NDArray[np.bool_] | NDArray[np.int64]) -> Legs:
+        """Those of some frames."""
+        return Legs(self.hips[keep], self.ankles[keep], self.poles[keep], self.bones)
+
+    def knees(self, given: Array | None = None) -> Array:
+        """Where knees are, (f, 2, 3), turned by (f, 2) radians."""
+        reach = self.ankles - self.hips
+        poles = square_to(reach, self.poles) if given is None else _swivelled(reach, self.poles, given)
+        return np.asarray(self.hips + middle_joint(reach, poles, self.bones))
+
+    def turned(self, given: Array) -> Array:
+        """The poles (f, 2, 3) turned outward about the lines from hips to ankles by (f, 2) radians."""
+        out, moved = self.poles.copy(), np.abs(given).max(axis=1) > 0.0
+        out[moved] = _swivelled((self.ankles - self.hips)[moved], self.poles[moved], given[moved])
+        return out
+
+    def depth(self, given: Array) -> Array:
+        """How deep (f,) the legs are in each other with knees turned by (f, 2) radians."""
+        knees = self.knees(given)
+        legs = [leg_capsules(self.hips[:, s], knees[:, s], self.ankles[:, s]) for s in (0, 1)]
+        return depth(legs[0], legs[1], STEPS)
+
+
+def middle_joint(reach: Array, poles: Array, bones: tuple[float, float]) -> Array:
+    """Where (..., 3) the joint between two bones of these lengths is, from the first one's root.
+
+    reach : (..., 3) from there to the end of the second one; poles : (..., 3) unit vectors square to it
+    """
+    first, second = bones
+    far = np.linalg.norm(reach, axis=-1, keepdims=True)
+    long = np.clip(far, 0.1, first + second - 1e-4)
+    along = (first**2 - second**2 + long**2) / (2.0 * long)
+    return np.asarray(along / far * reach + np.sqrt(np.maximum(first**2 - along**2, 0.0)) * poles)
+
+
+def square_to(reach: Array, poles: Array) -> Array:
+    """Unit vectors (..., 3) square to `reach` that point most as poles (..., 3) do."""
+    line = reach / np.linalg.norm(reach, axis=-1, keepdims=True)
+    ahead = poles - np.sum(poles * line, axis=-1, keepdims=True) * line
+    return np.asarray(ahead / np.linalg.norm(ahead, axis=-1, keepdims=True))
+
+
+def _swivelled(reach: Array, poles: Array, given: Array) -> Array:
+    """Unit vectors (f, 2, 3) square to hip-ankle lines, in the planes of the poles turned outward by (f, 2) radians."""
+    line, ahead = reach / np.linalg.norm(reach, axis=2, keepdims=True), square_to(reach, poles)
+    aside = np.cross(line, ahead) * np.array([[-1.0], [1.0]])
+    return np.asarray(np.cos(given)[..., None] * ahead + np.sin(given)[..., None] * aside)
+
+
+# How pelvis, spine and chest share a lean, and where that brings the shoulders.
+
+SPINE = (0.0, *SPINE_SHARES)  # how far the bones under vl5, vt10 and vt4 are turned from the pelvis to the chest
+
+
+def torso_rotations(tilt: Array, yaw: Array, chest_yaw: Array, settings: BodySettings) -> tuple[Array, Array, Array]:
+    """Rotations (f, 4) of pelvis and chest for a chest that leans by tilt (f, 2) as in `quaternion.leaning`; yaws (f,).
+
+    And how deep (f,) that bend is, 0 to 1.
+    """
+    bent = smooth(np.linalg.norm(tilt, axis=1) / np.radians(settings.deep_bend))
+    share = settings.pelvis_lean + (settings.pelvis_bend - settings.pelvis_lean) * bent
+    return leaning(share[:, None] * tilt, yaw), leaning(tilt, chest_yaw), bent
+
+
+def shoulders_over(skeleton: Skeleton, pelvis: Array, pelvis_rotation: Array, chest: Array, bent: Array) -> Array:
+    """Where shoulders shall be (f, 2, 3) over a pelvis (f, 3): turned about it with the chest.
+
+    As far as it is `bent` (f,) they are where a spine that bends evenly brings them; else its lowest joint took it all.
+    """
+    place, offset = pelvis, skeleton.offsets
+    for name, share in zip(("vl5", "vt10", "vt4"), SPINE, strict=True):
+        rotation = quat.slerp(pelvis_rotation, chest, np.full(len(pelvis), share))
+        place = place + quat.rotate(rotation, offset[skeleton.index(name)])
+    out = []
+    for side in SIDES:
+        shoulder = skeleton.index(f"{side}_shoulder")
+        even = place + quat.rotate(chest, offset[skeleton.parents[shoulder]] + offset[shoulder])
+        stiff = pelvis + quat.rotate(chest, skeleton.rest[shoulder] - skeleton.rest[0])
+        out.append(stiff + bent[:, None] * (even - stiff))
+    return np.stack(out, axis=1)

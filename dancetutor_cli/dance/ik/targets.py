@@ -1,0 +1,373 @@
+"""Targets of the full-body IK at the times of the output; arms that hang, swing, or go down to a panel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.context import Context, hold_share
+from dancetutor_cli.dance.foot_path import Feet, foot_path
+from dancetutor_cli.dance.gait import walking, with_gait
+from dancetutor_cli.dance.ik.full_body import ArmGoal, Targets, arm_rotations
+from dancetutor_cli.dance.ik.hands import (
+    HandTargets,
+    Hips,
+    Torso,
+    beside_hips,
+    beside_legs,
+    hold,
+    kept_clear,
+    palm_down,
+)
+from dancetutor_cli.dance.ik.knees import (
+    Hung,
+    Legs,
+    knee_poles,
+    knees_apart,
+    middle_joint,
+    shoulders_over,
+    square_to,
+    torso_rotations,
+)
+from dancetutor_cli.dance.plan import Plan, Press
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import SIDES, half_hips, palm_points
+from dancetutor_cli.dance.rig.quaternion import UP, leaning
+from dancetutor_cli.dance.rig.skeleton import beyond
+from dancetutor_cli.dance.settings import MotionSettings
+from dancetutor_cli.dance.settings_arms import ArmSettings
+from dancetutor_cli.dance.smoothing import Controller, follow, sample_path, smooth, smooth_path
+from dancetutor_cli.dance.trajectory.facing import crossing_share
+from dancetutor_cli.dance.trajectory.height import jump_swing, tempo_factor
+from dancetutor_cli.dance.trajectory.legs import ankle_of
+from dancetutor_cli.dance.trajectory.posture import Trajectory
+from dancetutor_cli.dance.waits import waiting_at
+
+# Hands: hanging and swinging against the legs, or a palm going down to a panel.
+
+Array = NDArray[np.float64]
+FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))  # directions of the fingers that are tried, about the liked one
+POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest
+EASE, EASY = 15.0, 40.0  # degrees within its limits where a joint is at ease; how much turned fingers count
+WAVES = 1.3  # about the size of both waves together
+ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # of both hands: one is a little lower and farther back
+HELD_BACK = 0.25  # part of a stretch in which a hand is too quick, from which on it is held back in all of it
+ASIDE_SOFT = 0.02  # metres over which a hand comes to its least distance outward in a lean
+LOOSE_SOFT = 0.015  # metres over which a forearm that is held up comes to sink
+SUNK = 1.8  # so much farther a hand sinks, for its elbow comes down with it
+ELBOWS_IN = 0.62  # part of their way by which elbows turn to the body for another dancer: wholly, they would be in it
+GIVEN_WAY = 0.145  # metres that a hand gives way to another dancer with which its elbow turns to the body
+ASKEWED = 1.6  # about how far `_wandering` goes up and down
+
+
+@dataclass(frozen=True, slots=True)
+class Below:
+    """What hands that hang must not meet, at the times that are asked for."""
+
+    hips: Hips
+    legs: Legs
+
+
+def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, below: Below, context: Context) -> HandTargets:
+    """Targets at times `at` (f,); torso, below : at the same times, as the IK will be asked for them."""
+    lean, upright = quat.swing_twist(torso.chest, UP)
+    hang, lag, held = (sample_path(p, body.times, at) for p in body.hands or free_hands(plan, body, context))
+    arms = context.settings.arms
+    # in a deep bend the other arm goes some way with the chest, its hand to the knees
+    first, last = np.radians((arms.bend_from, arms.bend_full))
+    bent = smooth((2.0 * np.arccos(np.clip(np.abs(lean[:, 0]), 0.0, 1.0)) - first) / (last - first))
+    along = quat.multiply(quat.slerp(np.broadcast_to(quat.IDENTITY, lean.shape), lean, arms.bend_hang * bent), upright)
+    hang = hang + bent[:, None, None] * np.array(
+        [[arms.bend_out, 0.0, arms.bend_ahead], [-arms.bend_out, 0.0, arms.bend_ahead]]
+    )
+    wrists = torso.shoulders + quat.rotate(along[:, None], hang) + lag
+    clear = context.settings.arms.clear_aside, context.settings.arms.clear_ahead
+    wrists += held[..., None] * kept_clear(wrists, torso, clear)
+    wrists += _out_from_a_lean(wrists, torso, upright, arms)
+    wrists += beside_hips(wrists, below.hips, arms)
+    out = np.empty((len(at), 2, 3))
+    out[..., 0] = np.array([1.0, -1.0]) * (arms.elbow_out + (arms.bend_elbow_out - arms.elbow_out) * bent)[:, None]
+    out[..., 1:] = -arms.elbow_down, -arms.elbow_back
+    elbows = quat.rotate(upright[:, None], out)
+    wrists += beside_legs(wrists, torso.shoulders, elbows, below.legs, context.skeleton, arms.legs_room)
+    inward = _on_her_own_pad(wrists[..., 0], context)
+    ahead = quat.rotate(upright, np.array([0.0, 0.0, arms.own_pad_ahead]))
+    wrists += np.abs(inward)[..., None] * ahead[:, None]
+    wrists[..., 0] += _on_her_own_pad(wrists[..., 0], context)
+    wrists[..., 1] = np.maximum(wrists[..., 1], arms.lowest)
+    elbows[..., 0] += ELBOWS_IN * np.clip(inward / GIVEN_WAY, -1.0, 1.0)
+    free = np.tile(quat.IDENTITY, (len(at), 2, 1))
+    hands = HandTargets(wrists, free, np.zeros((len(at), 2)), np.zeros((len(at), 2)), elbows)
+    hold(plan.grips, at, hands, torso, context)
+    for press in plan.presses:
+        _press(press, at, hands, body, context)
+    return hands
+
+
+def _out_from_a_lean(wrists: Array, torso: Torso, upright: Array, arms: ArmSettings) -> Array:
+    """How wrists (f, 2, 3) give way, (f, 2, 3), to a trunk that leans to the other side: softly outward of the
+    shoulder, which is over the trunk then; as one does for balance."""
+    across = torso.shoulders[:, 0] - torso.shoulders[:, 1]
+    higher = np.degrees(np.arcsin(np.clip(across[:, 1] / np.linalg.norm(across, axis=1), -1.0, 1.0)))
+    outward = np.array([1.0, -1.0])
+    share = smooth((higher[:, None] * outward - arms.aside_from) / (arms.aside_full - arms.aside_from))
+    aside = quat.rotate(upright, np.array([1.0, 0.0, 0.0]))[:, None] * outward[:, None]
+    far = np.sum((wrists - torso.shoulders) * aside, axis=2)
+    missing = np.logaddexp(0.0, (arms.aside_out - far) / ASIDE_SOFT) * ASIDE_SOFT
+    return np.asarray((share * missing)[..., None] * aside)
+
+
+def _on_her_own_pad(x: Array, context: Context) -> Array:
+    """How wrists at x (f, 2) give way, (f, 2), to another dancer, softly: they stay within her pad's edge."""
+    if context.sides is None:
+        return np.zeros_like(x)
+    outward, keep = 1.0 - 2.0 * context.sides[0], context.settings.arms.own_pad
+    edge = context.ground.low[0] if outward > 0.0 else context.ground.high[0]
+    inside = outward * (x - edge) - keep
+    return np.asarray(outward * ASIDE_SOFT * np.logaddexp(0.0, -inside / ASIDE_SOFT))
+
+
+def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, Array, Array]:
+    """Where free hands hang from the shoulders, in the chest's upright axes, and how far inertia takes them from there.
+
+    Both (n, 2, 3) at the body's times, the second in the world; and (n, 2), 0 to 1, how much they must keep clear of
+    the trunk: as far as they are held back, and all the time where there is a bar.
+    """
+    settings, skeleton, arms = context.settings, context.skeleton, context.settings.arms
+    rate = 1.0 / float(body.times[1] - body.times[0])
+    effort = lately(tempo_factor(plan, body.times, settings), rate, arms.effort)[:, None]
+    wander = _wandering(body.times, plan.lead, arms)
+    # none is ever quite as high, or swings quite as far, as the other one
+    unlike = 1.0 + arms.unlike * wander[..., 1] / ASKEWED
+    swing = unlike * _swing(plan, body, effort, settings)
+    hang = np.empty((len(swing), 2, 3))
+    hang[..., 0] = np.array([1.0, -1.0]) * (arms.out + arms.stream_out * effort)
+    hang[..., 1] = -arms.down + arms.swing_up * np.abs(swing) + arms.stream_up * effort * unlike
+    hang[..., 2] = arms.forward + swing - arms.stream_back * effort
+    hang[..., 1] -= _hung(hang, rate, context)
+    jump = (jump_swing(plan, body.times, settings.jump) * (1.0 - body.reaching.max(axis=1)))[:, None]
+    hang[..., 1] += 0.5 * arms.jump_up * (jump + jump**2)
+    hang[..., 2] += arms.jump * jump
+    pumped = context.settings.groove.hands * body.sway[:, None] * (1.0 + effort)
+    hang[..., 1] += 0.5 * np.abs(pumped)
+    hang[..., 2] += [-1.0, 1.0] * pumped  # with the shoulder that turns forward
+    hang += (arms.wander + arms.stream_wander * effort)[..., None] * wander
+    hang += waiting_at(plan, body.times, context).hands
+    share = crossing_share(plan.grips, body.times, settings.across)
+    for side, sign in ((0, 1.0), (1, -1.0)):  # the near hand is behind her, out of the other one's way
+        behind = np.array([sign * settings.across.free_out, -arms.down, -settings.across.free_back])
+        hang[:, side] += np.maximum(sign * share, 0.0)[:, None] * (behind - hang[:, side])
+    free = 1.0 - hold_share(plan.grips, body.times, settings.bar.reach_time)
+    hang += free[..., None] * (_behind_the_chest(hang, body.chest_yaw, rate, arms) - hang)
+    chest = leaning(body.tilt, body.chest_yaw)
+    upright = quat.from_axis_angle(UP, body.chest_yaw)
+    pelvis = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
+    controller = Controller.of(settings.inertia.hand_frequency, settings.inertia.hand_damping)
+    lag, held = np.empty_like(hang), np.empty(hang.shape[:2])
+    for side, name in enumerate(SIDES):
+        arm = skeleton.rest[skeleton.index(f"{name}_shoulder")] - skeleton.offsets[0]
+        target = pelvis + quat.rotate(chest, arm) + quat.rotate(upright, hang[:, side])
+        late = _at_most(follow(target, rate, controller) - target, arms.lag)
+        back, held[:, side] = _held_back(target + late, rate, arms)
+        lag[:, side] = late + back
+    if context.bar is not None:  # behind her back, a hand has the trunk in its way
+        held[:] = 1.0
+    return hang, lag, held
+
+
+def _hung(hang: Array, rate: float, context: Context) -> Array:
+    """How far hands (n, 2, 3) sink, (n, 2): a forearm that is up hangs from its elbow, and is level only as it swings
+    through."""
+    arms, skeleton = context.settings.arms, context.skeleton
+    lengths = tuple(float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("elbow", "radiocarpal"))
+    poles = np.array([[s * arms.elbow_out, -arms.elbow_down, -arms.elbow_back] for s in (1.0, -1.0)])
+    poles = np.broadcast_to(poles, hang.shape)
+    over = hang[..., 1] - middle_joint(hang, square_to(hang, poles), (lengths[0], lengths[1]))[..., 1]
+    slowly = smooth_path(over, np.ones(len(over)), rate, arms.loose_time)
+    return np.asarray(SUNK * LOOSE_SOFT * np.logaddexp(0.0, (slowly + arms.loose) / LOOSE_SOFT))
+
+
+def _at_most(way: Array, most: float) -> Array:
+    """Ways (n, 3) that are softly kept shorter than `most`."""
+    far = np.linalg.norm(way, axis=1, keepdims=True)
+    return np.asarray(way * (most * np.tanh(far / most) / np.maximum(far, 1e-9)))
+
+
+def _held_back(path: Array, rate: float, arms: ArmSettings) -> tuple[Array, Array]:
+    """How a hand on a path (n, 3) in the world leaves it, (n, 3): where it is too quick it takes a shorter way; and how
+    much (n,) it is held back, 0 to 1."""
+    ones = np.ones(len(path))
+    quick = np.linalg.norm(np.gradient(path, axis=0), axis=1) * rate
+    if quick.max() <= arms.quick:
+        return np.zeros_like(path), np.zeros(len(path))
+    held = lately(smooth((quick - arms.quick) / arms.quicker), rate, 2.0 * arms.hold_back)
+    share = smooth(held / HELD_BACK)[:, None]
+    return _at_most(share * (smooth_path(path, ones, rate, arms.hold_back) - path), arms.held_back), share[:, 0]
+
+
+def lately(tempo: Array, rate: float, around: float) -> Array:
+    """Mean (n,) of the tempo over so many seconds around: effort, by which hands rise slowly."""
+    width = max(1, round(around * rate))
+    summed = np.cumsum(np.concatenate((np.repeat(tempo[:1], width), tempo, np.repeat(tempo[-1:], width))))
+    return np.asarray((summed[2 * width :] - summed[: -2 * width]) / (2 * width))
+
+
+def _behind_the_chest(hang: Array, yaw: Array, rate: float, arms: ArmSettings) -> Array:
+    """Hands (n, 2, 3) in quick turns of the chest, yaw (n,) radians: nearer to the body, and later than the chest."""
+    ones, most = np.ones(len(yaw)), np.radians(arms.turn_late)
+    late = smooth_path(yaw[:, None], ones, rate, arms.turn_time)[:, 0] - yaw
+    late = most * np.tanh(late / most)
+    quick = np.abs(np.gradient(yaw)) * rate
+    drawn = smooth((quick - np.radians(arms.turn_easy)) / np.radians(arms.turn_quick))[:, None]
+    drawn = smooth_path(drawn, ones, rate, arms.turn_time)
+    near = hang.copy()
+    near[..., 0] -= arms.drawn_in * drawn * np.array([1.0, -1.0])
+    near[..., 2] *= 1.0 - arms.drawn_back * drawn
+    return quat.rotate(quat.from_axis_angle(UP, late)[:, None], near)
+
+
+def _wandering(times: Array, lead: int, arms: ArmSettings) -> Array:
+    """Slow ways (n, 2, 3) of both hands, each its own, about 1 far: nobody's arms are one the other's mirror image.
+
+    lead : as in `Plan`; what the left hand does if the left foot leads, the right one does if the right foot leads
+    """
+    hands = np.arange(6).reshape(2, 3)
+    waves = ((arms.wander_slow, arms.wander_behind), (arms.wander_quick, arms.wander_quick_behind))
+    slow, fast = (np.sin(2 * np.pi * (times[:, None, None] / every + share * hands)) for every, share in waves)
+    ways = np.asarray((slow + arms.wander_share * fast) / WAVES + arms.askew * ASKEW)
+    return ways if lead == 0 else ways[:, ::-1] * [-1.0, 1.0, 1.0]
+
+
+def _swing(plan: Plan, body: Trajectory, effort: Array, settings: MotionSettings) -> Array:
+    """How far forward each hand (n, 2) is at the body's times: it follows the opposite foot.
+
+    effort : (n, 1); farthest half-way between waiting and the quickest streams, for which there is no time
+    """
+    front = np.column_stack((np.sin(body.yaw), np.cos(body.yaw)))
+    ahead, lifted = [], []
+    for track in plan.feet[::-1]:  # the left hand goes with the right foot
+        path = foot_path(track, body.times, settings)
+        ahead.append(np.sum((path.ball[:, [0, 2]] - body.ground) * front, axis=1))
+        lifted.append(np.sin(np.pi * path.progress))
+    both = settings.arms.swing * np.clip(np.column_stack(ahead), -settings.arms.swing_most, settings.arms.swing_most)
+    far = settings.arms.step * (1.0 + 4.0 * settings.arms.step_effort * effort * (1.0 - effort))
+    both += far * np.outer(lifted[0] - lifted[1], (1.0, -1.0))
+    gait = walking(plan.walks, body.times, settings.walk)
+    if gait is not None:
+        both = (1.0 - gait.own[:, None]) * both + gait.hands
+    return smooth_path(both, np.ones(len(both)), 1.0 / float(body.times[1] - body.times[0]), settings.arms.swing_time)
+
+
+def _press(press: Press, at: Array, hands: HandTargets, body: Trajectory, context: Context) -> None:
+    """Lead a hand down to its panel and up again, at times `at` (f,)."""
+    numbers, side, wrists = context.settings.hands, press.side, hands.wrists
+    down = numbers.reach_down
+    near = np.flatnonzero((at > press.start - press.lead) & (at < press.end + down))
+    if not len(near):
+        return
+    t = at[near]
+    hand, pole = _lay_down(press, body, context)
+    wrist = np.array([press.target[0], 0.0, press.target[1]]) - quat.rotate(
+        hand, palm_points(context.skeleton)[side].offset
+    )
+    going = np.clip((t - press.start + press.lead) / press.lead, 0.0, 1.0)
+    leaving = np.clip((t - press.end) / down, 0.0, 1.0)
+    across = smooth(going) * (1.0 - smooth(leaving))
+    # straight down at a definite speed, so that the touch has a time; up again softly
+    sink = (1.0 - np.cos(np.pi / 2 * going)) * np.where(leaving > 0, 1.0 - smooth(leaving), 1.0)
+    free = wrists[near, side]
+    goal = free + across[:, None] * (wrist - free)
+    ahead = np.maximum(press.start - t, 0.0)
+    slap = numbers.slap * ahead * np.exp(-((ahead / numbers.slap_time) ** 2))
+    goal[:, 1] = wrist[1] + (1.0 - sink) * np.maximum(free[:, 1] - wrist[1], 0.0) + slap
+    wrists[near, side] = goal
+    hands.rotation[near, side] = hand
+    pin = smooth(1.0 + (t - press.start) / numbers.follow_in) * (1.0 - smooth((t - press.end) / numbers.follow_out))
+    for pins in (hands.pinned, hands.pull):
+        pins[near, side] = np.maximum(pins[near, side], pin)
+    hands.elbows[near, side] += across[:, None] * (pole - hands.elbows[near, side])
+
+
+def _lay_down(press: Press, body: Trajectory, context: Context) -> tuple[Array, Array]:
+    """How a palm lies on its panel: the hand's rotation (4,) and where its elbow points (3,).
+
+    Of many ways the one that is easiest for shoulder and wrist as the body is at the note and as the palm leaves, and
+    then the one whose fingers point most from the body to the panel.
+    """
+    when, side, skeleton = (
+        np.array([press.start, min(press.end, press.start + context.settings.hands.held)]),
+        press.side,
+        context.skeleton,
+    )
+    ground, height, tilt = (sample_path(p, body.times, when) for p in (body.ground, body.height, body.tilt))
+    yaw, chest_yaw = (sample_path(p, body.times, when) for p in (body.yaw, body.chest_yaw))
+    pelvis_rotation, chest, bent = torso_rotations(tilt, yaw, chest_yaw, context.settings.body)
+    pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
+    shoulders = shoulders_over(skeleton, pelvis, pelvis_rotation, chest, bent)
+    panel = np.array([press.target[0], 0.0, press.target[1]])
+    away = panel - shoulders[0].mean(axis=0)
+    liked = np.arctan2(away[0] + 0.3 * np.sin(chest_yaw[0]), away[2] + 0.3 * np.cos(chest_yaw[0]))
+    out = (1.0, -1.0)[side]
+    poles = quat.rotate(chest[0], POLES * [out, 1.0, 1.0])
+    aside = np.repeat(out * FINGERS, len(poles))
+    poles = np.tile(poles, (len(FINGERS), 1))
+    down = palm_down(skeleton, side, np.array([0.0, 0.0, 1.0]))
+    laid = quat.multiply(quat.from_axis_angle(UP, liked + aside), down)
+    wrists = panel - quat.rotate(laid, palm_points(skeleton)[side].offset)
+    strain = np.zeros(len(wrists))
+    for shoulder, turned in zip(shoulders[:, side], chest, strict=True):
+        # the body is drawn on until the arm reaches
+        goal = ArmGoal(np.tile(shoulder, (len(wrists), 1)), np.tile(turned, (len(wrists), 1)), wrists, laid, poles)
+        joints = arm_rotations(skeleton, side, goal)
+        past = (
+            beyond(skeleton, f"{SIDES[side]}_{name}", joints[k]) for name, k in (("shoulder", 0), ("radiocarpal", 2))
+        )
+        strain = np.maximum(strain, sum(np.maximum(degrees + EASE, 0.0) ** 2 for degrees in past))
+    best = int(np.argmin(EASY * aside**2 + strain))
+    return laid[best], poles[best]
+
+
+# Targets of the full-body IK at the times of the output, from the paths of feet, body and hands.
+
+ACROSS = np.array([1.0, 0.0, 0.0])
+TOES_BEND = np.radians(40.0)  # a foot whose heel is farther up carries its toes
+
+
+def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Context) -> Targets:
+    """Targets at the times `at` (f,); `feet` are sampled there, `body` on its own even times."""
+    skeleton = context.skeleton
+    ground, height = (sample_path(p, body.times, at) for p in (body.ground, body.height))
+    yaw, chest_yaw, tilt = (sample_path(p, body.times, at) for p in (body.yaw, body.chest_yaw, body.tilt))
+    pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
+    pelvis_rotation, chest, bent = torso_rotations(tilt, yaw, chest_yaw, context.settings.body)
+    gait = walking(plan.walks, at, context.settings.walk)
+    if gait is not None:
+        pelvis_rotation, chest = with_gait(gait, pelvis_rotation, chest)
+    shoulders = shoulders_over(skeleton, pelvis, pelvis_rotation, chest, bent)
+    ankles = np.stack([ankle_of(f, skeleton, side) for side, f in enumerate(feet)], axis=1)
+    straight = [quat.from_axis_angle(UP, f.yaw) for f in feet]
+    soles = [quat.multiply(t, quat.from_axis_angle(ACROSS, f.pitch)) for t, f in zip(straight, feet, strict=True)]
+    # toes stay level while the heel is up, as far as they bend, and go up with the foot
+    toes = [
+        quat.multiply(t, quat.from_axis_angle(ACROSS, f.pitch - np.clip(f.pitch, 0.0, TOES_BEND)))
+        for t, f in zip(straight, feet, strict=True)
+    ]
+    poles = knee_poles(yaw, feet, ankles - pelvis[:, None], half_hips(skeleton), context.settings.knees)
+    hung = Hung(pelvis, pelvis_rotation, ankles)
+    poles = hung.legs(skeleton, poles).turned(sample_path(body.knees, body.times, at))
+    poles = knees_apart(skeleton, hung, poles, context.settings.knees)
+    below = Below(Hips(pelvis, pelvis_rotation), hung.legs(skeleton, poles))
+    hands = arm_targets(plan, body, at, Torso(shoulders, chest), below, context)
+    return Targets(
+        pelvis, pelvis_rotation, chest, shoulders, hands.wrists, hands.rotation, hands.pinned, hands.elbows, ankles,
+        np.stack(soles, axis=1), np.stack(toes, axis=1), poles, hands.pull,
+    )  # fmt: skip
+
+
+def moved(targets: Targets, by: Array) -> Targets:
+    """The same targets with the body moved by (f, 3) metres; feet and pinned palms stay."""
+    shoulders = targets.shoulders + by[:, None]
+    wrists = targets.wrists + by[:, None] * (1.0 - targets.pinned[..., None])
+    return replace(targets, pelvis=targets.pelvis + by, shoulders=shoulders, wrists=wrists)

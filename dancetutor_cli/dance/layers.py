@@ -1,0 +1,309 @@
+"""What comes on top of the solved body: gaze and glances, breath, blinks, wrists, fingers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.context import Context, hold_share
+from dancetutor_cli.dance.ik.full_body import Poses
+from dancetutor_cli.dance.ik.targets import lately
+from dancetutor_cli.dance.plan import Plan, Swing, Walk
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import SIDES, hand_direction, palm_normal, world_transforms
+from dancetutor_cli.dance.rig.quaternion import UP, leaning
+from dancetutor_cli.dance.rig.skeleton import EYELID_CLOSING, FINGERS, JAW_LAUGH, KNUCKLES, Skeleton
+from dancetutor_cli.dance.settings_arms import FingerSettings
+from dancetutor_cli.dance.settings_body import GlanceSettings
+from dancetutor_cli.dance.smoothing import sample_path, smooth
+from dancetutor_cli.dance.trajectory.facing import screen_yaw
+from dancetutor_cli.dance.trajectory.height import tempo_factor
+from dancetutor_cli.dance.trajectory.posture import Trajectory
+from dancetutor_cli.dance.waits import Waiting
+
+# Head and eyes: after everything else they turn to the screen, as far as a neck can (thesis 5.7).
+
+Array = NDArray[np.float64]
+SIDEWAYS = np.array([1.0, 0.0, 0.0])
+
+
+def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
+    """Turn neck, head and eyes at times `at` (f,), in place."""
+    skeleton, settings, rotations, root = context.skeleton, context.settings, poses.rotations, poses.root
+    _, world = world_transforms(skeleton, rotations, root)
+    chest = world[:, skeleton.index("vt4")]
+    head_yaw, chest_yaw = (sample_path(yaw, body.times, at) for yaw in (body.head_yaw, body.chest_yaw))
+    tilt = sample_path(body.tilt, body.times, at)
+    # who bends down to a panel looks at it: no neck turns so far back
+    shallow, deep = np.radians(settings.look.bent_from), np.radians(settings.look.bent_to)
+    bent = smooth((np.linalg.norm(tilt, axis=1) - shallow) / (deep - shallow))
+    most = np.radians(settings.look.head_limit)  # of a chest that turned against the legs meanwhile, too
+    turned = np.clip(head_yaw - chest_yaw, -most, most)
+    head_yaw = chest_yaw + (1.0 + (settings.look.bent_yaw - 1.0) * bent) * turned
+    lean = settings.look.head_tilt + (settings.look.bent_tilt - settings.look.head_tilt) * bent
+    chin = quat.from_axis_angle(SIDEWAYS, -np.radians(settings.look.chin) * (1.0 - bent))
+    # in a deep bend hands pull the chest askew, and a head that kept its way in the world would be wrung on it
+    meant = quat.slerp(chest, leaning(tilt, chest_yaw), bent)
+    whole = quat.multiply(quat.conjugate(meant), quat.multiply(leaning(lean[:, None] * tilt, head_yaw), chin))
+    neck = quat.slerp(np.broadcast_to(quat.IDENTITY, whole.shape), whole, np.full(len(at), settings.look.neck_share))
+    rotations[:, skeleton.index("vc4")] = neck
+    rotations[:, skeleton.index("skullbase")] = quat.multiply(quat.conjugate(neck), whole)
+    limit = np.radians(np.sqrt(max(settings.look.eyes_limit**2 - settings.look.chin**2, 0.0)))
+    gap = (screen_yaw(root[:, [0, 2]], settings) - head_yaw + np.pi) % (2 * np.pi) - np.pi
+    beyond = (np.abs(gap) - np.radians(settings.look.eyes_limit)) / np.radians(settings.look.eyes_give_up)
+    seen = 1.0 - smooth(2.0 * beyond - 1.0)  # eyes in their corners for nothing show their white
+    eyes = quat.from_axis_angle(UP, seen * np.clip(settings.look.eyes_weight * gap, -limit, limit))
+    for side in "lr":
+        rotations[:, skeleton.index(f"{side}_eyeball_joint")] = quat.multiply(quat.conjugate(chin), eyes)
+
+
+# Glances: where steps are slow and while she waits she looks about, never at the same times or to the same places.
+
+GLANCE_SEED = 19980926
+# parts of yaw, pitch and tilt of each kind: aside, up, with the head leant
+_WAYS = np.array([[1.0, 0.25, 0.0], [0.35, 1.0, 0.2], [0.45, -0.3, 1.0]])
+
+
+@dataclass(frozen=True, slots=True)
+class Glances:
+    """How far the head is turned for them at f times, radians: yaw to the left, pitch up, tilt to the left; (f,) each.
+
+    eyes : (f,) radians that they are farther to the left, a little before the head is
+    """
+
+    yaw: Array
+    pitch: Array
+    tilt: Array
+    eyes: Array
+
+
+def glances_at(plan: Plan, body: Trajectory, times: Array, context: Context) -> Glances:
+    """Glances at `times` (f,), seconds. Mirror images of a plan have mirror images of them.
+
+    Chance says when and whereto; it is one only where no note is nearer to another than `numbers.slow`, and the less of
+    one the nearer they are.
+    """
+    numbers = context.settings.glance
+    out = Glances(*(np.zeros(len(times)) for _ in range(4)))
+    notes, busy = _notes(plan), [(walk.start, walk.end) for walk in plan.walks]
+    busy += [(press.start - press.lead, press.end + numbers.hand) for press in plan.presses]
+    busy += [(start - numbers.jump, end + numbers.jump) for start, end in plan.flights]
+    first, last = (int(np.floor(t / numbers.every)) for t in (times.min(), times.max()))
+    song = [round(1000 * t) & 0xFFFFFFFF for t in (plan.first, plan.last)]
+    for cell in range(first - 1, last + 1):
+        chance = np.random.default_rng([GLANCE_SEED, *song, cell & 0xFFFFFFFF])
+        start = numbers.every * (cell + chance.uniform(0.0, 0.5))
+        end = start + numbers.lasts * chance.uniform(0.6, 1.4)
+        kind, side, far = int(chance.integers(len(_WAYS))), float(chance.choice([-1.0, 1.0])), chance.uniform(0.6, 1.2)
+        near = slice(*np.searchsorted(times, (start - numbers.eyes_ahead, end)).tolist())
+        calm = _calm(notes, start, end, numbers)
+        if near.start == near.stop or calm <= 0.0 or any(a < end and start < b for a, b in busy):
+            continue
+        yaw, pitch, tilt = np.radians(_WAYS[kind]) * [numbers.yaw, numbers.pitch, numbers.tilt] * far * calm
+        t = times[near]
+        there = _there(t, start, end, numbers.turn)
+        out.yaw[near] += side * plan.hand * yaw * there
+        out.pitch[near] += pitch * there
+        out.tilt[near] += side * plan.hand * tilt * there
+        eyes = side * plan.hand * calm * far * np.radians(numbers.eyes) * _WAYS[kind, 0]
+        out.eyes[near] += eyes * _there(t + numbers.eyes_ahead, start, end, numbers.turn / 2)
+    room = _room(body, times, context)
+    return Glances(room * out.yaw, room * out.pitch, room * out.tilt, room * out.eyes)
+
+
+def _notes(plan: Plan) -> Array:
+    """Seconds at which feet land."""
+    lands = (m.land for track in plan.feet for m in track.moves if isinstance(m, Swing) and not isinstance(m, Walk))
+    return np.unique(np.round(np.fromiter(lands, dtype=np.float64), 3))
+
+
+def _calm(notes: Array, start: float, end: float, numbers: GlanceSettings) -> float:
+    """How much of a glance there is time for, 0 to 1: by the least time between two notes about it."""
+    first, last = np.searchsorted(notes, (start - numbers.around, end + numbers.around))
+    about = notes[max(first - 1, 0) : last + 1]
+    least = min((b - a for a, b in pairwise(about.tolist())), default=np.inf)
+    return float(smooth((least - numbers.quick) / (numbers.slow - numbers.quick)))
+
+
+def _room(body: Trajectory, times: Array, context: Context) -> Array:
+    """How free (f,) head and eyes are, 0 to 1: not where they must turn far for the screen."""
+    numbers = context.settings.glance
+    head, chest = (sample_path(yaw, body.times, times) for yaw in (body.head_yaw, body.chest_yaw))
+    screen = screen_yaw(sample_path(body.ground, body.times, times), context.settings)
+    gap = np.abs((screen - head + np.pi) % (2 * np.pi) - np.pi)
+    neck = 1.0 - np.abs(head - chest) / np.radians(numbers.neck_room)
+    return np.asarray(smooth(neck) * smooth(1.0 - gap / np.radians(numbers.eyes_room)))
+
+
+def _there(times: Array, start: float, end: float, turn: float) -> Array:
+    """0 before and after a glance, 1 in it, turning over so many seconds, (f,)."""
+    return np.asarray(smooth((times - start) / turn) * smooth((end - times) / turn))
+
+
+# Small movements on top of all others, multiplied in each joint's own space: breath, blinks, a laugh at the end.
+#
+# Additive layers as in the blog of the project's sources: the main rotation first, then the layer. They touch no joint
+# between the root and a foot, so no contact moves; while a palm is on the floor they are off.
+
+ACROSS, FRONT = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+SEED = 20140513
+
+
+@dataclass(frozen=True, slots=True)
+class Doing:
+    """What she does at f times, as far as layers go by it.
+
+    stepping : (f,) -1 to 1, the left foot (positive) or the right one is in the air
+    free : (f,) 0 where a palm is on the floor or the bar, else 1; lead, last : as in `Plan`
+    beat : (f,) as in `Trajectory`; waiting, glances : at the same times
+    """
+
+    stepping: Array
+    free: Array
+    lead: int
+    last: float
+    beat: Array
+    waiting: Waiting
+    glances: Glances
+
+
+def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> None:
+    """Add all layers to the poses at `times` (f,), seconds, in place."""
+    skeleton, settings, rotations = context.skeleton, context.settings.layers, poses.rotations
+    groove, beat = context.settings.groove, doing.beat
+    stepping, free, lead = doing.stepping, doing.free, doing.lead
+    breath = np.sin(2 * np.pi * times / settings.breath_time)
+    raised = (np.radians(settings.breath_shoulders) * breath - np.radians(groove.shrug) * beat) * free
+    for k, (side, sign) in enumerate((("l", 1.0), ("r", -1.0))):
+        shrug = doing.waiting.shrug[:, k] * free
+        _shrug(skeleton, rotations, side, sign * (raised + shrug))
+    for side, phase, bent in (
+        ("lr"[lead], 0.0, 1.0 - settings.wrist_unlike),
+        ("rl"[lead], settings.wrist_behind, 1.0 + settings.wrist_unlike),
+    ):
+        hand = hand_direction(skeleton, side)
+        drop = bent + settings.wrist_wave * np.sin(2 * np.pi * (times / settings.wrist_time + phase))
+        _turn(
+            skeleton,
+            rotations,
+            f"{side}_radiocarpal",
+            np.cross(hand, palm_normal(skeleton, side)),
+            (np.radians(settings.wrists) * drop + doing.waiting.flap[:, "lr".index(side)]) * free,
+        )
+    glance, neck = doing.glances, context.settings.look.neck_share
+    bob = np.radians(settings.head_bob) * stepping * free + doing.waiting.tilt + glance.tilt
+    _turn(skeleton, rotations, "skullbase", FRONT, -bob)
+    nod = np.radians(settings.breath_nod) * breath + np.radians(groove.nod) * beat
+    _turn(skeleton, rotations, "vc4", ACROSS, nod)
+    for joint, share in (("vc4", neck), ("skullbase", 1.0 - neck)):
+        _turn(skeleton, rotations, joint, UP, share * glance.yaw)
+        _turn(skeleton, rotations, joint, ACROSS, -share * glance.pitch)
+    for side in "lr":
+        _turn(skeleton, rotations, f"{side}_eyeball_joint", UP, glance.eyes)
+    closed = np.radians(EYELID_CLOSING) * eyelids(times, settings.blink_time, settings.blink)
+    for side in "lr":
+        _turn(skeleton, rotations, f"{side}_eyelid_joint", ACROSS, closed)
+    laugh = smooth(np.clip((times - doing.last - settings.laugh_after) / settings.laugh_rise, 0.0, 1.0))
+    _turn(skeleton, rotations, "temporomandibular", ACROSS, np.radians(JAW_LAUGH) * laugh)
+
+
+def _shrug(skeleton: Skeleton, rotations: Array, side: str, angle: Array) -> None:
+    """Raise a shoulder by turning its collarbone; the arm goes up with it and hangs as it did, or hands would swing
+    into thighs."""
+    _turn(skeleton, rotations, f"{side}_sternoclavicular", FRONT, angle)
+    j = skeleton.index(f"{side}_shoulder")
+    rotations[:, j] = quat.multiply(quat.from_axis_angle(FRONT, -angle), rotations[:, j])
+
+
+def _turn(skeleton: Skeleton, rotations: Array, joint: str, axis: Array, angle: Array) -> None:
+    if joint in skeleton.names:
+        j = skeleton.index(joint)
+        rotations[:, j] = quat.multiply(rotations[:, j], quat.from_axis_angle(axis, angle))
+
+
+def eyelids(times: Array, every: float, blink: float) -> Array:
+    """How far the lids are closed (f,), 0 to 1: blinks of `blink` seconds, always at the same times."""
+    cell = np.floor(times / every).astype(np.int64)
+    out = np.zeros_like(times)
+    for c in np.unique(cell):
+        start = (c + np.random.default_rng([SEED, int(c) & 0xFFFFFFFF]).uniform(0.1, 0.8)) * every
+        s = (times - start) / blink
+        near = (s > 0) & (s < 1)
+        out[near] = np.where(s < 0.4, smooth(s / 0.4), 1.0 - smooth((s - 0.4) / 0.6))[near]
+    return out
+
+
+# Hands: curled at rest, a loose fist in effort, flat on the floor, around the bar.
+
+CLOSING = np.array([1.8, 0.8])  # a hand closes from the fingers' middle joints on, knuckles follow: else it is a claw
+SLANT = 0.14  # of the line of the knuckles: so much nearer to the wrist for each metre across the hand
+
+
+@dataclass(frozen=True, slots=True)
+class HandUse:
+    """What hands do at f times, 0 to 1 each; pairs are left, right.
+
+    effort : (f,) how hard she works; floor : (f, 2) on a panel or on the way there; bar : (f, 2) at the rail
+    loose : (f, 2) shaken out; lead : as in `Plan`
+    """
+
+    effort: Array
+    floor: Array
+    bar: Array
+    loose: Array
+    lead: int
+
+
+def hand_use(plan: Plan, body: Trajectory, at: Array, waiting: Waiting, context: Context) -> HandUse:
+    """What hands do at times `at` (f,); waiting : at the same times."""
+    settings, rate = context.settings, 1.0 / float(body.times[1] - body.times[0])
+    effort = lately(tempo_factor(plan, body.times, settings), rate, settings.arms.effort)
+    return HandUse(
+        np.interp(at, body.times, effort),
+        sample_path(body.reaching, body.times, at),
+        hold_share(plan.grips, at, settings.bar.reach_time),
+        waiting.loose,
+        plan.lead,
+    )
+
+
+def curls(times: Array, use: HandUse, numbers: FingerSettings) -> Array:
+    """How far (f, 2, 2) the fingers of each hand are bent at the knuckles and at their middle joints, radians.
+
+    Each hand opens and closes a little by itself, slowly; what the left one does if the left foot leads, the right one
+    does if the right foot leads.
+    """
+    rest, fist = (np.array([numbers.rest, numbers.rest_middle]), np.array([numbers.fist, numbers.fist_middle]))
+    bar, flat = (np.array([numbers.bar, numbers.bar_middle]), -np.array([numbers.flat, numbers.flat_middle]))
+    out = np.empty((len(times), 2, 2))
+    for side in (0, 1):
+        behind = numbers.behind * (side != use.lead)
+        wave = np.sin(2 * np.pi * (times / numbers.wander_time + behind))
+        curl = rest + numbers.wander * wave[:, None] + np.clip(use.effort, 0.0, 1.0)[:, None] ** CLOSING * (fist - rest)
+        for share, goal in ((use.loose, 0.3 * rest), (use.bar, bar), (use.floor, flat)):
+            curl = curl + share[:, side, None] * (goal - curl)
+        out[:, side] = curl
+    return np.radians(out)
+
+
+def add_fingers(skeleton: Skeleton, poses: Poses, bent: Array) -> None:
+    """Bend the fingers by (f, 2, 2) as `curls` gives it, in place; nothing for a skeleton without them."""
+    for k, side in enumerate(SIDES):
+        axis = finger_axis(skeleton, side)
+        for joint, name in enumerate((KNUCKLES, FINGERS)):
+            if f"{side}_{name}" in skeleton.names:
+                j = skeleton.index(f"{side}_{name}")
+                poses.rotations[:, j] = quat.from_axis_angle(axis, bent[:, k, joint])
+
+
+def finger_axis(skeleton: Skeleton, side: str) -> Array:
+    """The unit vector in the rest pose about which fingers bend to the palm: along the knuckles, of which the little
+    finger's is nearest to the wrist; so its tip comes to the ball of the thumb."""
+    along = hand_direction(skeleton, side)
+    across = np.cross(along, palm_normal(skeleton, side))
+    sign = 1.0 if side == "l" else -1.0
+    axis = across - sign * SLANT * along
+    return np.asarray(axis / np.linalg.norm(axis))

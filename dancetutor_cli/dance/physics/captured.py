@@ -1,0 +1,305 @@
+"""A captured motion of any humanoid on a body with the rig's joints: world deltas, the body's own proportions.
+
+Trunk, head, hands and feet turn in the world as the captured ones turn from their rest pose. Limbs take the directions
+of the captured bones; knees and elbows become pure hinges, which the rest of a forearm's turn does not disturb: it goes
+to the wrist. Legs end, in closed form, where the captured feet stood, all lengths in proportion to the legs'.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.physics.plants import lowest
+from dancetutor_cli.dance.physics.ragdoll import hinge_axis
+from dancetutor_cli.dance.physics.repin import AnkleTracks, repinned
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import local_rotations
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.run.errors import FileError
+
+Array = NDArray[np.float64]
+BENT, STRAIGHT = 0.30, 0.09  # sines of a limb's bend: from the first on it shows its plane, below the second not at all
+CLEAR = 0.7  # cosine between both axes from which the bend alone says what the plane is
+STILL = 0.25  # metres per second, of a body of the rig's size: slower feet may stand
+LOW = 0.06  # metres over its lowest that a foot which stands may be
+UNEVEN = 0.12  # metres; a floor that differs more has steps, and is left as it is
+JUMP, JUMP_LEAST = 20.0, 0.1  # times the next frame's way, and part of the body's height, that a rest pose is away
+_UP = np.array([0.0, 1.0, 0.0])
+_BODY = ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4", "skullbase")
+_LIMBS = (("shoulder", "elbow", "radiocarpal"), ("hip", "knee", "talocrural"))
+
+
+@dataclass(frozen=True, slots=True)
+class Captured:
+    """A file's motion, in the world as the file has it. f frames, j joints, parents before children.
+
+    rest, rest_turns : (j, 3) and (j, 4) in the rest pose; times : (f,) seconds; places, turns : (f, j, 3), (f, j, 4)
+    """
+
+    path: Path
+    names: tuple[str, ...]
+    parents: NDArray[np.int32]
+    rest: Array
+    rest_turns: Array
+    fps: float
+    times: Array
+    places: Array
+    turns: Array
+
+
+def on_body(captured: Captured, joints: Mapping[str, int], body: Skeleton) -> Motion:
+    """The motion on a body.
+
+    Parameters
+    ----------
+    joints : index in the file of each joint of the rig that it has; body : joints named as the rig's, standing on y = 0
+
+    Returns
+    -------
+    Motion of `body`, its lowest standing feet on y = 0, turned so that the file's rest pose looks to +Z
+
+    Raises
+    ------
+    FileError if the file's joints lie in one point.
+    """
+    captured = _without_reference(captured)
+    given = _Upright(captured, joints, body)
+    frames = len(captured.times)
+    world = np.empty((frames, len(body.names), 4))
+    for joint, (name, parent) in enumerate(zip(body.names, body.parents.tolist(), strict=True)):
+        if name in joints:
+            world[:, joint] = given.delta(name)
+        else:
+            world[:, joint] = world[:, parent] if parent >= 0 else [1.0, 0.0, 0.0, 0.0]
+    world[:, 0] = _level(world[:, 0], given)
+    _spread(body, joints, world)
+    for side in "lr":
+        for chain in _LIMBS:
+            _limb(body, given, side, chain, world)
+    feet = _feet(body, given, world)
+    rotations = local_rotations(body, world)
+    hips = [quat.rotate(world[:, 0], body.offsets[body.index(f"{s}_hip")]) for s in "lr"]
+    middle = (given.place("l_hip") + given.place("r_hip")) / 2 + feet.lift[:, None] * _UP
+    root = middle - (hips[0] + hips[1]) / 2
+    rotations, root = repinned(body, (rotations, root), feet.feet)
+    start = captured.times - captured.times[0]
+    return Motion(body, captured.fps, start, quat.continuous(rotations), root, ())
+
+
+def _without_reference(captured: Captured) -> Captured:
+    """Without the rest pose that some converters put before the first frame: from it everything would jump."""
+    if len(captured.times) < 4:
+        return captured
+    first, second = (float(np.abs(np.diff(captured.places[k : k + 2], axis=0)).max()) for k in (0, 1))
+    if first < JUMP * max(second, 1e-9) or first < JUMP_LEAST * float(np.ptp(captured.rest, axis=0).max()):
+        return captured
+    turns = captured.turns[1:]
+    return replace(captured, times=captured.times[1:], places=captured.places[1:], turns=turns)
+
+
+class _Upright:
+    """The captured motion turned to look to +Z over y, in the lengths of the body's legs.
+
+    theirs : metres between the captured hips; wider : by which each of the body's hips is farther from the middle
+    """
+
+    def __init__(self, captured: Captured, joints: Mapping[str, int], body: Skeleton) -> None:
+        self.captured, self.joints = captured, joints
+        rest = captured.rest
+        at = {name: rest[k] for name, k in joints.items()}
+        left = at["l_hip"] - at["r_hip"] + at["l_shoulder"] - at["r_shoulder"]
+        up = at["skullbase"] - (at["l_talocrural"] + at["r_talocrural"]) / 2
+        axis = np.eye(3)[np.abs(up).argmax()] * np.sign(up[np.abs(up).argmax()])
+        left = left - (left @ axis) * axis
+        if min(float(np.linalg.norm(left)), float(np.linalg.norm(up))) < 1e-6:
+            raise FileError(captured.path, "its joints lie in one point at rest; export it with its rest pose")
+        left /= np.linalg.norm(left)
+        matrix = np.stack([left, axis, np.cross(left, axis)])
+        self.turn = _from_matrix(matrix)
+        self.scale = _leg(body.rest, {n: body.index(n) for n in joints if n in body.names}) / _leg(rest, joints)
+        self.rest = {name: quat.rotate(self.turn, place) for name, place in at.items()}
+        hips = [body.rest[body.index(f"{s}_hip")] for s in "lr"]
+        self.theirs = self.scale * float(np.linalg.norm(self.rest["l_hip"] - self.rest["r_hip"]))
+        self.wider = (float(np.linalg.norm(hips[0] - hips[1])) - self.theirs) / 2
+
+    def place(self, name: str) -> Array:
+        """World path (f, 3), metres of the body."""
+        return self.scale * quat.rotate(self.turn, self.captured.places[:, self.joints[name]])
+
+    def delta(self, name: str) -> Array:
+        """World turn (f, 4) from the rest pose."""
+        j = self.joints[name]
+        delta = quat.multiply(self.captured.turns[:, j], quat.conjugate(self.captured.rest_turns[j]))
+        return quat.multiply(quat.multiply(self.turn, delta), quat.conjugate(self.turn))
+
+    def bone(self, name: str, tip: str) -> Array:
+        """The bone (3,) in the rest pose."""
+        return np.asarray(self.rest[tip] - self.rest[name])
+
+
+def _leg(rest: Array, joints: Mapping[str, int]) -> float:
+    """Mean length of both legs."""
+    bones = [(f"{s}_{a}", f"{s}_{b}") for s in "lr" for a, b in (("hip", "knee"), ("knee", "talocrural"))]
+    return sum(float(np.linalg.norm(rest[joints[a]] - rest[joints[b]])) for a, b in bones) / 2
+
+
+def _from_matrix(matrix: Array) -> Array:
+    """The quaternion (4,) of a rotation matrix: rows are where x, y, z come from."""
+    first = quat.between(np.array([1.0, 0.0, 0.0]), matrix[:, 0])
+    y = quat.rotate(first, _UP)
+    second = quat.from_axis_angle(matrix[:, 0], np.arctan2(np.cross(y, matrix[:, 1]) @ matrix[:, 0], y @ matrix[:, 1]))
+    return quat.multiply(second, first)
+
+
+def _level(pelvis: Array, given: _Upright) -> Array:
+    """Turns (f, 4) of a pelvis wider than the captured one, leaning aside so much less that its hips rise no more."""
+    if given.wider <= 0.0:
+        return pelvis
+    line = quat.rotate(pelvis, np.array([1.0, 0.0, 0.0]))
+    level = line * [1.0, given.theirs / (given.theirs + 2 * given.wider), 1.0]
+    return quat.multiply(quat.between(line, level), pelvis)
+
+
+def _spread(body: Skeleton, joints: Mapping[str, int], world: Array) -> None:
+    """Joints of trunk and neck that the file lacks turn by their share between those that it has."""
+    known = [k for k, name in enumerate(_BODY) if name in joints]
+    for before, after in pairwise(known):
+        for k in range(before + 1, after):
+            share = np.full(len(world), (k - before) / (after - before))
+            low, high = (world[:, body.index(_BODY[e])] for e in (before, after))
+            world[:, body.index(_BODY[k])] = quat.slerp(low, high, share)
+    for side in "lr":
+        if f"{side}_sternoclavicular" not in joints:
+            world[:, body.index(f"{side}_sternoclavicular")] = world[:, body.index("vt4")]
+
+
+def _limb(body: Skeleton, given: _Upright, side: str, chain: tuple[str, str, str], world: Array) -> None:
+    """Turns of an arm or leg, written into `world`: bones where the captured ones point, the middle joint a hinge."""
+    upper, middle, end = (f"{side}_{name}" for name in chain)
+    first, second = body.offsets[body.index(middle)], body.offsets[body.index(end)]
+    hinge = hinge_axis(chain[1], second)
+    u, v = (given.place(b) - given.place(a) for a, b in ((upper, middle), (middle, end)))
+    u, v = (x / np.maximum(np.linalg.norm(x, axis=1, keepdims=True), 1e-9) for x in (u, v))
+    base = quat.multiply(given.delta(upper), quat.between(first, given.bone(upper, middle)))
+    axis, bend = _plane(u, v, quat.rotate(base, hinge))
+    world[:, body.index(upper)] = _frame(first, hinge, u, axis)
+    along = first / np.linalg.norm(first)
+    bent = float(np.arctan2(np.cross(along, second) @ hinge, second @ along))
+    turned = quat.multiply(world[:, body.index(upper)], quat.from_axis_angle(hinge, bend - bent))
+    turned = quat.multiply(quat.between(quat.rotate(turned, second), v), turned)  # where the plane is in doubt
+    world[:, body.index(middle)] = turned
+    if chain[1] == "elbow":
+        hand = quat.between(second, given.bone(middle, end))
+        world[:, body.index(end)] = quat.multiply(given.delta(end), hand)
+
+
+def _plane(u: Array, v: Array, axis: Array) -> tuple[Array, Array]:
+    """The hinge's axis (f, 3) in the world, and the bend (f,) about it, of two bones along u and v.
+
+    axis : (f, 3) where the captured upper bone has it, but for a turn about the bone, which differs from rig to rig and
+    is found over the whole clip: most people bend the right way most of the time. It decides where a limb is straight.
+    """
+    normal = np.cross(u, v)
+    sine = np.linalg.norm(normal, axis=1)
+    normal = normal / np.maximum(sine, 1e-9)[:, None]
+    axis = _square(axis, u)
+    angle = np.arctan2(np.sum(np.cross(axis, normal) * u, axis=1), np.sum(axis * normal, axis=1))
+    weight = np.where(sine > STRAIGHT, sine**2, 0.0)
+    mean = np.arctan2(np.sum(weight * np.sin(angle)), np.sum(weight * np.cos(angle))) if weight.any() else 0.0
+    axis = quat.rotate(quat.from_axis_angle(u, np.full(len(u), mean)), axis)
+    sign = np.where(np.sum(axis * normal, axis=1) < 0, -1.0, 1.0)
+    share = smooth((sine - STRAIGHT) / (BENT - STRAIGHT))
+    share = (share * smooth(np.abs(np.sum(axis * normal, axis=1)) / CLEAR))[:, None]
+    axis = _square(share * sign[:, None] * normal + (1 - share) * axis, u)
+    return axis, sign * np.arctan2(sine, np.sum(u * v, axis=1))
+
+
+def _square(axis: Array, bone: Array) -> Array:
+    """Unit vectors (f, 3): the part of an axis that is square to the bone (f, 3)."""
+    axis = axis - np.sum(axis * bone, axis=1, keepdims=True) * bone
+    return np.asarray(axis / np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), 1e-9))
+
+
+def _frame(bone: Array, hinge: Array, u: Array, axis: Array) -> Array:
+    """The turns (f, 4) that take a bone and the hinge square to it to u and axis, (f, 3) each."""
+    first = quat.between(bone, u)
+    turned = quat.rotate(first, hinge)
+    angle = np.arctan2(np.sum(np.cross(turned, axis) * u, axis=1), np.sum(turned * axis, axis=1))
+    return quat.multiply(quat.from_axis_angle(u, angle), first)
+
+
+@dataclass(frozen=True, slots=True)
+class _Feet:
+    """Where ankles and feet shall be; lift : metres (f,) by which the file's hips must rise to stand on y = 0."""
+
+    feet: AnkleTracks
+    lift: Array
+
+
+def _feet(body: Skeleton, given: _Upright, world: Array) -> _Feet:
+    """Feet flat where they stand, their balls over the places of the captured ones; writes feet and toes of `world`.
+
+    As far aside as the body's hips are wider: legs that slanted to a narrow stance would need ankles that nobody has.
+    """
+    places, turns, stands, raised = [], [], [], []
+    for side in "lr":
+        ankle, toes = f"{side}_talocrural", f"{side}_metatarsal"
+        path, own = given.place(ankle), body.offsets[body.index(toes)]
+        standing = _standing(path, given.captured.fps)
+        level, theirs = quat.IDENTITY, own
+        if toes in given.rest:
+            way = given.bone(ankle, toes)
+            level = quat.from_axis_angle(_UP, np.asarray(np.arctan2(way[0], way[2])))
+            theirs = given.scale * np.array([0.0, way[1], np.hypot(way[0], way[2])])
+        turn = quat.multiply(given.delta(ankle), level)
+        up = quat.rotate(quat.conjugate(turn[standing]), _UP).mean(axis=0)
+        level = quat.multiply(level, quat.between(_UP, up))
+        turn = quat.multiply(given.delta(ankle), level)
+        world[:, body.index(ankle)] = turn
+        world[:, body.index(toes)] = quat.multiply(given.delta(toes), level) if toes in given.rest else turn
+        wider = np.array([given.wider if side == "l" else -given.wider, 0.0, 0.0])
+        places.append(path + quat.rotate(turn, wider + (theirs - own) * [0.0, 1.0, 1.0]))
+        raised.append(float(theirs[1] - own[1]))
+        turns.append(turn)
+        stands.append(standing)
+    feet = AnkleTracks(np.stack(places, axis=1), np.stack(turns, axis=1))
+    low = lowest(body, feet)
+    lift = -_floor(low, np.stack(stands, axis=1))
+    lifted = feet.places + lift[:, None, None] * _UP
+    lifted += np.maximum(-(low + lift[:, None]), 0.0)[..., None] * _UP
+    return _Feet(AnkleTracks(lifted, feet.turns), lift + float(np.mean(raised)))
+
+
+def _floor(low: Array, standing: NDArray[np.bool_]) -> Array:
+    """Height (f,) of the floor under her: feet (f, 2) at rest stand on it, between rests it goes straight.
+
+    Captured floors are rarely level: a foot at rest may lie centimetres higher at the other end of the room.
+    """
+    knots = []
+    for k in (0, 1):
+        edges = np.flatnonzero(np.diff(np.concatenate(([False], standing[:, k], [False])).astype(np.int8)))
+        for first, end in edges.reshape(-1, 2):
+            knots.append(((first + end - 1) / 2, float(np.median(low[first:end, k])), end - first))
+    heights = np.array([height for _, height, _ in knots])
+    if np.ptp(heights) > UNEVEN:
+        return np.full(len(low), np.median(low[standing]))
+    knots.sort()
+    return np.asarray(np.interp(np.arange(len(low)), [at for at, _, _ in knots], [height for _, height, _ in knots]))
+
+
+def _standing(path: Array, fps: float) -> NDArray[np.bool_]:
+    """In which frames (f,) an ankle (f, 3) may stand: low and slow, or the lowest ones if it never rests."""
+    if len(path) < 3:
+        return np.ones(len(path), dtype=bool)
+    speed = np.linalg.norm(np.gradient(path, 1.0 / fps, axis=0), axis=1)
+    low = path[:, 1] < np.percentile(path[:, 1], 5) + LOW
+    still = low & (speed < STILL)
+    return np.asarray(still if still.sum() >= 5 else low)

@@ -1,0 +1,155 @@
+"""Legs that do not pop near the full stretch, and a centre of mass that keeps its path."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.physics.plants import Plants
+from dancetutor_cli.dance.physics.repin import AnkleTracks, Leg, repinned
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import centre_of_mass, world_transforms
+from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond
+from dancetutor_cli.dance.smoothing import cubic, low_pass, upper_envelope
+
+# Legs that do not pop: near the full stretch a leg comes to its end slower and slower, and the body gives the rest.
+#
+# Popping is a question of millimetres: a leg at 170 degrees is 0.4 % shorter than a straight one. A foot in the air
+# comes nearer by them; over a foot that stands the pelvis sinks, early and smoothly.
+
+Array = NDArray[np.float64]
+FROM, TO = np.radians(22.0), np.radians(7.0)  # bends of a knee: where the stretch grows slower, and where it ends
+ROUND = 0.01  # metres over which a foot in the air begins to come nearer
+SLOWLY = 0.20  # seconds that the last of a stretch takes to come and to go
+SINK = 0.25  # seconds over which the pelvis sinks
+BENT = np.radians(20.0)  # of a knee that a rise leaves: straighter ones pop
+RISES, RISE = 12, 0.0008  # rounds of rising, and metres in each for a degree that an ankle is past its limit
+
+
+def soft_legs(
+    skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks, held: Array, times: Array
+) -> tuple[Array, AnkleTracks]:
+    """Root (f, 3) and feet with which no knee pops.
+
+    poses : local rotations (f, j, 4), of which the pelvis counts, and root (f, 3); held : (f, 2) how far feet stand
+    """
+    pelvis, root = poses[0][:, 0], poses[1].copy()
+    legs = [Leg(skeleton, s) for s in "lr"]
+    hips = [quat.rotate(pelvis, skeleton.offsets[leg.hip]) for leg in legs]
+    sink, reach = np.zeros(len(root)), []
+    for side, (leg, hip) in enumerate(zip(legs, hips, strict=True)):
+        way = feet.places[:, side] - root - hip
+        aside = np.minimum(np.hypot(way[:, 0], way[:, 2]), 0.85 * leg.longest)
+        wanted = _soft(leg, np.linalg.norm(way, axis=1), times)
+        reach.append(wanted)
+        drop = -way[:, 1] - np.sqrt(np.maximum(wanted**2 - aside**2, 0.0))
+        sink = np.maximum(sink, held[:, side] * drop)
+    root[:, 1] -= upper_envelope(times, sink, SINK)
+    places = feet.places.copy()
+    for side, hip in enumerate(hips):
+        start = root + hip
+        way = places[:, side] - start
+        far = np.linalg.norm(way, axis=1)
+        less = (far - reach[side]) / 2
+        short = less + np.hypot(less, ROUND * (1.0 - held[:, side]) / 2)  # 0 below the reach, without an edge
+        short = np.where(held[:, side] < 1.0, short, np.maximum(2 * less, 0.0))
+        places[:, side] -= way * (short / np.maximum(far, 1e-9))[:, None]
+    return root, AnkleTracks(places, feet.turns)
+
+
+def risen(skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks, plants: Plants, times: Array) -> Array:
+    """Root (f, 3), so high that ankles of feet whose heels are held are within their limits, as far as legs reach.
+
+    Where thighs are long and shanks short a captured squat would bend ankles too far.
+    """
+    rotations, root = poses
+    for _ in range(RISES):
+        past = np.zeros(len(root))
+        for side, name in enumerate(("l_talocrural", "r_talocrural")):
+            beyond_by = beyond(skeleton, name, rotations[:, skeleton.index(name)])
+            past = np.maximum(past, np.where(plants.heel[:, side], beyond_by, 0.0))
+        if past.max(initial=0.0) <= 0.0:
+            break
+        up = upper_envelope(times, RISE * past, SINK)
+        root = root + up[:, None] * quat.UP
+        need = np.minimum(too_high(skeleton, (rotations[:, 0], root), feet, BENT), up)
+        root -= need[:, None] * quat.UP
+        rotations, root = repinned(skeleton, (rotations, root), feet)
+    return root
+
+
+def too_high(skeleton: Skeleton, pelvis: tuple[Array, Array], feet: AnkleTracks, bent: float) -> Array:
+    """Metres (f,) by which a pelvis must sink so that no knee is bent by less than `bent` radians.
+
+    pelvis : its turns (f, 4) and root (f, 3)
+    """
+    turns, root = pelvis
+    need = np.zeros(len(root))
+    for k, side in enumerate("lr"):
+        leg = Leg(skeleton, side)
+        way = feet.places[:, k] - root - quat.rotate(turns, skeleton.offsets[leg.hip])
+        aside = way[:, 0] ** 2 + way[:, 2] ** 2
+        need = np.maximum(need, -way[:, 1] - np.sqrt(np.maximum(leg.length(bent) ** 2 - aside, 0.0)))
+    return need
+
+
+def _soft(leg: Leg, distance: Array, times: Array) -> Array:
+    """How far (f,) hip and ankle shall be apart that are `distance` (f,) metres apart.
+
+    Never so far as a straight leg; and what is left of the stretch comes and goes slowly, so that a pop is none.
+    """
+    start, end = leg.length(FROM), leg.length(TO)
+    over = np.maximum(distance - start, 0.0)
+    near = start + (end - start) * (1 - np.exp(-over / (end - start)))
+    stretch = np.where(distance > start, FROM - leg.bent(near), 0.0)
+    most = FROM - TO
+    slow = most - upper_envelope(times, most - stretch, SLOWLY)
+    return np.asarray(np.where(distance > start, leg.lengths(FROM - np.maximum(slow, 0.0)), distance))
+
+
+# Weight where it was: a style moves limbs, and the body answers so that the centre of mass keeps its path.
+#
+# Without this the arms and trunk of a ragdoll would throw the mass about, and she would fall over, or fly on no
+# parabola. To all sides the path is the input's; in height she may stand otherwise, but comes there slowly.
+
+Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
+ROUNDS = 4  # of moving the root: legs follow, and have mass
+STANCE = 0.5  # Hz below which her height may be another one
+SINKS = 1.5  # seconds over which she stands lower than a style would have her
+RATE = 120.0  # at which height is filtered
+
+
+def mass_of(skeleton: Skeleton, poses: Poses) -> Array:
+    """Centre of mass (f, 3)."""
+    return centre_of_mass(skeleton, *world_transforms(skeleton, *poses))
+
+
+def kept_mass(
+    skeleton: Skeleton, poses: Poses, feet: AnkleTracks, path: tuple[Array, Array], share: Array, free: Array
+) -> Poses:
+    """Poses whose centre of mass is on its path, legs ending in `feet`.
+
+    path : times (f,) and places (f, 3) where the mass was in the input; share : (f,) how far it shall be there, 0 to 1
+    free : (f,) how far she may stand higher or lower
+    """
+    times, wanted = path
+    rotations, root = poses
+    stands: Array | None = None
+    for _ in range(ROUNDS):
+        poses = repinned(skeleton, (rotations, root), feet)
+        off = mass_of(skeleton, poses) - wanted
+        if stands is None:
+            stands = free * _slowly(times, off[:, 1])
+            raised = poses[1] - share[:, None] * (off - stands[:, None] * quat.UP)
+            need = too_high(skeleton, (rotations[:, 0], raised), feet, BENT)
+            stands -= upper_envelope(times, np.minimum(need, np.maximum(stands, 0.0)), SINKS)
+        off[:, 1] -= stands
+        root = poses[1] - share[:, None] * off
+    return repinned(skeleton, (rotations, root), feet)
+
+
+def _slowly(times: Array, values: Array) -> Array:
+    """What of values (f,) changes slowly."""
+    grid = np.arange(times[0], times[-1] + 1 / RATE, 1 / RATE)
+    slow = low_pass(cubic(times, values[:, None], grid), RATE, STANCE)
+    return np.asarray(cubic(grid, slow, times)[:, 0])

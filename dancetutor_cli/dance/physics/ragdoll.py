@@ -1,0 +1,326 @@
+"""The ragdoll: capsules and boxes with density as a model of the engine, and where springs pull it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.physics.style import Style, engine
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.run.errors import UsageError, did_you_mean
+
+# Retargeting points: where on the ragdoll springs and dampers pull, End, Center or Hybrid Center.
+#
+# Each bone has one point, at its end or its middle, and beside it two extra ones that keep it from turning about
+# itself; the pelvis has the root's and both hips', whose extra ones are before and behind.
+
+Array = NDArray[np.float64]
+# name of the point at the end of a bone, by the bone's joint without its side
+_ENDS = {
+    "vl5": "vt10", "vt10": "vt4", "vt4": "vc4", "vc4": "skullbase", "skullbase": "skull_tip",
+    "sternoclavicular": "shoulder", "shoulder": "elbow", "elbow": "radiocarpal", "radiocarpal": "hand_tip",
+    "hip": "knee", "knee": "talocrural", "talocrural": "metatarsal",
+}  # fmt: skip
+_ASIDE = {"pelvis": 0.08, "spine": 0.11, "chest": 0.11, "head": 0.08, "feet": 0.045, "hands": 0.04}
+_ASIDE_OF_LIMBS = 0.06  # metres from a point to an extra one
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """bone : index of its body; offset : (3,) in the body's axes from its joint, metres; share : of the body's mass
+
+    extra : whether it is one of the two beside the point of that name
+    """
+
+    name: str
+    bone: int
+    part: str
+    offset: Array
+    mass: float
+    extra: bool
+
+    def gains(self, style: Style) -> tuple[Array, Array]:
+        """kp (3,) in N/m and kd (3,) in N s/m along the world's axes; zero where the style disables the point."""
+        if self.name in style.disabled:
+            return np.zeros(3), np.zeros(3)
+        spring = style.springs[self.part]
+        omega = 2 * np.pi * np.array(spring.frequency)
+        return self.mass * omega**2, 2 * np.array(spring.damping) * self.mass * omega
+
+
+def points_of(skeleton: Skeleton, bones: tuple[Bone, ...], style: Style) -> tuple[Point, ...]:
+    """The points of a ragdoll as a style wants them. UsageError if it disables one that there is not."""
+    out: list[Point] = []
+    for index, bone in enumerate(bones):
+        places = _places(skeleton, bone, style)
+        for name, centre, aside in places:
+            offsets = [centre, centre + aside, centre - aside] if style.extra_points else [centre]
+            mass = bone.mass / (len(places) * len(offsets))
+            out += [Point(name, index, bone.part, o, mass, k > 0) for k, o in enumerate(offsets)]
+    names = sorted({p.name for p in out})
+    for name in style.disabled:
+        if name not in names:
+            near = did_you_mean(name, names)
+            raise UsageError(f"style {style.name}: there is no retargeting point '{name}'{near}: {', '.join(names)}")
+    return tuple(out)
+
+
+def _places(skeleton: Skeleton, bone: Bone, style: Style) -> list[tuple[str, Array, Array]]:
+    """Name, offset, and the way to an extra point."""
+    if bone.parent < 0:
+        hips = [(s, skeleton.offsets[skeleton.index(f"{s}_hip")]) for s in "lr"]
+        ahead = np.array([0.0, 0.0, _ASIDE["pelvis"]])
+        return [("root", np.zeros(3), ahead), *((f"{s}_hip", place, ahead) for s, place in hips)]
+    sided = bone.outward != 0
+    bare = bone.name[2:] if sided else bone.name
+    name = f"{bone.name[:2]}{_ENDS[bare]}" if sided else _ENDS[bare]
+    middle = style.placement == "center" or (style.placement == "hybrid" and bone.part != "feet")
+    across = np.array([1.0, 0.0, 0.0]) if abs(bone.along[0]) < 0.5 else np.array([0.0, 0.0, 1.0])
+    across = across - bone.along * (across @ bone.along)
+    aside = _ASIDE.get(bone.part, _ASIDE_OF_LIMBS) * across / np.linalg.norm(across)
+    return [(name, bone.end * (0.5 if middle else 1.0), aside)]
+
+
+def place_points(
+    skeleton: Skeleton, bones: tuple[Bone, ...], points: tuple[Point, ...], rotations: Array, root: Array
+) -> Array:
+    """World positions (f, p, 3) of the points of a skeleton posed by local rotations (f, j, 4) and root (f, 3)."""
+    positions, world = world_transforms(skeleton, rotations, root)
+    joints = [bones[p.bone].joint for p in points]
+    return np.asarray(positions[:, joints] + quat.rotate(world[:, joints], np.array([p.offset for p in points])))
+
+
+# The ragdoll: capsules and foot boxes with density on the joints of a skeleton, as a model of the engine.
+#
+# All bodies have the world's axes in the rest pose, so that a body's rotation is its joint's world rotation. Knees and
+# elbows have two hinges (bend and twist), all other joints are spherical with a cone for a limit, as in chapter 4 of
+# the thesis on retargeting; her ankles are spherical too, for in a straddle they bend aside while the sole stays flat.
+
+NOMINAL = 1000.0  # kg/m^3 at which springs are measured
+LIMIT = 0.009  # seconds in which a joint comes back from beyond its limit
+FRONT = np.array([0.0, 0.0, 1.0])
+_CHAINS = (  # in the engine's order: each body, then all below it
+    ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4", "skullbase"),
+    *(("vt4", *(f"{s}_{n}" for n in ("sternoclavicular", "shoulder", "elbow", "radiocarpal"))) for s in "lr"),
+    *(("HumanoidRoot", *(f"{s}_{n}" for n in ("hip", "knee", "talocrural"))) for s in "lr"),
+)
+_END = {"vt4": "vc4"}  # where a joint has several children, the one at the end of its bone
+# name without side: part of `style.PARTS`, radius in metres, cone of a spherical joint in degrees
+_SHAPES = {
+    "HumanoidRoot": ("pelvis", 0.105, 180.0),
+    "vl5": ("spine", 0.100, 65.0),
+    "vt10": ("spine", 0.105, 65.0),
+    "vt4": ("chest", 0.105, 65.0),
+    "vc4": ("head", 0.050, 75.0),
+    "skullbase": ("head", 0.080, 85.0),
+    "sternoclavicular": ("clavicles", 0.040, 45.0),
+    "shoulder": ("arms", 0.042, 170.0),
+    "elbow": ("arms", 0.034, 155.0),
+    "radiocarpal": ("hands", 0.028, 130.0),
+    "hip": ("thighs", 0.068, 140.0),
+    "knee": ("shanks", 0.046, 155.0),
+    "talocrural": ("feet", 0.030, 75.0),
+}
+_TIPS = {
+    "skullbase": (0.0, 0.17, 0.0),
+    "radiocarpal": 0.15,
+    "talocrural": (0.0, -0.057, 0.115),
+}  # leaves, metres
+_HINGED = {"knee": (-8.0, 155.0, 12.0), "elbow": (-5.0, 155.0, 12.0)}  # degrees: bend, and twist both ways
+FOOT_BOX = (0.045, 0.022, 0.120)  # half sizes of a foot, metres
+HEEL = -0.060  # metres from the ankle to the heel, ahead
+_FLOOR = 'type="plane" size="0 0 1" quat="0.70710678 -0.70710678 0 0" contype="1" conaffinity="2"'
+
+
+@dataclass(frozen=True, slots=True)
+class Bone:
+    """One body. joint : index in the skeleton; name : of the rig; parent : index of a bone, -1
+
+    end : (3,) from its joint to its end, metres, rest pose; hinge : axis of its bend, None for a spherical joint
+    mass : kilograms at the nominal density
+    """
+
+    joint: int
+    name: str
+    parent: int
+    part: str
+    end: Array
+    hinge: Array | None
+    mass: float
+
+    @property
+    def along(self) -> Array:
+        """Unit vector of the bone in the rest pose."""
+        return np.asarray(self.end / np.linalg.norm(self.end))
+
+    @property
+    def outward(self) -> float:
+        """1 for a left part, -1 for a right one, 0 in the middle."""
+        return 1.0 if self.name.startswith("l_") else -1.0 if self.name.startswith("r_") else 0.0
+
+
+def bones_of(skeleton: Skeleton) -> tuple[Bone, ...]:
+    """The bodies of the dancer's ragdoll, parents before children; toes, eyes, lids, jaw and braid ride along."""
+    rest = skeleton.rest
+    out: list[Bone] = []
+    names: list[str] = []
+    for chain in _CHAINS:
+        for place, name in enumerate(chain):
+            if name in names:
+                continue
+            bare = name[2:] if name[1] == "_" else name
+            part, radius, _ = _SHAPES[bare]
+            joint = skeleton.index(name)
+            after = _END.get(name, chain[place + 1] if place + 1 < len(chain) else None)
+            end = _tip(skeleton, name, bare) if after is None else rest[skeleton.index(after)] - rest[joint]
+            parent = names.index(chain[place - 1]) if place else -1
+            names.append(name)
+            out.append(Bone(joint, name, parent, part, end, _hinge(bare, end), _mass(bare, radius, end)))
+    return tuple(out)
+
+
+def _tip(skeleton: Skeleton, name: str, bare: str) -> Array:
+    if bare == "radiocarpal":
+        along = skeleton.offsets[skeleton.index(f"{name[0]}_elbow")]
+        return np.asarray(_TIPS[bare] * along / np.linalg.norm(along))
+    return np.array(_TIPS[bare])
+
+
+def _hinge(bare: str, end: Array) -> Array | None:
+    return hinge_axis(bare, end) if bare in _HINGED else None
+
+
+def hinge_axis(bare: str, end: Array) -> Array:
+    """Unit vector about which a positive turn bends a shank `end` (3,) backward, a forearm forward, in the rest pose.
+
+    bare : "knee" or "elbow"
+    """
+    return _square(end, -FRONT if bare == "knee" else FRONT)
+
+
+def _square(bone: Array, towards: Array) -> Array:
+    axis = np.cross(bone, towards)
+    return np.asarray(axis / np.linalg.norm(axis))
+
+
+def _mass(bare: str, radius: float, end: Array) -> float:
+    if bare == "talocrural":
+        return NOMINAL * 8 * float(np.prod(FOOT_BOX))
+    return NOMINAL * np.pi * radius**2 * (float(np.linalg.norm(end)) + 4 / 3 * radius)
+
+
+def build(skeleton: Skeleton, bones: tuple[Bone, ...], points: tuple[Point, ...], style: Style, more: str = "") -> Any:
+    """The engine's model: bodies, joints, sites, floor, and per point three actuators (x, y, z) of a spring-damper.
+
+    An actuator's control is kp times the place plus kd times the speed that its point shall have.
+    more : XML of its equality section
+    """
+    numbers = style.numbers
+    actuators = "".join(_actuators(k, p, style) for k, p in enumerate(points))
+    text = (
+        f'<mujoco><compiler angle="degree"/><option timestep="{1 / numbers.update_rate:.9f}" '
+        f'gravity="0 {-numbers.gravity:.6f} 0" integrator="implicitfast" cone="elliptic" iterations="30"/>'
+        f'<default><geom contype="0" conaffinity="0"/></default>'
+        f'<worldbody><site name="w"/><geom {_FLOOR} friction="{numbers.friction:.4f} 0.005 0.0001"/>'
+        f"{_body(skeleton, bones, 0, points, style)}</worldbody><equality>{more}</equality>"
+        f"<actuator>{actuators}</actuator></mujoco>"
+    )
+    return engine().MjModel.from_xml_string(text)
+
+
+def _vector(values: Array) -> str:
+    return " ".join(f"{v:.9g}" for v in values)
+
+
+def _body(skeleton: Skeleton, bones: tuple[Bone, ...], index: int, points: tuple[Point, ...], style: Style) -> str:
+    bone = bones[index]
+    rest = skeleton.rest
+    place = rest[bone.joint] if bone.parent < 0 else rest[bone.joint] - rest[bones[bone.parent].joint]
+    sites = "".join(f'<site name="p{k}" pos="{_vector(p.offset)}"/>' for k, p in enumerate(points) if p.bone == index)
+    inner = "".join(_body(skeleton, bones, k, points, style) for k, other in enumerate(bones) if other.parent == index)
+    return (
+        f'<body name="{bone.name}" pos="{_vector(place)}">{_joints(bone, style)}{_geom(bone, rest, style)}'
+        f"{sites}{inner}</body>"
+    )
+
+
+def _joints(bone: Bone, style: Style) -> str:
+    if bone.parent < 0:
+        return "<freejoint/>"
+    stiff = f'damping="{style.numbers.stiffness:.6g}" stiffness="{style.numbers.spring:.6g}" solreflimit="{LIMIT:g} 1"'
+    limited = "true" if style.limits else "false"
+    bare = bone.name[2:] if bone.name[1] == "_" else bone.name
+    if bone.hinge is None:
+        return f'<joint type="ball" {stiff} limited="{limited}" range="0 {_SHAPES[bare][2]}"/>'
+    low, high, twist = _HINGED[bare]
+    return (
+        f'<joint type="hinge" axis="{_vector(bone.hinge)}" {stiff} limited="{limited}" range="{low} {high}"/>'
+        f'<joint type="hinge" axis="{_vector(bone.along)}" {stiff} limited="{limited}" range="{-twist} {twist}"/>'
+    )
+
+
+def _geom(bone: Bone, rest: Array, style: Style) -> str:
+    density = f'density="{style.density[bone.part]:.6g}"'
+    bare = bone.name[2:] if bone.name[1] == "_" else bone.name
+    if bare == "talocrural":
+        rubs = f'friction="{style.numbers.friction:.4f} 0.005 0.0001" contype="2" conaffinity="1"'
+        low, ball = FOOT_BOX[1] - rest[bone.joint][1], bone.end[2]
+        parts = ((HEEL, ball, rubs), (ball, HEEL + 2 * FOOT_BOX[2], ""))  # toes bend where the ground is
+        return "".join(
+            f'<geom type="box" size="{FOOT_BOX[0]} {FOOT_BOX[1]} {abs(b - a) / 2:.9g}" '
+            f'pos="0 {low:.9g} {(a + b) / 2:.9g}" {density} {more}/>'
+            for a, b, more in parts
+        )
+    return f'<geom type="capsule" size="{_SHAPES[bare][1]}" fromto="0 0 0 {_vector(bone.end)}" {density}/>'
+
+
+def _actuators(index: int, point: Point, style: Style) -> str:
+    kp, kd = point.gains(style)
+    out = []
+    for axis in range(3):
+        gear = " ".join("1" if k == axis else "0" for k in range(6))
+        out.append(
+            f'<general site="p{index}" refsite="w" gear="{gear}" gaintype="fixed" gainprm="1" biastype="affine" '
+            f'biasprm="0 {-kp[axis]:.9g} {-kd[axis]:.9g}"/>'
+        )
+    return "".join(out)
+
+
+def pose_of(bones: tuple[Bone, ...], turns: Array, root: Array) -> Array:
+    """Generalised positions (f, q) of the engine from local rotations (f, b, 4) of the bones and root (f, 3)."""
+    out = [root, turns[:, 0]]
+    for k, bone in enumerate(bones[1:], 1):
+        out += [turns[:, k]] if bone.hinge is None else [bend_and_twist(bone, turns[:, k])]
+    return np.concatenate(out, axis=1)
+
+
+def bend_and_twist(bone: Bone, turns: Array) -> Array:
+    """Angles (f, 2) in radians of a hinged joint: about its hinge, and about the bone."""
+    assert bone.hinge is not None
+    swing, twist = quat.swing_twist(turns, bone.along)
+    return np.column_stack([_angle(swing, bone.hinge), _angle(twist, bone.along)])
+
+
+def _angle(q: Array, axis: Array) -> Array:
+    angle = 2.0 * np.arctan2(q[:, 1:] @ axis, q[:, 0])
+    return np.asarray((angle + np.pi) % (2 * np.pi) - np.pi)
+
+
+def turns_of(bones: tuple[Bone, ...], poses: Array) -> Array:
+    """Local rotations (f, b, 4) of the bones from generalised positions (f, q)."""
+    out = [poses[:, 3:7]]
+    at = 7
+    for bone in bones[1:]:
+        if bone.hinge is None:
+            out.append(poses[:, at : at + 4])
+            at += 4
+        else:
+            bend = quat.from_axis_angle(bone.hinge, poses[:, at])
+            out.append(quat.multiply(bend, quat.from_axis_angle(bone.along, poses[:, at + 1])))
+            at += 2
+    return quat.normalize(np.stack(out, axis=1))

@@ -1,0 +1,325 @@
+"""What physics leaves a little off, closed afterwards: feet, joint limits, arms in the trunk, hands on the bar."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.context import hold_share
+from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.physics.ragdoll import Bone, bend_and_twist, bones_of, hinge_axis
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.dance.rig.limbs import HAND, Capsule, arm_in_torso, depth, leg_capsules
+from dancetutor_cli.dance.rig.skeleton import LIMITS, Skeleton, beyond, within
+from dancetutor_cli.dance.smoothing import smooth, upper_envelope
+
+# Feet back where they were: physics alone lets them slide by half a centimetre, so legs are closed by IK afterwards.
+#
+# Ankles get the place and the feet the turn that they have in the input, exactly; thighs keep the plane in which the
+# ragdoll bent them. Where a leg would have to be longer than it is, the pelvis gives way.
+
+Array = NDArray[np.float64]
+STRAIGHTEST = np.radians(6.0)  # a knee stays bent by so much
+REACH_ROUNDS = 40  # of pulling the pelvis until both legs reach
+
+
+@dataclass(frozen=True, slots=True)
+class AnkleTracks:
+    """Where both ankles are, (f, 2, 3), and how both feet are turned, (f, 2, 4), in the world."""
+
+    places: Array
+    turns: Array
+
+
+def feet_of(skeleton: Skeleton, rotations: Array, root: Array) -> AnkleTracks:
+    """The feet of poses, local rotations (f, j, 4) and root (f, 3)."""
+    positions, world = world_transforms(skeleton, rotations, root)
+    ankles = [skeleton.index(f"{s}_talocrural") for s in "lr"]
+    return AnkleTracks(positions[:, ankles], world[:, ankles])
+
+
+def repinned(skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks) -> tuple[Array, Array]:
+    """The poses, local rotations (f, j, 4) and root (f, 3), with legs that end in `feet`; returns the same."""
+    rotations, root = poses[0].copy(), poses[1].copy()
+    ankles = [skeleton.index(f"{s}_talocrural") for s in "lr"]
+    legs = [Leg(skeleton, s) for s in "lr"]
+    goals = [feet.places[:, k] for k in (0, 1)]
+    root += _pull(skeleton, rotations[:, 0], root, legs, goals)
+    places, turned = world_transforms(skeleton, rotations, root)
+    for k, (leg, ankle, goal) in enumerate(zip(legs, ankles, goals, strict=True)):
+        reach = goal - places[:, leg.hip]
+        bend = leg.bend(np.linalg.norm(reach, axis=1))
+        knee = quat.from_axis_angle(leg.axis, bend)
+        ends = quat.rotate(turned[:, leg.hip], leg.upper + quat.rotate(knee, leg.lower))
+        thigh = quat.multiply(quat.between(ends, reach), turned[:, leg.hip])
+        parent = turned[:, skeleton.parents[leg.hip]]
+        rotations[:, leg.hip] = quat.multiply(quat.conjugate(parent), thigh)
+        rotations[:, leg.knee] = knee
+        shank = quat.multiply(thigh, knee)
+        rotations[:, ankle] = quat.multiply(quat.conjugate(shank), feet.turns[:, k])
+    return rotations, root
+
+
+class Leg:
+    """Two bones with a hinge between them, from the rest pose."""
+
+    def __init__(self, skeleton: Skeleton, side: str) -> None:
+        self.hip, self.knee = skeleton.index(f"{side}_hip"), skeleton.index(f"{side}_knee")
+        self.upper = skeleton.offsets[self.knee]
+        self.lower = skeleton.offsets[skeleton.index(f"{side}_talocrural")]
+        self.axis = hinge_axis("knee", self.lower)
+        self.a, self.b = float(np.linalg.norm(self.upper)), float(np.linalg.norm(self.lower))
+        along = self.upper / self.a
+        self.rest = float(np.arctan2(self.lower @ np.cross(self.axis, along), self.lower @ along))
+        self.longest = self.length(STRAIGHTEST)
+
+    def length(self, bend: float) -> float:
+        """Metres from hip to ankle with a knee bent by `bend` radians."""
+        return float(self.lengths(np.array(bend)))
+
+    def lengths(self, bend: Array) -> Array:
+        """As `length`, for many."""
+        return np.asarray(np.sqrt(self.a**2 + self.b**2 + 2 * self.a * self.b * np.cos(bend)))
+
+    def bent(self, distance: Array) -> Array:
+        """Bend of the knee in radians, 0 straight, with the ankle `distance` metres from the hip."""
+        d = np.clip(distance, abs(self.a - self.b) + 1e-4, self.longest)
+        cosine = (d**2 - self.a**2 - self.b**2) / (2 * self.a * self.b)
+        return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)))
+
+    def bend(self, distance: Array) -> Array:
+        """Turn (f,) of the knee in radians that puts the ankle `distance` (f,) metres from the hip."""
+        return self.bent(distance) - self.rest
+
+
+def _pull(skeleton: Skeleton, pelvis: Array, root: Array, legs: list[Leg], goals: list[Array]) -> Array:
+    """Metres (f, 3) by which the root must move so that both ankles are within reach of their legs."""
+    by = np.zeros_like(root)
+    hips = [root + quat.rotate(pelvis, skeleton.offsets[leg.hip]) for leg in legs]
+    for _ in range(REACH_ROUNDS):
+        missing = 0.0
+        for leg, hip, goal in zip(legs, hips, goals, strict=True):
+            way = goal - hip - by
+            far = np.linalg.norm(way, axis=1)
+            short = np.maximum(far - leg.longest, 0.0)
+            by += way / np.maximum(far, 1e-9)[:, None] * short[:, None]
+            missing = max(missing, float(short.max()))
+        if missing < 1e-6:
+            break
+    return by
+
+
+# Joint limits to the degree: the engine's are cones and give way a little, as springs do; what is past comes back.
+
+MARGIN = 0.5  # degrees inside the limits
+SLOWLY = 0.25  # seconds over which a joint is brought back, before and after it would be past a limit
+MOST = np.radians(20.0)  # of what comes back early; what is further past is stopped there
+ELBOW = np.radians(-5.0)  # bend of an elbow at its stretch
+_LEGS = ("l_hip", "l_knee", "l_talocrural")  # these are closed by IK afterwards
+
+
+def restrained(skeleton: Skeleton, rotations: Array, times: Array, calm: Array | None = None) -> Array:
+    """Local rotations (f, j, 4) at times (f,), with trunk, head and arms within their limits.
+
+    calm : (f,) how far joints may come back early, 0 to 1: not while she is struck or a palm presses. None: always
+    """
+    out = rotations.copy()
+    hinges = {bone.joint: bone for bone in bones_of(skeleton) if bone.name.endswith("elbow")}
+    for name in LIMITS:
+        for mirrored in (name, name.replace("l_", "r_", 1)) if name.startswith("l_") else (name,):
+            if name in _LEGS or mirrored not in skeleton.names:
+                continue
+            joint = skeleton.index(mirrored)
+            given = out[:, joint]
+            back = _rotation_vectors(quat.multiply(_clipped(skeleton, mirrored, given, hinges), quat.conjugate(given)))
+            if not back.any():
+                continue
+            early = np.stack([_early(times, back[:, axis]) for axis in range(3)], axis=1)
+            if calm is not None:
+                early *= calm[:, None]
+            out[:, joint] = _clipped(skeleton, mirrored, quat.multiply(_turns(early), given), hinges)
+    return out
+
+
+def _clipped(skeleton: Skeleton, name: str, turns: Array, hinges: Mapping[int, Bone]) -> Array:
+    """Turns (f, 4) of one joint, those past its limits brought back to them."""
+    past = np.flatnonzero(beyond(skeleton, name, turns) > -MARGIN)
+    out = turns.copy()
+    if len(past):
+        out[past] = within(skeleton, name, turns[past], MARGIN)
+    bone = hinges.get(skeleton.index(name))
+    return out if bone is None else _forward(bone, out)
+
+
+def _early(times: Array, back: Array) -> Array:
+    """What comes back (f,) about one axis, coming and going slowly: a joint that stopped at once would be a jerk."""
+    ahead, behind = (upper_envelope(times, np.minimum(part, MOST), SLOWLY) for part in (back, -back))
+    return np.asarray(ahead - behind)
+
+
+def _rotation_vectors(turns: Array) -> Array:
+    """Rotation vectors (f, 3), radians, of turns (f, 4); exactly 0 where there is none."""
+    turns = np.where(turns[:, :1] < 0, -turns, turns)
+    size = np.linalg.norm(turns[:, 1:], axis=1)
+    angle = 2.0 * np.arctan2(size, turns[:, 0])
+    return np.where(angle[:, None] > 1e-7, turns[:, 1:] * (angle / np.maximum(size, 1e-12))[:, None], 0.0)
+
+
+def _turns(vectors: Array) -> Array:
+    """Turns (f, 4) of rotation vectors (f, 3)."""
+    size = np.linalg.norm(vectors, axis=1)
+    axis = np.where(size[:, None] > 1e-12, vectors / np.maximum(size, 1e-12)[:, None], [1.0, 0.0, 0.0])
+    return quat.from_axis_angle(axis, size)
+
+
+def _forward(bone: Bone, turns: Array) -> Array:
+    """Turns (f, 4) of an elbow, where they bend it backward no further than elbows do."""
+    bend, twist = bend_and_twist(bone, turns).T
+    past = np.flatnonzero(bend < ELBOW)
+    out = turns.copy()
+    assert bone.hinge is not None
+    straight = quat.from_axis_angle(bone.hinge, np.full(len(past), ELBOW))
+    out[past] = quat.multiply(straight, quat.from_axis_angle(bone.along, twist[past]))
+    return out
+
+
+# Arms out of trunk, legs and each other: where a style sends them there, they go back to where the input has them.
+#
+# The input's arms are seen from the trunk, as local turns are: what was clear of the trunk there is clear of it here.
+
+Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
+ALLOWED = 0.003  # metres that an arm may be in something: clothes and skin give way
+DEEPER = 0.002  # metres by which it must be deeper than in the input to be a fault of the style
+APART_ROUNDS, APART_STEP = 10, 0.3  # of going back, and the part of the way in each
+APART_SPAN = 0.4  # seconds around a touch in which an arm goes back and comes again
+_ARM = ("sternoclavicular", "shoulder", "elbow", "radiocarpal")
+_RADII = (0.045, 0.036, 0.026)  # of shoulder, elbow and wrist, metres
+
+
+def arms_apart(skeleton: Skeleton, given: Array, poses: Poses, feet: AnkleTracks, times: Array) -> Array:
+    """Local rotations (f, j, 4) of poses whose arms are as clear of everything as in the input.
+
+    given : local rotations (f, j, 4) of the input; feet : where the legs end; times : (f,) seconds
+    """
+    rotations = poses[0]
+    before = _depths(skeleton, (given, poses[1]), feet)
+    for _ in range(APART_ROUNDS):
+        deep = _depths(skeleton, (rotations, poses[1]), feet)
+        past = (deep > ALLOWED) & (deep > before + DEEPER)
+        if not past.any():
+            break
+        rotations = rotations.copy()
+        for k, side in enumerate("lr"):
+            share = APART_STEP * np.minimum(upper_envelope(times, past[:, k].astype(np.float64), APART_SPAN), 1.0)
+            for joint in (skeleton.index(f"{side}_{name}") for name in _ARM):
+                rotations[:, joint] = quat.slerp(rotations[:, joint], given[:, joint], share)
+    return rotations
+
+
+def _depths(skeleton: Skeleton, poses: Poses, feet: AnkleTracks) -> Array:
+    """How deep (f, 2) the left and the right arm are in anything, metres; negative apart."""
+    joints, _ = world_transforms(skeleton, *repinned(skeleton, poses, feet))
+    legs = [leg_capsules(*(joints[:, skeleton.index(f"{s}_{n}")] for n in ("hip", "knee", "talocrural"))) for s in "lr"]
+    arms = [_arm(skeleton, joints, s) for s in "lr"]
+    crossed = depth(arms[0], arms[1])
+    out = [
+        np.maximum.reduce([crossed, arm_in_torso(skeleton, joints, s), *(depth(arm[1:], leg) for leg in legs)])
+        for s, arm in zip("lr", arms, strict=True)
+    ]
+    return np.stack(out, axis=1)
+
+
+def _arm(skeleton: Skeleton, joints: Array, side: str) -> list[Capsule]:
+    """Upper arm, and forearm with its hand."""
+    shoulder, elbow, wrist = (joints[:, skeleton.index(f"{side}_{n}")] for n in _ARM[1:])
+    along = wrist - elbow
+    tip = wrist + HAND * along / np.linalg.norm(along, axis=1, keepdims=True)
+    return [(shoulder, elbow, *_RADII[:2]), (elbow, tip, *_RADII[1:])]
+
+
+# Hands that stay on the bar: a style moves her body, and arms are closed by IK to where the palms lie.
+#
+# Where an arm would be too short, trunk and pelvis give way towards the input's, whose hands are there.
+
+REACH = 0.35  # seconds in which a hand comes to where the input has it, and goes again
+LONGEST = 0.995  # of an arm's length that it stretches
+HOLD_ROUNDS, HOLD_STEP = 12, 0.25  # of giving way, and the part of the way in each
+HOLD_SPAN = 0.5  # seconds over which she gives way, and comes back
+DEEP = 0.003  # metres that a forearm may be in the trunk
+_BODY = ("HumanoidRoot", "vl5", "vt10", "vt4", *(f"{s}_{n}" for s in "lr" for n in ("sternoclavicular", "shoulder")))
+
+
+def hands_held(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
+    """Poses whose palms lie on the bar as the input's do, while they hold it; legs end in `feet`."""
+    skeleton = motion.skeleton
+    share = hold_share(motion.grips, motion.times, REACH)
+    if not share.any():
+        return poses
+    given = world_transforms(skeleton, motion.rotations, motion.root)
+    body = [skeleton.index(name) for name in _BODY]
+    for _ in range(HOLD_ROUNDS):
+        closed, short = _closed(skeleton, poses, given, share)
+        if not short.any():
+            break
+        back = HOLD_STEP * np.minimum(upper_envelope(motion.times, short, HOLD_SPAN), 1.0)
+        rotations = poses[0].copy()
+        rotations[:, body] = quat.slerp(rotations[:, body], motion.rotations[:, body], back[:, None])
+        root = poses[1] + back[:, None] * (motion.root - poses[1])
+        poses = repinned(skeleton, (rotations, root), feet)
+    return closed, poses[1]
+
+
+def _closed(skeleton: Skeleton, poses: Poses, given: tuple[Array, Array], share: Array) -> tuple[Array, Array]:
+    """Rotations with both arms closed, and where (f,) one of them, or its joints, cannot: 1, else 0.
+
+    given : places and turns of all joints of the input; share : (f, 2) how far hands hold
+    """
+    rotations = poses[0].copy()
+    places, turned = world_transforms(skeleton, *poses)
+    short = np.zeros(len(rotations))
+    bones = {bone.name: bone for bone in bones_of(skeleton)}
+    for k, side in enumerate("lr"):
+        shoulder, elbow, wrist = (skeleton.index(f"{side}_{n}") for n in ("shoulder", "elbow", "radiocarpal"))
+        held = share[:, k] > 0.0
+        if not held.any():
+            continue
+        upper, lower = skeleton.offsets[elbow], skeleton.offsets[wrist]
+        part = share[:, k, None]
+        goal = places[:, wrist] + part * (given[0][:, wrist] - places[:, wrist])
+        hand = quat.slerp(turned[:, wrist], given[1][:, wrist], share[:, k])
+        reach = goal - places[:, shoulder]
+        bend, far = _bend(upper, lower, np.linalg.norm(reach, axis=1))
+        _, twist = bend_and_twist(bones[f"{side}_elbow"], rotations[:, elbow]).T
+        forearm = quat.multiply(
+            quat.from_axis_angle(hinge_axis("elbow", lower), bend),
+            quat.from_axis_angle(bones[f"{side}_elbow"].along, twist * (1.0 - smooth(share[:, k]))),
+        )
+        ends = quat.rotate(turned[:, shoulder], upper + quat.rotate(forearm, lower))
+        arm = quat.multiply(quat.between(ends, reach), turned[:, shoulder])
+        made = (
+            (shoulder, quat.multiply(quat.conjugate(turned[:, skeleton.parents[shoulder]]), arm)),
+            (elbow, forearm),
+            (wrist, quat.multiply(quat.conjugate(quat.multiply(arm, forearm)), hand)),
+        )
+        for joint, turns in made:
+            rotations[held, joint] = turns[held]
+            short[held & (beyond(skeleton, skeleton.names[joint], turns) > 0.5)] = 1.0
+        short[held & far] = 1.0
+    joints, _ = world_transforms(skeleton, rotations, poses[1])
+    for k, side in enumerate("lr"):
+        short[(share[:, k] > 0.0) & (arm_in_torso(skeleton, joints, side) > DEEP)] = 1.0
+    return rotations, short
+
+
+def _bend(upper: Array, lower: Array, distance: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Turn (f,) of an elbow, radians, with the wrist `distance` (f,) from the shoulder; where (f,) that is too far."""
+    a, b = float(np.linalg.norm(upper)), float(np.linalg.norm(lower))
+    axis, along = hinge_axis("elbow", lower), upper / a
+    rest = float(np.arctan2(lower @ np.cross(axis, along), lower @ along))
+    d = np.clip(distance, abs(a - b) + 1e-4, LONGEST * (a + b))
+    bend = np.arccos(np.clip((d**2 - a**2 - b**2) / (2 * a * b), -1.0, 1.0))
+    return bend - rest, distance > LONGEST * (a + b)

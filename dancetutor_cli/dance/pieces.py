@@ -1,0 +1,336 @@
+"""Long songs in pieces that meet where the dancer stands, and the keys of a bake."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.motion import Contact, Grip, Ground, Motion, sample
+from dancetutor_cli.dance.physics.simulation import Distances
+from dancetutor_cli.dance.plan import FootTrack, Move, Plan, Swing, Walk
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import BodyPoint, palm_points, place, sole_points, world_transforms
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.feet.play import told
+
+if TYPE_CHECKING:
+    from dancetutor_cli.dance.physics.pipeline import Wishes
+    from dancetutor_cli.dance.physics.style import Style
+
+
+# The keys of a bake: which times get one, so that what a viewer draws between them holds every contact too.
+
+Array = NDArray[np.float64]
+Keys = tuple[Array, Array, Array]  # times (f,), local rotations (f, j, 4), root (f, 3)
+SHORTEST_GAP = 0.002  # seconds between keys that are not divided further
+NEAR_GROUND = 0.006  # metres; higher up nobody sees half a millimetre
+SWAYING = 0.006  # metres between keys that a root goes at least where a hand might leave the bar between them
+KEY_TOLERANCE = 0.0003  # metres that a standing sole may be off between keys
+
+
+def key_times(plan: Plan, fps: float, start: float, end: float) -> Array:
+    """Regular times at `fps`, counted from second 0 of the music, plus the moments at which feet lift and land.
+
+    And the middles of swings so short that a foot might seem to have stood all the time. A stretch too short for two of
+    them has its own start and end.
+    """
+    regular = np.arange(np.ceil(start * fps - 1e-9), np.floor(end * fps + 1e-9) + 1) / fps
+    extra = [t for foot in plan.feet for m in foot.moves for t in (m.lift, m.land)]
+    extra += [(m.lift + m.land) / 2 for foot in plan.feet for m in foot.moves if _hidden(m, fps)]
+    extra += [t for p in plan.presses for t in (p.start, p.end)]
+    special = np.array([t for t in extra if start <= t <= end])
+    times = np.concatenate((special, regular))
+    kind = np.concatenate((np.zeros(len(special)), np.ones(len(regular))))
+    order = np.lexsort((kind, times))
+    times, kind = times[order], kind[order]
+    keep = np.ones(len(times), dtype=bool)  # keys closer than 10 microseconds are one; the contact's own time stays
+    last = -np.inf
+    for k, t in enumerate(times):
+        if t - last < 1e-5:
+            keep[k] = False
+        else:
+            last = t
+    return np.asarray(times[keep]) if keep.sum() > 1 else np.array([start, end])
+
+
+def _hidden(move: Move, fps: float) -> bool:
+    """Whether a foot is up and down again between two regular times, about."""
+    return isinstance(move, Swing) and move.land - move.lift < 1.5 / fps
+
+
+def _limb_points(skeleton: Skeleton) -> tuple[tuple[BodyPoint, ...], ...]:
+    return (*sole_points(skeleton), *((palm,) for palm in palm_points(skeleton)))
+
+
+def doubtful(skeleton: Skeleton, keys: Keys, grips: tuple[Grip, ...] = ()) -> Array:
+    """Times half-way between keys that have a foot or palm near the ground which moves between them."""
+    times, rotations, root = keys
+    transforms = world_transforms(skeleton, rotations, root)
+    doubt = np.zeros(len(times) - 1, dtype=bool)
+    for points in _limb_points(skeleton):
+        places = place(points, *transforms)
+        near = places[..., 1].min(axis=1) < NEAR_GROUND
+        moves = np.abs(np.diff(places, axis=0)).max(axis=(1, 2)) > KEY_TOLERANCE
+        doubt |= (near[1:] | near[:-1]) & moves
+    doubt |= np.abs(np.diff(root[:, 1], n=1)) > 0.004
+    held = np.asarray(_on_bar(grips, times).any(axis=1))
+    doubt |= held[1:] & held[:-1] & (np.linalg.norm(np.diff(root, axis=0), axis=1) > SWAYING)
+    return ((times[1:] + times[:-1]) / 2)[doubt & (np.diff(times) > SHORTEST_GAP)]
+
+
+def _on_bar(grips: tuple[Grip, ...], times: Array) -> NDArray[np.bool_]:
+    """Whether each hand (f, 2) is at rest on the bar."""
+    out = np.zeros((len(times), 2), dtype=bool)
+    for grip in grips:
+        out[np.searchsorted(times, grip.start) : np.searchsorted(times, grip.end, "right"), grip.side] = True
+    return out
+
+
+def refined(skeleton: Skeleton, keys: Keys, between: Keys, grips: tuple[Grip, ...] = ()) -> Keys:
+    """Keys plus those of the frames `between` them that interpolation would miss.
+
+    A viewer turns joints at even speed between keys; where that would push a standing sole into the ground or lift
+    it, a landing for example, or move a hand off the bar, the frame between becomes a key.
+    """
+    times, rotations, root = keys
+    after = np.searchsorted(times, between[0])
+    share = ((between[0] - times[after - 1]) / (times[after] - times[after - 1]))[:, None]
+    guess = quat.slerp(rotations[after - 1], rotations[after], share)
+    seen = world_transforms(skeleton, guess, root[after - 1] + share * (root[after] - root[after - 1]))
+    true = world_transforms(skeleton, between[1], between[2])
+    wanted = np.zeros(len(between[0]), dtype=bool)
+    held = _on_bar(grips, between[0])
+    for limb, points in enumerate(_limb_points(skeleton)):
+        right, drawn = place(points, *true), place(points, *seen)
+        low = np.minimum(right[..., 1], drawn[..., 1]).min(axis=1) < NEAR_GROUND
+        if limb >= 2:
+            low |= held[:, limb - 2]
+        wanted |= low & (np.abs(right - drawn).max(axis=(1, 2)) > KEY_TOLERANCE)
+    order = np.argsort(np.concatenate((times, between[0][wanted])), kind="stable")
+    merged = [np.concatenate((a, b[wanted]))[order] for a, b in zip(keys, between, strict=True)]
+    return merged[0], merged[1], merged[2]
+
+
+# The dance of a chart in pieces: always the same ones, whichever part of it is wanted, so every cut shows one dance.
+#
+# A piece knows nothing of other pieces. It is planned and baked beyond both ends by as much as its dancer remembers,
+# and where two meet the earlier one turns into the later one. Memory and time per second stay as they are in a short
+# song.
+
+Span = tuple[float, float]  # first and last second
+LENGTH = 90.0  # seconds of a piece, about
+LONGEST = 135.0  # a song up to so long is one piece
+AFTER = 1.0  # seconds; heels rise for swings that begin so soon
+WITHIN = 20.0  # seconds around a piece's even end in which the best place to end it is looked for
+MARGIN = 1.0  # seconds planned and smoothed beyond both ends of what is baked
+OVERLAP = 5.0  # seconds that a piece is planned and baked beyond its ends: what differs has died away
+BLEND = 0.5  # seconds before a piece's end in which it turns into the next one
+
+
+@dataclass(frozen=True, slots=True)
+class RagdollStyle:
+    """The style in which a ragdoll follows the dancer, and what befalls her."""
+
+    style: Style
+    wishes: Wishes
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """One piece of work; pickles.
+
+    plan : what matters of the plan; contacts : those that begin while it is baked; ground : as in `Motion`
+    baked : gets keys; kept : the part of them that goes into the song; span : the body's path is planned over it
+    ragdoll : None for the dancer as she is
+    """
+
+    plan: Plan
+    context: Context
+    fps: float
+    contacts: tuple[Contact, ...]
+    ground: Ground | None
+    baked: Span
+    kept: Span
+    span: Span
+    ragdoll: RagdollStyle | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class BakedPiece:
+    """What a piece of work gives, also of its overlap; distances : of the ragdoll from what it followed, if any."""
+
+    motion: Motion
+    distances: Distances | None = None
+
+
+Each = Callable[[Callable[[Piece], BakedPiece], Sequence[Piece]], Iterable[BakedPiece]]
+
+
+def in_turn(function: Callable[[Piece], BakedPiece], pieces: Sequence[Piece]) -> Iterable[BakedPiece]:
+    """Do one piece after the other in this process."""
+    return map(function, pieces)
+
+
+def whole_span(plan: Plan, context: Context) -> Span:
+    """First and last second of a dance: from the song's beginning, or before the first step, to after the last one."""
+    walk = context.settings.walk
+    left = max((route.end for route in plan.walks), default=-np.inf) + walk.gone
+    return min(0.0, plan.first - walk.lead_in), max(plan.last + walk.lead_out, left)
+
+
+def pieces_of(plan: Plan, context: Context, fps: float, ragdoll: RagdollStyle | None = None) -> list[Piece]:
+    """All pieces of a dance, in order of time."""
+    start, end = whole_span(plan, context)
+    pieces = []
+    for first, last in pairwise(piece_ends(plan, start, end)):
+        before, after = (first if first == start else first - OVERLAP), (MARGIN if last == end else OVERLAP)
+        pieces.append(piece_of(plan, context, fps, ((before, last), (first, last), after), ragdoll))
+    return pieces
+
+
+def piece_of(
+    plan: Plan, context: Context, fps: float, times: tuple[Span, Span, float], ragdoll: RagdollStyle | None = None
+) -> Piece:
+    """One piece. times : what is baked, what of that is kept, and seconds that are planned beyond its end"""
+    (before, last), kept, after = times
+    part = trimmed(plan, before - MARGIN, last + after)
+    span = (float(np.floor(4 * (before - MARGIN)) / 4), last + after)
+    contacts = tuple(one for one in plan.contacts if before <= one.start <= last)
+    ground = context.ground if plan.walks else None
+    return Piece(part, context, fps, contacts, ground, (before, last), kept, span, ragdoll)
+
+
+def piece_ends(plan: Plan, start: float, end: float) -> list[float]:
+    """Where pieces begin and end, from `start` to `end`: in the middle of the longest stand around every so often."""
+    if end - start <= LONGEST:
+        return [start, end]
+    moving = sorted((m.lift, m.land) for track in plan.feet for m in track.moves)
+    moving += [(p.start - p.lead, p.end + p.lead) for p in plan.presses]
+    lifts, lands = np.array(sorted(moving)).reshape(-1, 2).T
+    lands = np.maximum.accumulate(np.concatenate(([-np.inf], lands)))  # when both feet are down again
+    lifts = np.append(lifts, np.inf)
+    out = [start]
+    while end - out[-1] > LONGEST:
+        out.append(_longest_stand(lands, lifts, out[-1] + LENGTH))
+    return [*out, end]
+
+
+def _longest_stand(lands: Array, lifts: Array, around: float) -> float:
+    """The middle of the longest stretch within reach of `around` in which nothing moves, seconds."""
+    low, high = around - WITHIN, around + WITHIN
+    begin, end = np.clip(lands, low, high), np.clip(lifts, low, high)
+    k = int(np.argmax(end - begin))
+    return float((begin[k] + end[k]) / 2) if end[k] > begin[k] else around
+
+
+def trimmed(plan: Plan, start: float, end: float) -> Plan:
+    """The plan with only what matters between two seconds: there it says the same."""
+    turns = plan.turns
+    first = max(int(np.searchsorted([t.start for t in turns], start)) - 2, 0)
+    return replace(
+        plan,
+        feet=(_track(plan.feet[0], start, end), _track(plan.feet[1], start, end)),
+        turns=tuple(t for t in turns[first:] if t.start <= end),
+        presses=tuple(p for p in plan.presses if p.end >= start - 2.0 and p.start <= end + 2.0),
+        grips=tuple(g for g in plan.grips if g.end >= start - 2.0 and g.start <= end + 2.0),
+        touches=tuple(c for c in plan.contacts if c.end >= start and c.start <= end),
+        walks=tuple(w for w in plan.walks if w.end >= start and w.start <= end),
+    )
+
+
+def _track(track: FootTrack, start: float, end: float) -> FootTrack:
+    moves = track.moves
+    first = max(int(np.searchsorted([m.land for m in moves], start)) - 2, 0)
+    return track_from(track, first, tuple(m for m in moves[first:] if m.lift <= end + AFTER))
+
+
+def track_from(track: FootTrack, first: int, moves: Sequence[object]) -> FootTrack:
+    """A track that begins where the foot stands before its move number `first`, with other moves from there on."""
+    kept = tuple(moves)
+    if first == 0:
+        return replace(track, moves=kept)  # type: ignore[arg-type]
+    before = track.moves[first - 1]
+    level = before.level if isinstance(before, Walk) else 0.0
+    return FootTrack(before.target, before.yaw, kept, level)  # type: ignore[arg-type]
+
+
+def needed(pieces: Sequence[Piece], start: float, end: float) -> slice:
+    """Which pieces a cut from `start` to `end` (seconds) is made of."""
+    last = len(pieces) - 1
+    touched = [
+        k
+        for k, piece in enumerate(pieces)
+        if (k == last or start < piece.kept[1]) and (k == 0 or end > pieces[k - 1].kept[1] - BLEND)
+    ]
+    return slice(touched[0], touched[-1] + 1)
+
+
+def joined(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, end: float) -> BakedPiece:
+    """Neighbouring pieces as one motion from `start` to `end`, seconds; rotations never jump to their negative."""
+    parts: list[tuple[Array, Array, Array]] = []
+    for k, (piece, one) in enumerate(zip(pieces, done, strict=True)):
+        times, last = one.motion.times, k + 1 == len(pieces)
+        first = piece.kept[0] if k else -np.inf
+        keep = (times >= max(first, start - 1e-9)) & (times <= end + 1e-9) & ((times < piece.kept[1]) | last)
+        if not keep.any():
+            continue
+        at, rotations, root = times[keep], quat.continuous(one.motion.rotations[keep]), one.motion.root[keep]
+        if not last:
+            share = smooth((at - piece.kept[1]) / BLEND + 1.0)
+            later, later_root = sample(done[k + 1].motion, at)
+            rotations = np.where((share > 0.0)[:, None, None], quat.slerp(rotations, later, share[:, None]), rotations)
+            root = root + share[:, None] * (later_root - root)
+        if parts:
+            flipped = np.sum(rotations[0] * parts[-1][1][-1], axis=-1) < 0
+            rotations[:, flipped] *= -1.0
+        parts.append((at, rotations, root))
+    motion = _between(pieces, done, start, end)
+    distances = _distances(done, start, end)
+    if sum(len(at) for at, _, _ in parts) < 2:  # a stretch too short for two keys has its own start and end
+        at = np.array([start, end])
+        rotations, root = sample(done[-1].motion, at)
+        return BakedPiece(replace(motion, times=at, rotations=rotations, root=root), distances)
+    times, rotations, root = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
+    return BakedPiece(replace(motion, times=times, rotations=rotations, root=root), distances)
+
+
+def _between(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, end: float) -> Motion:
+    """The first piece's motion with all that lies between two seconds but the keys."""
+    gone = tuple(one for one in pieces[0].plan.let_go if start <= one.second <= end)
+    notes = dict.fromkeys(note for one in done for note in one.motion.notes)
+    grips = dict.fromkeys(g for one in done for g in one.motion.grips if g.end > start and g.start < end)
+    return replace(
+        done[0].motion,
+        contacts=tuple(_contacts(pieces, done, start, end)),
+        grips=tuple(grips),
+        notes=(*((told(gone),) if gone else ()), *notes),
+        let_go=gone,
+    )
+
+
+def _contacts(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, end: float) -> Iterator[Contact]:
+    for k, (piece, one) in enumerate(zip(pieces, done, strict=True)):
+        first = piece.kept[0] if k else -np.inf
+        until = piece.kept[1] if k + 1 < len(pieces) else np.inf
+        yield from (c for c in one.motion.contacts if start <= c.start <= end and first <= c.start < until)
+
+
+def _distances(done: Sequence[BakedPiece], start: float, end: float) -> Distances | None:
+    parts, since = [], start
+    for one in done:
+        if one.distances is None:
+            return None
+        times = one.distances.times
+        keep = (times >= since) & (times <= end)
+        parts.append((times[keep], one.distances.values[keep]))
+        since = float(times[-1])
+    times, values = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
+    assert done[0].distances is not None
+    return Distances(done[0].distances.names, times, values)

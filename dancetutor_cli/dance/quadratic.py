@@ -1,0 +1,328 @@
+"""Least squares and quadratic programmes over long sequences, in bands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.run.errors import DancetutorError
+from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
+
+# Least squares over long sequences: every term touches a few neighbouring nodes, so the normal matrix is a band.
+#
+# Paths of the body are made with it: "stay near these targets, with little jerk". The cost is linear in the length of
+# the song.
+
+Array = NDArray[np.float64]
+REACH = 4  # nodes that a term touches at most, if nothing else is said: third differences
+
+
+class BandedLeastSquares:
+    """Collects terms  weight * (sum_i coefficients_i x[start + i] - target)^2 , finds the x (n, d) of least sum.
+
+    Parameters
+    ----------
+    nodes : n, number of unknowns in time; width : d, number of paths solved at once with the same terms
+    reach : most neighbouring unknowns that one term may touch
+    """
+
+    def __init__(self, nodes: int, width: int, reach: int = REACH) -> None:
+        self.bands = np.zeros((nodes, reach))
+        self.right = np.zeros((nodes, width))
+
+    def add(self, start: NDArray[np.int64], coefficients: Array, weight: Array, target: Array) -> None:
+        """Add m terms.
+
+        Parameters
+        ----------
+        start : (m,) first node of each; coefficients : (m, q), q at most `reach`; weight : (m,); target : (m, d)
+        """
+        if coefficients.shape[1] > self.bands.shape[1]:
+            raise ValueError(f"a term may touch at most {self.bands.shape[1]} nodes")
+        whole = np.ascontiguousarray(target, dtype=np.float64)
+        _accumulate(self.bands, self.right, start, np.ascontiguousarray(coefficients), weight, whole)
+
+    def solve(self) -> Array:
+        """The minimum, (n, d). The terms must fix every node."""
+        factor = _factor(self.bands)
+        return np.stack([_solve_one(factor, np.ascontiguousarray(column)) for column in self.right.T], axis=1)
+
+
+def differences(order: int) -> Array:
+    """Coefficients (order + 1,) of the forward difference of that order on evenly spaced nodes."""
+    out = np.array([1.0])
+    for _ in range(order):
+        out = np.convolve(out, [-1.0, 1.0])
+    return out
+
+
+@njit(cache=True)
+def _factor(bands: Array) -> Array:
+    """Cholesky factor L of a symmetric band: bands[i, k] = A[i, i + k]; returns out[i, k] = L[i + k, i]."""
+    n, reach = bands.shape
+    out = np.zeros_like(bands)
+    for i in range(n):
+        for k in range(min(reach, n - i)):
+            total = bands[i, k]
+            for m in range(max(0, i + k - reach + 1), i):
+                total -= out[m, i - m] * out[m, i + k - m]
+            if k == 0:
+                out[i, 0] = np.sqrt(total)
+            else:
+                out[i, k] = total / out[i, 0]
+    return out
+
+
+@njit(cache=True)
+def _accumulate(
+    bands: Array, right: Array, start: NDArray[np.int64], coefficients: Array, weight: Array, target: Array
+) -> None:
+    for r in range(len(start)):
+        for i in range(coefficients.shape[1]):
+            weighted = weight[r] * coefficients[r, i]
+            for d in range(right.shape[1]):
+                right[start[r] + i, d] += weighted * target[r, d]
+            for j in range(i, coefficients.shape[1]):
+                bands[start[r] + i, j - i] += weighted * coefficients[r, j]
+
+
+@njit(cache=True)
+def _solve_one(factor: Array, right: Array) -> Array:
+    """Solve L L' x = right (n,) for a factor from `_factor`."""
+    n, reach = factor.shape
+    x = np.empty(n)
+    for i in range(n):
+        total = right[i]
+        for m in range(max(0, i - reach + 1), i):
+            total -= factor[m, i - m] * x[m]
+        x[i] = total / factor[i, 0]
+    for i in range(n - 1, -1, -1):
+        total = x[i]
+        for k in range(1, min(reach, n - i)):
+            total -= factor[i, k] * x[i + k]
+        x[i] = total / factor[i, 0]
+    return x
+
+
+# Quadratic programmes over long sequences: least squares as in `banded`, with limits on sums of neighbouring nodes.
+#
+# Limits may give way at a price, so that one impossible place in a song does not leave it without a solution.
+# Solved by an interior-point method (Mehrotra 1992); every step solves one banded system, so the cost is linear in the
+# length of the song.
+
+TOLERANCE = 1e-6
+ROUNDS, MORE_ROUNDS = 60, 240  # of the method; and of the second try, with limits that give way more
+SOFTER, SOFT = 100.0, 0.01  # how much more they give way then, and how much those do that did not
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """m limits  low <= sum_i coefficients_i x[start + i] <= high ; infinite sides are left out.
+
+    start : (m,); coefficients : (m, q), q at most the problem's reach; low, high : (m,)
+    give : a limit that is exceeded by e costs  e^2 / give , which is added to the sum; 0 for limits that hold
+    """
+
+    start: NDArray[np.int64]
+    coefficients: Array
+    low: Array
+    high: Array
+    give: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """x : (n,); found : the hard limits hold and x is the minimum, to the tolerance; rounds : steps taken.
+
+    softened : whether the limits had to give way more than was asked for, for there was no convergence without
+    """
+
+    x: Array
+    found: bool
+    rounds: int
+    softened: bool = False
+
+
+class ConvergenceError(DancetutorError):
+    """A programme has no solution that the method finds, even with limits that give way."""
+
+
+def solve_surely(problem: BandedLeastSquares, limits: list[Limits], what: str) -> Solution:
+    """As `solve`, but what it returns is a minimum: once more with softer limits where the first try did not converge.
+
+    what : for people, the path that is looked for. ConvergenceError if the second try did not converge either
+    """
+    found = solve(problem, limits)
+    if found.found:
+        return found
+    softer = [replace(part, give=max(SOFTER * part.give, SOFT)) for part in limits]
+    found = solve(problem, softer, MORE_ROUNDS)
+    if not (found.found and np.isfinite(found.x).all()):
+        raise ConvergenceError(f"{what} was not found in {found.rounds} rounds; choose another part with --section")
+    return replace(found, softened=True)
+
+
+def solve(problem: BandedLeastSquares, limits: list[Limits], most: int | None = None) -> Solution:
+    """The least sum of a problem of width 1 within limits. Scale limits so that 1 is a usual value.
+
+    most : rounds after which it is given up, None for `ROUNDS`
+    """
+    if problem.right.shape[1] != 1:
+        raise ValueError("limits are for one path at a time")
+    nodes, reach = problem.bands.shape
+    starts, rows, highs, gives = [], [], [], []
+    for part in limits:
+        wide = np.zeros((len(part.start), reach))
+        wide[:, : part.coefficients.shape[1]] = part.coefficients
+        # rows near the end are moved forward, so that none reaches beyond the last node
+        start = np.minimum(part.start, nodes - reach)
+        for k in np.flatnonzero(start < part.start):
+            wide[k] = np.roll(wide[k], part.start[k] - start[k])
+        for sign, bound in ((1.0, part.high), (-1.0, -part.low)):
+            use = np.isfinite(bound)
+            starts.append(start[use])
+            rows.append(sign * wide[use])
+            highs.append(bound[use])
+            gives.append(np.full(len(highs[-1]), part.give))
+    every = np.concatenate(rows)
+    width = reach - np.argmax(every[:, ::-1] != 0.0, axis=1)  # what is behind is zero
+    stacked = _Rows(np.concatenate(starts), width, every, np.concatenate(highs), np.concatenate(gives))
+    right = np.ascontiguousarray(problem.right[:, 0])
+    x, found, rounds = _interior_point(problem.bands, right, stacked, TOLERANCE, most or ROUNDS)
+    return Solution(x, bool(found), int(rounds))
+
+
+class _Rows(NamedTuple):
+    """m one-sided limits  rows[r] x[start[r] : start[r] + width[r]] <= high[r] , each of which may give way."""
+
+    start: NDArray[np.int64]
+    width: NDArray[np.int64]
+    rows: Array
+    high: Array
+    give: Array
+
+
+@inner_kernel
+def _times_rows(limits: _Rows, x: Array) -> Array:
+    start, width, rows = limits.start, limits.width, limits.rows
+    out = np.zeros(len(start))
+    for r in range(len(start)):
+        total = 0.0
+        for i in range(width[r]):
+            total += rows[r, i] * x[start[r] + i]
+        out[r] = total
+    return out
+
+
+@njit(cache=True)
+def _slack(limits: _Rows, x: Array, least: float) -> Array:
+    """How far each limit is from being reached, at least so much."""
+    out = _times_rows(limits, x)
+    for r in range(len(out)):
+        out[r] = max(limits.high[r] - out[r], least)
+    return out
+
+
+@njit(cache=True)
+def _residuals(bands: Array, right: Array, limits: _Rows, x: Array, s: Array, z: Array) -> tuple[Array, Array]:
+    """What is missing from the sum's derivative to nothing (n,), and from the limits with their slack (m,)."""
+    start, width, rows, high, give = limits.start, limits.width, limits.rows, limits.high, limits.give
+    n, reach = bands.shape
+    dual = np.zeros(n)
+    for i in range(n):
+        dual[i] += bands[i, 0] * x[i]
+        for k in range(1, min(reach, n - i)):
+            dual[i] += bands[i, k] * x[i + k]
+            dual[i + k] += bands[i, k] * x[i]
+    for i in range(n):
+        dual[i] -= right[i]
+    for r in range(len(start)):
+        for i in range(width[r]):
+            dual[start[r] + i] += rows[r, i] * z[r]
+    primal = _times_rows(limits, x)
+    for r in range(len(start)):
+        primal[r] = primal[r] + s[r] - give[r] * z[r] - high[r]
+    return dual, primal
+
+
+@njit(cache=True)
+def _system(bands: Array, limits: _Rows, s: Array, z: Array) -> Array:
+    """Factor of the matrix of Newton's step, `bands` with the limits by their weight; `bands` is overwritten."""
+    start, width, rows, give = limits.start, limits.width, limits.rows, limits.give
+    for r in range(len(start)):
+        w = z[r] / (s[r] + give[r] * z[r])
+        for i in range(width[r]):
+            weighted = w * rows[r, i]
+            if weighted != 0.0:  # in a programme of two coordinates every other one
+                for j in range(i, width[r]):
+                    bands[start[r] + i, j - i] += weighted * rows[r, j]
+    return _factor(bands)
+
+
+@njit(cache=True)
+def _longest_step(value: Array, change: Array) -> float:
+    step = 1.0
+    for i in range(len(value)):
+        if change[i] < 0.0:
+            step = min(step, -value[i] / change[i])
+    return step
+
+
+@njit(cache=True)
+def _direction(
+    factor: Array, limits: _Rows, dual: Array, primal: Array, slack: tuple[Array, Array], aim: Array
+) -> tuple[Array, Array, Array]:
+    """Newton step for residuals `dual`, `primal` and wanted products s z = aim; slack : s and z"""
+    start, width, rows, give = limits.start, limits.width, limits.rows, limits.give
+    s, z = slack
+    right = np.empty_like(dual)
+    for i in range(len(dual)):
+        right[i] = -dual[i]
+    for r in range(len(start)):
+        push = (aim[r] - s[r] * z[r] + z[r] * primal[r]) / (s[r] + give[r] * z[r])
+        for i in range(width[r]):
+            right[start[r] + i] -= rows[r, i] * push
+    dx = _solve_one(factor, right)
+    ds, dz = np.empty_like(s), np.empty_like(z)
+    for r in range(len(start)):
+        change = primal[r]
+        for i in range(width[r]):
+            change += rows[r, i] * dx[start[r] + i]
+        dz[r] = (aim[r] - s[r] * z[r] + z[r] * change) / (s[r] + give[r] * z[r])
+        ds[r] = give[r] * dz[r] - change
+    return dx, ds, dz
+
+
+def _interior_point(bands: Array, right: Array, limits: _Rows, tolerance: float, most: int) -> tuple[Array, bool, int]:
+    """The excess of a limit that gives way is give * z at the minimum, so it needs no unknown of its own.
+
+    Not a kernel: numpy does as well with whole arrays, and numba takes long to compile such sums.
+    """
+    x = _solve_one(_factor(bands), right)
+    m, give = len(limits.high), limits.give
+    if m == 0:
+        return x, True, 0
+    s = _slack(limits, x, 0.1)
+    z = np.full(m, 0.1)
+    scale = 1.0 + np.abs(right).max()
+    for done in range(most):
+        dual, primal = _residuals(bands, right, limits, x, s, z)
+        mu = float((s * z).sum()) / m  # no np.dot: it is BLAS, in which a Ctrl-C is fatal
+        if mu < tolerance and np.abs(primal).max() < tolerance * 10 and np.abs(dual).max() < tolerance * 10 * scale:
+            return x, True, done
+        factor = _system(bands.copy(), limits, s, z)
+        dx, ds, dz = _direction(factor, limits, dual, primal, (s, z), np.zeros(m))
+        ap, ad = _longest_step(s, ds), _longest_step(z, dz)
+        after = float(((s + ap * ds) * (z + ad * dz)).sum()) / m / mu
+        centre = after * (after * after)
+        dx, ds, dz = _direction(factor, limits, dual, primal, (s, z), centre * mu - ds * dz)
+        ap, ad = 0.99 * _longest_step(s, ds), 0.99 * _longest_step(z, dz)
+        if give.max() > 0.0:
+            ap = ad = min(ap, ad)
+        x += ap * dx
+        s += ap * ds
+        z += ad * dz
+    return x, False, most

@@ -1,0 +1,1 @@
+"""What the program itself measures about a motion, by forward kinematics from its rotations."""

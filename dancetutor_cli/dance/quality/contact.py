@@ -1,0 +1,226 @@
+"""Contacts: each limb on its panel in time, feet that neither slide nor sink, palms on the bar."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.context import HALF_PANEL
+from dancetutor_cli.dance.motion import Contact, Motion, sample
+from dancetutor_cli.dance.quality.figures import GROUND, Body, Figure, intervals, over_ground
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import (
+    BALL_AHEAD,
+    SOLE_NAMES,
+    BodyPoint,
+    palm_points,
+    place,
+    points_in_world,
+    sole_points,
+    world_transforms,
+)
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.feet.limbs import Limb, Part
+
+# Contact error: when each limb reaches its panel, against the note's time.
+
+Array = NDArray[np.float64]
+TOUCH = 0.0002  # metres over the surface that count as touching
+INSIDE = 0.02  # metres of a panel around a sole's middle that make it a good foothold
+OFFSETS = np.arange(-50, 51) / 1000.0  # seconds around a note: 1 kHz
+
+
+def contact_figures(motion: Motion) -> tuple[tuple[Figure, ...], Array]:
+    """The figures, and the error of every contact in milliseconds (c,), nan for a miss."""
+    errors = contact_errors(motion)
+    missed = np.isnan(errors)
+    worst = float(np.abs(errors[~missed]).max()) if (~missed).any() else float("nan")
+    inside = soles_inside(motion)
+    on, well = ((100.0 * float((inside > least).mean()) if len(inside) else float("nan")) for least in (-1e-3, INSIDE))
+    figures = (
+        Figure("contacts", float(len(errors)), ""),
+        Figure("contact error", worst, "ms", 1.0),
+        Figure("contacts missed", float(missed.sum()), "", 0.0),
+        Figure("notes let go", float(len(motion.let_go)), ""),
+        Figure("soles with their middle on the panel", on, "%"),
+        Figure(f"soles with it {100 * INSIDE:g} cm inside", well, "%"),
+    )
+    return figures, errors
+
+
+def soles_inside(motion: Motion) -> Array:
+    """How far (k,) the middle of the sole is inside the panel that a whole foot comes down on, metres; below 0
+    outside."""
+    whole = [c for c in motion.contacts if c.limb < Limb.LEFT_HAND and c.part == Part.WHOLE]
+    if not whole:
+        return np.zeros(0)
+    positions, world = world_transforms(motion.skeleton, *sample(motion, np.array([c.start for c in whole])))
+    balls = np.array([motion.skeleton.index(f"{side}_metatarsal") for side in "lr"])[[c.limb for c in whole]]
+    row = np.arange(len(whole))
+    ahead = quat.rotate(world[row, balls], np.array([0.0, 0.0, 1.0]))[:, [0, 2]]
+    ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
+    middle = positions[row, balls][:, [0, 2]] - BALL_AHEAD * ahead
+    return np.asarray(HALF_PANEL - np.abs(middle - np.array([c.panel for c in whole])).max(axis=1))
+
+
+def contact_errors(motion: Motion) -> Array:
+    """When sole or palm reaches the panel minus the note's time, milliseconds (c,), nan where it misses the panel.
+
+    The motion is resampled at 1 kHz within 50 ms of the note. A contact begins when the lowest point comes within
+    0.2 mm of the surface, after having been higher; a limb that has stood there all the time is on time if it is
+    down at the note. At the note the touching point must be inside the panel.
+    """
+    out = np.full(len(motion.contacts), np.nan)
+    for start in range(0, len(motion.contacts), 100):  # in pieces: a long chart has thousands of contacts
+        part = motion.contacts[start : start + 100]
+        times = (np.array([c.start for c in part])[:, None] + OFFSETS).ravel()
+        positions, world = world_transforms(motion.skeleton, *sample(motion, times))
+        for k, contact in enumerate(part):
+            rows = slice(k * len(OFFSETS), (k + 1) * len(OFFSETS))
+            out[start + k] = _error(place(_points(motion, contact), positions[rows], world[rows]), contact)
+    return out
+
+
+def _points(motion: Motion, contact: Contact) -> tuple[BodyPoint, ...]:
+    """The body points that may press: the palm, the whole sole, or its heel or toes in a bracket."""
+    if contact.limb >= Limb.LEFT_HAND:
+        return (palm_points(motion.skeleton)[contact.limb - Limb.LEFT_HAND],)
+    points = sole_points(motion.skeleton)[contact.limb]
+    if contact.part == Part.WHOLE:
+        return points
+    wanted = "heel" if contact.part == Part.HEEL else ("toe", "ball")
+    return tuple(p for name, p in zip(SOLE_NAMES, points, strict=True) if name.startswith(wanted))
+
+
+def _error(points: Array, contact: Contact) -> float:
+    """points : (times, p, 3) around the note."""
+    low = points[..., 1].min(axis=1)
+    note = len(OFFSETS) // 2
+    inside = np.abs(points[..., [0, 2]] - np.array(contact.panel)).max(axis=2) <= HALF_PANEL + 1e-6
+    touching = (points[..., 1] <= TOUCH + low[:, None]) & inside
+    if not touching[note - 5 : note + 6].any():
+        return float("nan")
+    down = np.flatnonzero(low <= TOUCH)
+    begins = np.array([i for i in down if i == 0 or low[i - 1] > TOUCH])
+    if not len(begins):
+        return float("nan")
+    if len(begins) == 1 and begins[0] == 0:
+        return 0.0  # stood there all the time
+    begins = begins[begins > 0]
+    best = begins[np.argmin(np.abs(OFFSETS[begins]))]
+    # between two samples: where the height crosses the threshold
+    share = (low[best - 1] - TOUCH) / max(low[best - 1] - low[best], 1e-12)
+    return float(1000 * (OFFSETS[best - 1] + share * (OFFSETS[best] - OFFSETS[best - 1])))
+
+
+# Feet on the ground: slides while planted, depth below the pad, feet that rest where a mine passes.
+
+PIVOT = np.radians(2.0)  # a planted foot that turns more is pivoting on purpose: on its ball, which must not slide
+CUT_PIVOT = np.radians(0.2)  # and so is one that turns so much at a section's edge, where only a part of it is seen
+BALL = slice(2, 4)  # of a sole's points, those of the ball
+MINE_CLEARANCE = 0.03  # metres that a foot over a mine is up
+MINES_TOLD = 6  # moments at which a foot is on mines, at most, that a note names
+
+
+def ground_figures(motion: Motion, body: Body, mines: Array | None) -> tuple[tuple[Figure, ...], tuple[str, ...]]:
+    """Figures and notes. mines : (m, 3) of second, x, z; None if not known."""
+    slide, pivots = plant_slides(body, motion.skeleton)
+    under = np.zeros(0, np.int8) if mines is None else feet_on_mines(motion, mines)
+    figures = (
+        Figure("plant slide", 1000 * slide, "mm", 1.0),
+        Figure("penetration", 1000 * deepest(motion), "mm", 1.0),
+        Figure("feet on mines", float("nan") if mines is None else float((under >= 0).sum()), "", 0.0),
+    )
+    notes = (f"of {pivots} pivots on a planted foot, on purpose, the slide of the ball is counted",) if pivots else ()
+    return figures, (*notes, *(() if mines is None else told_mines(mines[under >= 0, 0])))
+
+
+def plant_slides(body: Body, skeleton: Skeleton) -> tuple[float, int]:
+    """Longest path (metres) of a sole point during one plant, of the ball's joint if it pivots; and how many do."""
+    worst, pivots = 0.0, 0
+    balls = [body.joints[:, skeleton.index(f"{side}_metatarsal")] for side in "lr"]
+    for side in (0, 1):
+        soles = body.soles[:, side]
+        for first, end in intervals(body.standing[:, side]):
+            if end - first < 3:
+                continue
+            piece = soles[first:end]
+            across = piece[:, 2] - piece[:, 3]  # ball_in to ball_out
+            yaw = np.unwrap(np.arctan2(across[:, 0], across[:, 2]))
+            cut, down = first == 0 or end == len(soles), piece[..., 1] <= GROUND
+            if np.ptp(yaw) > (CUT_PIVOT if cut else PIVOT):
+                pivots += 1
+                down, piece = np.asarray(down[:, BALL].any(axis=1, keepdims=True)), balls[side][first:end, None]
+            both = (down[1:] & down[:-1])[..., None]
+            path = np.linalg.norm(np.where(both, np.diff(piece[..., [0, 2]], axis=0), 0.0), axis=2).sum(axis=0)
+            worst = max(worst, float(path.max()))
+    return worst, pivots
+
+
+def deepest(motion: Motion) -> float:
+    """How far any sole point is below the pad, metres, at every key and half-way between keys."""
+    times = np.sort(np.concatenate((motion.times, (motion.times[1:] + motion.times[:-1]) / 2)))
+    low = 0.0
+    for start in range(0, len(times), 4000):
+        positions, world = world_transforms(motion.skeleton, *sample(motion, times[start : start + 4000]))
+        for points in sole_points(motion.skeleton):
+            over = over_ground(place(points, positions, world), motion.ground)
+            low = min(low, float(over[..., 1].min()))
+    return -low
+
+
+def feet_on_mines(motion: Motion, mines: Array) -> NDArray[np.int8]:
+    """Which foot (m,), 0 left or 1 right, is on each mine as it passes: a sole point inside its panel is lower than
+    3 cm. -1 if none is, or the motion is of another time."""
+    out = np.full(len(mines), -1, dtype=np.int8)
+    here = np.flatnonzero((mines[:, 0] >= motion.times[0]) & (mines[:, 0] <= motion.times[-1]))
+    if not len(here):
+        return out
+    positions, world = world_transforms(motion.skeleton, *sample(motion, mines[here, 0]))
+    for foot, points in enumerate(sole_points(motion.skeleton)):
+        places = place(points, positions, world)
+        inside = np.abs(places[..., [0, 2]] - mines[here, None, 1:]).max(axis=2) <= HALF_PANEL
+        out[here[(inside & (places[..., 1] < MINE_CLEARANCE)).any(axis=1)]] = foot
+    return out
+
+
+def told_mines(seconds: Array) -> tuple[str, ...]:
+    """On which mines her feet are as these pass, in one line for people; none if on none. seconds : of these mines"""
+    if not len(seconds):
+        return ()
+    at = [f"{second:.2f} s" for second in np.unique(seconds.round(2)).tolist()]
+    when = ", ".join([*at[:MINES_TOLD], *(["..."] if len(at) > MINES_TOLD else [])])
+    what = "a mine as it passes" if len(seconds) == 1 else f"{len(seconds)} mines as they pass"
+    return (f"a foot is on {what}, or less than {100 * MINE_CLEARANCE:g} cm over: {when}",)
+
+
+# Hands on the bar: do the palms lie on the rail while they hold it.
+
+PIECE = 2000  # samples worked on at once
+RATE = 120.0  # of the samples, per second
+
+
+def bar_figures(motion: Motion) -> tuple[Figure, ...]:
+    """Largest distance of a palm from its place on the rail while it holds it; nothing without a bar."""
+    if motion.bar is None:
+        return ()
+    worst = 0.0
+    for grip in motion.grips:
+        start, end = max(grip.start, motion.times[0]), min(grip.end, motion.times[-1])
+        if start < end:
+            worst = max(worst, _farthest(motion, grip.side, grip.x, np.arange(start, end, 1.0 / RATE)))
+    return (
+        Figure("hands on the bar", float(len(motion.grips)), ""),
+        Figure("palm off the bar", 1000.0 * worst, "mm", 1.0),
+    )
+
+
+def _farthest(motion: Motion, side: int, x: float, times: np.ndarray[tuple[int], np.dtype[np.float64]]) -> float:
+    assert motion.bar is not None
+    out = 0.0
+    palm = palm_points(motion.skeleton)[side]
+    for first in range(0, len(times), PIECE):
+        at = points_in_world(motion.skeleton, (palm,), *sample(motion, times[first : first + PIECE]))[:, 0]
+        off = np.abs(np.hypot(at[:, 1] - motion.bar.height, at[:, 2] - motion.bar.behind) - motion.bar.radius)
+        out = max(out, float(np.hypot(off, at[:, 0] - x).max()))
+    return out

@@ -1,0 +1,201 @@
+"""Mechanics: forces that no contact can supply, jumps that fall as things fall, balance over the feet."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.nonnegative import nonnegative_least_squares
+from dancetutor_cli.dance.quality.figures import GRAVITY, GROUND, Body, Figure, intervals
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import mass_points, world_transforms
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.smoothing import low_pass
+from dancetutor_cli.feet.limbs import Limb
+
+# Inverse dynamics: the force and the moment at the root that no contact can supply, the residual.
+#
+# The path of the mass and the momentum about it say which force and moment the world must exert. Sole points on the
+# ground can push (friction up to `FRICTION`), nothing else can; what they cannot supply of it is the residual, in body
+# weights, and body weights times metres. As residuals are given for captured motion (Hicks and others, 2015).
+
+Array = NDArray[np.float64]
+CUT = 10.0  # Hz: accelerations of what trembles faster are of frames, not of bodies
+FRICTION = 0.8  # of a sole on a pad
+CONTACT = GROUND + 0.004  # metres over the ground up to which a sole point can push
+MOST = 3000  # frames that are looked at
+GYRATION = 0.29  # radius of a part about its middle, in parts of its length: a rod's
+WIDE = 0.09  # metres to both sides of the middle of a part without a length: the pelvis
+HANDS = 0.15  # seconds around a pressing palm, or a hand on the bar, that are left out: hands can push, too
+FORCE_MEDIAN, FORCE_MOST = 0.02, 0.5  # goals, body weights
+MOMENT_MEDIAN, MOMENT_MOST = 0.02, 0.2  # goals, body weights times metres
+
+
+def dynamics_figures(motion: Motion, body: Body) -> tuple[Figure, ...]:
+    """Median and 99th percentile of residual force and moment; nan where there is too little to measure."""
+    values = residuals(motion, body)
+    names = ("residual force", "residual moment")
+    units = ("body weights", "body weights x m")
+    goals = ((FORCE_MEDIAN, FORCE_MOST), (MOMENT_MEDIAN, MOMENT_MOST))
+    out = []
+    for k, (name, unit, (median, most)) in enumerate(zip(names, units, goals, strict=True)):
+        v = values[:, k]
+        both = (float(np.median(v)), float(np.percentile(v, 99))) if len(v) else (float("nan"),) * 2
+        out.append(Figure(f"{name}, median", both[0], unit, median))
+        out.append(Figure(f"{name}, 99th percentile", both[1], unit, most))
+    return tuple(out)
+
+
+def residuals(motion: Motion, body: Body) -> Array:
+    """Residual force and moment (k, 2) of the frames that are looked at."""
+    if len(body.times) < 5:
+        return np.zeros((0, 2))
+    points, masses = dumbbells(motion.skeleton, body)
+    centre = low_pass(body.mass, body.rate, CUT)
+    force = np.gradient(np.gradient(centre, 1 / body.rate, axis=0), 1 / body.rate, axis=0) / GRAVITY
+    force[:, 1] += 1.0
+    arm = points - body.mass[:, None]
+    speed = np.gradient(arm, 1 / body.rate, axis=0)
+    spin = low_pass(np.einsum("m,fmx->fx", masses, np.cross(arm, speed)), body.rate, CUT)
+    moment = np.gradient(spin, 1 / body.rate, axis=0) / GRAVITY
+    use = _looked_at(motion, body)
+    out = np.empty((len(use), 2))
+    soles = body.soles.reshape(len(body.times), -1, 3)
+    near = _near(soles[..., 1] <= CONTACT, body.rate)
+    for row, k in enumerate(use.tolist()):
+        down = soles[k][near[k]]
+        wanted = np.concatenate((force[k], moment[k]))
+        left = wanted
+        if len(down):
+            rays = _rays(down - centre[k])
+            left = wanted - rays @ nonnegative_least_squares(rays, wanted)
+        out[row] = np.linalg.norm(left[:3]), np.linalg.norm(left[3:])
+    return out
+
+
+def _looked_at(motion: Motion, body: Body) -> NDArray[np.int64]:
+    """Frames evenly chosen, without the ends, where filters see too little, and without those in which hands push."""
+    free = np.ones(len(body.times), dtype=bool)
+    free[:3] = free[-3:] = False
+    spans = [(c.start, c.end) for c in motion.contacts if c.limb >= Limb.LEFT_HAND]
+    for start, end in [*spans, *((g.start, g.end) for g in motion.grips)]:
+        free &= (body.times < start - HANDS) | (body.times > end + HANDS)
+    use = np.flatnonzero(free)
+    return use[:: max(1, -(-len(use) // MOST))]
+
+
+def _near(down: NDArray[np.bool_], rate: float) -> NDArray[np.bool_]:
+    """Where (f, s) a sole point is down within half a period of the cut: force and moment are known no finer."""
+    half = round(rate / (2.0 * CUT))
+    padded = np.pad(down, ((half, half), (0, 0)))
+    return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1, axis=0).any(axis=-1))
+
+
+def _rays(arms: Array) -> Array:
+    """Wrenches (6, 4 p) about the centre of mass of unit pushes along the edges of friction cones at arms (p, 3)."""
+    edges = np.array([(FRICTION, 1, 0), (-FRICTION, 1, 0), (0, 1, FRICTION), (0, 1, -FRICTION)])
+    push = np.tile(edges, (len(arms), 1))
+    return np.concatenate((push, np.cross(np.repeat(arms, 4, axis=0), push)), axis=1).T
+
+
+def dumbbells(skeleton: Skeleton, body: Body) -> tuple[Array, Array]:
+    """The body as pairs of point masses that turn as its parts do: places (f, 2 m, 3), masses (2 m,) with sum 1."""
+    joints, masses, offsets = mass_points(skeleton)
+    size = np.linalg.norm(offsets, axis=1, keepdims=True)
+    half = np.where(size > 0.03, GYRATION * 2.0 * offsets, [WIDE, 0.0, 0.0])
+    both = np.concatenate((offsets - half, offsets + half))
+    positions, world = world_transforms(skeleton, body.rotations, body.joints[:, 0])
+    twice = np.concatenate((joints, joints))
+    places = positions[:, twice] + quat.rotate(world[:, twice], both)
+    return np.asarray(places), np.concatenate((masses, masses)) / 2
+
+
+# Jumps: does the centre of mass fall as things fall, and does the ground push no harder than legs can.
+
+SHORTEST = 5  # frames; fewer say nothing about a parabola
+FIT = 0.12  # seconds; the arc of a shorter flight is so flat (under 2 cm) that a fit of g says nothing
+
+
+def flight_figures(body: Body) -> tuple[Figure, ...]:
+    """g and residual of a parabola fitted to each flight, its apex, and the force on the ground in body weights."""
+    flying = np.asarray(~body.standing.any(axis=1))
+    gravity, residual, apex = [], [], []
+    height = body.mass[:, 1]
+    for first, end in intervals(flying):
+        if end - first < SHORTEST or first == 0 or end == len(height):
+            continue
+        t = body.times[first:end] - body.times[first]
+        fit = np.polyfit(t, height[first:end], 2)
+        if (end - first) / body.rate >= FIT:
+            gravity.append(-2.0 * fit[0])
+        residual.append(float(np.abs(np.polyval(fit, t) - height[first:end]).max()))
+        apex.append(float(height[first:end].max() - max(height[first - 1], height[end])))
+    wrong = max((abs(g / GRAVITY - 1.0) for g in gravity), default=float("nan"))
+    force = ground_force(body)
+    return (
+        Figure("flights", float(len(apex)), ""),
+        Figure("flight gravity off by", 100 * wrong, "%", 2.0),
+        Figure("flight residual", 1000 * max(residual, default=float("nan")), "mm", 3.0),
+        Figure("apex", 100 * max(apex, default=float("nan")), "cm", 10.0),
+        Figure("ground force, largest", float(force.max(initial=1.0)), "body weights", 3.0),
+        Figure("ground force, least", float(force.min(initial=1.0)), "body weights", 0.0, at_least=True),
+    )
+
+
+def ground_force(body: Body) -> Array:
+    """Vertical force in body weights at the frames in which both neighbours stand too, from the centre of mass."""
+    stands = np.asarray(body.standing.any(axis=1))
+    inner = stands[1:-1] & stands[:-2] & stands[2:]
+    acceleration = np.diff(body.mass[:, 1], n=2) * body.rate**2
+    return np.asarray((acceleration / GRAVITY + 1.0)[inner])
+
+
+# Balance: the zero-moment point lies under the feet that stand.
+
+GROWN = 0.02  # metres by which the hull of the soles is grown
+
+
+def balance_figures(body: Body, bar: bool = False) -> tuple[Figure, ...]:
+    """Share of the frames on the ground in which the zero-moment point is inside the hull, in percent.
+
+    Twice: of the centre of mass as it is, which is what the goal is for, and without what trembles above 10 Hz. In
+    streams of more than 10 steps a second the latter has lost part of the way of the weight from foot to foot.
+    bar : her hands may hold her, so there is no goal
+    """
+    return (
+        Figure("balance", _share(zmp_margin(body)), "%", None if bar else 98.0, at_least=True),
+        Figure("balance below 10 Hz", _share(zmp_margin(body, 10.0)), "%", at_least=True),
+    )
+
+
+def _share(margin: Array) -> float:
+    return float("nan") if not len(margin) else 100.0 * float((margin <= GROWN).mean())
+
+
+def zero_moment_point(body: Body, cut: float | None = None) -> Array:
+    """(f - 2, 2) on the ground, metres: x - y x'' / (y'' + g) of the centre of mass, below `cut` Hz if given."""
+    mass = body.mass if cut is None else low_pass(body.mass, body.rate, cut)
+    acceleration = np.diff(mass, n=2, axis=0) * body.rate**2
+    lever = mass[1:-1, 1] / np.maximum(acceleration[:, 1] + GRAVITY, 0.3 * GRAVITY)
+    return np.asarray(mass[1:-1][:, [0, 2]] - lever[:, None] * acceleration[:, [0, 2]])
+
+
+def zmp_margin(body: Body, cut: float | None = None) -> Array:
+    """Distance (k,) of the zero-moment point outside the hull of all standing sole points, for frames on the ground."""
+    zmp = zero_moment_point(body, cut)
+    soles = body.soles[1:-1].reshape(len(zmp), -1, 3)
+    down = soles[..., 1] <= GROUND + 0.004
+    standing = np.asarray(body.standing.any(axis=1))
+    firm = standing[1:-1] & standing[2:] & standing[:-2]
+    out = []
+    for k in np.flatnonzero(firm):
+        out.append(_outside(soles[k][down[k]][:, [0, 2]], zmp[k]))
+    return np.array(out)
+
+
+def _outside(points: Array, p: Array) -> float:
+    """Distance of p outside the convex hull of points (k, 2); negative inside. Exact enough outside: nearest edge."""
+    angle = np.arange(0.0, 2 * np.pi, np.pi / 36)
+    directions = np.column_stack((np.cos(angle), np.sin(angle)))
+    return float((directions @ p - (points @ directions.T).max(axis=0)).max())

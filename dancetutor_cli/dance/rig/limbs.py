@@ -1,0 +1,263 @@
+"""Limbs: the closed-form two-bone limb for kernels; limbs and torso as capsules, and how deep one is in another."""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
+
+# Vector and quaternion arithmetic on tuples and the closed-form two-bone limb, for numba kernels.
+#
+# Tuples of floats stay in registers; arrays would be allocated for every intermediate result.
+
+Vec = tuple[float, float, float]
+Quat = tuple[float, float, float, float]
+
+
+@inner_kernel
+def add(a: Vec, b: Vec) -> Vec:
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+@inner_kernel
+def sub(a: Vec, b: Vec) -> Vec:
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+@inner_kernel
+def scale(a: Vec, k: float) -> Vec:
+    return (a[0] * k, a[1] * k, a[2] * k)
+
+
+@inner_kernel
+def dot(a: Vec, b: Vec) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inner_kernel
+def cross(a: Vec, b: Vec) -> Vec:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+@inner_kernel
+def length(a: Vec) -> float:
+    return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+
+
+@inner_kernel
+def unit(a: Vec) -> Vec:
+    n = length(a)
+    if n < 1e-12:
+        return (0.0, 1.0, 0.0)
+    return (a[0] / n, a[1] / n, a[2] / n)
+
+
+@inner_kernel
+def qmul(a: Quat, b: Quat) -> Quat:
+    return (
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
+    )
+
+
+@inner_kernel
+def qconj(a: Quat) -> Quat:
+    return (a[0], -a[1], -a[2], -a[3])
+
+
+@inner_kernel
+def qrot(q: Quat, v: Vec) -> Vec:
+    axis = (q[1], q[2], q[3])
+    t = scale(cross(axis, v), 2.0)
+    return add(add(v, scale(t, q[0])), cross(axis, t))
+
+
+@inner_kernel
+def qaxis(axis: Vec, angle: float) -> Quat:
+    """Turn about a unit axis."""
+    s = math.sin(angle / 2.0)
+    return (math.cos(angle / 2.0), axis[0] * s, axis[1] * s, axis[2] * s)
+
+
+@inner_kernel
+def qunit(q: Quat) -> Quat:
+    n = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
+    return (q[0] / n, q[1] / n, q[2] / n, q[3] / n)
+
+
+@inner_kernel
+def qlerp(a: Quat, b: Quat, t: float) -> Quat:
+    """Normalised interpolation on the short arc; close to slerp for the small angles of a spine."""
+    sign = 1.0 if a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] >= 0.0 else -1.0
+    u, v = 1.0 - t, t * sign
+    return qunit((u * a[0] + v * b[0], u * a[1] + v * b[1], u * a[2] + v * b[2], u * a[3] + v * b[3]))
+
+
+@inner_kernel
+def qbetween(a: Vec, b: Vec) -> Quat:
+    """Shortest turn from unit vector a to unit vector b."""
+    w = 1.0 + dot(a, b)
+    if w < 1e-9:
+        return (0.0, 0.0, 1.0, 0.0)
+    c = cross(a, b)
+    return qunit((w, c[0], c[1], c[2]))
+
+
+@inner_kernel
+def qframe(x: Vec, y: Vec, z: Vec) -> Quat:
+    """The rotation whose matrix has the orthonormal columns x, y, z."""
+    trace = x[0] + y[1] + z[2]
+    if trace > 0.0:
+        s = math.sqrt(trace + 1.0) * 2.0
+        return (s / 4.0, (y[2] - z[1]) / s, (z[0] - x[2]) / s, (x[1] - y[0]) / s)
+    if x[0] > y[1] and x[0] > z[2]:
+        s = math.sqrt(1.0 + x[0] - y[1] - z[2]) * 2.0
+        return ((y[2] - z[1]) / s, s / 4.0, (y[0] + x[1]) / s, (z[0] + x[2]) / s)
+    if y[1] > z[2]:
+        s = math.sqrt(1.0 + y[1] - x[0] - z[2]) * 2.0
+        return ((z[0] - x[2]) / s, (y[0] + x[1]) / s, s / 4.0, (z[1] + y[2]) / s)
+    s = math.sqrt(1.0 + z[2] - x[0] - y[1]) * 2.0
+    return ((x[1] - y[0]) / s, (z[0] + x[2]) / s, (z[1] + y[2]) / s, s / 4.0)
+
+
+@inner_kernel
+def limb(upper: Vec, lower: Vec, hinge: Vec, reach: Vec, pole: Vec, most: float) -> tuple[Quat, Quat]:
+    """Closed-form two-bone limb.
+
+    upper, lower : rest vectors of the two bones, square to the unit vector hinge (their joint's axis)
+    reach : from the limb's root to where its end shall be; pole : direction in which the middle joint points
+    most : longest reach; a target beyond it is approached along its line
+
+    Returns the world rotation of the upper bone, and the local rotation of the lower one about the hinge.
+    """
+    a, b = length(upper), length(lower)
+    e1 = scale(upper, 1.0 / a)
+    e2 = cross(hinge, e1)
+    bent = math.atan2(dot(lower, e2), dot(lower, e1))
+    d = length(reach)
+    d = min(max(d, abs(a - b) + 1e-4), most)
+    c = (d * d - a * a - b * b) / (2.0 * a * b)
+    angle = math.acos(min(1.0, max(-1.0, c)))
+    # in the plane of e1, e2: the end of the limb
+    along = unit(add(scale(e1, a + b * math.cos(angle)), scale(e2, b * math.sin(angle))))
+    v = unit(reach)
+    axis = cross(pole, v)
+    n = length(axis)
+    axis = scale(axis, 1.0 / n) if n > 1e-9 else unit(cross((0.577, 0.577, 0.577), v))
+    world = qframe(axis, v, cross(axis, v))
+    rest = qframe(hinge, along, cross(hinge, along))
+    return qmul(world, qconj(rest)), qaxis(hinge, angle - bent)
+
+
+# Limbs as tapered capsules, which are what the eye takes them for: how deep one is in another one.
+
+Array = NDArray[np.float64]
+THIGH, KNEE, ANKLE = 0.068, 0.048, 0.035  # radii of a leg, metres
+GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
+STEPS = 16  # of the golden section: to 0.05 % of a limb
+Capsule = tuple[Array, Array, float, float]  # ends (f, 3), and the radius at each
+
+
+def leg_capsules(hip: Array, knee: Array, ankle: Array) -> list[Capsule]:
+    """Thigh and shank of a leg, joints (f, 3)."""
+    return [(hip, knee, THIGH, KNEE), (knee, ankle, KNEE, ANKLE)]
+
+
+def depth(first: list[Capsule], second: list[Capsule], steps: int = STEPS) -> Array:
+    """How deep (f,) any capsule of the first list is in any of the second one, metres; negative apart."""
+    out = np.full(len(first[0][0]), -np.inf)
+    for (a, b, thick, thin), (c, d, other, end) in product(first, second):
+        a, b, c, d = (np.ascontiguousarray(place) for place in (a, b, c, d))
+        _deepest((a, b, c, d), (thick, thin, other, end), steps, out)
+    return out
+
+
+@njit(cache=True)
+def _deepest(
+    ends: tuple[Array, Array, Array, Array], radii: tuple[float, float, float, float], steps: int, out: Array
+) -> None:
+    """Raise out (f,) to how deep a round cone is in another one, ends (f, 3) of both.
+
+    From a place on the one the other's nearest is known in closed form, and what is left of it is convex along the one:
+    a golden section finds the least.
+    """
+    a, b, c, d = ends
+    for f in range(len(out)):
+        line = (vec(a[f]), vec(b[f]), vec(c[f]), vec(d[f]))
+        low, high = 0.0, 1.0
+        first, second = 1.0 - GOLDEN, GOLDEN
+        left, right = _gap(line, radii, first), _gap(line, radii, second)
+        for _ in range(steps):
+            if left < right:
+                high, second, right = second, first, left
+                first = high - GOLDEN * (high - low)
+                left = _gap(line, radii, first)
+            else:
+                low, first, left = first, second, right
+                second = low + GOLDEN * (high - low)
+                right = _gap(line, radii, second)
+        out[f] = max(out[f], -min(left, right))
+
+
+@inner_kernel
+def vec(a: Array) -> Vec:
+    return (a[0], a[1], a[2])
+
+
+@inner_kernel
+def _gap(line: tuple[Vec, Vec, Vec, Vec], radii: tuple[float, float, float, float], part: float) -> float:
+    """Room between the sphere that is `part` of the way along the first cone, and the second one."""
+    a, b, c, d = line
+    along = sub(d, c)
+    away = sub(add(a, scale(sub(b, a), part)), c)
+    long = length(along)
+    x = dot(away, along) / long
+    h = math.sqrt(max(dot(away, away) - x * x, 0.0))
+    slope = (radii[3] - radii[2]) / long
+    on = min(max((x + h * slope / math.sqrt(1.0 - slope * slope)) / long, 0.0), 1.0)
+    apart = length(sub(away, scale(along, on)))
+    return apart - radii[0] - part * (radii[1] - radii[0]) - radii[2] - on * (radii[3] - radii[2])
+
+
+# The torso as capsules, and how deep a forearm or hand is in it.
+
+LIMB_RADIUS, HAND = 0.032, 0.10  # of forearm and hand; length of the hand beyond the wrist, metres
+# the torso as capsules: joint, half width to both sides, radius
+TORSO = (("HumanoidRoot", 0.055, 0.105), ("vt10", 0.030, 0.100), ("vt4", 0.050, 0.100))
+
+
+def arm_in_torso(skeleton: Skeleton, joints: Array, side: str) -> Array:
+    """How deep (f,) the forearm or hand of a side, "l" or "r", is inside the torso, metres; negative outside.
+
+    joints : (f, j, 3) in the world
+    """
+    out = np.full(len(joints), -np.inf)
+    elbow, wrist = (joints[:, skeleton.index(f"{side}_{n}")] for n in ("elbow", "radiocarpal"))
+    along = (wrist - elbow) / np.linalg.norm(wrist - elbow, axis=1, keepdims=True)
+    for name, half, radius in TORSO:
+        ends = "hip" if name == "HumanoidRoot" else "shoulder"
+        across = joints[:, skeleton.index(f"l_{ends}")] - joints[:, skeleton.index(f"r_{ends}")]
+        across = across / np.linalg.norm(across, axis=1, keepdims=True)
+        middle = joints[:, skeleton.index(name)]
+        gap = segments_apart(middle - half * across, middle + half * across, elbow, wrist + HAND * along)
+        out = np.maximum(out, radius + LIMB_RADIUS - gap)
+    return out
+
+
+def segments_apart(a: Array, b: Array, c: Array, d: Array) -> Array:
+    """Least distance (f,) between segments a-b and c-d, each (f, 3) (Ericson, Real-Time Collision Detection, 5.1.9)."""
+    u, v, w = b - a, d - c, a - c
+    uu, vv, uv = np.sum(u * u, axis=1), np.sum(v * v, axis=1), np.sum(u * v, axis=1)
+    uw, vw = np.sum(u * w, axis=1), np.sum(v * w, axis=1)
+    det = uu * vv - uv * uv
+    s = np.clip(np.where(det > 1e-12, (uv * vw - vv * uw) / np.maximum(det, 1e-12), 0.0), 0.0, 1.0)
+    t = np.clip((uv * s + vw) / np.maximum(vv, 1e-12), 0.0, 1.0)
+    s = np.clip((uv * t - uw) / np.maximum(uu, 1e-12), 0.0, 1.0)
+    return np.asarray(np.linalg.norm(w + s[:, None] * u - t[:, None] * v, axis=1))

@@ -1,0 +1,150 @@
+"""The fixed point of a bake: the body's path needs to know how she is bent, and how she bends needs her path.
+
+Each round bakes roughly, sees where the centre of mass is over the root, how far pinned palms drew it down and which
+ankles bend too far, and plans the path again with that. Two rounds are enough without palms: what is left is
+corrected frame by frame (`dance.bake`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.foot_path import Feet, both_feet
+from dancetutor_cli.dance.ik.ankles import giving_knees
+from dancetutor_cli.dance.ik.full_body import Poses, Targets, solve
+from dancetutor_cli.dance.ik.targets import ik_targets
+from dancetutor_cli.dance.plan import Plan
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import SIDES, centre_of_mass, world_transforms
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.smoothing import cubic, sample_path, smooth, smooth_path, upper_envelope
+from dancetutor_cli.dance.trajectory.balance import moved_by_turning
+from dancetutor_cli.dance.trajectory.legs import push_off, raised
+from dancetutor_cli.dance.trajectory.posture import Known, Trajectory, body_trajectory
+from dancetutor_cli.dance.waits import waiting_at
+from dancetutor_cli.feet.limbs import Limb, Part
+
+Array = NDArray[np.float64]
+ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # of rough baking before the path of the body is final
+TIGHTENED = 3  # rounds of tightening the limits of her balance in the last of those
+COARSE = 4  # every so many samples of the path are baked in a round
+OFFSET_SMOOTH = 0.010  # seconds over which the centre of mass is smoothed as seen from the pelvis
+GIVES_SPAN = 0.12  # seconds over which a knee turns for its ankle's sake
+AROUND_PRESS = 0.05  # seconds around a press in which its palm may draw the root
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """The trajectory that is final, after `rounds` of rough baking.
+
+    residuals : metres, for each round how far the centre of mass was at most from where its path took it to be
+    """
+
+    trajectory: Trajectory
+    residuals: tuple[float, ...]
+
+    @property
+    def rounds(self) -> int:
+        """How often it was baked roughly."""
+        return len(self.residuals)
+
+
+def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> Settled:
+    """Bake roughly, see what the path did not know, and plan it again; times (n,) even, feet sampled there."""
+    settings, rate = context.settings, context.settings.sampling.work_rate
+    body = body_trajectory(plan, times, feet, context)
+    coarse, ones = times[::COARSE], np.ones(len(times))
+    deeper, heels, knees = np.zeros(len(plan.presses)), np.zeros((len(times), 2)), np.zeros((len(times), 2))
+    may_rise, residuals = heels_may_rise(plan, times, settings.step.press_time), []
+    rounds = ROUNDS_WITH_PALMS if plan.presses else ROUNDS
+    for number in range(rounds):
+        targets = targets_at(plan, body, coarse, context)
+        poses = solve(context.skeleton, targets, settings.body.reach)
+        placed = world_transforms(context.skeleton, poses.rotations, poses.root)
+        offset = centre_of_mass(context.skeleton, *placed) - poses.root
+        taken = sample_path(np.column_stack((body.mass, body.mass_height.at(times))), times, coarse)
+        planned = taken - sample_path(np.column_stack((body.ground, body.height)), times, coarse)
+        residuals.append(float(np.abs(offset[:, [0, 2, 1]] - planned).max()))
+        above = smooth_path(cubic(coarse, offset, times), ones, rate, OFFSET_SMOOTH)
+        deeper = _deeper(plan, deeper, coarse, poses.root[:, 1] - targets.pelvis[:, 1], context)
+        heels += np.column_stack([np.interp(times, coarse, h) for h in _heels_up(poses.rotations, context)])
+        heels = np.maximum(smooth_path(heels, ones, rate, settings.step.ankle_time), 0.0) * may_rise
+        gives = giving_knees(context.skeleton, poses, round(GIVES_SPAN * rate / COARSE))
+        gives[body.reaching[::COARSE].max(axis=1) > 0.0] = 0.0  # there hands on the floor say how she bends
+        knees += _around(coarse, gives, times)
+        hips = cubic(coarse, hips_of(context.skeleton, poses).reshape(-1, 6), times).reshape(-1, 2, 3)
+        root = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
+        push = push_off(plan, times, raised(feet, heels), root[:, None] + hips, context) * may_rise
+        last = number == rounds - 1
+        turning = moved_by_turning(context.skeleton, *placed, rate / COARSE)
+        known = Known(
+            body, above, cubic(coarse, turning, times), hips, push, deeper, keep=number > 0 and not last,
+            tightened=TIGHTENED if last else 0,
+        )  # fmt: skip
+        body = replace(body_trajectory(plan, times, feet, context, known), heels=heels + push, knees=knees)
+    return Settled(body, tuple(residuals))
+
+
+def _around(coarse: Array, gives: Array, times: Array) -> Array:
+    """How far (n, 2) knees turn at `times` (n,), softly before and after they must by (f, 2) radians at `coarse`."""
+    out = np.zeros((len(times), 2))
+    for side, sign in product((0, 1), (1.0, -1.0)):
+        if (sign * gives[:, side]).max() > 0.0:
+            out[:, side] += sign * np.interp(times, coarse, upper_envelope(coarse, sign * gives[:, side], GIVES_SPAN))
+    return out
+
+
+def targets_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Targets:
+    """What the IK is asked for at times `at` (f,), heels raised as the trajectory says."""
+    up = sample_path(body.heels, body.times, at) + waiting_at(plan, at, context).heels
+    feet = both_feet(plan.feet, at, context.settings)
+    return ik_targets(plan, body, raised(feet, up), at, context)
+
+
+def mass_of(skeleton: Skeleton, poses: Poses) -> Array:
+    """Centre of mass (f, 3) of solved frames."""
+    return centre_of_mass(skeleton, *world_transforms(skeleton, poses.rotations, poses.root))
+
+
+def hips_of(skeleton: Skeleton, poses: Poses) -> Array:
+    """From the root to each hip (f, 2, 3) of solved frames."""
+    pelvis = poses.rotations[:, 0]
+    return np.stack([quat.rotate(pelvis, skeleton.offsets[skeleton.index(f"{s}_hip")]) for s in SIDES], axis=1)
+
+
+def _deeper(plan: Plan, deeper: Array, at: Array, drawn: Array, context: Context) -> Array:
+    """How much deeper (p,) she bends for each press, after palms have drawn the root by (f,) metres at times `at`."""
+    out, most = deeper.copy(), max(context.settings.hands.pelvis - context.settings.hands.lowest, 0.0)
+    for k, press in enumerate(plan.presses):
+        near = (at >= press.start - AROUND_PRESS) & (at <= press.end + AROUND_PRESS)
+        more = deeper[k] - min(float(drawn[near].min(initial=0.0)), 0.0)
+        out[k] = min(more, most)  # where no palm reaches, nobody sinks
+    return out
+
+
+def _heels_up(rotations: Array, context: Context) -> tuple[Array, Array]:
+    """How far (f,) each heel must rise so that its ankle does not bend beyond what ankles can, radians."""
+    limit, most = np.radians((context.settings.step.ankle_limit, context.settings.step.ankle_most))
+    out = []
+    for side in "lr":
+        q = rotations[:, context.skeleton.index(f"{side}_talocrural")]
+        q = np.where(q[:, :1] < 0, -q, q)
+        out.append(np.clip(-2.0 * np.arctan2(q[:, 1], q[:, 0]) - limit, 0.0, most))
+    return out[0], out[1]
+
+
+def heels_may_rise(plan: Plan, times: Array, down: float) -> Array:
+    """How much (n, 2) each heel may rise for its ankle's sake, 0 to 1: not while it presses a panel.
+
+    down : seconds in which it comes down for that
+    """
+    out = np.ones((len(times), 2))
+    for contact in (c for c in plan.contacts if c.limb < Limb.LEFT_HAND and c.part == Part.HEEL):
+        away = np.maximum(contact.start - times, times - contact.end)
+        out[:, contact.limb] = np.minimum(out[:, contact.limb], smooth(away / down))
+    return out

@@ -1,0 +1,364 @@
+"""Where the centre of mass travels, so that she keeps her balance: soles as support, limbs that swing, zero moment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.foot_path import Feet, FootPath
+from dancetutor_cli.dance.plan import LEAST_FLIGHT
+from dancetutor_cli.dance.quadratic import BandedLeastSquares, Limits, Solution, differences, solve_surely
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import (
+    GRAVITY,
+    SOLE_BACK_HEEL,
+    SOLE_BACK_TOES,
+    SOLE_FRONT,
+    SOLE_HALF_WIDTH,
+    ball_to_ankle,
+    mass_points,
+)
+from dancetutor_cli.dance.rig.skeleton import Skeleton, dancer_skeleton
+from dancetutor_cli.dance.settings import MotionSettings
+from dancetutor_cli.dance.settings_body import BodySettings, LayerSettings
+from dancetutor_cli.dance.smoothing import low_pass, sample_path, steady_spline
+from dancetutor_cli.dance.trajectory.height import span
+
+# The soles that stand, as a hull in which the zero-moment point may be.
+
+Array = NDArray[np.float64]
+ONE, TWO = np.pi / 2 * np.arange(2), np.pi / 4 * np.array([0.0, 1.0, -1.0])  # between sides of hulls of so many soles
+
+
+@dataclass(frozen=True, slots=True)
+class Support:
+    """Where the zero-moment point may be at each of n nodes: in a hull of the soles that stand.
+
+    across : (n, 5, 2) unit vectors square to its sides; low, high : (n, 5) metres along these, without end where one
+        sole has no such side
+    middle : (n, 2) where it is best
+    """
+
+    across: Array
+    low: Array
+    high: Array
+    middle: Array
+
+
+def support_of(feet: Feet, heel_down: float) -> Support:
+    """The soles that stand. heel_down : radians; a heel lower than this carries"""
+    soles = [_sole(foot, heel_down) for foot in feet]
+    across = _sides(feet, soles)
+    along = [np.einsum("nda,nca->ndc", across, sole) for sole in soles]
+    down = [foot.down[:, None] for foot in feet]
+    low = np.minimum(*(np.where(d, x.min(axis=2), np.inf) for d, x in zip(down, along, strict=True)))
+    high = np.maximum(*(np.where(d, x.max(axis=2), -np.inf) for d, x in zip(down, along, strict=True)))
+    one = np.flatnonzero(down[0][:, 0] != down[1][:, 0])
+    low[one, len(ONE) :], high[one, len(ONE) :] = -np.inf, np.inf
+    left, right = (sole.mean(axis=1) for sole in soles)
+    best = np.where(down[0] == down[1], (left + right) / 2, np.where(down[0], left, right))
+    return Support(across, low, high, best)
+
+
+def _sole(foot: FootPath, heel_down: float) -> Array:
+    """Corners (n, 4, 2) of what of a foot carries, once round."""
+    ahead = np.column_stack((np.sin(foot.yaw), np.cos(foot.yaw)))
+    aside = SOLE_HALF_WIDTH * np.column_stack((ahead[:, 1], -ahead[:, 0]))
+    back = np.where(foot.pitch < heel_down, SOLE_BACK_HEEL, SOLE_BACK_TOES)[:, None]
+    toe, heel = (foot.ball[:, [0, 2]] + far * ahead for far in (SOLE_FRONT, back))
+    return np.stack((toe - aside, toe + aside, heel + aside, heel - aside), axis=1)
+
+
+def _sides(feet: Feet, soles: list[Array]) -> Array:
+    """Unit vectors (n, 5, 2) square to the sides of a hull of the soles that stand.
+
+    Of one foot its own two; of two those that touch both soles, and at the ends of the line between them.
+    With the same directions at all times the hull of a turned foot would be centimetres wider than the foot.
+    """
+    line = soles[0].mean(axis=1) - soles[1].mean(axis=1)
+    left, right = feet[0].down, feet[1].down
+    angle = np.where(left, feet[0].yaw, feet[1].yaw)[:, None] + np.concatenate((ONE, np.zeros(3)))
+    both = np.flatnonzero(left & right)
+    angle[both, :3] = np.arctan2(line[both, 0], line[both, 1])[:, None] + TWO
+    out = np.stack((np.sin(angle), np.cos(angle)), axis=-1)
+    out[both, 3:] = _touching(soles[0][both], soles[1][both])
+    return out
+
+
+def _touching(a: Array, b: Array) -> Array:
+    """Unit vectors (m, 2, 2) square to the two lines that touch both of two rectangles (m, 4, 2) on the same side."""
+    edge = (b[:, None] - a[:, :, None]).reshape(-1, 16, 2)
+    square = np.stack((edge[..., 1], -edge[..., 0]), axis=-1)
+    square /= np.maximum(np.linalg.norm(square, axis=-1, keepdims=True), 1e-9)
+    corners = np.concatenate((a, b), axis=1)
+    beyond = np.einsum("mea,mca->mec", square, corners)
+    beyond -= np.einsum("mea,mea->me", square, np.repeat(a, 4, axis=1))[..., None]
+    outer = np.stack((beyond.max(axis=2).argmin(axis=1), beyond.min(axis=2).argmax(axis=1)), axis=1)
+    return np.take_along_axis(square, outer[..., None], axis=1)
+
+
+def along_sides(across: Array, places: Array) -> Array:
+    """How far (n, d) places (n, 2) are along each of the directions (n, d, 2)."""
+    return np.asarray(np.einsum("nda,na->nd", across, places))
+
+
+# How far limbs that swing about the centre of mass move the zero-moment point.
+#
+# The cart-table model knows the body as one point. A body whose parts turn about that point with the momentum L pushes
+# with the moment L', and the ground holds against it farther away by  (L'_z, -L'_x) / (m (y'' + g))  (Popovic, Goswami
+# and Herr, 2005). In streams that are decimetres, of which the soles give centimetres.
+
+AGAINST = 0.7  # of the way from the middle of the soles to their edge: nearer to it balance is lost
+FARTHEST = 0.03  # metres that it goes at most; farther, ankles of wide stands bend too far before a leap
+LEAST_CARRIED = 0.4  # of her weight: lighter feet than that hold no moment worth planning for
+
+
+def moved_by_turning(skeleton: Skeleton, positions: Array, world: Array, rate: float) -> Array:
+    """Where the zero-moment point lies beyond the point mass's, (f, 2) metres along x and z, below 10 Hz.
+
+    positions (f, j, 3), world (f, j, 4) : of the joints, as of `world_transforms`, at `rate` per second
+    """
+    joints, masses, offsets = mass_points(skeleton)
+    places = positions[:, joints] + quat.rotate(world[:, joints], offsets)
+    mass = np.einsum("m,fmx->fx", masses, places)
+    arms = places - mass[:, None]
+    speeds = np.gradient(arms, 1.0 / rate, axis=0)
+    spin = low_pass(np.einsum("m,fmx->fx", masses, np.cross(arms, speeds)), rate)
+    moment = np.gradient(spin, 1.0 / rate, axis=0)
+    rise = np.gradient(np.gradient(low_pass(mass[:, 1], rate), 1.0 / rate), 1.0 / rate)
+    carried = np.maximum(rise + GRAVITY, LEAST_CARRIED * GRAVITY)
+    return np.asarray(np.column_stack((moment[:, 2], -moment[:, 0])) / carried[:, None])
+
+
+def against_turning(support: Support, turning: Array) -> Array:
+    """Where (n, 2) the mass's own zero-moment point is best, so that with `turning` (n, 2) it is in the soles' middle.
+
+    Not all the way: the own point, too, stays well within the soles.
+    """
+    along, middle = along_sides(support.across, turning), along_sides(support.across, support.middle)
+    room = np.where(along > 0.0, middle - support.low, support.high - middle)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        most = np.where(along != 0.0, AGAINST * np.maximum(room, 0.0) / np.abs(along), np.inf)
+    far = FARTHEST / np.maximum(np.linalg.norm(turning, axis=1), FARTHEST)
+    return np.asarray(support.middle - np.minimum(most.min(axis=1), far)[:, None] * turning)
+
+
+# Where the centre of mass travels over the ground, so that the dancer keeps her balance.
+#
+# The cart-table model (Kajita 2003): the zero-moment point is  x - y / (y'' + g) x'' . It has to stay under the feet
+# that stand, and the pelvis where both legs reach their feet; within that the pelvis, which swinging legs throw, has
+# the least jerk. In flight nothing pushes sideways, so the path is straight. Where a song asks for the impossible,
+# limits give way by as little as they must.
+
+NODE_RATE, ROUGH_RATE = 80.0, 40.0  # nodes per second of the path, and of one that is not tightened
+UNIT = 0.03  # metres; scales the programme
+NARROWER, NARROWEST = 0.05, 0.01  # metres: a limit moves at most so much a round, and both stay so far apart
+NEAR, END = 1e-5, 0.1  # how much being over the middle of the soles counts, and at both ends: no drifting off there
+GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of stretching, see `qp.Limits`
+
+
+@dataclass(frozen=True, slots=True)
+class Pendulum:
+    """The inverted pendulum on the zero-moment point at n even times.
+
+    times : (n,) seconds; slowness : (n,) 1 / omega^2 = y / (y'' + g), seconds squared; ignored in flight
+    seen : the same without trembling above 10 Hz
+    offset : (n, 2) from the pelvis to the centre of mass, as far as known
+    turning : (n, 2) as of `moved_by_turning`, as far as known
+    """
+
+    times: Array
+    slowness: Array
+    seen: Array
+    offset: Array
+    turning: Array
+
+
+def balanced_path(
+    feet: Feet,
+    pendulum: Pendulum,
+    settings: MotionSettings,
+    tightened: int = 0,
+    hand: float = 1.0,
+    shift: Array | None = None,
+) -> tuple[Array, bool]:
+    """Path (n, 2) of the centre of mass over the ground, and whether its limits were softened, as in `qp.Solution`.
+
+    Parameters
+    ----------
+    feet : at the pendulum's times
+    settings : of the body, and how the weight sways while both feet stand
+    hand : as in `Plan`; on its side she begins to sway; shift : (n,) as in `waits.Waiting`
+    tightened : rounds of narrowing limits where the path without its quickest trembling leaves them; 0 is a rough path
+    """
+    times, body, rate = pendulum.times, settings.body, NODE_RATE if tightened else ROUGH_RATE
+    nodes = times[0] + np.arange(int(np.ceil((times[-1] - times[0]) * rate - 1e-6)) + 1) / rate
+    feet = (_nearest(feet[0], times, nodes), _nearest(feet[1], times, nodes))
+    slowness, seen = (np.interp(nodes, times, x) for x in (pendulum.slowness, pendulum.seen))
+    offset = sample_path(pendulum.offset, times, nodes)
+    room = _room(feet, ball_to_ankle(dancer_skeleton()), body.farthest)
+    feet = _carrying(feet, rate)
+    support = support_of(feet, float(np.radians(body.heel_carries)))
+    down = np.stack([f.down for f in feet])
+    both = np.asarray(down.all(axis=0))
+    stepping = ~both | _brief(both, settings.step.longest * rate)
+    middle = against_turning(support, stepping[:, None] * sample_path(pendulum.turning, times, nodes))
+    middle = middle + hand * _sway(feet, nodes, settings.layers)
+    if shift is not None:
+        middle = middle + _shifted(feet, settings.wait.onto, np.interp(nodes, times, shift), slowness, rate)
+    middle_weight = np.where(stepping, body.middle_weight_fast, body.middle_weight)
+    weight = np.where(both, middle_weight, body.foot_weight)
+    flight: NDArray[np.bool_] = np.asarray(~down.any(axis=0))
+    want = _Wanted(replace(support, middle=middle), weight, offset, *room)
+    what = f"the path of her balance {span(times)}"
+    found = _solved(want, flight, slowness, rate, body, what)
+    softened = found.softened
+    for _ in range(tightened):
+        path = found.x.reshape(-1, 2)
+        want = _tightened(want, support, _zero_moment(low_pass(path, rate), seen, rate), flight)
+        found = _solved(want, flight, slowness, rate, body, what)
+        softened |= found.softened
+    return steady_spline(nodes, found.x.reshape(-1, 2), times), softened
+
+
+@dataclass(frozen=True, slots=True)
+class _Wanted:
+    """What the path shall do at each of n nodes.
+
+    support : where the zero-moment point may be and shall be
+    weight : (n,) how much the latter counts; offset : (n, 2) from the pelvis to the centre of mass
+    nearest, farthest : (n, 2) where the pelvis may be
+    """
+
+    support: Support
+    weight: Array
+    offset: Array
+    nearest: Array
+    farthest: Array
+
+
+def _room(feet: Feet, back: float, farthest: float) -> tuple[Array, Array]:
+    """Lowest and highest place (n, 2) of the pelvis from which both legs reach; back : from ball to ankle, metres."""
+    ankles = [f.ball[:, [0, 2]] - back * np.column_stack((np.sin(f.yaw), np.cos(f.yaw))) for f in feet]
+    return np.maximum(*ankles) - farthest, np.minimum(*ankles) + farthest
+
+
+def _nearest(foot: FootPath, times: Array, nodes: Array) -> FootPath:
+    """A foot at the sampled times nearest to other ones: standing and swinging are not mixed."""
+    i = np.clip(np.round((nodes - times[0]) / (times[1] - times[0])).astype(np.int64), 0, len(times) - 1)
+    return FootPath(foot.ball[i], foot.yaw[i], foot.pitch[i], foot.down[i], foot.progress[i])
+
+
+def _carrying(feet: Feet, rate: float) -> Feet:
+    """Feet that may carry: not at the very moment of landing or leaving, unless no other foot stands."""
+    down = np.stack([f.down for f in feet])
+    down = down | _brief(np.asarray(~down.any(axis=0)), np.ceil(LEAST_FLIGHT * rate))
+    firm = down.copy()
+    firm[:, 1:] &= down[:, :-1]
+    firm[:, :-1] &= down[:, 1:]
+    firm = np.where(firm.any(axis=0), firm, down)
+    return replace(feet[0], down=firm[0]), replace(feet[1], down=firm[1])
+
+
+def _brief(flags: NDArray[np.bool_], most: float) -> NDArray[np.bool_]:
+    """Flags of runs (n,) that are at most so many long."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8))).reshape(-1, 2)
+    out = np.zeros(len(flags), dtype=bool)
+    for first, end in edges[edges[:, 1] - edges[:, 0] <= most]:
+        out[first:end] = True
+    return out
+
+
+def _sway(feet: Feet, times: Array, layers: LayerSettings) -> Array:
+    """(n, 2): how far the weight wanders from foot to foot while both stand."""
+    across = feet[0].ball[:, [0, 2]] - feet[1].ball[:, [0, 2]]
+    across = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 0.05)
+    both = feet[0].down & feet[1].down
+    slow = 2 * np.pi * times / layers.sway_time
+    phase = np.sin(slow) + layers.sway_quick * np.sin(slow / layers.sway_quick_time)
+    return np.asarray(across * (layers.sway * phase * both)[:, None])
+
+
+def _shifted(feet: Feet, onto: float, shift: Array, slowness: Array, rate: float) -> Array:
+    """(n, 2): how the zero-moment point goes so that the weight goes `shift` (n,) metres towards the left foot.
+
+    onto : the part of the way to the middle of a foot that it goes at most
+    """
+    across = feet[0].ball[:, [0, 2]] - feet[1].ball[:, [0, 2]]
+    far = np.maximum(np.linalg.norm(across, axis=1), 0.05)
+    point = _zero_moment(shift[:, None], slowness, rate)[:, 0]
+    most = onto * far / 2
+    return np.asarray(across / far[:, None] * (np.clip(point, -most, most) * (feet[0].down & feet[1].down))[:, None])
+
+
+def _zero_moment(path: Array, slowness: Array, rate: float) -> Array:
+    """The zero-moment point (n, 2) of a path (n, 2); at its ends the path."""
+    out = path.copy()
+    out[1:-1] -= slowness[1:-1, None] * np.diff(path, n=2, axis=0) * rate**2
+    return out
+
+
+def _tightened(want: _Wanted, given: Support, zmp: Array, flight: NDArray[np.bool_]) -> _Wanted:
+    """Limits moved inward by as much as a zero-moment point (n, 2) is beyond the given ones.
+
+    What people see of a body, and what the quality report measures, has no trembling above 10 Hz; but as the weight
+    goes from foot to foot within a few hundredths of a second, some of that is needed to arrive in time.
+    """
+    low, high, tight = given.low, given.high, want.support
+    along = along_sides(given.across, zmp)
+    stand = ~flight[:, None]
+    span = np.subtract(high, low, where=stand, out=np.zeros_like(low))
+    inside = np.minimum(NARROWEST, span) / 2
+    lower = tight.low + np.where(stand, np.clip(low - along, 0.0, NARROWER), 0.0)
+    upper = tight.high - np.where(stand, np.clip(along - high, 0.0, NARROWER), 0.0)
+    narrowed = replace(
+        tight,
+        low=np.where(stand, np.minimum(lower, high - inside), low),
+        high=np.where(stand, np.maximum(upper, low + inside), high),
+    )
+    return replace(want, support=narrowed)
+
+
+def _solved(
+    want: _Wanted, flight: NDArray[np.bool_], slowness: Array, rate: float, body: BodySettings, what: str
+) -> Solution:
+    """The path (n, 2), flat; both coordinates are unknowns of one programme, by turns."""
+    support = want.support
+    n = len(support.middle)
+    problem = BandedLeastSquares(2 * n, 1, 8)
+    inner = np.arange(1, n - 1)
+    second = differences(2) * rate**2
+    zmp = (np.array([0.0, 1.0, 0.0]) - slowness[inner, None] * second) / UNIT
+    stand = ~flight[inner]
+    k, fly = inner[stand], inner[~stand]
+    jerk = np.tile(differences(3) * (rate * body.smooth) ** 3 / UNIT, (n - 3, 1))
+    # between two feet too far apart for both legs the pelvis is in the middle
+    low, high = (b + want.offset for b in (want.nearest, want.farthest))
+    low, high = np.minimum(low, (low + high) / 2), np.maximum(high, (low + high) / 2)
+    limits = []
+    near = np.full(n, NEAR)
+    near[[0, -1]] = END
+    for a in (0, 1):
+        axis = np.eye(2)[a]
+        problem.add(2 * k - 2, _both(zmp[stand], axis), want.weight[k], support.middle[k, a, None] / UNIT)
+        straight = _both(np.tile(second, (len(fly), 1)), axis)
+        problem.add(2 * fly - 2, straight, np.full(len(fly), 10.0), np.zeros((len(fly), 1)))
+        problem.add(2 * np.arange(n) + a, np.full((n, 1), 1 / UNIT), near, support.middle[:, a, None] / UNIT)
+        thrown = sum(jerk[:, q] * want.offset[q : n - 3 + q, a] for q in range(4))
+        problem.add(2 * np.arange(n - 3), _both(jerk, axis), np.ones(n - 3), np.asarray(thrown)[:, None])
+        every = 2 * np.arange(n) + a, np.full((n, 1), 1 / UNIT)
+        limits.append(Limits(*every, low[:, a] / UNIT, high[:, a] / UNIT, GIVE_REACH))
+    for d in range(support.low.shape[1]):
+        there = np.isfinite(support.low[k, d])
+        at = k[there]
+        along = 2 * at - 2, _both(zmp[stand][there], support.across[at, None, d])
+        limits.append(Limits(*along, support.low[at, d] / UNIT, support.high[at, d] / UNIT, GIVE_SUPPORT))
+    return solve_surely(problem, limits, what)
+
+
+def _both(coefficients: Array, direction: Array) -> Array:
+    """Coefficients (m, 2 q) of a term in both coordinates, from those (m, q) along a direction (2,) or (m, 1, 2)."""
+    count, width = coefficients.shape
+    return (coefficients[:, :, None] * direction).reshape(count, 2 * width)

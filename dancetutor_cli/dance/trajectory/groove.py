@@ -1,0 +1,148 @@
+"""She hears the music: a give on every beat, and a trunk that turns and leans with jacks and slow steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.plan import Plan, Step, Swing
+from dancetutor_cli.dance.settings import MotionSettings
+from dancetutor_cli.dance.settings_body import LayerSettings
+from dancetutor_cli.dance.smoothing import smooth, smooth_path
+
+# She hears the music: between slow steps and while she waits, knees and chest give a little on every beat.
+
+Array = NDArray[np.float64]
+
+
+@lru_cache(maxsize=8)
+def heard_beats(beats: tuple[float, ...], shortest: float) -> Array:
+    """Those beats (k,) that she moves to: of quick ones every second one, or a later one; seconds.
+
+    Not to be changed.
+    """
+    heard: list[float] = []
+    for beat in beats:
+        if not heard or beat - heard[-1] >= shortest:
+            heard.append(beat)
+    return np.array(heard)
+
+
+def beat_bounce(context: Context, times: Array, tempo: Array, busy: Array) -> Array:
+    """How far (n,) she has given way to the beat, 0 between beats to 1 on each; 0 when feet are quick or hands busy.
+
+    tempo : (n,) as in `height`; busy : (n,) 0 to 1
+    """
+    layers = context.settings.layers
+    at = heard_beats(context.beats, layers.beat_shortest)
+    if not len(at):
+        return np.zeros(len(times))
+    after = np.searchsorted(at, times, side="right")
+    last, coming = times - np.append(-np.inf, at)[after], np.append(at, np.inf)[after] - times
+    half = np.minimum(
+        (last + coming) / 2, layers.beat_width
+    )  # of the way from beat to beat; alone, a beat has its own width
+    near = np.minimum(np.minimum(last, coming) / half, 1.0)
+    return np.asarray((1.0 + np.cos(np.pi * near)) / 2 * dancing(tempo, busy, layers))
+
+
+def dancing(tempo: Array, busy: Array, layers: LayerSettings) -> Array:
+    """How free (n,) her trunk is to dance to the beat, 0 to 1; arguments as in `beat_bounce`."""
+    return np.asarray(smooth(1.0 - tempo / layers.beat_fade) * (1.0 - np.clip(busy, 0.0, 1.0)))
+
+
+# Her trunk in jacks and slow steps: she leans and turns from side to side with the beat, never twice alike.
+
+SEED = 20020716
+MOSTLY = 0.6  # part of the way from `groove.mostly` to all the time at which she dances as in jacks
+
+
+@dataclass(frozen=True, slots=True)
+class Groove:
+    """How she dances to the beat at n times.
+
+    beat : (n,) 0 to 1, how far she has given way to it; sink : (n,) metres that her knees give
+    sway : (n,) about -1 to 1, to which side her shoulders lean and turn, positive left
+    """
+
+    beat: Array
+    sink: Array
+    sway: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Engaged:
+    """What else she does at n times, (n,) each.
+
+    tempo : how quick her steps are, as in `height`; busy, waits : 0 to 1, how busy hands are and how much
+    she waits
+    """
+
+    tempo: Array
+    busy: Array
+    waits: Array
+
+
+def groove_of(plan: Plan, times: Array, engaged: Engaged, context: Context) -> Groove:
+    """At even `times` (n,): in jacks and slow steps, not in streams; where she waits she sways as `waits` says."""
+    settings = context.settings
+    numbers, jacks = settings.groove, repeated(plan, times, settings)
+    calmer = engaged.tempo * (1.0 - numbers.jack * jacks)
+    beat = beat_bounce(context, times, calmer, engaged.busy)
+    share = dancing(calmer, engaged.busy, settings.layers) * (1.0 - engaged.waits)
+    share *= (numbers.steps + (1.0 - numbers.steps) * jacks) * _grounded(plan, times, settings)
+    sink = (1.0 + numbers.deeper * jacks) * settings.layers.bounce * beat
+    return Groove(beat, sink, share * sway(plan, times, context))
+
+
+def _grounded(plan: Plan, times: Array, settings: MotionSettings) -> Array:
+    """How far (n,) jumps are off, 0 to 1: she goes straight up from both legs."""
+    out, around = np.ones(len(times)), 3.0 * settings.groove.ease
+    for start, end in plan.flights:
+        near = slice(*np.searchsorted(times, (start - around, end + around)).tolist())
+        away = np.maximum(start - times[near], times[near] - end)
+        out[near] = np.minimum(out[near], smooth(2.0 * away / around - 1.0))
+    return out
+
+
+def repeated(plan: Plan, times: Array, settings: MotionSettings) -> Array:
+    """How much (n,) one foot taps again and again where it is, at even times, 0 to 1: in jacks.
+
+    Several times on end: one such step in a stream is nothing.
+    """
+    groove, out = settings.groove, np.zeros((len(times), 1))
+    places = [np.array(track.start) for track in plan.feet]
+    moves = ((m, side) for side, track in enumerate(plan.feet) for m in track.moves if isinstance(m, Swing))
+    before, last = -1, -np.inf  # which foot has landed, and when
+    for move, side in sorted(moves, key=lambda one: (one[0].land, one[1])):
+        target = np.array(move.target)
+        near = float(np.linalg.norm(target - places[side])) < settings.step.on_the_spot
+        if isinstance(move, Step) and near and before == side:
+            out[slice(*np.searchsorted(times, (last - groove.around, move.land + groove.around)).tolist())] = 1.0
+        before = side if move.land > last else -1  # after a jump neither foot
+        places[side], last = target, move.land
+    mostly = smooth_path(out, np.ones(len(times)), 1.0 / float(times[1] - times[0]), groove.ease)[:, 0]
+    return smooth((mostly - groove.mostly) / max(1.0 - groove.mostly, 0.05) / MOSTLY)
+
+
+def sway(plan: Plan, times: Array, context: Context) -> Array:
+    """Where (n,) she sways to, about -1 to 1, positive left: to one side on a beat, to the other on the next.
+
+    Some are danced farther than others, and sometimes she stays on a side. For the mirror image of a play the other
+    way round.
+    """
+    numbers = context.settings.groove
+    at = heard_beats(context.beats, max(numbers.shortest, 0.1))
+    if len(at) < 2:
+        return np.zeros(len(times))
+    chance = np.random.default_rng([SEED, round(1000 * plan.first), round(1000 * plan.last) & 0xFFFFFFFF])
+    far, stays = chance.uniform(0.55, 1.1, len(at)), chance.random(len(at)) < numbers.stays
+    stays[1:] &= ~stays[:-1]
+    place = far * np.cumprod(np.where(stays, 1.0, -1.0))
+    k = np.clip(np.searchsorted(at, times, side="right") - 1, 0, len(at) - 2)
+    share = smooth((times - at[k]) / (at[k + 1] - at[k]))
+    return np.asarray(plan.hand * (place[k] + share * (place[k + 1] - place[k])))

@@ -1,0 +1,193 @@
+"""Where the body goes over its legs: its course, how high legs let it be, heels as she takes off, counter-rotation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.foot_path import Feet, FootPath
+from dancetutor_cli.dance.plan import Jump, Plan
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import CHEST_INERTIA, PELVIS_INERTIA, ball_to_ankle, leg_masses
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.smoothing import smooth, smooth_path
+from dancetutor_cli.dance.trajectory.height import time_for_jumps
+
+# Where the body goes over the ground and which way it faces: what its height, its chest and its arms go by.
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """The body over the ground at n even times.
+
+    times : (n,) seconds; mass : (n, 2), x and z of the centre of mass; above : (n, 3), from the root to it, as far as
+    known; hips : (n, 2, 3), from the root to each hip; yaw : (n,) of the pelvis, radians, unwrapped
+    """
+
+    times: Array
+    mass: Array
+    above: Array
+    hips: Array
+    yaw: Array
+
+    @property
+    def rate(self) -> float:
+        """Samples per second."""
+        return 1.0 / float(self.times[1] - self.times[0])
+
+    @property
+    def ground(self) -> Array:
+        """(n, 2), x and z of the root."""
+        return np.asarray(self.mass - self.above[:, [0, 2]])
+
+
+# How high the root may be so that legs reach their feet.
+
+
+def leg_room(feet: Feet, course: Course, skeleton: Skeleton, reach: Array | float, side: int) -> Array:
+    """Highest root (n,) from which one leg still reaches its foot when hip and ankle are `reach` apart."""
+    hip, ankle = hip_over(course, side), ankle_of(feet[side], skeleton, side)
+    aside = np.hypot(hip[:, 0] - ankle[:, 0], hip[:, 1] - ankle[:, 2])
+    down = course.hips[:, side, 1]
+    return np.asarray(ankle[:, 1] + np.sqrt(np.maximum(np.square(reach) - aside**2, 0.05)) - down)
+
+
+def hip_over(course: Course, side: int) -> Array:
+    """Where (n, 2) a hip is over the ground, x and z."""
+    return np.asarray(course.ground + course.hips[:, side, ::2])
+
+
+def upright_hips(yaw: Array, skeleton: Skeleton) -> Array:
+    """From the root to each hip (n, 2, 3) of an upright pelvis with yaw (n,)."""
+    turned = quat.from_axis_angle(quat.UP, yaw)
+    return np.stack([quat.rotate(turned, skeleton.offsets[skeleton.index(f"{s}_hip")]) for s in "lr"], axis=1)
+
+
+def ankle_of(foot: FootPath, skeleton: Skeleton, side: int) -> Array:
+    """World position (f, 3) of the ankle joint of a foot."""
+    meta = skeleton.offsets[skeleton.index(f"{'lr'[side]}_metatarsal")]
+    up = skeleton.rest[skeleton.index(f"{'lr'[side]}_metatarsal")][1]
+    sine, cosine = np.sin(foot.pitch), np.cos(foot.pitch)
+    y = -meta[1] * cosine + meta[2] * sine  # the ankle seen from the ball's joint, heel up by pitch
+    z = -meta[1] * sine - meta[2] * cosine
+    x = -meta[0]
+    out = foot.ball.copy()
+    out[:, 0] += x * np.cos(foot.yaw) + z * np.sin(foot.yaw)
+    out[:, 1] += up + y
+    out[:, 2] += -x * np.sin(foot.yaw) + z * np.cos(foot.yaw)
+    return out
+
+
+# Heels that rise unevenly as she takes off: the leg with the farther way gets its length from its foot.
+#
+# Over feet that stand apart one hip is farther from its ankle than the other. What one leg reaches holds the body down,
+# and the other leg would leave the ground on a bent knee. So the heel of the farther foot rises farther, until both
+# legs are equally long as the toes leave.
+
+STEP = np.radians(0.25)  # between pitches that are tried
+TOGETHER = 0.05  # seconds between the feet; if one leaves earlier, the other one pushes alone
+
+
+def raised(feet: Feet, up: Array) -> Feet:
+    """The same feet with their heels higher by (n, 2) radians."""
+    left, right = (replace(foot, pitch=foot.pitch + up[:, side]) for side, foot in enumerate(feet))
+    return left, right
+
+
+def push_off(plan: Plan, times: Array, feet: Feet, hips: Array, context: Context) -> Array:
+    """How much farther (n, 2) heels rise at take-off, radians.
+
+    times : (n,) even; feet : then, their heels up for their ankles' sake already
+    hips : (n, 2, 3) places of both hips, as a rough bake has them
+    """
+    jump, out = context.settings.jump, np.zeros((len(times), 2))
+    flights = plan.flights
+    for (start, end), share in zip(flights, time_for_jumps(flights, jump)[0], strict=True):
+        lifts = _lifts(plan, start)
+        if share <= 0.0 or lifts is None:
+            continue
+        k = int(np.clip(np.searchsorted(times, start), 1, len(times) - 1)) - 1
+        side, pitch = _more(_at(feet, k), hips[k], np.radians(jump.heel_most), context.skeleton)
+        rising = max(jump.heel_up, 1e-6)
+        near = slice(*np.searchsorted(times, (lifts[side] - rising, end)))
+        shape = smooth((times[near] - lifts[side] + rising) / rising)
+        shape *= smooth((end - times[near]) / (end - start))
+        out[near, side] = np.maximum(out[near, side], share * pitch * shape)
+    up = np.column_stack([foot.pitch for foot in feet])
+    return np.asarray(np.minimum(out, np.maximum(np.radians(jump.heel_most) - up, 0.0)))
+
+
+def _lifts(plan: Plan, start: float) -> tuple[float, float] | None:
+    """When each foot leaves the ground for the jump whose flight begins at `start`; None where both do not push."""
+    out = []
+    for track in plan.feet:
+        lifts = [m.lift for m in track.moves if isinstance(m, Jump) and m.lift <= start + 1e-6 < m.land]
+        if not lifts or start - lifts[-1] > TOGETHER:
+            return None
+        out.append(lifts[-1])
+    return out[0], out[1]
+
+
+def _at(feet: Feet, k: int) -> Feet:
+    """Both feet at one of their times only."""
+    left, right = (_taken(foot, [k]) for foot in feet)
+    return left, right
+
+
+def _taken(foot: FootPath, at: list[int]) -> FootPath:
+    return FootPath(foot.ball[at], foot.yaw[at], foot.pitch[at], foot.down[at], foot.progress[at])
+
+
+def _more(feet: Feet, hips: Array, most: float, skeleton: Skeleton) -> tuple[int, float]:
+    """Which foot's heel rises farther at one time, and by how much, radians; hips : (2, 3); most : heel up at most"""
+    far = [float(np.linalg.norm(hips[s] - ankle_of(feet[s], skeleton, s)[0])) for s in (0, 1)]
+    side = int(far[1] > far[0])
+    tried = np.arange(0.0, max(most - float(feet[side].pitch[0]), STEP), STEP)
+    foot = _taken(feet[side], [0] * len(tried))
+    legs = np.linalg.norm(hips[side] - ankle_of(replace(foot, pitch=foot.pitch + tried), skeleton, side), axis=1)
+    return side, float(tried[int(np.argmin(np.abs(legs - far[1 - side])))])
+
+
+# The chest, and the arms with it, turn against the legs, so that the whole body's momentum about the vertical is less.
+#
+# Legs that swing about the centre of mass, and a pelvis that turns with them, have a momentum L(t) about the vertical.
+# Chest and arms of inertia I that turn by  -L integrated / I  would cancel it. They do so in part: slow turns are left
+# to the dance, fast ones would jerk the hands.
+
+
+def counter_rotation(feet: Feet, course: Course, chest: Array, head: Array, context: Context) -> Array:
+    """How far the chest turns against the legs, (n,) radians, to be added to its yaw.
+
+    chest, head : (n,) their yaws without it; where the head is turned far from the chest already, the chest keeps still
+    """
+    arms, step = context.settings.arms, 1.0 / course.rate
+    lower = leg_momentum(feet, course, context.skeleton) + PELVIS_INERTIA * np.gradient(course.yaw, step)
+    turned = (np.cumsum(lower) * step / CHEST_INERTIA + chest)[:, None]
+    ones = np.ones(len(chest))
+    slow = smooth_path(turned, ones, course.rate, arms.twist_slowest)
+    against = -arms.cancel * smooth_path(turned - slow, ones, course.rate, arms.twist_fastest)[:, 0]
+    most = np.radians(arms.twist)
+    if most <= 0.0:
+        return np.zeros(len(chest))
+    look = context.settings.look
+    free = 1.0 - smooth((np.abs(head - chest) - np.radians(look.neck_easy)) / np.radians(look.neck_room))
+    return np.asarray(free * most * np.tanh(against / most))
+
+
+def leg_momentum(feet: Feet, course: Course, skeleton: Skeleton) -> Array:
+    """Momentum about the vertical (n,) of both legs as seen from the centre of mass, m^2/s per mass of the body."""
+    out = np.zeros(len(course.times))
+    for side, foot in enumerate(feet):
+        hip = hip_over(course, side)
+        back = ball_to_ankle(skeleton)
+        ankle = foot.ball[:, [0, 2]] - back * np.column_stack((np.sin(foot.yaw), np.cos(foot.yaw)))
+        for along, share in leg_masses(skeleton):
+            off = hip + along * (ankle - hip) - course.mass
+            speed = np.gradient(off, 1.0 / course.rate, axis=0)
+            out += share * (off[:, 1] * speed[:, 0] - off[:, 0] * speed[:, 1])
+    return out

@@ -1,0 +1,248 @@
+"""The body over the feet: where the weight is, how high, which way pelvis and chest turn, and how far they bend."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.foot_path import Feet
+from dancetutor_cli.dance.gait import gaze_ahead, walking
+from dancetutor_cli.dance.plan import Plan
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import GRAVITY, centre_of_mass, world_transforms
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.settings import MotionSettings
+from dancetutor_cli.dance.smoothing import Controller, follow, low_pass, smooth_path
+from dancetutor_cli.dance.trajectory.balance import Pendulum, balanced_path
+from dancetutor_cli.dance.trajectory.facing import (
+    bent_down,
+    chest_and_head,
+    crossing_share,
+    head_held,
+    kept_back,
+    leaned_across,
+    leaning_share,
+    leaning_tilt,
+    pelvis_yaw,
+    reaching,
+)
+from dancetutor_cli.dance.trajectory.groove import Engaged, groove_of
+from dancetutor_cli.dance.trajectory.height import (
+    HeightPath,
+    HeightWish,
+    height_path,
+    jump_crouch,
+    jump_drive,
+    jump_lean,
+    tempo_factor,
+)
+from dancetutor_cli.dance.trajectory.legs import Course, counter_rotation, leg_room, raised, upright_hips
+from dancetutor_cli.dance.waits import waiting_at
+
+Array = NDArray[np.float64]
+BALANCE, HEIGHT = "her balance", "the height of her body"  # what `softened` may name
+STANDING_HEIGHT = 0.93  # metres, of the centre of mass
+LEAST_FALL, LEAST_SEEN = 0.4, 0.3  # parts of g that the ground carries at least, as omega goes by it
+
+
+@dataclass(frozen=True, slots=True)
+class Trajectory:
+    """The body at n even times.
+
+    mass : (n, 2), (x, z) of the centre of mass; mass_height : its height
+    ground : (n, 2), (x, z) of the root; height : (n,) of the root; yaw, chest_yaw, head_yaw : (n,) radians, unwrapped
+    tilt : (n, 2), horizontal (x, z) direction times angle by which the chest leans; reaching : (n, 2), 0 to 1, how far
+    the body has bent for the left and right hand; heels : (n, 2), radians that they are raised for the ankles' sake
+    knees : (n, 2), radians that knees are turned outward for the ankles' sake
+    beat : (n,) 0 to 1, how far she has given way to the beat; sway : (n,) as in `groove.Groove`
+    softened : what had no solution within the limits of legs and soles, so that they gave way; for people
+    hands : what `ik.targets.free_hands` says of it, if somebody has asked already
+    """
+
+    times: Array
+    mass: Array
+    mass_height: HeightPath
+    ground: Array
+    height: Array
+    yaw: Array
+    chest_yaw: Array
+    head_yaw: Array
+    tilt: Array
+    reaching: Array
+    heels: Array
+    knees: Array
+    beat: Array
+    sway: Array
+    softened: tuple[str, ...] = ()
+    hands: tuple[Array, Array, Array] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """What a rough bake has shown. trajectory : that it was of
+
+    above : (n, 3), centre of mass minus root
+    turning : (n, 2) as of `balance.moved_by_turning`, or None if it is not known
+    deeper : (p,) how far each press of a palm drew the root below where it
+    was wanted, metres, or None for none
+    hips : (n, 2, 3), from the root to each hip, None: as of an upright pelvis
+    push_off : (n, 2) as of `legs.push_off`, None for none
+    keep : leave the path over the ground as it was; tightened : as in `balanced_path`
+    """
+
+    trajectory: Trajectory
+    above: Array
+    turning: Array | None = None
+    hips: Array | None = None
+    push_off: Array | None = None
+    deeper: Array | None = None
+    keep: bool = False
+    tightened: int = 0
+
+
+def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, known: Known | None = None) -> Trajectory:
+    """The body on evenly spaced `times` (n,), feet sampled at the same times; known : None in the first round."""
+    settings = context.settings
+    held = leaning_share(plan.grips, times, settings.bar)
+    course, softened = _course(plan, times, feet, context, known)
+    reached = reaching(plan.presses, times, settings.hands)
+    gait = walking(plan.walks, times, settings.walk)
+    own = np.zeros(len(times)) if gait is None else gait.own
+    crouch = jump_crouch(plan, times, settings.jump)
+    tempo = tempo_factor(plan, times, settings)
+    waiting = waiting_at(plan, times, context)
+    engaged = Engaged(tempo, reached.sum(axis=1) + held + own, waiting.share)
+    groove = groove_of(plan, times, engaged, context)
+    leg = settings.body.leg - settings.body.stream_crouch * tempo - crouch
+    bent = bent_down(plan.presses, None if known is None else known.deeper, times, settings.hands)
+    sink = groove.sink + (0.0 if gait is None else gait.sink)
+    push, catch = (share * (1.0 - reached.max(axis=1)) for share in jump_drive(plan, times, settings.jump))
+    leg = leg + push * (settings.jump.push - leg)
+    leg = leg + catch * (settings.jump.catch - leg)
+    most = settings.body.soft_reach + push * max(settings.jump.push - settings.body.soft_reach, 0.0)
+    most = np.where(feet[0].down | feet[1].down, most, settings.jump.reach)
+    legs = LegWish(leg, most, sink, bent, settings.jump.drive * np.maximum(push, catch))
+    stretched = feet if known is None or known.push_off is None else raised(feet, known.push_off)
+    mass_height = height_path(_wish(stretched, course, context, legs), plan.flights, settings.body)
+    chest, head = chest_and_head(plan, course, gaze_ahead(plan, times, settings.walk), settings)
+    loose = (1.0 - held) * (1.0 - reached.max(axis=1)) * (1.0 - own)
+    ahead = np.column_stack((np.sin(chest), np.cos(chest)))  # not to where it turns against each step
+    chest = chest + loose * counter_rotation(feet, course, chest, head, context)
+    calm = smooth_path(tempo[:, None], np.ones(len(times)), course.rate, settings.body.lean_time)[:, 0]
+    lean = settings.body.lean + settings.body.stream_lean * calm
+    across = crossing_share(plan.grips, times, settings.across)
+    lean = np.radians(lean - held * (1.0 - np.abs(across)) * (lean + settings.bar.lean_back))
+    leant = lean[:, None] * ahead + leaned_across(across, settings.across)
+    tilt = leaning_tilt(plan.presses, course, chest, leant, settings)
+    chest += waiting.turn
+    drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
+    drop -= np.radians(settings.wait.lean) * waiting.shift / max(settings.wait.shift, 1e-6)
+    chest += np.radians(settings.groove.twist) * groove.sway
+    head = head_held(head, chest, course.rate, settings)
+    drop += np.radians(settings.groove.lean) * groove.sway
+    tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
+    fold = np.radians(settings.jump.fold) * crouch + np.radians(settings.layers.beat_nod) * groove.beat
+    tilt += fold[:, None] * np.column_stack((np.sin(chest), np.cos(chest))) + jump_lean(plan, times, settings.jump)
+    controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
+    tilt = follow(tilt, course.rate, controller)
+    height = mass_height.at(times) - course.above[:, 1]
+    return Trajectory(
+        times, course.mass, mass_height, course.ground, height, course.yaw, chest, head, tilt, reached,
+        np.zeros((len(times), 2)), np.zeros((len(times), 2)), groove.beat, groove.sway,
+        (*softened, *((HEIGHT,) if mass_height.softened else ())),
+    )  # fmt: skip
+
+
+def _course(
+    plan: Plan, times: Array, feet: Feet, context: Context, known: Known | None
+) -> tuple[Course, tuple[str, ...]]:
+    """Where the body goes over the ground, and what of that had to be softened."""
+    settings = context.settings
+    above = _above_at_rest(context.skeleton, len(times)) if known is None else known.above
+    yaw = pelvis_yaw(plan, times, settings)
+    seen = None if known is None else known.hips
+    hips = upright_hips(yaw, context.skeleton) if seen is None else seen
+    if known is not None and known.keep:
+        softened = tuple(what for what in known.trajectory.softened if what == BALANCE)
+        return Course(times, known.trajectory.mass, above, hips, yaw), softened
+    pendulum = _pendulum(times, known, above)
+    gait = walking(plan.walks, times, settings.walk)
+    if gait is not None:  # who walks has legs that swing slowly, and her weight on the edges of her soles
+        pendulum = replace(pendulum, turning=(1.0 - gait.own)[:, None] * pendulum.turning)
+    shift = waiting_at(plan, times, context).shift
+    if known is not None:  # heels that rise for their ankles' sake carry nothing; palms do, on their way already
+        up = known.trajectory.heels * (1.0 - reaching(plan.presses, times, settings.hands).max(axis=1, keepdims=True))
+        feet = raised(feet, up)
+    mass, swept = balanced_path(feet, pendulum, settings, 0 if known is None else known.tightened, plan.hand, shift)
+    if context.bar is not None:
+        nearer = settings.across.nearer * np.abs(crossing_share(plan.grips, times, settings.across))
+        mass = kept_back(mass, leaning_share(plan.grips, times, settings.bar), context.bar, settings.bar, nearer)
+    return Course(times, mass, above, hips, yaw), (BALANCE,) if swept else ()
+
+
+def _above_at_rest(skeleton: Skeleton, count: int) -> Array:
+    """How far (n, 3) the centre of mass is over the root in the rest pose."""
+    rest = np.tile(quat.IDENTITY, (1, len(skeleton.names), 1))
+    mass = centre_of_mass(skeleton, *world_transforms(skeleton, rest, skeleton.offsets[None, 0]))
+    return np.tile((mass[0] - skeleton.offsets[0]) * [0.0, 1.0, 0.0], (count, 1))
+
+
+def _pendulum(times: Array, known: Known | None, above: Array) -> Pendulum:
+    """The inverted pendulum that she is; standing still as long as the height of her centre of mass is not known."""
+    offset = above[:, [0, 2]]
+    if known is None:
+        still = np.full(len(times), STANDING_HEIGHT / GRAVITY)
+        return Pendulum(times, still, still, offset, np.zeros((len(times), 2)))
+    turning = np.zeros((len(times), 2)) if known.turning is None else known.turning
+    height, step = known.trajectory.mass_height, 1.0 / 60.0
+    y = height.at(times)
+    acceleration = (height.at(times + step) - 2 * y + height.at(times - step)) / step**2
+    rate = 1.0 / float(times[1] - times[0])
+    seen = _slowness(low_pass(y, rate), low_pass(acceleration, rate), LEAST_SEEN)
+    return Pendulum(times, _slowness(y, acceleration, LEAST_FALL), seen, offset, turning)
+
+
+def _slowness(y: Array, acceleration: Array, least: float) -> Array:
+    """1 / omega^2 = y / (y'' + g), seconds squared."""
+    return np.asarray(y / np.maximum(acceleration + GRAVITY, least * GRAVITY))
+
+
+@dataclass(frozen=True, slots=True)
+class LegWish:
+    """How she would like to stand at n times.
+
+    length : (n,) hip to ankle; most : (n,) at most; sink : (n,) how far a plant or a beat lets her sink, metres
+    bent : (n, 2) as in `facing.bent_down`; firm : (n,) as in `HeightWish`
+    """
+
+    length: Array
+    most: Array
+    sink: Array
+    bent: Array
+    firm: Array
+
+
+def _wish(feet: Feet, course: Course, context: Context, legs: LegWish) -> HeightWish:
+    """How high the centre of mass would like to be and may be."""
+    settings, above = context.settings, course.above[:, 1]
+    wanted = np.full(len(course.yaw), np.inf)
+    highest = np.full(len(course.yaw), np.inf)
+    for side in (0, 1):
+        most = leg_room(feet, course, context.skeleton, legs.most, side)
+        soft = leg_room(feet, course, context.skeleton, legs.length, side)
+        highest = np.minimum(highest, most)
+        standing = feet[side].down | (legs.firm > 0.0)
+        wanted = np.minimum(wanted, np.where(standing, soft, most - 0.004))
+    lifted = np.maximum(feet[0].ball[:, 1], feet[1].ball[:, 1]) * (legs.firm == 0.0)
+    wanted = np.minimum(wanted + settings.body.step_rise * np.maximum(lifted, 0.0), highest - 0.002) - legs.sink
+    share, depth = legs.bent.T
+    wanted = wanted + share * (settings.hands.pelvis - depth - wanted)
+    return HeightWish(course.times, wanted + above, highest - legs.sink + above, above, legs.firm)
+
+
+def stepping(feet: Feet, settings: MotionSettings) -> Array:
+    """(n,) 1 while the left foot is in the air at full height, -1 for the right one, 0 when both are equally high."""
+    return np.clip((feet[0].ball[:, 1] - feet[1].ball[:, 1]) / settings.step.height_slow, -1.0, 1.0)

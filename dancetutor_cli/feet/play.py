@@ -1,0 +1,356 @@
+"""Rows and who steps them: from the notes of a chart to what a solver sees, its result, notes that no person plays."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind, NoteTable
+from dancetutor_cli.chart.timing import Timing
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.pads import Pad
+from dancetutor_cli.feet.preset import HAND, LEAP, Why
+
+# The result of the solver: who steps what, and what it costs. Arrays with one entry per row.
+
+
+class StepKind(IntEnum):
+    """What a limb does in a cell of `Rows.steps`."""
+
+    NONE = 0
+    TAP = 1
+    LIFT = 2
+    HOLD = 3
+    ROLL = 4  # the head of a roll
+    ROLL_TAP = 5  # a virtual tap of a roll
+
+
+class Ambiguity(IntEnum):
+    """Whether a row could be stepped with other limbs at the same cost."""
+
+    NONE = 0
+    RESOLVED = 1  # whichever limb comes, the rows after it are stepped the same way
+    OPEN = 2  # what follows depends on the limb
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """The rows a solver sees: beats with at least one step or mine, rolls already tapped. n rows, c columns.
+
+    tick : int64 (n,), 1/48 beats; second : float64 (n,); line : int32 (n,), 0 for rows that only a roll made
+    steps : uint8 (n, c), `StepKind`
+    hold_end : int64 (n, c), tick at which a HOLD that starts here ends, else -1
+    mines : bool (n, c)
+    milliseconds : int64 (n,), exact time since the previous row, rounded half up; 0 in the first row
+    """
+
+    tick: NDArray[np.int64]
+    second: NDArray[np.float64]
+    line: NDArray[np.int32]
+    steps: NDArray[np.uint8]
+    hold_end: NDArray[np.int64]
+    mines: NDArray[np.bool_]
+    milliseconds: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        return len(self.tick)
+
+
+@dataclass(frozen=True, slots=True)
+class Play:
+    """The cheapest way to play `rows`. n rows, c columns, t cost terms.
+
+    limb : int8 (n, c), `Limb`; part : uint8 (n, c), `Part`
+    feet : int16 (n, 2), panel that the left and right foot stand on after the row (a bracket: the heel's), -1 at home
+    facing : float64 (n,), degrees after the row, positive left
+    terms : names of the cost terms, in the preset's order; cost : int32 (n, t), cost of each row by term
+    margin : int64 (n,) or None; how much more the best play with other limbs in this row costs, -1: no other way
+    ambiguity : uint8 (n,) or None, `Ambiguity` of each row
+    moves : per row the names of what happens ("crossover", "spin", "doublestep", ...), sorted
+    preset : name of the cost preset
+    confidence : float64 (n,) or None; how likely people step each row this way, 0 to 1, nan: not known (no step in it)
+    events : int32 (n,) or None; what `moves` names, as bits of `solver.vocabulary.EVENTS`, where the solver made the
+    play
+    """
+
+    rows: Rows
+    limb: NDArray[np.int8]
+    part: NDArray[np.uint8]
+    feet: NDArray[np.int16]
+    facing: NDArray[np.float64]
+    terms: tuple[str, ...]
+    cost: NDArray[np.int32]
+    margin: NDArray[np.int64] | None
+    moves: Sequence[tuple[str, ...]]
+    preset: str
+    ambiguity: NDArray[np.uint8] | None = None
+    confidence: NDArray[np.float64] | None = None
+    events: NDArray[np.int32] | None = None
+
+    def kinds(self) -> tuple[list[tuple[str, ...]], NDArray[np.intp]]:
+        """What `moves` holds, in the order in which it comes first, and (n,) which of that each row is.
+
+        Where nobody has made `events`, the names are told apart by the objects that they are: some may be listed more
+        than once.
+        """
+        marks = self.events
+        if marks is None:
+            marks = np.fromiter(map(id, self.moves), np.int64, len(self.moves))
+        _, first, codes = np.unique(marks, return_index=True, return_inverse=True)
+        order = first.argsort()
+        rank = np.empty(len(order), dtype=np.intp)
+        rank[order] = np.arange(len(order))
+        return [self.moves[row] for row in first[order].tolist()], rank[codes]
+
+    @property
+    def total(self) -> int:
+        """Cost of the whole play: the minimum possible."""
+        return int(self.cost.sum())
+
+
+# From the notes of a chart to the rows a solver sees: rolls become taps, what the game does not judge is left out.
+
+_STEP_OF_KIND = np.zeros(max(Kind) + 1, dtype=np.uint8)
+_STEP_OF_KIND[[Kind.TAP, Kind.LIFT, Kind.HOLD, Kind.ROLL]] = StepKind.TAP, StepKind.LIFT, StepKind.HOLD, StepKind.ROLL
+# 1, 1/2, 1/3, 1/4, 1/6, 1/8, 1/12, 1/16 beat in ticks, longest first
+_ROLL_GAPS = tuple(TICKS_PER_BEAT // part for part in (1, 2, 3, 4, 6, 8, 12, 16))
+_MINE, _HOLD = int(Kind.MINE), int(StepKind.HOLD)
+_CHART = 40  # bits of a tick: all of a later chart come after those before
+_TICK = (1 << _CHART) - 1
+_EPSILON = 1e-6  # seconds (docs/cost-model.md)
+
+
+def prepare(chart: Chart, pad: Pad, roll_window: float = 0.35) -> Rows:
+    """The rows of a chart: beats with at least one step or mine (docs/cost-model.md, "Rows").
+
+    Parameters
+    ----------
+    chart : its unjudged notes, fakes and keysounds are left out, and columns that the pad does not have
+    pad : tells the number of columns, c
+    roll_window : seconds that a roll may go unpressed; it becomes taps at most so far apart
+    """
+    return prepare_all([chart], pad, roll_window)[0]
+
+
+def prepare_all(charts: Sequence[Chart], pad: Pad, roll_window: float) -> list[Rows]:
+    """The rows of each of some charts that share their timing: most are short, and each array takes time to make.
+
+    ValueError if they do not share it.
+    """
+    timing, c = charts[0].timing, len(pad)
+    if any(chart.timing is not timing for chart in charts):
+        raise ValueError("charts that are prepared together must share their timing")
+    notes = _joined([chart.notes for chart in charts])
+    kinds = _STEP_OF_KIND[notes.kind]
+    ours = notes.judged & ((kinds > 0) | (notes.kind == _MINE))
+    if notes.column.max(initial=0) >= c:
+        ours &= notes.column < c
+    here = np.flatnonzero(ours)
+    tick, column, kind, written = notes.tick[here], notes.column[here], kinds[here], notes.line[here]
+    new = _is_new(tick)
+    known = tick[new]
+    rolls = here[kind == StepKind.ROLL]
+    if len(rolls):
+        roll_tick, roll_column = _roll_taps(notes, timing, rolls, roll_window)
+        known = np.sort(np.concatenate([known, roll_tick]))
+        known = known[_is_new(known)]
+        row = known.searchsorted(tick)
+    else:
+        row = np.cumsum(new) - 1
+    n = len(known)
+    cell = row * c + column
+    steps = np.zeros(n * c, dtype=np.uint8)
+    if len(rolls):
+        steps[known.searchsorted(roll_tick) * c + roll_column] = StepKind.ROLL_TAP
+    step = np.flatnonzero(kind)
+    steps[cell[step]] = kind[step]  # a real note wins over a virtual one
+    hold_end = np.full(n * c, -1, dtype=np.int64)
+    hold = np.flatnonzero(kind == _HOLD)
+    hold_end[cell[hold]] = notes.end[here[hold]]
+    mines = np.zeros(n * c, dtype=bool)
+    mines[cell[kind == 0]] = True
+    line = np.zeros(n, dtype=np.int32)
+    line[row] = written
+    first = known.searchsorted(np.arange(len(charts) + 1) << _CHART)
+    ticks = known & _TICK
+    second = timing.seconds(ticks)
+    whole = Rows(
+        ticks, second, line, steps.reshape(n, c), hold_end.reshape(n, c), mines.reshape(n, c),
+        timing.milliseconds(ticks, second, first),
+    )  # fmt: skip
+    return [Rows(*(getattr(whole, name)[a:b] for name in Rows.__slots__)) for a, b in pairwise(first.tolist())]
+
+
+def _joined(tables: Sequence[NoteTable]) -> NoteTable:
+    """Notes of charts one after the other, the number of the chart above `_CHART` in their ticks."""
+    if len(tables) == 1:
+        return tables[0]
+    whole = NoteTable(*(np.concatenate([getattr(one, name) for one in tables]) for name in NoteTable.__slots__))
+    number = np.arange(len(tables)).repeat([len(one) for one in tables])
+    return replace(whole, tick=whole.tick + (number << _CHART))
+
+
+def _is_new(ticks: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Whether each of some ascending ticks is another one than that before it."""
+    new = np.ones(len(ticks), dtype=bool)
+    np.not_equal(ticks[1:], ticks[:-1], out=new[1:])
+    return new
+
+
+def _roll_taps(
+    notes: NoteTable, timing: Timing, rolls: NDArray[np.intp], window: float
+) -> tuple[NDArray[np.int64], NDArray[np.int16]]:
+    """Tick and column of every virtual tap, heads included."""
+    ticks, columns = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int16)]
+    for note in rolls.tolist():
+        chart, head = divmod(int(notes.tick[note]), 1 << _CHART)
+        taps = np.arange(head, max(int(notes.end[note]), head + 1), roll_gap(timing.bpm_at(head), window))
+        ticks.append(taps + (chart << _CHART))
+        columns.append(np.full(len(taps), notes.column[note]))
+    return np.concatenate(ticks), np.concatenate(columns)
+
+
+def roll_gap(bpm: float, window: float) -> int:
+    """Ticks between the virtual taps of a roll that starts at `bpm`: the longest gap of at most `window` seconds."""
+    for gap in _ROLL_GAPS:
+        if gap / TICKS_PER_BEAT * 60.0 / bpm <= window + _EPSILON:
+            return gap
+    return _ROLL_GAPS[-1]
+
+
+# Notes that no person plays: which ones, and why. The dancer lets them go, and the linter tells of them.
+
+MOVE = "unplayable"  # what a row with such a note is called, as where the solver has no limb left
+SAME_TIME = 1e-6  # seconds
+_NOT_WITHOUT = ("hand", "jump", "bracket")  # moves that a row has no more if what makes them is let go begin so
+
+
+WORDS = {
+    Why.LIMBS: "more panels at once than limbs",
+    Why.LEAP: "a foot would have to leap at once",
+    Why.HAND: "a hand would have to be down again at once",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class LetGo:
+    """A note that she does not play. second : of the music; row, column : of the play"""
+
+    second: float
+    row: int
+    column: int
+    why: Why
+
+
+def without_unplayable(play: Play, pad: Pad, before: Sequence[LetGo] = ()) -> tuple[Play, tuple[LetGo, ...]]:
+    """The play in which no limb has those notes that no person plays, and these notes in order of time.
+
+    What is left over by the solver stays `Limb.UNPLAYED`, and what `too_quick` finds becomes so: the foot stays where
+    it is, the hand is up, and feet go on alone.
+
+    play : its seconds are those of the music as it is heard; before : why notes are left over in it already
+    """
+    found = list(too_quick(play, pad))
+    if not found and not (play.limb == Limb.UNPLAYED).any():
+        return play, ()
+    if found:
+        play = _without(play, pad, found)
+    rows, columns = np.nonzero(play.limb == Limb.UNPLAYED)
+    why = {(one.row, one.column): one.why for one in before}
+    why |= {(row, column): reason for row, column, reason in found}
+    return play, tuple(
+        LetGo(float(play.rows.second[row]), row, column, why.get((row, column), Why.LIMBS))
+        for row, column in zip(rows.tolist(), columns.tolist(), strict=True)
+    )
+
+
+def too_quick(play: Play, pad: Pad) -> Iterator[tuple[int, int, Why]]:
+    """Row and column of each note that has a limb, but one which cannot be there in time, and why.
+
+    A foot leaps if it steps within `LEAP` seconds of its last step, to no panel that touches one of that. A hand is let
+    go if it comes down within `HAND` seconds of the last note for it, played or not: of many the first is played. One
+    that stays there drums a roll, if she stands on a foot.
+    """
+    yield from _leaps(play, pad)
+    yield from _hands(play)
+
+
+def told(gone: Sequence[LetGo]) -> str:
+    """How many notes are let go and why, in one line for people; nothing if none is."""
+    if not gone:
+        return ""
+    counts = Counter(one.why for one in gone)
+    reasons = ", ".join(f"{counts[why]} {WORDS[why]}" for why in Why if counts[why])
+    return f"{len(gone)} note{'s' if len(gone) > 1 else ''} let go, for nobody plays them: {reasons}"
+
+
+def _leaps(play: Play, pad: Pad) -> Iterator[tuple[int, int, Why]]:
+    """Row and column of each note that its foot would have to leap to."""
+    touching = pad.neighbours | np.eye(len(pad), dtype=bool)
+    for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
+        mine: NDArray[np.bool_] = play.limb == side
+        rows = np.flatnonzero(mine.any(axis=1))
+        last, on = -np.inf, 0
+        for row, second in zip(rows.tolist(), play.rows.second[rows].tolist(), strict=True):
+            if second - last <= LEAP + SAME_TIME and not touching[np.ix_(mine[on], mine[row])].any():
+                yield from ((row, column, Why.LEAP) for column in np.flatnonzero(mine[row]).tolist())
+            else:
+                last, on = second, row
+
+
+def _hands(play: Play) -> Iterator[tuple[int, int, Why]]:
+    """Row and column of each note for which a hand would have to hop."""
+    both = (play.limb == Limb.LEFT_FOOT).any(axis=1) & (play.limb == Limb.RIGHT_FOOT).any(axis=1)
+    fresh = (play.rows.steps != StepKind.ROLL_TAP) | both[:, None]
+    for side in (Limb.LEFT_HAND, Limb.RIGHT_HAND):
+        mine = (play.limb == side) & fresh
+        last = -np.inf
+        for row in np.flatnonzero(mine.any(axis=1)).tolist():
+            second = float(play.rows.second[row])
+            if second - last <= HAND + SAME_TIME:
+                yield from ((row, column, Why.HAND) for column in np.flatnonzero(mine[row]).tolist())
+            last = second
+
+
+def _without(play: Play, pad: Pad, found: Sequence[tuple[int, int, Why]]) -> Play:
+    """The play in which no limb has these notes; feet, facing and the names of moves are what is left then."""
+    limb, part, moves = play.limb.copy(), play.part.copy(), list(play.moves)
+    for row, column, _ in found:
+        limb[row, column], part[row, column] = Limb.UNPLAYED, 0
+    for row in {row for row, _, _ in found}:
+        kept = moves[row] if (limb[row] >= 0).any() else ()
+        moves[row] = tuple(sorted({MOVE, *(name for name in kept if not name.startswith(_NOT_WITHOUT))}))
+    out = replace(
+        play, limb=limb, part=part, moves=tuple(moves), events=None, feet=play.feet.copy(), facing=play.facing.copy()
+    )
+    for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
+        stepped = (limb == side).any(axis=1)
+        lost = ((play.limb == side).any(axis=1)) & ~stepped
+        for row in np.flatnonzero(lost).tolist():
+            later = np.flatnonzero(stepped[row:])
+            until = row + int(later[0]) if len(later) else len(stepped)
+            out.feet[row:until, side] = out.feet[row - 1, side] if row else -1
+            _face_anew(out, pad, row, until)
+    return out
+
+
+def _face_anew(play: Play, pad: Pad, first: int, end: int) -> None:
+    """Turn rows from `first` to before `end` with both feet as they stand there, in place."""
+    places = []
+    for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
+        before = np.flatnonzero((play.limb[:end] == side).any(axis=1))
+        at = np.searchsorted(before, np.arange(first, end), side="right") - 1
+        if not len(before) or at.min() < 0:
+            return  # one is still where she began
+        stands = np.array([pad.panels[play.limb[row] == side].mean(axis=0) for row in before[at.min() :]])
+        places.append(stands[at - at.min()])
+    across = places[1] - places[0]
+    apart = np.abs(across).max(axis=1) > 0
+    yaw = np.degrees(np.arctan2(across[:, 1], across[:, 0]))
+    play.facing[first:end] = np.where(apart, yaw, play.facing[first:end])

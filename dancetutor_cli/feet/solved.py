@@ -1,0 +1,64 @@
+"""Charts with their feet, the one way to them for every command: what people laid down holds, the rest is solved."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.feet import FeetProblem, Ignores, Overrides, Pad, SongFeet, load_pad
+from dancetutor_cli.feet.play import Play, Rows, prepare_all
+from dancetutor_cli.feet.preset import Preset
+from dancetutor_cli.feet.solver import solve
+
+_AT_ONCE = 16  # charts whose rows are prepared together
+
+
+@dataclass(frozen=True, slots=True)
+class Solved:
+    """A chart, or of one for several a player's part, with its feet.
+
+    play, pad : None where no pad is known for the steps type; preset : the costs with which the feet were found
+    overrides : feet that people laid down; ignores, problems : findings they do not want to see, and what is wrong in
+    what they said
+    """
+
+    song: Song
+    chart: Chart
+    preset: Preset
+    play: Play | None
+    pad: Pad | None
+    overrides: Overrides | None = None
+    ignores: Ignores = field(default_factory=Ignores)
+    problems: tuple[FeetProblem, ...] = ()
+
+
+def solve_song(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart], Preset]) -> Iterator[Solved]:
+    """Charts of a song with the cheapest plays that keep pinned measures and `data.sme`.
+
+    What contradicts itself in them is not kept; it is in `problems`, of which the linter makes findings.
+    """
+    feet = SongFeet(song)
+    for first in range(0, len(charts), _AT_ONCE):
+        some = [(chart, preset_of(chart)) for chart in charts[first : first + _AT_ONCE]]
+        for (chart, preset), rows in zip(some, _rows(some), strict=True):
+            overrides, ignores, problems = feet.told(chart)
+            pad = load_pad(chart.steps_type)
+            play = None if pad is None or rows is None else solve.solve(rows, pad, preset, overrides)
+            yield Solved(song, chart, preset, play, pad, overrides, ignores, problems)
+
+
+def _rows(charts: Sequence[tuple[Chart, Preset]]) -> list[Rows | None]:
+    """The rows of charts, None for those without a pad; of those of one pad and timing they are prepared together."""
+    alike: dict[tuple[str, int, float], list[int]] = defaultdict(list)
+    for place, (chart, preset) in enumerate(charts):
+        alike[chart.steps_type, id(chart.timing), preset.roll_window].append(place)
+    found: list[Rows | None] = [None] * len(charts)
+    for (steps_type, _, window), places in alike.items():
+        pad = load_pad(steps_type)
+        if pad is not None:
+            rows = prepare_all([charts[place][0] for place in places], pad, window)
+            for place, one in zip(places, rows, strict=True):
+                found[place] = one
+    return found

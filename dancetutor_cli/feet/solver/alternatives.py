@@ -1,0 +1,304 @@
+"""Other ways to step a chart: the next best plays and what decides, and why a foot has to step twice in a row."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.overrides import Overrides
+from dancetutor_cli.feet.pads import Pad
+from dancetutor_cli.feet.play import Play, Rows, StepKind
+from dancetutor_cli.feet.preset import Preset
+from dancetutor_cli.feet.solver.engine import Engine, Layers, engine_for
+from dancetutor_cli.feet.solver.solve import forced_limbs, play_of
+from dancetutor_cli.feet.solver.store import ACTION, COST, FACTS, LIMBS, NEXT
+
+# The next best plays: the cheapest ways to step the rows that differ in at least one limb, and what decides.
+#
+# Each play found splits what is left: with the same limbs up to a row, and others there (Lawler's partition). The
+# cheapest rest of every state is known from one backward pass, so a split costs a look at one row.
+
+
+@dataclass(frozen=True, slots=True)
+class Alternative:
+    """A play, and how it differs from the cheapest.
+
+    play : without margins; extra : how much more it costs
+    rows : numbers of the rows that other limbs step
+    terms : cost term -> difference, for those that differ; the largest decide
+    """
+
+    play: Play
+    extra: int
+    rows: tuple[int, ...]
+    terms: dict[str, int]
+
+
+def alternatives(
+    rows: Rows, pad: Pad, preset: Preset, count: int, overrides: Overrides | None = None
+) -> tuple[Alternative, ...]:
+    """The `count` cheapest plays that differ from each other in who steps what, the cheapest first.
+
+    Fewer, if there are no more. The first one is what `solve` finds: it differs from nothing.
+    """
+    if not len(rows) or count < 1:
+        return ()
+    engine = engine_for(pad, preset)
+    layers = engine.layers(rows, forced_limbs(rows, overrides))
+    ways = _Ways(engine, layers)
+    paths = [path for path, _ in zip(ways.cheapest(), range(count), strict=False)]
+    plays = [play_of(rows, engine, engine.told(rows, engine.found(path))) for path in paths]
+    return tuple(_against(plays[0], play) for play in plays)
+
+
+def _against(best: Play, play: Play) -> Alternative:
+    difference = play.cost.sum(axis=0) - best.cost.sum(axis=0)
+    return Alternative(
+        play=play,
+        extra=play.total - best.total,
+        rows=tuple(np.flatnonzero((play.limb != best.limb).any(axis=1)).tolist()),
+        terms={name: int(d) for name, d in zip(play.terms, difference, strict=True) if d},
+    )
+
+
+_Reached = dict[int, tuple[int, tuple[int, int] | None]]  # state -> cost, and the state and move before it
+
+
+class _Ways:
+    """All ways through the rows, by cost. States, moves and actions are numbers of the engine's tables."""
+
+    def __init__(self, engine: Engine, layers: Layers) -> None:
+        self._layers = layers
+        t = engine.tables
+        self._next, self._cost, self._facts = (t.move[:, column].tolist() for column in (NEXT, COST, FACTS))
+        self._action, self._time = (t.wide[:, ACTION] & LIMBS).tolist(), t.timed_cost
+        self._known: dict[tuple[int, int, int], list[tuple[int, int]]] = {}
+        self._rest = self._cheapest_rest()
+
+    def cheapest(self) -> Iterator[list[int]]:
+        """The moves of each way, the cheapest first; ways with the same limbs come once.
+
+        A branch is a run of actions, and actions that must not follow it.
+        """
+        heap: list[tuple[int, int, tuple[int, ...], frozenset[int]]] = [(0, 0, (), frozenset())]
+        number = 0
+        while heap:
+            _, _, prefix, barred = heapq.heappop(heap)
+            path = self._best_of(prefix, barred)
+            yield path
+            for cost, others, but in self._splits([self._action[move] for move in path], len(prefix), barred):
+                number += 1
+                heapq.heappush(heap, (cost, number, others, but))
+
+    def _moves(self, row: int, state: int) -> list[tuple[int, int]]:
+        """Moves of a state in a row, and their costs."""
+        ms = self._layers.elapsed[row]
+        key = (self._layers.pattern[row], ms, state)
+        if key not in self._known:
+            self._known[key] = [
+                (move, self._cost[move] + int(self._time[ms, self._facts[move]]) - 1)
+                for move in self._layers.moves(row, state)
+            ]
+        return self._known[key]
+
+    def _cheapest_rest(self) -> list[dict[int, int]]:
+        """For each row, and after the last, what the rest costs from each state before it."""
+        rest: list[dict[int, int]] = [dict.fromkeys(self._layers.states[-1], 0)]
+        for row in range(len(self._layers.elapsed) - 1, -1, -1):
+            after = rest[-1]
+            rest.append(
+                {
+                    state: min(cost + after[self._next[move]] for move, cost in self._moves(row, state))
+                    for state in self._layers.states[row]
+                }
+            )
+        return rest[::-1]
+
+    def _step(self, row: int, reached: _Reached, action: int | None, barred: frozenset[int]) -> _Reached:
+        """What is reached by one row's action, or by any that is not barred."""
+        out: _Reached = {}
+        for state, (so_far, _) in reached.items():
+            for move, cost in self._moves(row, state):
+                ours = self._action[move]
+                if ours in barred or (action is not None and ours != action):
+                    continue
+                to = self._next[move]
+                if to not in out or so_far + cost < out[to][0]:
+                    out[to] = (so_far + cost, (state, move))
+        return out
+
+    def _splits(
+        self, actions: list[int], start: int, barred: frozenset[int]
+    ) -> Iterator[tuple[int, tuple[int, ...], frozenset[int]]]:
+        """Cost and branch of the cheapest ways that leave a way in each row from `start` on."""
+        reached: _Reached = {self._layers.states[0][0]: (0, None)}
+        for row, action in enumerate(actions):
+            if row >= start:
+                but = (barred if row == start else frozenset()) | {action}
+                others = self._step(row, reached, None, but)
+                costs = [cost + self._rest[row + 1][state] for state, (cost, _) in others.items()]
+                if costs:
+                    yield min(costs), tuple(actions[:row]), but
+            reached = self._step(row, reached, action, frozenset())
+
+    def _best_of(self, prefix: tuple[int, ...], barred: frozenset[int]) -> list[int]:
+        """Moves of the cheapest way of a branch."""
+        trail: list[_Reached] = [{self._layers.states[0][0]: (0, None)}]
+        for row, action in enumerate(prefix):
+            trail.append(self._step(row, trail[-1], action, frozenset()))
+        trail.append(self._step(len(prefix), trail[-1], None, barred))
+        rest = self._rest[len(prefix) + 1]
+        at = min(trail[-1], key=lambda state: trail[-1][state][0] + rest[state])
+        return [*_back(trail, at), *self._onwards(len(prefix) + 1, at)]
+
+    def _onwards(self, row: int, state: int) -> Iterator[int]:
+        """Moves of the cheapest rest."""
+        for at in range(row, len(self._layers.elapsed)):
+            rest = self._rest[at + 1]
+            move = min(
+                ((cost + rest[self._next[move]], move) for move, cost in self._moves(at, state)),
+                key=lambda found: found[0],
+            )[1]
+            yield move
+            state = self._next[move]
+
+
+def _back(trail: list[_Reached], state: int) -> list[int]:
+    """Moves along a trail to one of its last states."""
+    path = []
+    for reached in reversed(trail[1:]):
+        before = reached[state][1]
+        assert before is not None
+        state, move = before
+        path.append(move)
+    return path[::-1]
+
+
+# Why a foot has to step twice in a row: which hold, mine or jump forces it.
+#
+# A forced doublestep is forced by the hold of the other foot. For one that is not, the chart is solved again without
+# each of the holds, mines and jumps shortly before it: what makes the doublestep go away is to blame. Nothing is, if
+# the pattern of single steps itself asks for it.
+
+_ROWS_BEFORE = 16  # a cause is looked for in so many rows before the doublestep
+_ROWS_AFTER = 32  # and so many after it are solved along, so that the end of the excerpt decides nothing
+_HELD = np.zeros(len(StepKind), dtype=bool)
+_HELD[[StepKind.HOLD, StepKind.ROLL, StepKind.ROLL_TAP]] = True
+
+
+@dataclass(frozen=True, slots=True)
+class Blame:
+    """The cause of a doublestep.
+
+    row : of the doublestep; forced : whether the other foot holds at that moment
+    cause : "hold", "mine", "jump", or "pattern" if nothing but the single steps asks for it
+    cause_row, cause_column : where it is, -1 for a pattern; the column of a jump is that of its first step
+    """
+
+    row: int
+    forced: bool
+    cause: str
+    cause_row: int = -1
+    cause_column: int = -1
+
+
+def blame(play: Play, pad: Pad, preset: Preset) -> tuple[Blame, ...]:
+    """The causes of all doublesteps of a play, forced or not, in order of their rows."""
+    out = []
+    holds: dict[int, NDArray[np.int64]] = {}
+    engine = engine_for(pad, preset)
+    for row, names in enumerate(play.moves):
+        if "forced-doublestep" in names:
+            stepping = 0 if (play.limb[row] == Limb.LEFT_FOOT).any() else 1
+            other = 1 - stepping
+            for foot in range(2):
+                if foot not in holds:
+                    holds[foot] = np.flatnonzero(_HELD[play.rows.steps] & (play.limb == foot))
+            found = [_holder(row, holds[foot], len(pad)) for foot in (other, stepping)]  # or a bracket on its own hold
+            lasting = [one for one in found if _lasts(play.rows, one)]
+            out.append(lasting[0] if lasting else Blame(row, True, "pattern"))
+        elif "doublestep" in names:
+            out.append(_culprit(play, row, engine))
+    return tuple(out)
+
+
+def _holder(row: int, holds: NDArray[np.int64], columns: int) -> Blame:
+    """The last hold or roll before a row, of those of the foot that it reserves; holds : row * columns + column."""
+    before = int(holds.searchsorted(row * columns)) - 1
+    if before < 0:
+        return Blame(row, True, "pattern")
+    at = int(holds[before]) // columns
+    return Blame(row, True, "hold", at, int(holds[holds.searchsorted(at * columns)]) % columns)
+
+
+def _lasts(rows: Rows, held: Blame) -> bool:
+    """Whether a hold went on after the row before the doublestep; nobody knows it of a roll, which goes on by taps."""
+    if held.cause != "hold":
+        return False
+    end = int(rows.hold_end[held.cause_row, held.cause_column])
+    return end < 0 or end > int(rows.tick[max(held.row - 2, 0)])
+
+
+def _culprit(play: Play, row: int, engine: Engine) -> Blame:
+    suspects = _suspects(play.rows, row)
+    if not suspects:
+        return Blame(row, False, "pattern")  # whatever the feet do, nothing else is there
+    first, last = max(0, row - 2 * _ROWS_BEFORE), row + _ROWS_AFTER
+    here = _without(play.rows, first, last, row, [None, *suspects], engine) - 1
+    if here < 0:  # what is further back matters
+        here = _without(play.rows, 0, len(play.rows), row, suspects, engine)
+    if here == len(suspects):
+        return Blame(row, False, "pattern")
+    return Blame(row, False, suspects[here].cause, suspects[here].row, suspects[here].named)
+
+
+class _Suspect(NamedTuple):
+    """What might be to blame: a cell, and the column that is named, for all steps of a jump that of the first one."""
+
+    cause: str
+    row: int
+    column: int
+    named: int
+
+    def instead(self, step: int, end: int, mine: int) -> tuple[int, int, int]:
+        """What the cell is without it: no mine, a hold as a tap, a jump as one step of it."""
+        if self.cause == "mine":
+            return step, end, 0
+        return int(StepKind.TAP if self.cause == "hold" else StepKind.NONE), -1, mine
+
+
+def _suspects(rows: Rows, row: int) -> list[_Suspect]:
+    """What might be to blame for a doublestep, the nearest first."""
+    first = max(0, row - _ROWS_BEFORE + 1)
+    steps, mines = rows.steps[first : row + 1].tolist(), rows.mines[first : row + 1].tolist()
+    out = []
+    for at in range(row, first - 1, -1):
+        out += [_Suspect("mine", at, column, column) for column, mine in enumerate(mines[at - first]) if mine]
+        if at < row:
+            here = steps[at - first]
+            stepped = [column for column, step in enumerate(here) if step]
+            out += [_Suspect("hold", at, column, column) for column in stepped if here[column] == StepKind.HOLD]
+            if len(stepped) > 1:
+                out += [_Suspect("jump", at, column, stepped[0]) for column in stepped]
+    return out
+
+
+def _without(rows: Rows, first: int, last: int, row: int, suspects: Sequence[_Suspect | None], engine: Engine) -> int:
+    """Which of some suspects is the first without which no foot steps twice in a row, or their number.
+
+    Rows from `first` on and before `last` are solved, 16,000 times in a folder of 400 files. None stands for nobody.
+    """
+    part = Rows(*(getattr(rows, name)[first:last] for name in Rows.__slots__))
+    part = replace(part, steps=part.steps.copy(), hold_end=part.hold_end.copy(), mines=part.mines.copy())
+    edits = []
+    for one in suspects:
+        at, column = (one.row - first, one.column) if one else (0, 0)
+        there = int(part.steps[at, column]), int(part.hold_end[at, column]), int(part.mines[at, column])
+        edits.append((at, column, *(one.instead(*there) if one else there), row - first))
+    return engine.first_without(part, np.array(edits, dtype=np.int64))

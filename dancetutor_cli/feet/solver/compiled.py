@@ -1,0 +1,70 @@
+"""Whether the solver's kernels are compiled, and whether that is worth it; found out without importing numba.
+
+Compiling takes ten to twenty seconds, once. A chart or two are solved quicker by the kernels' own Python, which is the
+same code: only what is so much work that compiling pays, now or in runs like this one, is worth the wait.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+
+from dancetutor_cli.feet.preset import Preset
+from dancetutor_cli.run.kernels.store import Kept, kernel_folder
+from dancetutor_cli.run.trust import read_file, use_folder, write_file
+
+VARIABLE = "DANCETUTOR_KERNELS"  # "python" or "compiled"; what it says holds for worker processes, too
+_HERE = Path(__file__).parent
+_SOURCES = (
+    "itg_costs", "itg_moves", "kernel", "solvers", "state", "store", "tables", "thesis_moves",
+    "vocabulary",
+)  # fmt: skip
+_TINY = 12_000  # bytes of chart files that Python solves at once: nothing is ever compiled for these
+_SMALL = 120_000  # bytes of chart files that Python solves in less than half the time that compiling takes
+_OFTEN = 1_000_000  # bytes that Python has solved in all, after which compiling would have paid
+
+
+@cache
+def source_stamp() -> str:
+    """A digest of the kernels' code: what is compiled holds as long as this does, also in a newer version."""
+    return hashlib.sha256(b"".join((_HERE / f"{name}.py").read_bytes() for name in _SOURCES)).hexdigest()
+
+
+def is_compiled(preset: Preset) -> bool:
+    """Whether a solve with this preset need not compile first; True where that cannot be known."""
+    return Kept(_HERE / "solvers.py", f"solve_{preset.model}", source_stamp()).is_there()
+
+
+def is_interpreted() -> bool:
+    """Whether this process runs kernels as Python, as `interpret` has decided."""
+    return os.environ.get(VARIABLE) == "python"
+
+
+def interpret(presets: Iterable[Preset], size: Callable[[], int]) -> bool:
+    """Decide whether this process and its workers run kernels as Python; to be asked before one is imported.
+
+    size : tells the bytes of the note data to be solved; only asked for where nothing is compiled yet
+    """
+    if VARIABLE in os.environ:
+        return is_interpreted()
+    if all(is_compiled(preset) for preset in presets) or (much := size()) > _SMALL:
+        return False
+    if much <= _TINY:
+        os.environ[VARIABLE] = "python"
+        return True
+    note = kernel_folder().of_module(_HERE / "solvers.py") / "interpreted"
+    try:
+        before = int(read_file(note))
+    except (OSError, ValueError):
+        before = 0
+    if kernel_folder().kept and before > _OFTEN:
+        return False
+    with suppress(OSError):
+        if not use_folder(note.parent):
+            write_file(note, str(before + much).encode())
+    os.environ[VARIABLE] = "python"
+    return True

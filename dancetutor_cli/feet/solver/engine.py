@@ -1,0 +1,328 @@
+"""Holds the transition tables of one pad and preset, and runs the kernel over rows; costs as curves over time."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.pads import Pad
+from dancetutor_cli.feet.play import Rows
+from dancetutor_cli.feet.preset import Curve, Preset
+from dancetutor_cli.feet.solver import store
+from dancetutor_cli.feet.solver.jit import INTERPRETED
+from dancetutor_cli.feet.solver.solvers import TELL, solve_itg, solve_thesis
+from dancetutor_cli.feet.solver.store import Found, RowArrays, RowStates, empty_tables, grown
+from dancetutor_cli.feet.solver.tables import EARLIER, FORCED, MOST_MOVES, TAPS, Making, Rules, geometry, moves
+from dancetutor_cli.feet.solver.techniques import limits, long_ways
+from dancetutor_cli.feet.solver.thesis_moves import UNPLAYED
+from dancetutor_cli.feet.solver.vocabulary import MODELS, MOST_MS
+
+# Costs over time: a curve of a preset at every millisecond, in whole numbers, so that every machine finds the same.
+
+
+def curve_table(preset: Preset) -> NDArray[np.int64]:
+    """Every curve of a preset at every millisecond from 0 on, (curves, MOST_MS + 1)."""
+    every = np.arange(MOST_MS + 1)
+    return np.array([cost_at(curve, every) for _, curve in preset.curves], dtype=np.int64).reshape(-1, len(every))
+
+
+@lru_cache(maxsize=16)
+def whole_curve(curve: Curve) -> NDArray[np.int64]:
+    """What a curve costs at 0, 1, 2 ... up to its last knot, beyond which it is level."""
+    return cost_at(curve, np.arange(max(int(curve[-1][0]), 0) + 1))
+
+
+def cost_at(curve: Curve, milliseconds: NDArray[np.int64]) -> NDArray[np.int64]:
+    """What a curve costs at some times: straight between its knots, rounded down, and level beyond them."""
+    knots = np.array(curve, dtype=np.int64)
+    after = np.minimum(np.searchsorted(knots[:, 0], milliseconds, side="right").clip(min=1), len(knots) - 1)
+    before = np.maximum(after - 1, 0)
+    width = np.maximum(knots[after, 0] - knots[before, 0], 1)
+    way = (milliseconds - knots[before, 0]).clip(0, width)
+    return np.asarray(knots[before, 1] + (knots[after, 1] - knots[before, 1]) * way // width)
+
+
+# Holds the transition tables of one pad and preset, and runs the kernel over rows; tables grow when it asks for it.
+
+_SOLVERS = {"thesis": solve_thesis, "itg": solve_itg}
+_NODES_KEPT = 1 << 16  # room for the nodes of a usual chart, kept between charts
+_NODES_A_ROW = 5  # and one for each column: so many nodes a long chart is first given room for
+_MOST_MOVES_KEPT = 2_000_000  # then the tables start anew, so that a long run does not fill the memory
+_MOST_EDGES_KEPT = 2_000_000  # the same
+_MOST_ENGINES = 8
+
+
+class Engine:
+    """Transition tables of one pad and preset. `engine_for` shares them between charts; not for use by two threads."""
+
+    def __init__(self, pad: Pad, preset: Preset) -> None:
+        self.pad, self.preset = pad, preset
+        self.terms = MODELS[preset.model].terms
+        self._solve = _SOLVERS[preset.model]
+        rules = Rules(
+            list(MODELS).index(preset.model),
+            geometry(pad),
+            np.array([value for _, value in preset.weights], dtype=np.int64),
+            np.array([value for _, value in preset.switches], dtype=np.bool_),
+            curve_table(preset),
+            np.array(pad.home, dtype=np.int64),
+            limits(),
+            long_ways(pad),
+        )
+        self._making = Making(rules, moves(len(preset.weights)))
+        self.tables = empty_tables(len(preset.weights))
+        self.era = 0  # numbers of the tables hold as long as this stays
+        self._numbers: dict[tuple[int, int], int] = {}  # of patterns, as far as `pattern_with` has looked
+        self._node = np.zeros(_NODES_KEPT, dtype=np.int64)
+        self._untold = (
+            np.empty((0, 6), dtype=np.int64), np.zeros((1, len(self.terms)), dtype=np.int32),
+            np.empty(0, dtype=np.int32), np.empty((0, 2), dtype=np.int16), np.empty(0, dtype=np.float64),
+        )  # fmt: skip
+
+    def cheapest(
+        self, rows: Rows, forced: NDArray[np.int64] | None = None, margins: bool = False, *, told: bool = False
+    ) -> Found:
+        """The cheapest way through rows.
+
+        Parameters
+        ----------
+        forced : limb codes of overrides for each row (n,), 3 bits for each column, 0 none
+        margins : whether to look for the best way with other limbs, too
+        told : whether to tell what each row costs and what happens in it
+        """
+        arrays, (n, c) = _arrays(rows, forced), rows.steps.shape
+        found, at_once = self._found(n, c, margins=margins), told and _nodes_of(n, c) <= _NODES_KEPT
+        found = self._to_be_told(found) if at_once else found
+        self._run(arrays, found)  # of a long chart the nodes are gone before there is room for what it costs
+        return self.told(rows, found) if told and not at_once else found
+
+    def first_without(self, rows: Rows, edits: NDArray[np.int64]) -> int:
+        """Which of some edits is the first after which the cheapest way has no doublestep in a row; else their number.
+
+        rows : edited in place meanwhile; edits : int64 (k, 6), see `store.EDIT_ROW`; each is tried alone
+        """
+        self._start_anew_if_full()
+        (n, c), arrays = rows.steps.shape, _arrays(rows, None)
+        found, nodes = self._found(n, c, margins=False)._replace(edit=edits), self._room(n, c)
+        return self._until_done(0, arrays, nodes, found)
+
+    def events(self, path: NDArray[np.int32]) -> NDArray[np.int64]:
+        """What happens in the rows of a way given by its moves, (n,) bits of `EVENTS`."""
+        return np.asarray(self.tables.wide[path, store.EVENTS] & store.EVENT_BITS)
+
+    def solved(
+        self, rows: Rows, forced: NDArray[np.int64] | None = None
+    ) -> tuple[RowArrays, RowStates, NDArray[np.int32]]:
+        """All that the programme found out on the way through rows, to go on from it, and the moves of the way."""
+        arrays, found = _arrays(rows, forced), self._found(*rows.steps.shape, margins=False)
+        nodes = self._run(arrays, found)
+        return arrays, nodes._replace(node=nodes.node[: nodes.row[len(rows) + 1, store.FIRST]].copy()), found.move
+
+    def keeps(self, era: int) -> bool:
+        """Whether numbers of an era still hold, and there is room for more."""
+        return self.era == era and not self._is_full()
+
+    def pattern_with(self, pattern: int, column: int, to: int, forced: int) -> int:
+        """Number of the pattern that a row has if its tap in a column is in another one; forced : see `RowArrays`."""
+        word, more = self.tables.pattern[pattern].tolist()
+        word ^= 1 << TAPS + column | 1 << TAPS + to
+        more = more & ~((1 << EARLIER) - 1) | forced << FORCED
+        count, known = int(self.tables.counts[store.PATTERNS]), self._numbers
+        known |= {(a, b): len(known) + n for n, (a, b) in enumerate(self.tables.pattern[len(known) : count].tolist())}
+        if (word, more) in known:
+            return known[word, more]
+        if count + 1 > len(self.tables.pattern) or 2 * (count + 1) > len(self.tables.pattern_hash):
+            self.tables = grown(self.tables, store.MORE_PATTERNS, 1)
+        t = self.tables
+        t.pattern[count] = word, more
+        t.counts[store.PATTERNS] += 1
+        t.pattern_hash[:] = -1
+        store.fill_patterns(t.pattern, count + 1, t.pattern_hash)
+        return count
+
+    def room(self, rows: int, known: int) -> RowStates:
+        """Room for the nodes of a few rows, until the next are asked for; known : how many are to be filled in."""
+        return _nodes(rows, self._node if 2 * known <= _NODES_KEPT else np.empty(2 * known, dtype=np.int64))
+
+    def go_on(self, arrays: RowArrays, nodes: RowStates) -> None:
+        """Nodes of all rows but the first, for which they are filled in."""
+        n, c = arrays.steps.shape
+        self._until_done(1, arrays, nodes, self._found(n, c, margins=False))
+
+    def layers(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> Layers:
+        """Every state that the rows can end in, for a look at other ways than the cheapest."""
+        arrays = _arrays(rows, forced)
+        nodes = self._run(arrays, self._found(*rows.steps.shape, margins=False))
+        t = self.tables
+        numbers = [store.START, *t.transition[nodes.transition, store.TO_LAYER].tolist()]
+        spans = {number: t.layer[number].tolist() for number in set(numbers)}
+        states = {number: t.layer_state[first : first + size].tolist() for number, (first, size) in spans.items()}
+        return Layers([states[number] for number in numbers], arrays.elapsed.tolist(), arrays.pattern.tolist(), t.pair)
+
+    def found(self, path: list[int]) -> Found:
+        """A way through rows, given by its moves; without margins."""
+        move = np.array(path, dtype=np.int32)
+        columns, action = np.arange(len(self.pad)), self.tables.wide[move, store.ACTION][:, None]
+        code, nothing = action >> 3 * columns & 7, np.empty(0, dtype=np.int64)
+        return Found(
+            move,
+            np.where(code == UNPLAYED, Limb.UNPLAYED, code - 1).astype(np.int8),
+            (action >> store.PART_SHIFT + 2 * columns & 3).astype(np.uint8),
+            nothing,
+            nothing.astype(np.uint8),
+            *self._untold,
+        )
+
+    def told(self, rows: Rows, found: Found) -> Found:
+        """A way, and what it costs and what happens in each row."""
+        told = self._to_be_told(found)
+        self._call(_arrays(rows, None), TELL, _nodes(0, self._node), told)
+        return told
+
+    def _to_be_told(self, found: Found) -> Found:
+        n = len(found.move)
+        return found._replace(
+            events=np.empty(n, dtype=np.int32),
+            feet=np.empty((n, 2), dtype=np.int16),
+            facing=np.empty(n, dtype=np.float64),
+            cost=np.empty((n + 1, len(self.terms)), dtype=np.int32),
+        )
+
+    def _call(self, arrays: RowArrays, start: int, nodes: RowStates, found: Found) -> tuple[int, int]:
+        with _wrapping():
+            return self._solve(arrays, start, self.tables, nodes, self._making, found)
+
+    def _run(self, arrays: RowArrays, found: Found) -> RowStates:
+        self._start_anew_if_full()
+        nodes = self._room(*arrays.steps.shape)
+        self._until_done(0, arrays, nodes, found)
+        return nodes
+
+    def _start_anew_if_full(self) -> None:
+        if self._is_full():
+            self.tables = empty_tables(len(self.preset.weights))
+            self.era += 1
+            self._numbers.clear()
+
+    def _room(self, n: int, c: int) -> RowStates:
+        wanted = _nodes_of(n, c)
+        return _nodes(n, self._node if wanted <= _NODES_KEPT else np.empty(wanted, dtype=np.int64))
+
+    def _is_full(self) -> bool:
+        counts = self.tables.counts
+        facts = counts[store.FACTS_KNOWN] > store.FACTS_MASK // 2
+        return bool(facts or counts[store.MOVES] > _MOST_MOVES_KEPT or counts[store.EDGES] > _MOST_EDGES_KEPT)
+
+    def _found(self, n: int, c: int, *, margins: bool) -> Found:
+        return Found(
+            np.empty(n, dtype=np.int32),
+            np.empty((n, c), dtype=np.int8),
+            np.empty((n, c), dtype=np.uint8),
+            np.empty(n if margins else 0, dtype=np.int64),
+            np.empty(n if margins else 0, dtype=np.uint8),
+            *self._untold,
+        )
+
+    def _until_done(self, start: int, arrays: RowArrays, nodes: RowStates, found: Found) -> int:
+        """Run the kernel from a row, or an edit, on, and give it what it asks for; where it has ended."""
+        wanted = -1
+        while wanted != store.DONE:
+            start, wanted = self._call(arrays, start, nodes, found)
+            if wanted == store.MORE_NODES:
+                _make_room(nodes, 0 if len(found.edit) else start)
+            elif wanted == store.MORE_SCRATCH:
+                room = moves(len(self.preset.weights), 2 * len(self._making.moves.packed))
+                self._making = self._making._replace(moves=room)
+            elif wanted != store.DONE:
+                self.tables = grown(self.tables, wanted, len(arrays.tick))
+        return start
+
+
+def _wrapping() -> AbstractContextManager[object]:
+    """Whole numbers of hash functions wrap round, as compiled ones do; numpy would warn of it."""
+    return np.errstate(over="ignore") if INTERPRETED else nullcontext()
+
+
+def _arrays(rows: Rows, forced: NDArray[np.int64] | None) -> RowArrays:
+    n = len(rows)
+    return RowArrays(
+        rows.tick, rows.steps, rows.hold_end, rows.mines, rows.milliseconds,
+        np.zeros(0, dtype=np.int64) if forced is None else forced,
+        np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32), np.empty(rows.steps.shape[1], dtype=np.int64),
+        rows.second,
+    )  # fmt: skip
+
+
+def _nodes_of(rows: int, columns: int) -> int:
+    """How many words for nodes a chart is first given room for."""
+    return rows * (_NODES_A_ROW + columns) + 2 * MOST_MOVES
+
+
+def _nodes(rows: int, node: NDArray[np.int64]) -> RowStates:
+    return RowStates(np.empty((rows + 2, 2), dtype=np.int64), node, np.full(rows, -1, dtype=np.int32))
+
+
+def _make_room(nodes: RowStates, row: int) -> None:
+    """Room for as many nodes as the rest of the rows will need if it goes on like this, at most twice as many.
+
+    The array grows where it is, so that old and new are not in memory together.
+    """
+    used, room = int(nodes.row[row + 1, store.FIRST]), len(nodes.node)
+    like_this = used * len(nodes.transition) // max(row, 1) * 21 // 20 + 2 * MOST_MOVES
+    nodes.node.resize(min(max(like_this, room * 9 // 8 + MOST_MOVES), 2 * room), refcheck=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Layers:
+    """The states that n rows can end in, and the moves between them, by their numbers in the engine's tables.
+
+    states : n + 1 lists, before each row and after the last; elapsed, pattern : see `RowArrays`, as lists
+    pair : `Tables.pair`
+    """
+
+    states: list[list[int]]
+    elapsed: list[int]
+    pattern: list[int]
+    pair: NDArray[np.int64]
+
+    def moves(self, row: int, state: int) -> range:
+        """Numbers of the moves of a state in a row."""
+        key, size = self.pattern[row] << 32 | state, len(self.pair)
+        at = (key * store.GOLDEN & (1 << 64) - 1) >> 32 & size - 1
+        while self.pair[at, 0] != key:
+            at = at + 1 & size - 1
+        packed = int(self.pair[at, 1])
+        return range(packed >> 16, (packed >> 16) + (packed & 0xFFFF))
+
+
+@lru_cache(maxsize=_MOST_ENGINES)
+def _kept(steps_type: str, preset: Preset, shape: bytes) -> list[Engine]:
+    return []
+
+
+def engine_for(pad: Pad, preset: Preset) -> Engine:
+    """The engine of a pad and preset; the same one for the same again, so that its tables serve many charts."""
+    last = _last.get(id(pad))
+    if last is not None and last[0] is pad and last[1] is preset:
+        return last[2]
+    if len(_last) >= _MOST_ENGINES:
+        _last.clear()
+    _last[id(pad)] = pad, preset, _engine(pad, preset)
+    return _last[id(pad)][2]
+
+
+# The last engine of each pad, by the objects themselves: to hash a preset takes as long as a few hundred rows.
+_last: dict[int, tuple[Pad, Preset, Engine]] = {}
+
+
+def _engine(pad: Pad, preset: Preset) -> Engine:
+    shape = pad.panels.tobytes() + np.array([*pad.centre, *pad.home, pad.reach]).tobytes() + pad.arrows.tobytes()
+    kept = _kept(pad.steps_type, preset, shape)
+    if not kept:
+        kept.append(Engine(pad, preset))
+    return kept[0]

@@ -1,0 +1,323 @@
+"""The dynamic programme: the cheapest way through the rows, over the transition tables that `explore` fills.
+
+For each layer of states and pattern of a row the edges to the next layer are known, so the loop only adds costs. Costs
+of a row are kept relative to the row's cheapest state. Of several ways as cheap, the first in order of edges is taken.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dancetutor_cli.feet.solver import tables as columns
+from dancetutor_cli.feet.solver.itg_costs import charge_time
+from dancetutor_cli.feet.solver.itg_moves import start_itg
+from dancetutor_cli.feet.solver.jit import inner_kernel
+from dancetutor_cli.feet.solver.state import PLACE_BITS, name_neighbours
+from dancetutor_cli.feet.solver.store import (
+    ACTION,  # fmt: skip
+    BASE,  # fmt: skip
+    COST_SHIFT,  # fmt: skip
+    DONE,  # fmt: skip
+    EDGE_COST_SHIFT,  # fmt: skip
+    EDGE_COUNT,  # fmt: skip
+    EDGE_MASK,  # fmt: skip
+    EVENT_BITS,  # fmt: skip
+    EVENTS,  # fmt: skip
+    FACTS,  # fmt: skip
+    FACTS_KNOWN,  # fmt: skip
+    FACTS_MASK,  # fmt: skip
+    FACTS_SHIFT,  # fmt: skip
+    FIRST,  # fmt: skip
+    FIRST_EDGE,  # fmt: skip
+    LAST_BIT,  # fmt: skip
+    LAYER_SIZE,  # fmt: skip
+    LIMBS,  # fmt: skip
+    MORE_NODES,  # fmt: skip
+    MOVES,  # fmt: skip
+    NEXT,  # fmt: skip
+    PART_SHIFT,  # fmt: skip
+    PATTERNS,  # fmt: skip
+    PLACE_MASK,  # fmt: skip
+    START,  # fmt: skip
+    TERMS_SHIFT,  # fmt: skip
+    TO_LAYER,  # fmt: skip
+    UNEXPLORED,  # fmt: skip
+    UNKNOWN,  # fmt: skip
+    find,  # fmt: skip
+    number_of_layer,  # fmt: skip
+    number_of_state,  # fmt: skip
+    slot_of,  # fmt: skip
+)
+from dancetutor_cli.feet.solver.tables import ROLLS
+from dancetutor_cli.feet.solver.thesis_moves import start_thesis
+from dancetutor_cli.feet.solver.vocabulary import MOST_MS  # fmt: skip
+
+_PLACE = (1 << PLACE_BITS) - 1
+_NEVER = np.int64(1 << 60)
+# what a cell of `Rows.steps` is in a packed row, in its first column: with rolls as taps, and with taps of rolls apart
+_KINDS = np.array(
+    [[0, 1, 1, 1 << columns.HOLDS, 1, 1], [0, 1, 1, 1 << columns.HOLDS, 1, 1 << columns.ROLL_TAPS]], dtype=np.int64
+)
+
+
+@inner_kernel
+def _pattern(row, more, patterns, numbers, counts):  # type: ignore[no-untyped-def]
+    """Number of a packed row, which takes two words."""
+    at = slot_of(row ^ more * 31, len(numbers))
+    while numbers[at] >= 0:
+        number = numbers[at]
+        if patterns[number, 0] == row and patterns[number, 1] == more:
+            return number
+        at = (at + 1) & (len(numbers) - 1)
+    number = counts[PATTERNS]
+    counts[PATTERNS] += 1
+    numbers[at] = number
+    patterns[number, 0], patterns[number, 1] = row, more
+    return number
+
+
+@inner_kernel
+def _any_from(cells, least):  # type: ignore[no-untyped-def]
+    """Whether some cell (n, c) is at least so much."""
+    n, c = cells.shape
+    found = False
+    for r in range(n):
+        for p in range(c):
+            found |= cells[r, p] >= least
+    return found
+
+
+@inner_kernel
+def _rolls_on(steps, out):  # type: ignore[no-untyped-def]
+    """Bits of the columns in which a roll goes on after each row (n,): the next step there is a virtual tap."""
+    n, c = steps.shape
+    coming = 0
+    for r in range(n - 1, -1, -1):
+        out[r] = 0
+        for p in range(c):
+            if steps[r, p]:
+                if coming >> p & 1 and steps[r, p] >= 4:
+                    out[r] |= 1 << p
+                coming = coming & ~(1 << p) | (steps[r, p] == 5) << p
+
+
+@inner_kernel(inline="always")
+def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
+    """Pack every row and number it; False if the tables have no room for as many patterns."""
+    steps, hold_end, mines, tick, forced = rows.steps, rows.hold_end, rows.mines, rows.tick, rows.forced
+    patterns, numbers, counts = t.pattern, t.pattern_hash, t.counts
+    pattern, ends = rows.pattern, rows.ends
+    n, c = steps.shape
+    if counts[PATTERNS] + n > len(patterns) or 2 * (counts[PATTERNS] + n) > len(numbers):
+        return False
+    kinds = _KINDS[1 if keep_rolls else 0]
+    rolled, mined = keep_rolls and _any_from(steps, 4), _any_from(mines, 1)
+    if rolled:
+        _rolls_on(steps, pattern)  # each is read before the number of its row takes its place
+    for p in range(c):
+        ends[p] = -1
+    held, last, latest = 0, np.int64(-1), np.int64(-1)
+    for r in range(n):
+        row = np.int64(pattern[r]) << ROLLS if rolled else np.int64(0)
+        more = forced[r] if len(forced) else np.int64(0)
+        if keep_rolls and latest >= last >= 0:
+            for p in range(c):
+                if ends[p] == last:
+                    more |= np.int64(1) << p + columns.EARLIER
+        if held:
+            for p in range(c):
+                if held >> p & 1 and ends[p] <= tick[r]:
+                    row |= 1 << p + columns.RELEASED
+                    if keep_rolls and tick[r] - ends[p] <= columns.FRESH_TICKS:
+                        row |= 1 << columns.FRESH
+                    held &= ~(1 << p)
+        stepped = np.int64(0)
+        for p in range(c):
+            stepped |= kinds[steps[r, p]] << p
+        if stepped >> columns.HOLDS & (1 << columns.COLUMN_BITS) - 1:
+            for p in range(c):
+                if stepped >> columns.HOLDS + p & 1:
+                    ends[p] = hold_end[r, p]
+                    latest = max(latest, ends[p])
+                    held |= 1 << p
+        if mined:
+            for p in range(c):
+                row |= np.int64(mines[r, p]) << p + columns.MINES
+        if stepped:
+            last = tick[r]
+        row |= stepped
+        pattern[r] = _pattern(row, more, patterns, numbers, counts)
+    return True
+
+
+@inner_kernel
+def wait(rows):  # type: ignore[no-untyped-def]
+    """Milliseconds since the last row with steps, for every row."""
+    steps, milliseconds, elapsed = rows.steps, rows.milliseconds, rows.elapsed
+    waited = MOST_MS
+    for r in range(len(elapsed)):
+        waited = min(waited + milliseconds[r], MOST_MS)
+        elapsed[r] = waited
+        for p in range(steps.shape[1]):
+            if steps[r, p]:
+                waited = 0
+
+
+@inner_kernel
+def _time_cost(facts, ms, timed_key, timed_cost, curves, terms):  # type: ignore[no-untyped-def]
+    """1 + what facts cost after so many milliseconds; computed when first asked for. `terms` : scratch."""
+    timed_cost[ms, facts] = 1 + charge_time(timed_key[facts], ms, curves, terms) if facts else 1
+    return timed_cost[ms, facts]
+
+
+@inner_kernel(inline="always")
+def advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
+    """Costs of the nodes after row r and all after it. Returns the row reached and DONE, or what there is no room for.
+
+    Arrays are taken out of their tuples once, and tuples are not handed on inside the loop: each would be counted.
+    """
+    pattern, elapsed, first, node, chosen = rows.pattern, rows.elapsed, nodes.row, nodes.node, nodes.transition
+    layer, edge, transition = t.layer, t.edge, t.transition
+    keys, numbers, curves = t.transition_key, t.transition_hash, rules.curves
+    timed_key, timed_cost = t.timed_key, t.timed_cost
+    here = np.int64(transition[chosen[r - 1], TO_LAYER]) if r else np.int64(START)
+    for row in range(r, len(pattern)):
+        number = np.int64(chosen[row])
+        if number < 0:
+            number = find(here << 32 | pattern[row], keys, numbers)
+            if number < 0:
+                return row, UNEXPLORED
+            chosen[row] = number
+        here = np.int64(transition[number, TO_LAYER])
+        low, high, ms = first[row, FIRST], first[row + 1, FIRST], elapsed[row]
+        top = high + layer[here, LAYER_SIZE]
+        if top > len(node):
+            return row, MORE_NODES
+        u, best, cheapest = high, _NEVER, _NEVER
+        start = np.int64(transition[number, FIRST_EDGE])
+        for e in range(start, start + transition[number, EDGE_COUNT]):
+            packed = edge[e]
+            facts = packed >> FACTS_SHIFT & FACTS_MASK
+            price = timed_cost[ms, facts]
+            if price == UNKNOWN:
+                price = _time_cost(facts, ms, timed_key, timed_cost, curves, scratch)
+            cost = (node[low + (packed & PLACE_MASK)] >> COST_SHIFT) + (packed >> EDGE_COST_SHIFT) + price - 1
+            way = cost << COST_SHIFT | e
+            best = min(best, way)
+            node[u] = best
+            cheapest = min(cheapest, way)
+            last = packed >> LAST_BIT & 1
+            u += last
+            best = _NEVER if last else best
+        cheapest >>= COST_SHIFT
+        for u in range(high, top):
+            node[u] -= cheapest << COST_SHIFT
+        first[row + 2, FIRST] = top
+        first[row + 1, BASE] = first[row, BASE] + cheapest
+    return len(pattern), DONE
+
+
+@inner_kernel(inline="always")
+def trace(t, nodes, found):  # type: ignore[no-untyped-def]
+    """Walk back from the cheapest last node: the moves of the rows, and who presses what."""
+    first, node, edge, wide = nodes.row, nodes.node, t.edge, t.wide
+    limb, part, path = found.limb, found.part, found.move
+    n, c = limb.shape
+    at = first[n, FIRST]
+    while node[at] >> COST_SHIFT:
+        at += 1
+    for r in range(n - 1, -1, -1):
+        e = node[at] & EDGE_MASK
+        at = first[r, FIRST] + (edge[e] & PLACE_MASK)
+        path[r] = t.edge_move[e]
+        action = wide[path[r], ACTION]
+        for p in range(c):
+            code = action >> 3 * p & 7
+            limb[r, p] = -2 if code == 5 else code - 1
+            part[r, p] = action >> PART_SHIFT + 2 * p & 3
+
+
+@inner_kernel(inline="always")
+def tell(t, rows, rules, found):  # type: ignore[no-untyped-def]
+    """Cost of every row of a path by term, what happens in it, and how the dancer stands after it."""
+    moves, wide, terms, timed_key, keys, elapsed = t.move, t.wide, t.terms, t.timed_key, t.state_key, rows.elapsed
+    path, cost, events, feet, facing = found.move, found.cost, found.events, found.feet, found.facing
+    panels, angle = rules.geometry.panels, rules.geometry.angle
+    for r in range(len(path)):
+        move = path[r]
+        number = wide[move, EVENTS] >> TERMS_SHIFT
+        events[r] = wide[move, EVENTS] & EVENT_BITS
+        for term in range(cost.shape[1]):
+            cost[r, term] = terms[number, term] if term < terms.shape[1] else 0
+        if moves[move, FACTS]:
+            charge_time(timed_key[moves[move, FACTS]], elapsed[r], rules.curves, cost[r])
+        key = keys[moves[move, NEXT]]
+        left, right = key & _PLACE, key >> PLACE_BITS & _PLACE
+        feet[r, 0], feet[r, 1] = panels[left, 0, 0], panels[right, 1, 0]
+        by_right = angle[left, right] > 179.0 and key >> 2 * PLACE_BITS & 3 == 2  # reached by turning right
+        facing[r] = -180.0 if by_right else angle[left, right]
+    name_neighbours(rows, found, rules)
+
+
+@inner_kernel(inline="always")
+def margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
+    """For each row, how much more the best path costs in which it is stepped with other limbs; -1 if there is none.
+
+    Where that is 0, `ambiguity` says whether such a path may step all later rows with the same limbs, 1, or not, 2.
+    Returns what there is no room for, or DONE.
+    """
+    first, node, chosen, elapsed = nodes.row, nodes.node, nodes.transition, rows.elapsed
+    edge, edge_limbs, transition = t.edge, t.edge_limbs, t.transition
+    timed_cost, wide, path = t.timed_cost, t.wide, found.move
+    margin, ambiguity = found.margin, found.ambiguity
+    n = len(path)
+    least, end = first[n, BASE], first[n + 1, FIRST]
+    widest = np.int64(0)
+    for r in range(n + 1):
+        widest = max(widest, first[r + 1, FIRST] - first[r, FIRST])
+    if end + 4 * widest > len(node):
+        return MORE_NODES
+    after, before = node[end : end + widest], node[end + widest :]
+    same_after, same_before = node[end + 2 * widest :], node[end + 3 * widest :]  # with the same limbs
+    for v in range(widest):
+        after[v] = same_after[v] = 0
+    for r in range(n - 1, -1, -1):
+        low, base, ms = first[r, FIRST], first[r, BASE], elapsed[r]
+        ours, other, resolved = wide[path[r], ACTION] & LIMBS, _NEVER, _NEVER
+        for v in range(first[r + 1, FIRST] - low):
+            before[v] = same_before[v] = _NEVER
+        start = np.int64(transition[chosen[r], FIRST_EDGE])
+        u = 0
+        for e in range(start, start + transition[chosen[r], EDGE_COUNT]):
+            packed = edge[e]
+            v, price = packed & PLACE_MASK, (packed >> EDGE_COST_SHIFT) - 1
+            price += timed_cost[ms, packed >> FACTS_SHIFT & FACTS_MASK]
+            rest, same_rest = price + after[u], price + same_after[u]
+            before[v] = min(before[v], rest)
+            if edge_limbs[e] == ours:
+                same_before[v] = min(same_before[v], same_rest)
+            else:
+                reached = base + (node[low + v] >> COST_SHIFT)
+                other, resolved = min(other, reached + rest), min(resolved, reached + same_rest)
+            u += packed >> LAST_BIT & 1
+        margin[r] = other - least if other < _NEVER else -1
+        ambiguity[r] = 0 if other != least else 1 if resolved == least else 2
+        after, before, same_after, same_before = before, after, same_before, same_after
+    return DONE
+
+
+@inner_kernel
+def begin(rows, t, nodes, rules):  # type: ignore[no-untyped-def]
+    """Get rows ready for the programme; False if the tables have no room for as many patterns."""
+    if t.counts[MOVES] == 0:  # move 0, state 0 and layer 0 are the start of every play
+        key = start_thesis(rules.geometry) if rules.model == 0 else start_itg(rules.home)
+        t.move[0, NEXT] = number_of_state(key, t.state_key, t.state_hash, t.counts)
+        nodes.node[0] = START
+        number_of_layer(nodes.node, 1, t)
+        t.counts[MOVES] = t.counts[FACTS_KNOWN] = 1  # and facts 0 are none
+    if not _number_rows(rows, rules.model > 0, t):
+        return False
+    wait(rows)
+    nodes.row[0, FIRST], nodes.row[1, FIRST], nodes.row[0, BASE] = 0, 1, 0
+    nodes.node[0] = 0
+    return True

@@ -1,0 +1,352 @@
+"""The solver's kernels, one for each model, and the states that rows can end in, met without costs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+
+from dancetutor_cli.feet.solver import tables as columns
+from dancetutor_cli.feet.solver.itg_moves import expand_itg
+from dancetutor_cli.feet.solver.jit import inner_kernel, kernel
+from dancetutor_cli.feet.solver.kernel import advance, begin, margins, tell, trace, wait
+from dancetutor_cli.feet.solver.state import PLACE_BITS
+from dancetutor_cli.feet.solver.store import (
+    ACTION,  # fmt: skip
+    COST,  # fmt: skip
+    DONE,
+    EDGE_COST_SHIFT,  # fmt: skip
+    EDGE_COUNT,  # fmt: skip
+    EDGES,  # fmt: skip
+    EDIT_COLUMN,
+    EDIT_END,
+    EDIT_MINE,
+    EDIT_OF,
+    EDIT_ROW,
+    EDIT_STEP,
+    EVENTS,
+    FACTS,  # fmt: skip
+    FACTS_KNOWN,
+    FACTS_SHIFT,  # fmt: skip
+    FIRST_EDGE,  # fmt: skip
+    LAST_BIT,  # fmt: skip
+    LAYER_FIRST,  # fmt: skip
+    LAYER_SIZE,  # fmt: skip
+    LAYER_STATES,  # fmt: skip
+    LAYERS,  # fmt: skip
+    MET_IN,  # fmt: skip
+    MET_PLACE,  # fmt: skip
+    MORE_EDGES,  # fmt: skip
+    MORE_FACTS,  # fmt: skip
+    MORE_LAYER_STATES,  # fmt: skip
+    MORE_LAYERS,  # fmt: skip
+    MORE_MOVES,  # fmt: skip
+    MORE_PAIRS,  # fmt: skip
+    MORE_PATTERNS,
+    MORE_SCRATCH,  # fmt: skip
+    MORE_STATES,  # fmt: skip
+    MORE_TERMS,  # fmt: skip
+    MORE_TIMED,
+    MORE_TRANSITIONS,  # fmt: skip
+    MOVE_LIMBS,  # fmt: skip
+    MOVES,  # fmt: skip
+    NEXT,  # fmt: skip
+    PAIRS,  # fmt: skip
+    PART_SHIFT,  # fmt: skip
+    START,  # fmt: skip
+    STATES,  # fmt: skip
+    TERMS_KNOWN,  # fmt: skip
+    TERMS_SHIFT,  # fmt: skip
+    TO_LAYER,  # fmt: skip
+    TRANSITIONS,  # fmt: skip
+    TRIED,  # fmt: skip
+    UNEXPANDED,  # fmt: skip
+    UNEXPLORED,
+    find,  # fmt: skip
+    number_of_facts,  # fmt: skip
+    number_of_layer,  # fmt: skip
+    number_of_state,  # fmt: skip
+    number_of_terms,  # fmt: skip
+    slot_of,  # fmt: skip
+)
+from dancetutor_cli.feet.solver.tables import MOST_MOVES
+from dancetutor_cli.feet.solver.thesis_moves import expand_thesis
+from dancetutor_cli.feet.solver.vocabulary import EVENTS as NAMES
+
+# Meets the states that rows can end in, without costs, and keeps the moves between them for the dynamic programme.
+#
+# `solvers` has a kernel for each model, so that a command compiles and loads only the rules it needs.
+
+_RANK_SHIFT = 31  # of a state's rank in its layer; its number stands below
+_PLACE = (1 << PLACE_BITS) - 1
+_KEY, _ACTION, _PART, _TIMED, _EVENTS = columns.KEY, columns.ACTION, columns.PART, columns.TIMED, columns.EVENTS
+
+
+@inner_kernel(inline="always")
+def _keep(count, out, t):  # type: ignore[no-untyped-def]
+    """Number and keep the moves in `out`. Returns what `Tables.pair` holds: first move, number of moves."""
+    counts, moves, wide, facts = t.counts, t.move, t.wide, t.timed_key
+    keys, numbers, terms, terms_hash = t.state_key, t.state_hash, t.terms, t.terms_hash
+    given, given_terms = out.wide, out.terms
+    first = counts[MOVES]
+    for i in range(count):
+        move = first + i
+        moves[move, NEXT] = number_of_state(given[i, _KEY], keys, numbers, counts)
+        moves[move, FACTS] = number_of_facts(given[i, _TIMED], facts, t.timed_hash, counts)
+        wide[move, ACTION] = given[i, _ACTION] | given[i, _PART] << PART_SHIFT
+        number = number_of_terms(given_terms[i], terms, terms_hash, counts)
+        wide[move, EVENTS] = given[i, _EVENTS] | number << TERMS_SHIFT
+        cost = 0
+        for term in range(given_terms.shape[1]):
+            cost += given_terms[i, term]
+        moves[move, COST], moves[move, MOVE_LIMBS] = cost, given[i, _ACTION]
+    counts[MOVES] += count
+    return first << 16 | count
+
+
+@inner_kernel(inline="always")
+def _room(t):  # type: ignore[no-untyped-def]
+    """What has no room for the moves of one more pair, or DONE."""
+    counts = t.counts
+    if counts[STATES] + MOST_MOVES > len(t.state_key):
+        return MORE_STATES
+    if counts[MOVES] + MOST_MOVES > len(t.move):
+        return MORE_MOVES
+    if 2 * counts[PAIRS] >= len(t.pair):
+        return MORE_PAIRS
+    if counts[FACTS_KNOWN] + MOST_MOVES > len(t.timed_key):
+        return MORE_FACTS
+    if counts[TERMS_KNOWN] + MOST_MOVES > len(t.terms):
+        return MORE_TERMS
+    return DONE
+
+
+@inner_kernel
+def _slot_of_pair(key, pairs):  # type: ignore[no-untyped-def]
+    """Where a pair stands in its table, or would."""
+    at = slot_of(key, len(pairs))
+    while pairs[at, 0] >= 0 and pairs[at, 0] != key:
+        at = (at + 1) & (len(pairs) - 1)
+    return at
+
+
+@inner_kernel
+def _rank(key):  # type: ignore[no-untyped-def]
+    """Where a state (packed, int64) stands in its layer, above `_RANK_SHIFT`: of ways as cheap that meet again the one
+    from the first state is taken. As people choose: the left foot has stepped last, and stands further to the left.
+    """
+    left, right, rest = key & _PLACE, key >> PLACE_BITS & _PLACE, key >> 2 * PLACE_BITS
+    return ((rest >> 2 & 3) << 28 | left << 23 | (_PLACE - right) << 18 | rest) << _RANK_SHIFT
+
+
+@inner_kernel
+def _sort(values, count):  # type: ignore[no-untyped-def]
+    """Put the first `count` numbers in order (Shell's sort: a layer has ten of them, rarely hundreds)."""
+    gap = 1
+    while 9 * gap < count:
+        gap = 3 * gap + 1
+    while gap:
+        for i in range(gap, count):
+            value, k = values[i], i
+            while k >= gap and values[k - gap] > value:
+                values[k] = values[k - gap]
+                k -= gap
+            values[k] = value
+        gap //= 3
+
+
+@inner_kernel(inline="always")
+def _connect(key, total, found, out, t):  # type: ignore[no-untyped-def]
+    """Keep the transition to the states that the moves of a layer lead to. Returns what has no room, or DONE.
+
+    key : layer << 32 | pattern; total : moves of the layer
+    `out.packed` : of each state of the layer, what `Tables.pair` says; `out.reached` : rank and number of each of the
+        `found` next states, in any order; becomes scratch
+    """
+    counts, moves, edge, transition, met = t.counts, t.move, t.edge, t.transition, t.met
+    edge_move, edge_limbs, packed, reached = t.edge_move, t.edge_limbs, out.packed, out.reached
+    size = t.layer[key >> 32, LAYER_SIZE]
+    if counts[EDGES] + total > len(edge):
+        return MORE_EDGES
+    if counts[TRANSITIONS] >= len(transition):
+        return MORE_TRANSITIONS
+    if counts[LAYERS] >= len(t.layer):
+        return MORE_LAYERS
+    if counts[LAYER_STATES] + found > len(t.layer_state):
+        return MORE_LAYER_STATES
+    _sort(reached, found)
+    for i in range(found):
+        reached[i] &= (1 << _RANK_SHIFT) - 1
+        met[reached[i], MET_PLACE] = i
+    number = counts[TRANSITIONS]
+    transition[number, TO_LAYER] = number_of_layer(reached, found, t)
+    transition[number, FIRST_EDGE], transition[number, EDGE_COUNT] = counts[EDGES], total
+    for u in range(found):
+        reached[u] = 0
+    for i in range(size):
+        for move in range(packed[i] >> 16, (packed[i] >> 16) + (packed[i] & 0xFFFF)):
+            reached[met[moves[move, NEXT], MET_PLACE]] += 1
+    e = counts[EDGES]
+    for u in range(found):
+        reached[u], e = e, e + reached[u]
+    for i in range(size):
+        for move in range(packed[i] >> 16, (packed[i] >> 16) + (packed[i] & 0xFFFF)):
+            u = met[moves[move, NEXT], MET_PLACE]
+            at = reached[u]
+            reached[u] = at + 1
+            edge[at] = i | np.int64(moves[move, FACTS]) << FACTS_SHIFT | np.int64(moves[move, COST]) << EDGE_COST_SHIFT
+            edge_move[at], edge_limbs[at] = move, moves[move, MOVE_LIMBS]
+    for u in range(found):
+        edge[reached[u] - 1] |= 1 << LAST_BIT
+    t.transition_key[number] = key
+    t.transition_hash[~find(key, t.transition_key, t.transition_hash)] = number
+    counts[EDGES] = e
+    counts[TRANSITIONS] += 1
+    return DONE
+
+
+expand: Any = None  # a global of each explorer's own; see `explorer`
+
+
+def explorer(rules: Any) -> Any:
+    """An explorer for the rules of one model, whose `expand` is a global: what is compiled finds kernels there."""
+
+    def explore(row, pattern, chosen, t, rules, out):  # type: ignore[no-untyped-def]
+        """From `row` to the last row: meet every state, keep all moves. Returns what has no room.
+
+        chosen : the number of each row's transition, known up to `row`, is written here
+        """
+        counts, pairs, keys, met, moves, states = t.counts, t.pair, t.state_key, t.met, t.move, t.layer_state
+        packed, reached = out.packed, out.reached
+        layer = np.int64(t.transition[chosen[row - 1], TO_LAYER]) if row else np.int64(START)
+        for r in range(row, len(pattern)):
+            number = find(layer << 32 | pattern[r], t.transition_key, t.transition_hash)
+            if number >= 0:
+                chosen[r] = number
+                layer = np.int64(t.transition[number, TO_LAYER])
+                continue
+            counts[TRIED] += 1
+            tried = counts[TRIED]
+            first, size, known = t.layer[layer, LAYER_FIRST], t.layer[layer, LAYER_SIZE], True
+            if size > len(packed):
+                return MORE_SCRATCH
+            for i in range(size):  # a short loop, so that the processor waits for many states' pairs at once
+                packed[i] = pairs[_slot_of_pair(np.int64(pattern[r]) << 32 | states[first + i], pairs), 1]
+                known &= packed[i] != UNEXPANDED
+            for i in range(0 if known else size):
+                if packed[i] != UNEXPANDED:
+                    continue
+                wanted = _room(t)
+                if wanted != DONE:
+                    return wanted
+                key = np.int64(pattern[r]) << 32 | states[first + i]
+                at = _slot_of_pair(key, pairs)
+                row, more = t.pattern[pattern[r], 0], t.pattern[pattern[r], 1]
+                pairs[at, 0] = key
+                pairs[at, 1] = packed[i] = _keep(expand(keys[states[first + i]], row, more, rules, out), out, t)
+                counts[PAIRS] += 1
+            total = found = np.int64(0)
+            for i in range(size):
+                total += packed[i] & 0xFFFF
+            if total > len(reached):
+                return MORE_SCRATCH
+            for i in range(size):
+                for move in range(packed[i] >> 16, (packed[i] >> 16) + (packed[i] & 0xFFFF)):
+                    state = np.int64(moves[move, NEXT])
+                    if met[state, MET_IN] != tried:
+                        met[state, MET_IN] = tried
+                        reached[found] = _rank(keys[state]) | state
+                        found += 1
+            wanted = _connect(layer << 32 | pattern[r], total, found, out, t)
+            if wanted != DONE:
+                return wanted
+            chosen[r] = counts[TRANSITIONS] - 1
+            layer = np.int64(t.transition[chosen[r], TO_LAYER])
+        return DONE
+
+    return inner_kernel(FunctionType(explore.__code__, {**globals(), "expand": rules}, "explore"))
+
+
+# The solver's kernels, one for each model: each finds the cheapest way through rows, and what it needs for that.
+
+TELL = -1  # instead of a row to start from
+DOUBLESTEP = 1 << NAMES.index("doublestep")
+explore: Any = None  # globals of each model's own; see `_way_finder` and `_solver`
+find_way: Any = None
+
+
+def _way_finder(rules_of_model: Any) -> Any:
+    """What finds the cheapest way by the rules of one model."""
+
+    def find_way(rows, start_row, t, nodes, making, found):  # type: ignore[no-untyped-def]
+        """Go on from `start_row` to the end of the rows. Returns the row reached and what has no room, or DONE."""
+        rules, out = making.rules, making.moves
+        if start_row == 0 and not begin(rows, t, nodes, rules):
+            return start_row, MORE_PATTERNS
+        row, wanted = start_row, UNEXPLORED
+        while wanted == UNEXPLORED:
+            if t.counts[FACTS_KNOWN] > t.timed_cost.shape[1]:
+                return row, MORE_TIMED
+            row, wanted = advance(row, rows, t, nodes, rules, found.cost[len(found.cost) - 1])
+            if wanted == UNEXPLORED:
+                lacking = explore(row, rows.pattern, nodes.transition, t, rules, out)
+                if lacking != DONE:
+                    return row, lacking
+        if wanted == DONE:
+            trace(t, nodes, found)
+        return row, wanted
+
+    return inner_kernel(FunctionType(find_way.__code__, {**globals(), "explore": explorer(rules_of_model)}, "find_way"))
+
+
+@inner_kernel
+def _exchange(rows, edit):  # type: ignore[no-untyped-def]
+    """Put what an edit says into its cell, and what was there into the edit."""
+    r, p = edit[EDIT_ROW], edit[EDIT_COLUMN]
+    step, end, mine = rows.steps[r, p], rows.hold_end[r, p], rows.mines[r, p]
+    rows.steps[r, p], rows.hold_end[r, p], rows.mines[r, p] = edit[EDIT_STEP], edit[EDIT_END], edit[EDIT_MINE] != 0
+    edit[EDIT_STEP], edit[EDIT_END], edit[EDIT_MINE] = step, end, mine
+
+
+def _solver(name: str, rules_of_model: Any) -> Any:
+    """A solver for the rules of one model. It does all in one call, which takes as long as some hundred rows."""
+
+    def solve(rows, start, t, nodes, making, found):  # type: ignore[no-untyped-def]
+        """Go on from the row `start` to the end of the rows. Returns the row reached and what has no room, or DONE.
+
+        From TELL on: write what the rows of `found.move` cost, and what happens in them, into `found`.
+        With edits: each is tried alone, from the `start`-th on; returns the first after which no doublestep is left in
+        its row, or their number.
+        """
+        if len(found.edit):
+            for number in range(start, len(found.edit)):
+                edit = found.edit[number]
+                nodes.transition[:] = -1
+                _exchange(rows, edit)
+                _, wanted = find_way(rows, np.int64(0), t, nodes, making, found)
+                _exchange(rows, edit)
+                if wanted != DONE or not t.wide[found.move[edit[EDIT_OF]], EVENTS] & DOUBLESTEP:
+                    return number, wanted
+            return len(found.edit), DONE
+        if start == TELL:
+            wait(rows)
+        else:
+            row, wanted = find_way(rows, start, t, nodes, making, found)
+            if wanted == DONE and len(found.margin):
+                wanted = margins(rows, t, nodes, found)
+            if wanted != DONE:
+                return row, wanted
+        if len(found.events):
+            tell(t, rows, making.rules, found)
+        return start, DONE
+
+    own = FunctionType(solve.__code__, {**globals(), "find_way": _way_finder(rules_of_model)}, name)
+    own.__qualname__ = name
+    return kernel(own, results=2)
+
+
+Solver = Callable[..., tuple[int, int]]
+solve_thesis: Solver = _solver("solve_thesis", expand_thesis)
+solve_itg: Solver = _solver("solve_itg", expand_itg)

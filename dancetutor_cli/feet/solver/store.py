@@ -1,0 +1,390 @@
+"""Where the solver keeps what it has met, by number: states, row patterns, moves, layers, nodes; room for more."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.feet.solver.jit import inner_kernel, kernel
+from dancetutor_cli.feet.solver.tables import MOST_MOVES
+from dancetutor_cli.feet.solver.vocabulary import MOST_MS as MOST_MS
+
+# Where the solver keeps what it has met: states, row patterns, moves and layers by number, and nodes. Kernel code.
+#
+# A layer is all states that a row can end in. Which they are depends only on the layer before and on the row's pattern,
+# so charts share layers, and what leads from one to the next: a transition, of one edge for each state and move.
+
+# places in `counts`
+(
+    STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN, TERMS_KNOWN, LAYERS, LAYER_STATES, TRANSITIONS, EDGES, TRIED,
+) = range(11)  # fmt: skip
+NEXT, COST, FACTS, MOVE_LIMBS = range(4)  # columns of `Tables.move`
+ACTION, EVENTS = range(2)  # columns of `Tables.wide`
+LAYER_FIRST, LAYER_SIZE = range(2)  # columns of `Tables.layer`
+TO_LAYER, FIRST_EDGE, EDGE_COUNT = range(3)  # columns of `Tables.transition`
+MET_IN, MET_PLACE = range(2)  # columns of `Tables.met`
+# in `Tables.edge`, from the lowest bit: place of its state in the layer before; whether it is the last that leads to
+# its state in the layer after; number of its facts; its cost without time
+PLACE_MASK = (1 << 18) - 1
+LAST_BIT, FACTS_SHIFT, EDGE_COST_SHIFT = 18, 19, 35
+FACTS_MASK = (1 << EDGE_COST_SHIFT - FACTS_SHIFT) - 1
+COST_SHIFT = 32  # in `RowStates.node`: an edge below, the cost from here on; the least is the cheapest, then the first
+EDGE_MASK = (1 << COST_SHIFT) - 1
+FIRST, BASE = range(2)  # columns of `RowStates.row`
+# columns of `Found.edit`: a cell, what shall be in it instead, and the row in which a doublestep is looked for
+EDIT_ROW, EDIT_COLUMN, EDIT_STEP, EDIT_END, EDIT_MINE, EDIT_OF = range(6)
+START = 0  # number of the layer and the state before the first row
+# what a kernel wants before it can go on
+(
+    DONE, MORE_STATES, MORE_PATTERNS, MORE_MOVES, MORE_PAIRS, MORE_NODES, MORE_FACTS, MORE_TERMS, MORE_TIMED,
+    MORE_LAYERS, MORE_LAYER_STATES, MORE_TRANSITIONS, MORE_EDGES, MORE_SCRATCH, UNEXPLORED,
+) = range(15)  # fmt: skip
+UNEXPANDED = -1  # in `Tables.pair`, where no pair stands
+UNKNOWN = 0  # in `Tables.timed_cost`, so that most of it is never touched
+PART_SHIFT = 32  # in `ACTION`: 3 bits for each column below, 2 bits for each column from here on
+LIMBS = (1 << PART_SHIFT) - 1
+TERMS_SHIFT = 32  # in `EVENTS`: bits of events below, number of the costs by term from here on
+EVENT_BITS = (1 << TERMS_SHIFT) - 1
+GOLDEN = 0x9E3779B97F4A7C15  # spreads numbers over a hash table
+
+
+class Tables(NamedTuple):
+    """All states, row patterns and moves met so far with one pad and preset; they outlive a chart.
+
+    counts : int64, how much of each is used; and how many transitions have been tried
+    state_key : int64; state_hash : int32, number of the state or -1; lengths of hash tables are powers of two
+    met : int32 (, 2), by state, scratch: the last transition, of those tried, that led there; its place among those
+    pattern : int64 (, 2), packed row and overrides; pattern_hash : int32
+    pair : int64 (, 2), pattern << 32 | state or -1, and first move << 16 | number of moves
+    move : int32 (, 4), state it leads to, cost without time, number of its facts about time, limb codes
+    wide : int64 (, 2), limb codes with parts above `PART_SHIFT`; events with a number of `terms` above `TERMS_SHIFT`
+    terms : int32 (, w), cost by weight: few, which many moves share; terms_hash : int32
+    timed_key : int64, packed facts; timed_hash : int32
+    timed_cost : int32 (MOST_MS + 1, ), 1 + cost of facts by number, UNKNOWN where not computed yet
+    layer : int32 (, 2), where its states start in `layer_state`, and their number; in the order of `explore`
+    layer_key : int64, hash of the states; layer_hash : int32
+    transition : int32 (, 3), layer it leads to, first edge, number of edges
+    transition_key : int64, layer << 32 | pattern; transition_hash : int32
+    edge : int64, from where, facts and cost, see `PLACE_MASK`; edges are in the order of the states that they lead to,
+        those to one state in the order of those they come from; edge_move : int32, its move; edge_limbs : int32, limb
+        codes of its move
+    """
+
+    counts: NDArray[np.int64]
+    state_key: NDArray[np.int64]
+    state_hash: NDArray[np.int32]
+    met: NDArray[np.int32]
+    pattern: NDArray[np.int64]
+    pattern_hash: NDArray[np.int32]
+    pair: NDArray[np.int64]
+    move: NDArray[np.int32]
+    wide: NDArray[np.int64]
+    terms: NDArray[np.int32]
+    terms_hash: NDArray[np.int32]
+    timed_key: NDArray[np.int64]
+    timed_hash: NDArray[np.int32]
+    timed_cost: NDArray[np.int32]
+    layer: NDArray[np.int32]
+    layer_state: NDArray[np.int32]
+    layer_key: NDArray[np.int64]
+    layer_hash: NDArray[np.int32]
+    transition: NDArray[np.int32]
+    transition_key: NDArray[np.int64]
+    transition_hash: NDArray[np.int32]
+    edge: NDArray[np.int64]
+    edge_move: NDArray[np.int32]
+    edge_limbs: NDArray[np.int32]
+
+
+class RowStates(NamedTuple):
+    """The states each row can end in. Row r has nodes row[r + 1, FIRST] to row[r + 2, FIRST]; before it is the start.
+
+    row : int64 (n + 2, 2), first node, and cost of the cheapest node before each row
+    node : int64, how much dearer a node is than the cheapest of its row, and the edge that led there; see `COST_SHIFT`
+    transition : int32 (n,), number of the transition that each row is, -1 as long as nobody has looked for it
+    """
+
+    row: NDArray[np.int64]
+    node: NDArray[np.int64]
+    transition: NDArray[np.int32]
+
+
+class RowArrays(NamedTuple):
+    """`Rows` for the kernels, n rows and c columns, and what is made of them.
+
+    forced : int64 (n,), limb codes that overrides ask for, 3 bits for each column, or of length 0 if there are none
+    pattern : int32 (n,), number of the row's pattern
+    elapsed : int32 (n,), milliseconds since the last row with steps, at most MOST_MS
+    ends : int64 (c,), scratch: when the last hold of each column ends; second : float64 (n,)
+    """
+
+    tick: NDArray[np.int64]
+    steps: NDArray[np.uint8]
+    hold_end: NDArray[np.int64]
+    mines: NDArray[np.bool_]
+    milliseconds: NDArray[np.int64]
+    forced: NDArray[np.int64]
+    pattern: NDArray[np.int32]
+    elapsed: NDArray[np.int32]
+    ends: NDArray[np.int64]
+    second: NDArray[np.float64]
+
+
+class Found(NamedTuple):
+    """The cheapest way, to be filled in. move : int32 (n,); limb : int8, part : uint8 (n, c)
+
+    margin : int64, -1 no other way; ambiguity : uint8, see `Play`; (n,), or of length 0 if nobody wants to know
+    cost : int32 (n + 1, t), of each row by term; the last is scratch, and the only one where nobody wants to know
+    edit : int64 (k, 6), see `EDIT_ROW`; none but to try what the rows are without something
+    events : int32 (n,), bits of `EVENTS`; feet : int16 (n, 2), facing : float64 (n,), see `Play`; written with the cost
+    """
+
+    move: NDArray[np.int32]
+    limb: NDArray[np.int8]
+    part: NDArray[np.uint8]
+    margin: NDArray[np.int64]
+    ambiguity: NDArray[np.uint8]
+    edit: NDArray[np.int64]
+    cost: NDArray[np.int32]
+    events: NDArray[np.int32]
+    feet: NDArray[np.int16]
+    facing: NDArray[np.float64]
+
+
+@inner_kernel
+def slot_of(value, size):  # type: ignore[no-untyped-def]
+    """Where the search for a number in a hash table of a power of two starts."""
+    return np.int64((np.uint64(value) * np.uint64(GOLDEN)) >> np.uint64(32)) & (size - 1)
+
+
+@inner_kernel
+def find(key, keys, numbers):  # type: ignore[no-untyped-def]
+    """Number of a key; if it is not known, ~ the slot for it."""
+    at = slot_of(key, len(numbers))
+    while numbers[at] >= 0:
+        if keys[numbers[at]] == key:
+            return np.int64(numbers[at])
+        at = (at + 1) & (len(numbers) - 1)
+    return ~at
+
+
+@inner_kernel
+def number_of_state(key, keys, numbers, counts):  # type: ignore[no-untyped-def]
+    """Number of a packed state; a new one is entered."""
+    at = slot_of(key, len(numbers))
+    while numbers[at] >= 0:
+        if keys[numbers[at]] == key:
+            return np.int64(numbers[at])
+        at = (at + 1) & (len(numbers) - 1)
+    number = counts[STATES]
+    counts[STATES] += 1
+    numbers[at] = number
+    keys[number] = key
+    return number
+
+
+@inner_kernel
+def number_of_facts(facts, known, numbers, counts):  # type: ignore[no-untyped-def]
+    """Number of packed facts about time; new ones are entered. Facts 0 are number 0."""
+    if facts == 0:
+        return np.int64(0)
+    at = slot_of(facts, len(numbers))
+    while numbers[at] >= 0:
+        if known[numbers[at]] == facts:
+            return np.int64(numbers[at])
+        at = (at + 1) & (len(numbers) - 1)
+    number = counts[FACTS_KNOWN]
+    counts[FACTS_KNOWN] += 1
+    numbers[at] = number
+    known[number] = facts
+    return number
+
+
+@inner_kernel
+def _mixed(terms):  # type: ignore[no-untyped-def]
+    """One number from the costs by term. Products do not wait for each other: this is asked for every move."""
+    mixed, factor = np.int64(0), np.int64(1000003)
+    for term in range(len(terms)):
+        mixed += terms[term] * factor
+        factor += 2097593
+    return mixed
+
+
+@inner_kernel
+def number_of_terms(terms, known, numbers, counts):  # type: ignore[no-untyped-def]
+    """Number of costs by term (t,); new ones are entered."""
+    at = slot_of(_mixed(terms), len(numbers))
+    while numbers[at] >= 0:
+        number = numbers[at]
+        term = 0
+        while term < len(terms) and known[number, term] == terms[term]:
+            term += 1
+        if term == len(terms):
+            return np.int64(number)
+        at = (at + 1) & (len(numbers) - 1)
+    number = counts[TERMS_KNOWN]
+    counts[TERMS_KNOWN] += 1
+    numbers[at] = number
+    for term in range(len(terms)):
+        known[number, term] = terms[term]
+    return number
+
+
+@inner_kernel
+def number_of_layer(states, count, t):  # type: ignore[no-untyped-def]
+    """Number of the layer of the first `count` of some states in order; a new one is entered."""
+    layer, kept, keys, numbers, counts = t.layer, t.layer_state, t.layer_key, t.layer_hash, t.counts
+    mixed = np.int64(count)
+    for i in range(count):
+        mixed = mixed * 1000003 + states[i]
+    at = slot_of(mixed, len(numbers))
+    while numbers[at] >= 0:
+        number = numbers[at]
+        if keys[number] == mixed and layer[number, LAYER_SIZE] == count:
+            first, i = layer[number, LAYER_FIRST], 0
+            while i < count and kept[first + i] == states[i]:
+                i += 1
+            if i == count:
+                return np.int64(number)
+        at = (at + 1) & (len(numbers) - 1)
+    number, first = counts[LAYERS], counts[LAYER_STATES]
+    counts[LAYERS] += 1
+    counts[LAYER_STATES] += count
+    numbers[at] = number
+    keys[number], layer[number, LAYER_FIRST], layer[number, LAYER_SIZE] = mixed, first, count
+    for i in range(count):
+        kept[first + i] = states[i]
+    return np.int64(number)
+
+
+@kernel
+def fill_numbers(keys, count, table):  # type: ignore[no-untyped-def]
+    """Enter the first `count` keys into an empty hash table of their numbers."""
+    for number in range(count):
+        at = slot_of(keys[number], len(table))
+        while table[at] >= 0:
+            at = (at + 1) & (len(table) - 1)
+        table[at] = number
+
+
+@kernel
+def fill_patterns(patterns, count, table):  # type: ignore[no-untyped-def]
+    """The same for row patterns."""
+    for number in range(count):
+        at = slot_of(patterns[number, 0] ^ patterns[number, 1] * 31, len(table))
+        while table[at] >= 0:
+            at = (at + 1) & (len(table) - 1)
+        table[at] = number
+
+
+@kernel
+def fill_terms(terms, count, table):  # type: ignore[no-untyped-def]
+    """The same for costs by term."""
+    for number in range(count):
+        at = slot_of(_mixed(terms[number]), len(table))
+        while table[at] >= 0:
+            at = (at + 1) & (len(table) - 1)
+        table[at] = number
+
+
+@kernel
+def fill_pairs(old, new):  # type: ignore[no-untyped-def]
+    """Move all pairs into a larger empty table."""
+    for i in range(len(old)):
+        if old[i, 0] < 0:
+            continue
+        at = slot_of(old[i, 0], len(new))
+        while new[at, 0] >= 0:
+            at = (at + 1) & (len(new) - 1)
+        new[at, 0], new[at, 1] = old[i, 0], old[i, 1]
+
+
+# Room in the solver's tables: what they start with, and more of it where a kernel asks for that.
+
+
+def empty_tables(weights: int) -> Tables:
+    """Room for what a few hundred charts need: what is not touched takes no memory, and to grow copies all there is."""
+    states, patterns, moves, pairs, costs, layers = 1 << 14, 1 << 12, 1 << 18, 1 << 18, 1 << 13, 1 << 15
+    edges, facts = 1 << 21, 1 << 9
+    whole, small = np.int64, np.int32
+    return Tables(
+        counts=np.zeros(11, dtype=whole),
+        state_key=np.zeros(states, dtype=whole),
+        state_hash=np.full(2 * states, -1, dtype=small),
+        met=np.zeros((states, 2), dtype=small),
+        pattern=np.zeros((patterns, 2), dtype=whole),
+        pattern_hash=np.full(4 * patterns, -1, dtype=small),
+        pair=np.full((pairs, 2), -1, dtype=whole),
+        move=np.zeros((moves, 4), dtype=small),
+        wide=np.zeros((moves, 2), dtype=whole),
+        terms=np.zeros((costs, weights), dtype=small),
+        terms_hash=np.full(4 * costs, -1, dtype=small),
+        timed_key=np.zeros(2 * MOST_MOVES, dtype=whole),
+        timed_hash=np.full(1 << 15, -1, dtype=small),
+        timed_cost=np.zeros((MOST_MS + 1, facts), dtype=small),
+        layer=np.zeros((layers, 2), dtype=small),
+        layer_state=np.zeros(16 * layers, dtype=small),
+        layer_key=np.zeros(layers, dtype=whole),
+        layer_hash=np.full(2 * layers, -1, dtype=small),
+        transition=np.zeros((2 * layers, 3), dtype=small),
+        transition_key=np.zeros(2 * layers, dtype=whole),
+        transition_hash=np.full(4 * layers, -1, dtype=small),
+        edge=np.zeros(edges, dtype=whole),
+        edge_move=np.zeros(edges, dtype=small),
+        edge_limbs=np.zeros(edges, dtype=small),
+    )
+
+
+def grown(t: Tables, wanted: int, rows: int) -> Tables:
+    """The tables with more room for what is wanted."""
+    if wanted == MORE_STATES:
+        table = np.full(2 * len(t.state_hash), -1, dtype=np.int32)
+        fill_numbers(t.state_key, t.counts[STATES], table)
+        met = np.zeros((2 * len(t.met), 2), dtype=np.int32)
+        return t._replace(state_key=_longer(t.state_key), state_hash=table, met=met)
+    if wanted == MORE_PATTERNS:
+        least = 1 << int(len(t.pattern) + rows).bit_length()
+        table = np.full(4 * least, -1, dtype=np.int32)
+        fill_patterns(t.pattern, t.counts[PATTERNS], table)
+        return t._replace(pattern=_longer(t.pattern, least), pattern_hash=table)
+    if wanted == MORE_PAIRS:
+        pair = np.full((2 * len(t.pair), 2), -1, dtype=np.int64)
+        fill_pairs(t.pair, pair)
+        return t._replace(pair=pair)
+    if wanted == MORE_TERMS:
+        table = np.full(2 * len(t.terms_hash), -1, dtype=np.int32)
+        fill_terms(t.terms, t.counts[TERMS_KNOWN], table)
+        return t._replace(terms=_longer(t.terms), terms_hash=table)
+    if wanted == MORE_FACTS:
+        table = np.full(2 * len(t.timed_hash), -1, dtype=np.int32)
+        fill_numbers(t.timed_key, t.counts[FACTS_KNOWN], table)
+        return t._replace(timed_key=_longer(t.timed_key), timed_hash=table)
+    if wanted == MORE_TIMED:
+        cost = np.zeros((MOST_MS + 1, 2 * int(t.counts[FACTS_KNOWN])), dtype=np.int32)
+        known = np.flatnonzero(t.timed_cost.any(axis=1))
+        cost[known, : t.timed_cost.shape[1]] = t.timed_cost[known]
+        return t._replace(timed_cost=cost)
+    if wanted == MORE_LAYERS:
+        table = np.full(2 * len(t.layer_hash), -1, dtype=np.int32)
+        fill_numbers(t.layer_key, t.counts[LAYERS], table)
+        return t._replace(layer=_longer(t.layer), layer_key=_longer(t.layer_key), layer_hash=table)
+    if wanted == MORE_TRANSITIONS:
+        table = np.full(2 * len(t.transition_hash), -1, dtype=np.int32)
+        fill_numbers(t.transition_key, t.counts[TRANSITIONS], table)
+        return t._replace(
+            transition=_longer(t.transition), transition_key=_longer(t.transition_key), transition_hash=table
+        )
+    if wanted == MORE_LAYER_STATES:
+        return t._replace(layer_state=_longer(t.layer_state))
+    if wanted == MORE_EDGES:
+        return t._replace(edge=_longer(t.edge), edge_move=_longer(t.edge_move), edge_limbs=_longer(t.edge_limbs))
+    return t._replace(move=_longer(t.move), wide=_longer(t.wide))
+
+
+def _longer(array: NDArray[Any], least: int = 0) -> NDArray[Any]:
+    """At least twice the room; what is new is not touched, so that it takes no memory before it is used."""
+    longer = np.empty((max(2 * len(array), least), *array.shape[1:]), dtype=array.dtype)
+    longer[: len(array)] = array
+    return longer

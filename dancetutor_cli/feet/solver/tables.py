@@ -1,0 +1,161 @@
+"""The arrays that the solver's kernels share: a pad's geometry, and the ways to play one row from one state.
+
+They are few and wide, and their columns have names here: numba's time to compile grows with every array handed on.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.feet import Pad
+from dancetutor_cli.feet.pads import HOME_WIDTH
+from dancetutor_cli.run.errors import UsageError
+
+MOST_PLACES = 32  # of a foot: panels, home, pairs of neighbours
+EPSILON = 1e-6  # every comparison of docs/cost-model.md: degrees, panel widths, seconds
+MOST_MOVES = 10 * 9 * 8 * 7 + 8  # ways to put four limbs on a row of ten steps, and some room
+COLUMN_BITS = 10  # a row packs into one integer: so many bits for each of its masks
+TAPS, HOLDS, MINES, RELEASED, ROLLS, ROLL_TAPS = (i * COLUMN_BITS for i in range(6))  # where the masks start
+FRESH = 6 * COLUMN_BITS  # bit of a row: its holds have only just been released
+# the second word of a row: limb codes of overrides, 3 bits for each column, and holds that ended in the very moment of
+# the last row with steps
+FORCED, EARLIER = 0, 3 * COLUMN_BITS
+FRESH_TICKS = 6  # a 32nd: a hold that ended so long ago has just been released
+DISTANCE_UNIT = 20  # distances are whole numbers of 1/20 panel widths
+
+# columns of `Moves.wide`: packed state after the row; limb codes, 3 bits for each column; `Part`, 2 bits for each
+# column; packed facts that cost by the time since the row before, 0 none; bits of `vocabulary.EVENTS`
+KEY, ACTION, PART, TIMED, EVENTS = range(5)
+UP, DOWN, LEFT, RIGHT, MIDDLE = range(5)
+# places in `Rules.limits`: from which time and length on, or up to it, moves are called what they are
+(
+    GALLOP_TICKS, GALLOP_SECONDS, GALLOP_NEIGHBOURS, STREAM_TICKS, STREAM_SECONDS, STREAM_LENGTH, DRILL_TICKS,
+    DRILL_SECONDS, DRILL_LENGTH,
+) = range(9)  # fmt: skip
+
+
+class Geometry(NamedTuple):
+    """A pad with c panels. Places of a foot: 0 to c - 1 one panel, c home, from there on two neighbouring panels.
+
+    left, right : float64 (p, 2), middle of a foot on each place; home differs for the two feet
+    angle : float64 (p, p), degrees in (-180, 180] of the vector from left foot to right foot; 0 if they are together
+    distance : int64 (p, p), between the middles of places, 1/20 panel widths
+    place : int64 (c, c), place of a foot on two panels, -1 if they are no neighbours; of one panel on the diagonal
+    panels : int64 (p, 2, 2), by place and foot: heel and toe; the toe is -1 on one panel
+    mask : int64 (p,), the panels of a place as bits; near : int64 (p,), these and their neighbours
+    arrow : int64 (c,), where a panel's arrow points: `UP`, `DOWN`, `LEFT`, `RIGHT`, `MIDDLE`; diagonals are up or down
+    """
+
+    left: NDArray[np.float64]
+    right: NDArray[np.float64]
+    angle: NDArray[np.float64]
+    distance: NDArray[np.int64]
+    place: NDArray[np.int64]
+    panels: NDArray[np.int64]
+    mask: NDArray[np.int64]
+    near: NDArray[np.int64]
+    arrow: NDArray[np.int64]
+
+
+class Rules(NamedTuple):
+    """What rows cost, by the place of a model in `vocabulary.MODELS`, a pad and a preset: names are in the vocabulary.
+
+    weights : int64 (w,); switches : bool (s,); curves : int64 (c, MOST_MS + 1), by milliseconds since the row before
+    home : int64 (2,), the panels on which left and right foot start
+    limits : float64, see `GALLOP_TICKS`; long : bool (c, c), see `techniques.long_ways`
+    """
+
+    model: int
+    geometry: Geometry
+    weights: NDArray[np.int64]
+    switches: NDArray[np.bool_]
+    curves: NDArray[np.int64]
+    home: NDArray[np.int64]
+    limits: NDArray[np.float64]
+    long: NDArray[np.bool_]
+
+
+class Moves(NamedTuple):
+    """Every way to play one row from one state: room for `MOST_MOVES`.
+
+    wide : int64 (, 5), see above; terms : int32 (, w), what each weight adds, not counting time
+    scratch : int64 (8, 32); packed : int64, by state of a layer; reached : int64, by move of a layer, both scratch
+    """
+
+    wide: NDArray[np.int64]
+    terms: NDArray[np.int32]
+    scratch: NDArray[np.int64]
+    packed: NDArray[np.int64]
+    reached: NDArray[np.int64]
+
+
+class Making(NamedTuple):
+    """What the ways to play a row are made of: the rules, and room for them."""
+
+    rules: Rules
+    moves: Moves
+
+
+def geometry(pad: Pad) -> Geometry:
+    """The arrays of a pad."""
+    (x, y), c = pad.centre, len(pad)
+    pairs = [(a, b) for a in range(c) for b in range(a + 1, c) if pad.neighbours[a, b]]
+    if c + 1 + len(pairs) > MOST_PLACES:
+        raise UsageError(
+            f"pad '{pad.steps_type}' has too many neighbours ({len(pairs)} pairs): make its 'reach' smaller"
+        )
+    middles = np.array([(pad.panels[a] + pad.panels[b]) / 2 for a, b in pairs]).reshape(-1, 2)
+    left = np.concatenate([pad.panels, [[x - HOME_WIDTH, y]], middles])
+    right = np.concatenate([pad.panels, [[x + HOME_WIDTH, y]], middles])
+    across = right[None, :] - left[:, None]
+    angle = np.degrees(np.arctan2(across[..., 1], across[..., 0]))
+    angle[angle <= -180.0 + EPSILON] = 180.0
+    angle[np.hypot(across[..., 0], across[..., 1]) <= EPSILON] = 0.0
+    far = left[None, :] - left[:, None]
+    distance = np.round(DISTANCE_UNIT * np.hypot(far[..., 0], far[..., 1])).astype(np.int64)
+    place = np.full((c, c), -1, dtype=np.int64)
+    np.fill_diagonal(place, np.arange(c))
+    panels = np.full((len(left), 2, 2), -1, dtype=np.int64)
+    panels[:c, :, 0] = np.arange(c)[:, None]
+    for number, (a, b) in enumerate(pairs):
+        place[a, b] = place[b, a] = c + 1 + number
+        for foot in range(2):
+            panels[c + 1 + number, foot] = heel_and_toe(pad, a, b, foot)
+    bits = np.where(panels >= 0, np.int64(1) << panels.clip(min=0), np.int64(0)).astype(np.int64)
+    mask = bits[:, 0, 0] | bits[:, 0, 1]
+    around = np.where(place >= 0, np.int64(1) << np.arange(c), np.int64(0))
+    near = np.array([np.bitwise_or.reduce(around[(m >> np.arange(c) & 1).astype(bool)].ravel()) for m in mask.tolist()])
+    return Geometry(
+        left, right, angle, distance, place, panels, mask, near.astype(np.int64),
+        np.array([_arrow(*way) for way in pad.arrows]),
+    )  # fmt: skip
+
+
+def _arrow(x: float, y: float) -> int:
+    if abs(x) <= EPSILON and abs(y) <= EPSILON:
+        return MIDDLE
+    if abs(x) > abs(y) + EPSILON:
+        return RIGHT if x > 0 else LEFT
+    return UP if y > 0 else DOWN
+
+
+def heel_and_toe(pad: Pad, a: int, b: int, foot: int) -> tuple[int, int]:
+    """Which of two neighbouring panels heel and toe of a foot press: the toe is nearer to the screen, else outside."""
+    (ax, ay), (bx, by) = pad.panels[a], pad.panels[b]
+    if abs(ay - by) > EPSILON:
+        return (a, b) if ay < by else (b, a)
+    return (a, b) if (ax > bx) == (foot == 0) else (b, a)
+
+
+def moves(weights: int, width: int = 1 << 10) -> Moves:
+    """Empty room for the ways to play one row, and for a layer of so many states."""
+    return Moves(
+        np.zeros((MOST_MOVES, 5), dtype=np.int64),
+        np.zeros((MOST_MOVES, weights), dtype=np.int32),
+        np.zeros((8, 32), dtype=np.int64),
+        np.empty(width, dtype=np.int64),
+        np.empty(16 * width, dtype=np.int64),
+    )

@@ -1,0 +1,207 @@
+"""Everything people said about the feet of a song: in its files, in SMEditor's data, in dancetutor.yaml."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind, Song
+from dancetutor_cli.chart.pack_files import (
+    FILE_NAME,
+    Condition,
+    SettingError,
+    check_keys,
+    check_not_a_link_out,
+    condition_of,
+    texts_of,
+)
+from dancetutor_cli.feet.limbs import LETTERS, MEANING, UNKNOWN, Limb, Part
+from dancetutor_cli.feet.overrides import FeetProblem, Ignores, Overrides, Said
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.yaml_files import read
+
+# Feet and silenced findings from `feet` in dancetutor.yaml.
+#
+# feet:
+#   - when: {path: song.ssc, difficulty: Hard}   # as in `overrides`
+#     steps: {16: L, 16.5: R, 17: LR}            # beat: a letter for each note, left to right, as in {dt1 ...}
+#     ignore: {24: doublestep, 25.5: [DT202]}    # beat: rules whose findings are not wanted there
+
+_KEYS = ("when", "steps", "ignore")
+_STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
+_TOES = {Limb.LEFT_FOOT: "l", Limb.RIGHT_FOOT: "r"}
+Place = tuple[str | int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FeetEntry:
+    """One entry of `feet`. steps : {tick: letters}; ignore : {tick: rules, as they are written}"""
+
+    when: Condition
+    steps: Mapping[int, str]
+    ignore: Mapping[int, frozenset[str]]
+
+
+@dataclass(frozen=True, slots=True)
+class SettingsFeet:
+    """What dancetutor.yaml says about one chart."""
+
+    said: tuple[Said, ...] = ()
+    ignores: Mapping[int, frozenset[str]] | None = None
+    problems: tuple[FeetProblem, ...] = ()
+
+
+def read_settings(song: Song, chart: Chart, path: Path | None) -> SettingsFeet:
+    """What a dancetutor.yaml says about a chart; nothing without one. FileError if it cannot be read."""
+    if path is None:
+        return SettingsFeet()
+    status = path.stat()
+    said: list[Said] = []
+    problems: list[FeetProblem] = []
+    ignores: dict[int, frozenset[str]] = {}
+    for entry in _entries(path, status.st_mtime_ns, status.st_size):
+        when = entry.when
+        if not (
+            when.holds_for_path(song.path) and when.holds_for_chart(chart.steps_type, chart.difficulty, chart.meter)
+        ):
+            continue
+        for tick, letters in entry.steps.items():
+            found = list(_said(chart, tick, letters))
+            said += [one for one in found if isinstance(one, Said)]
+            problems += [one for one in found if isinstance(one, FeetProblem)]
+        for tick, rules in entry.ignore.items():
+            ignores[tick] = ignores.get(tick, frozenset()) | rules
+    return SettingsFeet(tuple(said), ignores, tuple(problems))
+
+
+@lru_cache(maxsize=8)
+def _entries(path: Path, _time: int, _size: int) -> tuple[FeetEntry, ...]:
+    check_not_a_link_out(path)
+    source = read(path)
+    try:
+        return tuple(entries_of(source.data, path.parent))
+    except SettingError as error:
+        raise FileError(path, error.message, source.error(error.keys, "").line) from None
+
+
+def entries_of(data: Mapping[str, Any], folder: Path) -> Iterator[FeetEntry]:
+    """The entries of `feet`, checked; SettingError says at which key something is wrong, and names what there is."""
+    listed = data.get("feet") or []
+    if not isinstance(listed, list):
+        raise SettingError(("feet",), "'feet' is a list")
+    for number, entry in enumerate(listed):
+        place: Place = ("feet", number)
+        if not isinstance(entry, Mapping):
+            raise SettingError(place, f"an entry of 'feet' is a mapping of {', '.join(_KEYS)}")
+        check_keys(entry, _KEYS, place)
+        steps = {tick: _letters(value, at) for tick, value, at in _by_beat(entry.get("steps"), (*place, "steps"))}
+        ignore = {
+            tick: frozenset(texts_of({"rules": value}, "rules"))
+            for tick, value, _ in _by_beat(entry.get("ignore"), (*place, "ignore"))
+        }
+        yield FeetEntry(condition_of(entry.get("when"), folder, (*place, "when")), steps, ignore)
+
+
+def _by_beat(value: Any, place: Place) -> Iterator[tuple[int, Any, Place]]:
+    if value is None:
+        return
+    if not isinstance(value, Mapping):
+        raise SettingError(place, f"'{place[-1]}' is a mapping of beats")
+    for beat, told in value.items():
+        at = (*place, str(beat))
+        if isinstance(beat, bool) or not isinstance(beat, int | float) or not 0 <= beat < 1e6:
+            raise SettingError(at, f"'{beat}' is no beat; write a number such as 16 or 16.5")
+        yield round(beat * TICKS_PER_BEAT), told, at
+
+
+def _letters(value: Any, place: Place) -> str:
+    letters = str(value)
+    wrong = [letter for letter in letters if letter not in LETTERS]
+    if wrong or not letters:
+        known = f"{', '.join(MEANING)}, or {UNKNOWN} for any"
+        raise SettingError(place, f"'{wrong[0] if wrong else ''}' is no limb; there are {known}")
+    return letters
+
+
+def _said(chart: Chart, tick: int, letters: str) -> Iterator[Said | FeetProblem]:
+    """Who steps the notes of a row; one problem in place of them if the letters do not fit."""
+    here = [n for n in (chart.notes.tick == tick).nonzero()[0].tolist() if chart.notes.kind[n] in _STEPS]
+    beat = f"{FILE_NAME} gives beat {tick / TICKS_PER_BEAT:g}"
+    if len(here) != len(letters):
+        what = f"{len(letters)} letter{'s' if len(letters) > 1 else ''}"
+        yield FeetProblem("settings-count", f"{beat} {what}, and {len(here) or 'no'} notes are there; not used")
+        return
+    for n, letter in zip(here, letters, strict=True):
+        if letter in MEANING:
+            limb, part = MEANING[letter]
+            if part is Part.WHOLE and _TOES.get(limb, " ") in letters:
+                part = Part.HEEL
+            yield Said(tick, int(chart.notes.column[n]), limb, part, FILE_NAME, int(chart.notes.line[n]), 1)
+
+
+# Limbs, and what people said about them: overrides and ignores read from annotations and from data.sme.
+
+Told = tuple[Overrides, Ignores, tuple[FeetProblem, ...]]
+
+
+def overrides_for(song: Song, chart: Chart) -> Told:
+    """Everything people said about the feet of a chart, see `SongFeet.told`."""
+    return SongFeet(song).told(chart)
+
+
+class SongFeet:
+    """Everything people said about the feet of a song's charts; where it may stand is looked up once for all."""
+
+    def __init__(self, song: Song) -> None:
+        from dancetutor_cli.chart.pack_files import find_settings_file
+        from dancetutor_cli.feet.sme import editor_file
+
+        self._song = song
+        self._editor = editor_file(song.path)
+        self._settings = find_settings_file(song.path.parent)
+
+    def told(self, chart: Chart) -> Told:
+        """What was said about a chart; to be asked before the chart is solved.
+
+        Pinned measures in the file, overrides in `data.sme` beside it, `feet` in the dancetutor.yaml up the tree; where
+        several speak of a cell, the first of these counts.
+
+        Returns the overrides for the solver, the ignores for the linter, and what was contradictory, for findings.
+        FileError : dancetutor.yaml cannot be read
+        """
+        from dancetutor_cli.chart.note_data import shares_rows
+        from dancetutor_cli.feet.annotations import has_pins, pinned
+        from dancetutor_cli.feet.overrides import contradictions
+        from dancetutor_cli.feet.sme import ChartData, read_sme
+
+        song = self._song
+        whole = chart if chart.written is None else chart.written  # people speak of a chart as it stands in the file
+        in_file = whole if shares_rows(chart) else chart
+        if self._editor is None and self._settings is None and not has_pins(song.data, in_file):
+            return Overrides.none(), Ignores(), ()
+        pins, problems = pinned(song, in_file)
+        editor = ChartData() if self._editor is None else read_sme(song, whole)
+        settings = read_settings(song, whole, self._settings)
+        told = (*settings.said, *editor.said, *pins)
+        said = {
+            (s.tick, s.column): s for s in (told if chart.written is None else _of_player(chart, told))
+        }  # later win
+        good, contradictory = contradictions(chart, said.values())
+        if chart.player > 1:  # what is wrong beside the notes is told with the first player's
+            editor, settings = replace(editor, problems=()), replace(settings, problems=())
+            problems = [] if shares_rows(chart) else problems
+        cells = {(s.tick, s.column): (s.limb, s.part) for s in good}
+        ignores = Ignores(editor.ignores, settings.ignores or {})
+        return Overrides.of(cells), ignores, (*problems, *editor.problems, *settings.problems, *contradictory)
+
+
+def _of_player(chart: Chart, said: Iterable[Said]) -> Iterator[Said]:
+    """What is about the notes of one of two players, in this player's columns."""
+    mine = set(zip(chart.notes.tick.tolist(), chart.notes.column.tolist(), strict=True))
+    for one in said:
+        column = one.column - chart.first_column
+        if (one.tick, column) in mine:
+            yield replace(one, column=column)

@@ -1,0 +1,243 @@
+"""The film's clock: which second of the music each frame shows, in which runs; joints of a block of frames."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Kind
+from dancetutor_cli.chart.timing import FASTEST, SLOWEST, heard
+from dancetutor_cli.dance.motion import Cut
+from dancetutor_cli.run.errors import DancetutorError, UsageError
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart
+
+
+# The film's clock: which second of the music each frame shows. The music drives; frames only sample it.
+
+
+@dataclass(frozen=True, slots=True)
+class Pass:
+    """One run through a stretch of the music. start, end : seconds of the music; rate : 0.5 is half speed.
+
+    sound_from : the music is silent before this second, while `count` beats are counted in
+    rest : seconds of the music at its end in which nobody steps and the music fades: she comes to rest
+    """
+
+    start: float
+    end: float
+    rate: float = 1.0
+    sound_from: float = -math.inf
+    count: int = 0
+    rest: float = 0.0
+
+    @property
+    def until(self) -> float:
+        """The second of the music up to which its notes are danced."""
+        return self.end - self.rest
+
+    @property
+    def seconds(self) -> float:
+        """How long it lasts in the film."""
+        return self.shown(self.end)
+
+    def shown(self, second: float) -> float:
+        """Seconds of the film from the pass's beginning to a second of the music."""
+        return heard(second - self.start, self.rate)
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """What a frame shows: a second of the music, and the rate at which it is played there."""
+
+    second: float
+    rate: float = 1.0
+
+    @property
+    def heard(self) -> float:
+        """The second in the music as it is heard: at half speed everything comes at twice its second."""
+        return heard(self.second, self.rate)
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """Maps film seconds to music seconds over one or more passes. fps : frames per second of the film."""
+
+    passes: tuple[Pass, ...]
+    fps: int
+
+    def __post_init__(self) -> None:
+        if not self.passes or any(p.end <= p.start for p in self.passes):
+            raise UsageError("the section to render is empty")
+
+    @property
+    def seconds(self) -> float:
+        """Length of the film."""
+        return sum(p.seconds for p in self.passes)
+
+    @property
+    def frames(self) -> int:
+        """Number of frames: enough to cover the film."""
+        return max(1, math.ceil(self.seconds * self.fps - 1e-6))
+
+    def at(self, frame: int) -> tuple[float, int]:
+        """Second of the music that a frame shows, and which pass it lies in.
+
+        Frame k is on the screen from k / fps on. What happens at a second T shows in the first frame not before T.
+        """
+        film = frame / self.fps
+        for number, one in enumerate(self.passes):
+            if film < one.seconds - 1e-9:
+                return one.start + film * one.rate, number
+            film -= one.seconds
+        return self.passes[-1].end, len(self.passes) - 1
+
+    def cut_at(self, rate: float) -> Cut:
+        """What is danced at a rate, from the first pass to the last, in seconds of the music as it is heard then.
+
+        Before the step that passes count to nobody steps, nor while the music fades.
+        """
+        first, last = self.passes[0], self.passes[-1]
+        seconds = (first.start, last.end, first.sound_from if first.count else -math.inf, last.until)
+        start, end, steps_from, steps_until = (heard(second, rate) for second in seconds)
+        return Cut(start, end, steps_from, steps_until if last.rest else math.inf)
+
+    def moment(self, frame: int) -> Moment:
+        """The second of the music that a frame shows, with the rate of its pass."""
+        second, number = self.at(frame)
+        return Moment(second, self.passes[number].rate)
+
+
+@dataclass(frozen=True, slots=True)
+class Moments(Clock):
+    """A clock for single pictures: frame k shows the k-th of `times`, seconds of the music."""
+
+    times: tuple[float, ...] = ()
+
+    @property
+    def frames(self) -> int:
+        """Number of pictures."""
+        return len(self.times)
+
+    def at(self, frame: int) -> tuple[float, int]:
+        """Second of the music that a picture shows; there is only one pass."""
+        return self.times[frame], 0
+
+
+# The runs of a film: which stretch of the music, how often and how fast, with what helps to learn.
+
+LEAD_IN, LEAD_OUT = 2.0, 3.0  # seconds before the first and after the last note
+REST = 1.5  # seconds of a film of a passage that follow it: time for her to finish the step, stand and smile
+COUNTABLE = (0.3, 1.6)  # seconds as heard between the numbers of a count-in; songs of gimmicks are at 19 beats a minute
+
+
+@dataclass(frozen=True, slots=True)
+class Practice:
+    """What helps to learn. loop : number of runs (0: one for each rate)
+
+    count_in : beats counted before each run; rest : seconds of film after the last one, in which she comes to rest
+    claps : a clap on each step; metronome : a tick on each beat
+    """
+
+    loop: int = 0
+    count_in: int = 0
+    claps: bool = False
+    metronome: bool = False
+    rest: float = 0.0
+
+
+def parse_rates(text: str) -> tuple[float, ...]:
+    """ "0.5,0.75,1.0" to numbers; UsageError outside `lint.part.SLOWEST` to `FASTEST`."""
+    try:
+        rates = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        rates = ()
+    if not rates or not all(SLOWEST <= rate <= FASTEST for rate in rates):
+        raise UsageError(
+            f"rate '{text}': give speeds from {SLOWEST:g} to {FASTEST:g}, separated by commas, as 0.5,0.75,1"
+        )
+    return rates
+
+
+def passes_of(chart: Chart, practice: Practice, rates: tuple[float, ...], start: float, end: float) -> tuple[Pass, ...]:
+    """The runs through a section, at each of the rates in turn, each with its count-in.
+
+    A count-in leads to steps: measures without any at the section's beginning are left out. It counts beats, or halves
+    or doubles of them where nobody counts so slowly or so fast.
+    """
+    lead = 0.0
+    if practice.count_in:
+        start = _first_measure(chart, start, end)
+        beat = 60 / chart.timing.bpm_at(round(float(chart.timing.beats(np.array([start]))[0]) * TICKS_PER_BEAT))
+        lead = practice.count_in * _counted(beat, min(rates))
+    count = practice.loop or len(rates)
+    runs = [
+        Pass(start - lead, end, rates[i % len(rates)], start if lead else -math.inf, practice.count_in)
+        for i in range(count)
+    ]
+    rest = practice.rest * runs[-1].rate
+    return (*runs[:-1], replace(runs[-1], end=end + rest, rest=rest))
+
+
+def _counted(beat: float, rate: float) -> float:
+    """Seconds of the music from one number to the next: a beat, halved or doubled until it can be counted at `rate`."""
+    least, most = (second * rate for second in COUNTABLE)
+    while beat > most:
+        beat /= 2
+    while 0 < beat < least:
+        beat *= 2
+    return beat
+
+
+def _first_measure(chart: Chart, start: float, end: float) -> float:
+    """Where the measure with the first step of a section begins, not before `start`; `start` if there is no step."""
+    notes = chart.notes
+    stepped = notes.tick[~np.isin(notes.kind, (Kind.MINE, Kind.FAKE))]
+    seconds = chart.timing.seconds(stepped)
+    here = stepped[(seconds >= start - 1e-6) & (seconds < end)]
+    if len(here) == 0:
+        return start
+    measure = here.min() // TICKS_PER_MEASURE * TICKS_PER_MEASURE
+    return max(start, float(chart.timing.seconds(np.array([measure]))[0]))
+
+
+def whole_song(chart: Chart) -> tuple[float, float]:
+    """Start and end of the film of a whole chart, seconds of the music: from its beginning to after the last note."""
+    notes = chart.notes
+    if len(notes) == 0:
+        raise DancetutorError(f"{chart.label}: the chart has no notes, so there is nothing to render")
+    ticks = np.array([notes.tick.min(), max(notes.tick.max(), notes.end.max())])
+    first, last = chart.timing.seconds(ticks)
+    return min(0.0, float(first) - LEAD_IN), float(last) + LEAD_OUT
+
+
+# The dancer's joints in the frames of a film, a block of frames at once, which is quick.
+
+BLOCK = 64  # frames whose joints are made at once
+
+
+class JointBlocks:
+    """They are always the same blocks, so that no bit of a frame depends on which frames were drawn before it.
+
+    made : gives the world matrices (f, j, 4, 4) of the joints at f moments
+    """
+
+    def __init__(self, made: Callable[[Sequence[Moment]], NDArray[np.float64]], clock: Clock) -> None:
+        self._made, self._clock = made, clock
+        self._block, self._joints = -1, np.zeros((0, 0, 4, 4))
+
+    def at(self, number: int) -> NDArray[np.float64]:
+        """World matrices (j, 4, 4) of the joints in frame `number`."""
+        block = number // BLOCK
+        if block != self._block:
+            frames = range(block * BLOCK, min((block + 1) * BLOCK, self._clock.frames))
+            self._joints = self._made([self._clock.moment(k) for k in frames])
+            self._block = block
+        joints: NDArray[np.float64] = self._joints[number - block * BLOCK]
+        return joints

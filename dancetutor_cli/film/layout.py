@@ -1,0 +1,276 @@
+"""Layouts, from configs/layouts/*.yaml, and how a film is to look as asked for on the command line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from dancetutor_cli.film.choices import LEAST_SIDE, MOST_SIDE, Ahead, Quality, RendererKind
+from dancetutor_cli.film.scroll import Scroll, parse_scroll
+from dancetutor_cli.run.errors import FileError, UsageError, did_you_mean
+from dancetutor_cli.run.reading import config_path
+from dancetutor_cli.run.yaml_files import Box, load
+
+# Layouts: where dancer, notes and words stand in the picture; read from configs/layouts/*.yaml.
+
+PixelBox = tuple[int, int, int, int]
+WIDE_PAD = 5  # more columns than this take the layout's `wide` boxes
+
+
+@dataclass(frozen=True, slots=True)
+class DancerPart:
+    """box : share of the picture; camera : name of a camera; region : share of the box that she fills."""
+
+    box: Box
+    camera: str = "back"
+    region: Box = (0.0, 0.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class HighwayPart:
+    """box : share of the picture; lane : pixels at the default size; receptor : share of the box; scroll : "C600"
+
+    tags : moves are named beside their rows, too
+    """
+
+    box: Box
+    lane: float
+    receptor: float = 0.135
+    scroll: str = "M480"
+    down: bool = False
+    tags: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class TextBox:
+    """A place for words. box : share of the picture; text : how much larger than usual they are."""
+
+    box: Box
+    text: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class FeetPart:
+    """The feet from above. box : share of the picture; wide : on pads of several squares, too."""
+
+    box: Box
+    wide: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class HeaderPart:
+    """The song's words. room : share of the box's width that they may take, beside her head."""
+
+    box: Box
+    text: float = 1.0
+    room: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class ScreenPart:
+    """A screen in the room, which shows the highway. centre : world, metres; size : metres; pixels : its picture."""
+
+    centre: tuple[float, float, float]
+    size: tuple[float, float]
+    pixels: tuple[int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class NextPart:
+    """Small pads with the next rows. box : share of the picture; count : how many."""
+
+    box: Box
+    count: int = 3
+
+
+@dataclass(frozen=True, slots=True)
+class PracticePart:
+    """How a layout runs where nothing else is asked for. rates : speeds in turn; count_in : beats."""
+
+    rates: tuple[float, ...] = (1.0,)
+    count_in: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class WideBoxes:
+    """Other boxes for pads of more than five panels; None where the part stays where it is. region : the dancer's.
+
+    lanes : share of the highway's width that they take at most
+    """
+
+    dancer: Box | None = None
+    region: Box | None = None
+    highway: Box | None = None
+    header: Box | None = None
+    legend: Box | None = None
+    calls: Box | None = None
+    runs: Box | None = None
+    count: Box | None = None
+    feet: Box | None = None
+    next: Box | None = None
+    lanes: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """One file of configs/layouts. size : (width, height) in pixels, the default and what pixel sizes are meant for.
+
+    calls : where moves are called out, in the dancer's box if not said; runs : which run this is, below the header if
+    not said; count : the numbers of the count-in, in the middle of the picture if not said
+    """
+
+    size: tuple[int, int]
+    dancer: DancerPart | None = None
+    highway: HighwayPart | None = None
+    header: HeaderPart | None = None
+    calls: TextBox | None = None
+    runs: TextBox | None = None
+    count: TextBox | None = None
+    legend: TextBox | None = None
+    progress: TextBox | None = None
+    screen: ScreenPart | None = None
+    feet: FeetPart | None = None
+    next: NextPart | None = None
+    practice: PracticePart | None = None
+    wide: WideBoxes | None = None
+
+    def scale(self, size: tuple[int, int]) -> float:
+        """How many pixels one pixel of the default size has become."""
+        return min(size[0] / self.size[0], size[1] / self.size[1])
+
+    def box(self, name: str, size: tuple[int, int], columns: int) -> PixelBox:
+        """The box of a part ("dancer", "highway" ...) in pixels: of the picture, or, for the highway, of the screen
+        that it is shown on."""
+        if name == "highway" and self.screen is not None:
+            size = self.screen.pixels
+        return pixels(self._other(name, columns) or getattr(self, name).box, size)
+
+    def region(self, columns: int) -> Box:
+        """The share of her box that the dancer fills, if there is one."""
+        usual = (0.0, 0.0, 1.0, 1.0) if self.dancer is None else self.dancer.region
+        return self._other("region", columns) or usual
+
+    def lanes(self, columns: int) -> float | None:
+        """The share of the highway's width that its lanes take at most, if the layout says it."""
+        return None if self.wide is None or columns <= WIDE_PAD else self.wide.lanes
+
+    def _other(self, name: str, columns: int) -> Box | None:
+        """What holds instead on a wide pad."""
+        return getattr(self.wide, name, None) if self.wide is not None and columns > WIDE_PAD else None
+
+
+def pixels(box: Box, size: tuple[int, int]) -> PixelBox:
+    """A box in shares of the picture as (left, top, right, bottom) in pixels."""
+    left, top, right, bottom = box
+    return round(left * size[0]), round(top * size[1]), round(right * size[0]), round(bottom * size[1])
+
+
+def lowered(box: PixelBox, top: float) -> PixelBox:
+    """A box of the same size that begins at `top`."""
+    down = round(top) - box[1]
+    return box[0], box[1] + down, box[2], box[3] + down
+
+
+def overlap(a: PixelBox, b: PixelBox) -> bool:
+    """Do two boxes share a pixel?"""
+    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+
+
+def layout_names() -> list[str]:
+    """The layouts there are."""
+    return sorted(p.stem for p in config_path("layouts").glob("*.yaml"))
+
+
+def load_layout(name: str) -> Layout:
+    """A layout by name, or from a YAML file of the user's. UsageError lists the names there are."""
+    if name in layout_names():
+        return _checked(config_path("layouts") / f"{name}.yaml")
+    if name.endswith((".yaml", ".yml")):
+        return _checked(Path(name))
+    near = did_you_mean(name, layout_names())
+    raise UsageError(f"unknown layout '{name}'{near}; there are: {', '.join(layout_names())}, or give a .yaml file")
+
+
+def _checked(path: Path) -> Layout:
+    layout = load(path, Layout)
+    if layout.dancer is None and layout.highway is None:
+        raise FileError(path, "a layout needs a dancer, a highway or both")
+    if layout.screen is not None and (layout.dancer is None or layout.highway is None):
+        raise FileError(path, "a screen stands in the dancer's room and shows the highway: it needs both")
+    if layout.feet is not None and layout.dancer is None:
+        raise FileError(path, "feet need a dancer, whose feet they are")
+    _check_numbers(path, layout)
+    for name in ("dancer", "highway", "header", "calls", "runs", "count", "legend", "progress", "feet", "next"):
+        part, other = getattr(layout, name), getattr(layout.wide, name, None)
+        inner = layout.dancer.region if name == "dancer" and layout.dancer is not None else None
+        other_inner = layout.wide.region if name == "dancer" and layout.wide is not None else None
+        for where, box in (
+            (f"{name}.region", inner),
+            ("wide.region", other_inner),
+            (f"{name}.box", part and part.box),
+            (f"wide.{name}", other),
+        ):
+            if box is not None and not _inside(box):
+                raise FileError(path, f"{where}: left, top, right, bottom must be shares 0 to 1 in rising order")
+    return layout
+
+
+def _check_numbers(path: Path, layout: Layout) -> None:
+    """Refuse numbers with which nothing can be drawn; FileError names the first."""
+    high, screen = layout.highway, layout.screen
+    sides = [("size", layout.size), *([("screen.pixels", screen.pixels)] if screen else [])]
+    for where, pair in sides:
+        if not all(LEAST_SIDE <= side <= MOST_SIDE for side in pair):
+            raise FileError(path, f"{where}: {pair[0]}x{pair[1]} is not possible; {LEAST_SIDE} to {MOST_SIDE} pixels")
+    parts = (layout.header, layout.calls, layout.runs, layout.count, layout.legend, layout.progress)
+    names = ("header", "calls", "runs", "count", "legend", "progress")
+    ranges: list[tuple[str, float, float, float]] = [
+        (f"{name}.text", part.text, 0.1, 10) for name, part in zip(names, parts, strict=True) if part is not None
+    ]
+    if high is not None:
+        ranges += [("highway.lane", high.lane, 4, 1000), ("highway.receptor", high.receptor, 0, 1)]
+        parse_scroll(high.scroll)
+    if layout.header is not None:
+        ranges.append(("header.room", layout.header.room, 0.05, 1))
+    if layout.wide is not None and layout.wide.lanes is not None:
+        ranges.append(("wide.lanes", layout.wide.lanes, 0.1, 1))
+    if screen is not None:
+        ranges += [("screen.size", side, 0.05, 100) for side in screen.size]
+        ranges += [("screen.centre", side, -100, 100) for side in screen.centre]
+    if layout.next is not None:
+        ranges.append(("next.count", layout.next.count, 1, 12))
+    if layout.practice is not None:
+        ranges += [("practice.rates", rate, 0.25, 2) for rate in layout.practice.rates]
+        ranges += [("practice.count_in", layout.practice.count_in, 0, 16)]
+        if not layout.practice.rates:
+            raise FileError(path, "practice.rates: name one speed or more")
+    for where, value, least, most in ranges:
+        if not least <= value <= most:
+            raise FileError(path, f"{where} must be from {least:g} to {most:g}, not {value:g}")
+
+
+def _inside(box: Box) -> bool:
+    return 0 <= box[0] < box[2] <= 1 and 0 <= box[1] < box[3] <= 1
+
+
+# How a film is to look, as asked for on the command line; light, so that wrong wishes are refused at once.
+
+
+@dataclass(frozen=True, slots=True)
+class FilmLook:
+    """What does not change in a film. size : (width, height), even.
+
+    camera, scroll : None for the layout's; down : notes fall; font : a font file, None for the built-in one
+    ahead : how long before a move it is called out, None as configured; findings : call out the linter's, too
+    """
+
+    layout: Layout
+    size: tuple[int, int]
+    quality: Quality = "good"
+    renderer: RendererKind = "auto"
+    camera: str | None = None
+    scroll: Scroll | None = None
+    down: bool = False
+    font: Path | None = None
+    ahead: Ahead | None = None
+    findings: bool = False

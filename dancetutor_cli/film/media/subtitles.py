@@ -1,0 +1,222 @@
+"""Subtitles that name the moves and the foot that does them, as an .srt file beside the film."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
+from dancetutor_cli.film.clock import Clock, Pass
+from dancetutor_cli.film.notes import Cue
+from dancetutor_cli.film.words import HOLD, SAID_BY_A_BRACKET, WHO, filled, move_words
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.reading import config_path
+from dancetutor_cli.run.yaml_files import load
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.timing import Timing
+    from dancetutor_cli.feet.pads import Pad
+    from dancetutor_cli.feet.play import Play
+
+
+# What the subtitles of a film name: the moves of a play with the foot that does them, from begin to end.
+
+_CROSSED = ("crossover-half", "crossover-full")
+_WAYS = ("crossover-front", "crossover-back")  # say more than crossover-half, which they come with
+_RUNS = ("stream", "drill")
+
+
+def cues_of(play: Play, timing: Timing, words: Mapping[str, str], pad: Pad, turned: bool = False) -> tuple[Cue, ...]:
+    """Every move that has a word, sorted by time.
+
+    words : name of a move (`feet.solver.vocabulary.EVENTS`), or "hold" -> what it is called; moves that are not in it
+    are not.
+    turned : she faces who looks on, and panels are named as they are seen then.
+    Crossed feet are told once, where they cross, until they are back, unless a half turn there is told; a stream or
+    drill once, where it begins.
+    """
+    found = [*_crossovers(play, words), *_moments(play, words, pad, turned), *_holds(play, timing, words)]
+    for name in _RUNS:
+        if name in words:
+            found += (
+                Cue(float(play.rows.second[first]), float(play.rows.second[last]), words[name], (), name)
+                for first, last in _stretches(play, (name,))
+            )
+    return tuple(sorted(found, key=lambda cue: (cue.second, cue.text)))
+
+
+def _crossovers(play: Play, words: Mapping[str, str]) -> Iterator[Cue]:
+    """Until the row in which the feet are uncrossed; one that turns full on its way is told again."""
+    second, last_row = play.rows.second, len(play.rows) - 1
+    turns = moves_and_turns(play)
+    for first, last in _stretches(play, _CROSSED):
+        end = float(second[min(last + 1, last_row)])
+        before: set[str] = set()
+        for row in range(first, last + 1):
+            full = {"crossover-full"} & set(play.moves[row])
+            now = full or {"crossover-half"}
+            if new := now - before:
+                way = [name for name in _WAYS if name in play.moves[row] and name in words and not full]
+                name = way[0] if way else new.pop()
+                if (word := words.get(name)) and not {*HALF_TURNS}.intersection(turns[row]):
+                    yield Cue(float(second[row]), end, word, _who(play, row), name)
+            before |= {*now, "crossover-half"}
+
+
+def _moments(play: Play, words: Mapping[str, str], pad: Pad, turned: bool) -> Iterator[Cue]:
+    """Moves of one row, each time they come."""
+    named = set(words) - {*_CROSSED, *_WAYS, *_RUNS, HOLD}
+    for row, names in enumerate(moves_and_turns(play)):
+        for name in named.intersection(names) - (SAID_BY_A_BRACKET if "bracket" in names else set()):
+            second = float(play.rows.second[row])
+            who = () if "{" in words[name] else _who(play, row)
+            for said in filled(words[name], name, (play, row), pad, turned):
+                yield Cue(second, second, said, who, name)
+
+
+def _holds(play: Play, timing: Timing, words: Mapping[str, str]) -> Iterator[Cue]:
+    if HOLD not in words:
+        return
+    row, column = np.nonzero(play.rows.hold_end >= 0)
+    ends = timing.seconds(play.rows.hold_end[row, column])
+    for r, c, end in zip(row.tolist(), column.tolist(), ends.tolist(), strict=True):
+        limb = int(play.limb[r, c])
+        who = (WHO[limb],) if 0 <= limb < len(WHO) else ()
+        yield Cue(float(play.rows.second[r]), end, words[HOLD], who, HOLD)
+
+
+def _who(play: Play, row: int) -> tuple[str, ...]:
+    """Who does a move of a row: everybody who steps in it, but of both feet it is no foot's move."""
+    limbs = {limb for limb in play.limb[row].tolist() if 0 <= limb < len(WHO)}
+    return () if {Limb.LEFT_FOOT, Limb.RIGHT_FOOT} <= limbs else tuple(WHO[limb] for limb in sorted(limbs))
+
+
+def _stretches(play: Play, names: tuple[str, ...]) -> list[tuple[int, int]]:
+    """First and last row of each run of rows that have one of these names."""
+    inside = np.array([False, *(any(name in moves for name in names) for moves in play.moves), False])
+    edges = np.diff(inside.astype(np.int8))
+    return list(zip(np.flatnonzero(edges == 1).tolist(), (np.flatnonzero(edges == -1) - 1).tolist(), strict=True))
+
+
+# Subtitles that name the moves, as an .srt file beside the film.
+
+_GAP = 0.1  # seconds; the same words again so soon are left standing, without a flicker
+
+
+@dataclass(frozen=True, slots=True)
+class SubtitleStyle:
+    """configs/subtitles.yaml. before, stays, shortest : seconds of the film; most : moves told together
+
+    moves : names of moves, the most telling first
+    """
+
+    before: float
+    stays: float
+    shortest: float
+    most: int
+    moves: tuple[str, ...]
+
+
+@dataclass
+class _Line:
+    """Moves told together. first, latest : when the first and the latest come; last : when all are over.
+
+    start, end : on the screen; all of these are seconds of the film
+    moves : word -> who, both in the order in which they come; names : word -> the move's name
+    """
+
+    first: float
+    latest: float
+    last: float
+    moves: dict[str, list[str]] = field(default_factory=dict)
+    names: dict[str, str] = field(default_factory=dict)
+    start: float = 0.0
+    end: float = 0.0
+
+    def add(self, cue: Cue, first: float, last: float) -> None:
+        self.latest, self.last = max(self.latest, first), max(self.last, last)
+        who = self.moves.setdefault(cue.text, [])
+        self.names.setdefault(cue.text, cue.move)
+        who += (one for one in cue.who if one not in who)
+
+    def text(self, style: SubtitleStyle) -> str:
+        """A line for each move; if there are too many, the most telling."""
+        kept = sorted(self.moves, key=lambda word: style.moves.index(self.names[word]))[: style.most]
+        return "\n".join(", ".join([word, *who]) for word, who in self.moves.items() if word in kept)
+
+
+@cache
+def subtitle_style() -> SubtitleStyle:
+    """The style as configured; FileError says what is wrong with it."""
+    path = config_path("subtitles.yaml")
+    style = load(path, SubtitleStyle)
+    if not 0 <= style.stays < style.shortest <= style.before or style.most < 1:
+        raise FileError(path, "wants 0 <= stays < shortest <= before, and most at least 1")
+    move_words(style.moves, path)
+    return style
+
+
+def subtitle_words() -> dict[str, str]:
+    """The moves that subtitles name, and their words."""
+    return move_words(subtitle_style().moves, config_path("subtitles.yaml"))
+
+
+def subtitles(cues: Sequence[Cue], clock: Clock, style: SubtitleStyle) -> str:
+    """The text of an .srt file; "" if no move is named.
+
+    cues : by time. Words stand before their move and until it is over, but give way to the next ones; moves that come
+    faster than words can be read are told together.
+    """
+    shown: list[tuple[float, float, str]] = []
+    begin = 0.0
+    for one in clock.passes:
+        for line in _timed(_together(cues, one, begin, style), begin, begin + one.seconds, style):
+            text = line.text(style)
+            if shown and shown[-1][2] == text and line.start - shown[-1][1] < _GAP:
+                shown[-1] = (shown[-1][0], line.end, text)
+            else:
+                shown.append((line.start, line.end, text))
+        begin += one.seconds
+    blocks = (f"{n}\n{_stamp(start)} --> {_stamp(end)}\n{text}\n" for n, (start, end, text) in enumerate(shown, 1))
+    return "\n".join(blocks)
+
+
+def _together(cues: Sequence[Cue], one: Pass, begin: float, style: SubtitleStyle) -> list[_Line]:
+    """The moves that come in a run, which begins at `begin`; those too close to be read one by one in one line."""
+    lines: list[_Line] = []
+    for cue in cues:
+        if not max(one.start, one.sound_from) <= cue.second < one.end:
+            continue
+        first, last = (begin + one.shown(min(s, one.end)) for s in (cue.second, cue.end))
+        first = max(begin, min(first, begin + one.seconds - style.stays))  # what comes last can be read, too
+        if not lines or first >= lines[-1].first + style.shortest:
+            lines.append(_Line(first, first, last))
+        lines[-1].add(cue, first, last)
+    return lines
+
+
+def _timed(lines: list[_Line], begin: float, over: float, style: SubtitleStyle) -> list[_Line]:
+    """Give the lines of a run their times on the screen; none stands with another, or beyond the run."""
+    least = style.shortest - style.stays  # seconds that words stand before their move even in a hurry
+    before: _Line | None = None
+    for line in lines:
+        line.start = max(begin, line.first - style.before)
+        if before is not None:
+            given_way = min(before.latest + style.stays, line.first - least)
+            line.start = max(line.start, given_way, before.start + style.shortest)
+            before.end = min(before.end, line.start)
+        line.end = max(line.last + style.stays, line.start + style.shortest)
+        before = line
+    if lines:
+        lines[-1].end = min(lines[-1].end, over)
+    return lines
+
+
+def _stamp(second: float) -> str:
+    minutes, rest = divmod(round(second * 1000), 60_000)
+    return f"{minutes // 60:02d}:{minutes % 60:02d}:{rest // 1000:02d},{rest % 1000:03d}"

@@ -1,0 +1,256 @@
+"""What a picture shows of a chart and its play, on the clock of the music: notes, presses, beats, lights."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.play import Play, StepKind
+from dancetutor_cli.film.scroll import ScrollSegments
+
+# What the highway shows, as plain arrays: notes, presses, beat lines; made from a chart and a play.
+
+QUANTISATIONS = (4, 8, 12, 16, 24, 32, 48, 64, 192)  # note values that have a colour of their own
+
+
+@dataclass(frozen=True, slots=True)
+class NoteTrack:
+    """The notes of a chart, sorted by time; n notes.
+
+    second, end_second : float64 (n,), of the music; end_second = second where there is no hold
+    beat, end_beat : float64 (n,), as far as they are drawn (scroll segments applied)
+    column : int16 (n,); kind : uint8 (n,), `chart.model.Kind`; limb : int8 (n,), `feet.play.Limb`
+    quantisation : int64 (n,), index into `QUANTISATIONS`; judged : bool (n,)
+    player : int8 (n,), of a chart for two whose it is, 1 or 2; 0: anybody's
+    gone_second, gone_beat : float64 (n,), from where on nobody plays it, of a roll maybe later than its head; endless
+    where it is played to its end. Of a mine with a foot on it when it passes, which has that foot as its limb
+    """
+
+    second: NDArray[np.float64]
+    end_second: NDArray[np.float64]
+    beat: NDArray[np.float64]
+    end_beat: NDArray[np.float64]
+    column: NDArray[np.int16]
+    kind: NDArray[np.uint8]
+    limb: NDArray[np.int8]
+    quantisation: NDArray[np.int64]
+    judged: NDArray[np.bool_]
+    player: NDArray[np.int8]
+    gone_second: NDArray[np.float64]
+    gone_beat: NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Presses:
+    """When which panel is pressed by whom; p presses sorted by start. Taps end where they start.
+
+    start, end : float64 (p,), seconds of the music; column : int16 (p,); limb : int8 (p,)
+    """
+
+    start: NDArray[np.float64]
+    end: NDArray[np.float64]
+    column: NDArray[np.int16]
+    limb: NDArray[np.int8]
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+
+@dataclass(frozen=True, slots=True)
+class Callout:
+    """Words for a passage. second : of the music, where it begins; beat : the same as drawn
+
+    severity : "move", "info", "warning" or "error"; begin : second from which it is called out; end : where it is over
+    tag : fewer words, for the place beside the notes
+    further : where the passage's other moves begin, second and beat, and the tag of each
+    """
+
+    second: float
+    beat: float
+    text: str
+    severity: str
+    begin: float
+    end: float
+    tag: str
+    further: tuple[tuple[float, float, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Cue:
+    """A move to name in subtitles. second, end : of the music, when it comes and is over; who : "left foot", ...
+
+    move : its name
+    """
+
+    second: float
+    end: float
+    text: str
+    who: tuple[str, ...]
+    move: str
+
+
+@dataclass(frozen=True, slots=True)
+class BeatLines:
+    """One entry per beat from 0 on. second, beat (as drawn) : float64 (b,); index = the beat's number."""
+
+    second: NDArray[np.float64]
+    beat: NDArray[np.float64]
+
+
+def quantisation(tick: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Index into `QUANTISATIONS` of each tick (1/48 beat): the coarsest note value on whose grid it lies."""
+    out = np.full(len(tick), len(QUANTISATIONS) - 1)
+    for i in reversed(range(len(QUANTISATIONS) - 1)):
+        out[tick % (192 // QUANTISATIONS[i]) == 0] = i
+    return out
+
+
+# From a chart and its play to what a picture shows of them: notes, presses and beats, on the clock of the music.
+
+
+class OnMine(NamedTuple):
+    """A mine that a foot is on as it passes. tick, column : of the chart; foot : 0 left, 1 right
+
+    player : of two who dance whose foot, 1 or 2; 0 where one dances
+    """
+
+    tick: int
+    column: int
+    foot: int
+    player: int = 0
+
+
+def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments, on_mines: Sequence[OnMine] = ()) -> NoteTrack:
+    """The notes as the highway draws them; keysounds are not notes to see."""
+    table = chart.notes
+    keep = table.kind != Kind.KEYSOUND
+    tick, end = table.tick[keep], np.where(table.end[keep] >= 0, table.end[keep], table.tick[keep])
+    limb = np.full(len(table), -1, dtype=np.int8)
+    if play is not None and len(play.rows):
+        row = np.searchsorted(play.rows.tick, table.tick)
+        row = np.clip(row, 0, len(play.rows) - 1)
+        found = (play.rows.tick[row] == table.tick) & (table.column < play.limb.shape[1])
+        limb[found] = play.limb[row[found], table.column[found]]
+    limb[table.kind == Kind.MINE] = Limb.NONE
+    for one in on_mines:
+        limb[(table.kind == Kind.MINE) & (table.tick == one.tick) & (table.column == one.column)] = one.foot
+    second = chart.timing.seconds(tick)
+    gone = _gone(chart, play, limb)[keep]
+    is_gone = gone >= 0
+    order = np.argsort(second, kind="stable")
+    track = NoteTrack(
+        second=second,
+        end_second=chart.timing.seconds(end),
+        beat=scrolls.shown(tick / TICKS_PER_BEAT),
+        end_beat=scrolls.shown(end / TICKS_PER_BEAT),
+        column=table.column[keep],
+        kind=table.kind[keep],
+        limb=limb[keep],
+        quantisation=quantisation(tick),
+        judged=table.judged[keep],
+        player=_players(chart)[keep],
+        gone_second=np.where(is_gone, chart.timing.seconds(gone), np.inf),
+        gone_beat=np.where(is_gone, scrolls.shown(gone / TICKS_PER_BEAT), np.inf),
+    )
+    return NoteTrack(*(getattr(track, field.name)[order] for field in fields(NoteTrack)))
+
+
+def _gone(chart: Chart, play: Play | None, limb: NDArray[np.int8]) -> NDArray[np.int64]:
+    """From which tick on nobody plays a note, -1 where it is played; limb : of each. A roll is let go at its first tap
+    that nobody plays: from there on no one keeps it."""
+    table = chart.notes
+    out = np.where((limb == Limb.UNPLAYED) | ((table.kind == Kind.MINE) & (limb >= 0)), table.tick, -1)
+    if play is None:
+        return out
+    row, column = np.nonzero((play.rows.steps == StepKind.ROLL_TAP) & (play.limb == Limb.UNPLAYED))
+    for of in np.unique(column).tolist():
+        taps = play.rows.tick[row[column == of]]  # in order of time, as rows are
+        rolls = np.flatnonzero((table.kind == Kind.ROLL) & (table.column == of) & (out < 0) & (table.tick < taps[-1]))
+        first = taps[np.searchsorted(taps, table.tick[rolls], side="right")]
+        left = first <= table.end[rolls]
+        out[rolls[left]] = first[left]
+    return out
+
+
+def _players(chart: Chart) -> NDArray[np.int8]:
+    """Whose each note of a chart is, int8 (n,): 1 or 2 where it is for two, 0 for anybody's, as mines are."""
+    owner: dict[tuple[int, int], int] = {}
+    for part in chart.players:
+        steps = part.notes.kind != Kind.MINE
+        columns = (part.notes.column[steps] + part.first_column).tolist()
+        owner |= dict.fromkeys(zip(part.notes.tick[steps].tolist(), columns, strict=True), part.player)
+    table = chart.notes
+    if not owner:
+        return np.zeros(len(table), dtype=np.int8)
+    places = zip(table.tick.tolist(), table.column.tolist(), strict=True)
+    return np.array([owner.get(place, 0) for place in places], dtype=np.int8)
+
+
+def presses_of(track: NoteTrack) -> Presses:
+    """Every press of a panel: taps, lifts, and holds and rolls from head to tail, or to where they are let go."""
+    step = track.judged & np.isin(track.kind, (Kind.TAP, Kind.LIFT, Kind.HOLD, Kind.ROLL))
+    end = np.maximum(np.minimum(track.end_second, track.gone_second), track.second)
+    return Presses(track.second[step], end[step], track.column[step], track.limb[step])
+
+
+def beat_lines(chart: Chart, scrolls: ScrollSegments, end: float) -> BeatLines:
+    """One line per beat, from beat 0 to the end of the film."""
+    last = max(int(chart.notes.tick.max(initial=0)), int(chart.notes.end.max(initial=0)))
+    beats = np.arange(min(last // TICKS_PER_BEAT + 64, 2_000_000), dtype=np.int64)
+    second = chart.timing.seconds(beats * TICKS_PER_BEAT)
+    keep = second <= end + 60
+    return BeatLines(second[keep], scrolls.shown(beats.astype(np.float64))[keep])
+
+
+# How brightly a panel or receptor is lit: at once at its note, fading after a tap, steady while it is held.
+#
+# A note that nobody plays lights nothing.
+
+HELD = 0.62  # brightness while held, after the flash of the start
+EPSILON = 1e-6  # seconds; a frame that falls on a note shows it
+
+
+def lighting(track: NoteTrack, presses: Presses) -> Presses:
+    """What lights panels: the presses, and the mines that a foot is on as they pass."""
+    mines = (track.kind == Kind.MINE) & (track.limb >= 0)
+    if not mines.any():
+        return presses
+    own = Presses(track.second[mines], track.second[mines], track.column[mines], track.limb[mines])
+    order = np.argsort(np.concatenate((presses.start, own.start)), kind="stable")
+    both = (np.concatenate((getattr(presses, one.name), getattr(own, one.name))) for one in fields(Presses))
+    return Presses(*(values[order] for values in both))
+
+
+class PanelLights:
+    """Light of each column over time; fade : seconds from full light to none."""
+
+    def __init__(self, presses: Presses, columns: int, fade: float) -> None:
+        self.presses, self.fade = presses, fade
+        pressed = presses.limb != Limb.UNPLAYED
+        self._columns = [np.flatnonzero((presses.column == c) & pressed) for c in range(columns)]
+        self._starts = [presses.start[mine] for mine in self._columns]
+
+    def at(self, column: int, second: float) -> tuple[float, int]:
+        """Brightness 0..1 at `second` of the music, and the limb of the last press (-1: none or unknown)."""
+        last = int(np.searchsorted(self._starts[column], second + EPSILON, side="right")) - 1
+        if last < 0:
+            return 0.0, -1
+        press = self._columns[column][last]
+        start, end = float(self.presses.start[press]), float(self.presses.end[press])
+        fresh = _left((second - start) / self.fade)
+        if second < end:
+            level = max(HELD, fresh)
+        else:
+            level = _left((second - end) / self.fade) * (1.0 if end == start else HELD)
+        return min(1.0, level), int(self.presses.limb[press])
+
+
+def _left(share: float) -> float:
+    """What is left of a light when so much of its time is over: it is bright and goes out, and does not linger."""
+    return max(0.0, 1.0 - share * share)

@@ -1,0 +1,182 @@
+"""Words that come and go: which run of a practice film this is, the count-in, and the moves called out."""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import lru_cache
+
+import numpy as np
+
+from dancetutor_cli.feet.limbs import limb_colours
+from dancetutor_cli.film.clock import Clock
+from dancetutor_cli.film.layout import PixelBox
+from dancetutor_cli.film.notes import Callout
+from dancetutor_cli.film.overlay.blit import Box, Sprite, blit, rectangle
+from dancetutor_cli.film.overlay.captions import SOFT, WHITE, box_of
+from dancetutor_cli.film.overlay.sprites import FLAG_EDGE, HighwayStyle, flag, flag_height
+from dancetutor_cli.film.overlay.text import Typeface, fitted, wrapped
+from dancetutor_cli.film.picture import Frame
+from dancetutor_cli.film.words import WHO
+from dancetutor_cli.run.yaml_files import RGB
+
+CALL_LEAST = 0.75  # size of a call's letters that is preferred to fewer words,
+CALL_SMALL = 0.5  # and to more than two lines
+SHARES = np.arange(1.0, CALL_LEAST - 0.01, -0.05)  # of their size that are tried
+CALL_STAYS, CALL_FADES = 0.2, 0.06  # seconds that a call stays after its note; in which it goes: no ghost of it stands
+COUNTED = "starts in"  # said above the numbers of the count-in
+
+
+class Runs:
+    """Which run of a practice film this is and how fast; and the count-in.
+
+    box : what the label stands in, in its middle; or only its top left corner, (left, top)
+    count : what the numbers of the count-in stand in
+    """
+
+    def __init__(self, clock: Clock, box: tuple[float, ...], count: PixelBox, scale: float, face: Typeface) -> None:
+        self.clock, self.box, self.count = clock, box, count
+        several = len(clock.passes) > 1 or any(one.rate != 1 for one in clock.passes)
+        texts = [self._text(number) for number in range(len(clock.passes))] if several else []
+        self.labels = [flag([text], 19 * scale, SOFT, face) for text in texts]
+        counts = range(1, max(one.count for one in clock.passes) + 1)
+        room, small = count[3] - count[1], min(20 * scale, 0.2 * (count[3] - count[1]))
+        (said,), small = fitted(COUNTED, small, 0.9 * (count[2] - count[0]), face, most=1)
+        self.counted = face.sprite(said, small, SOFT, weight=small / 80, shadow=small / 14)
+        big = min(150 * scale, 0.8 * (room - self.counted.shape[0]))
+        self.numbers = {n: face.sprite(str(n), big, WHITE, weight=big / 50, shadow=big / 30) for n in counts}
+
+    def _text(self, number: int) -> str:
+        one, count = self.clock.passes[number], len(self.clock.passes)
+        speed = f"{one.rate:.0%} speed" if one.rate != 1 else "full speed"
+        return f"{speed} · run {number + 1} of {count}" if count > 1 else speed
+
+    def _corner(self, label: Sprite) -> tuple[float, float]:
+        return (self.box[0], self.box[1]) if len(self.box) == 2 else _middle(label, self.box)
+
+    @property
+    def boxes(self) -> list[Box]:
+        """Where the labels stand: left, top, right, bottom."""
+        return [box_of(label, *self._corner(label)) for label in self.labels]
+
+    def draw(self, frame: Frame, second: float, run: int, opacity: float = 1.0) -> None:
+        """Draw at `second` of the music in pass `run`; opacity : of the label."""
+        if self.labels:
+            label = self.labels[run]
+            x, y = self._corner(label)
+            blit(frame, label, x, round(y), opacity)
+        one = self.clock.passes[run]
+        if one.count and second < one.sound_from - 1e-6:
+            left = (one.sound_from - second) / (one.sound_from - one.start) * one.count
+            number = self.numbers[min(one.count, max(1, math.ceil(left - 1e-6)))]
+            x, y = _middle(number, self.count)
+            above = self.counted.shape[0]
+            blit(frame, number, x, round(y + above / 2))
+            blit(frame, self.counted, _middle(self.counted, self.count)[0], round(y - above / 2))
+
+
+def _middle(sprite: Sprite, box: tuple[float, ...]) -> tuple[float, float]:
+    left, top, right, bottom = box
+    return (left + right - sprite.shape[1]) / 2, (top + bottom - sprite.shape[0]) / 2
+
+
+def _phrases(
+    text: str, size: float, room: tuple[float, float], face: Typeface, short: str = ""
+) -> tuple[list[str], float]:
+    """Words of a call in one or two lines; in more where their letters would be too small. Nothing is cut off.
+
+    room : width and height of the words, pixels; short : the text without whose move it is, where even "right: " has no
+    room in two lines
+    """
+    width, height = room
+    named = text.replace(" foot:", ":")
+    tries = [(text, CALL_LEAST), (named, CALL_LEAST), (text, CALL_SMALL)]
+    if short and text.endswith(short):
+        tries += [(named, CALL_SMALL), (short, CALL_LEAST), (short, CALL_SMALL)]
+    for said, least in tries:
+        lines, fits = _two_lines(said, size, width, face)
+        if fits >= least * size:
+            return lines, fits
+    for ends in (",", ",:"):
+        for share in SHARES:
+            lines = wrapped(_parts(text, ends), share * size, width, face)
+            low = len(lines) == 1 or flag_height(len(lines), share * size) <= height
+            if low and max(face.width(line, share * size) for line in lines) <= width:
+                return lines, float(share * size)
+    return fitted(text, size, width, face, 3)
+
+
+def _two_lines(text: str, size: float, width: float, face: Typeface) -> tuple[list[str], float]:
+    """In one line, or broken where there is a comma, then a colon, or anywhere, in letters as small as they need."""
+    for ends in (",", ",:"):
+        for share in SHARES:
+            lines = wrapped(_parts(text, ends), share * size, width, face)
+            if len(lines) <= 2 and max(face.width(line, share * size) for line in lines) <= width:
+                return lines, float(share * size)
+    return fitted(text, size, width, face, 2)
+
+
+def _parts(text: str, ends: str) -> list[str]:
+    return re.sub(f"([{ends}]) ", r"\1\n", text).split("\n")
+
+
+def _foot_colour(text: str) -> RGB | None:
+    """The colour of the one foot that a call names; None of both and of none."""
+    named = [foot for foot in range(2) if re.search(f"\\b{WHO[foot]}\\b", text)]
+    return limb_colours().by_limb[named[0]] if len(named) == 1 else None
+
+
+def _left(call: Callout, second: float) -> float:
+    """How much is left of the time to the next move of a passage, 1 to 0; 0 from its last one on."""
+    begin = call.begin
+    for move in (call.second, *(move for move, *_ in call.further)):
+        if second < move:
+            return min(1.0, (move - second) / max(move - begin, 1e-9))
+        begin = move
+    return 0.0
+
+
+class Calls:
+    """Passages called out before they come, at the top right of `box`, with the time left as a bar.
+
+    The words stand until the passage is over: one that goes on has its count beside it all the time.
+    """
+
+    SHOWN = 2  # at a time, the nearest on top
+
+    def __init__(
+        self, callouts: tuple[Callout, ...], box: PixelBox, scale: float, face: Typeface, style: HighwayStyle
+    ) -> None:
+        self.callouts, self.box, self.scale, self.face, self.style = callouts, box, scale, face, style
+        self._begins = np.array([one.begin for one in callouts])
+        self._ends = np.array([max(one.end, one.second) + CALL_STAYS for one in callouts])
+        self._sprite = lru_cache(maxsize=32)(self._plate)
+
+    def _plate(self, text: str, severity: str, tag: str = "") -> Sprite:
+        size = 24 * self.scale
+        width, height = self.box[2] - self.box[0] - (FLAG_EDGE + 0.1) * size, self.box[3] - self.box[1]
+        lines, size = _phrases(text, size, (width, height), self.face, tag)
+        return flag(lines, size, self.style.callout[severity], self.face, _foot_colour(text))
+
+    def _shown(self, second: float) -> list[Callout]:
+        shown = np.flatnonzero((self._begins <= second) & (second < self._ends))
+        return [self.callouts[k] for k in shown[: self.SHOWN]]
+
+    def draw(self, frame: Frame, second: float) -> None:
+        """Draw what goes on at `second`, and what comes next."""
+        y = float(self.box[1])
+        for one in self._shown(second):
+            label = self._sprite(one.text, one.severity, one.tag)
+            if y > self.box[1] and y + label.shape[0] > self.box[3]:
+                break  # it would cover what stands below; the tag beside the notes says it, too
+            x = self.box[2] - label.shape[1]
+            over = max(one.end, one.second) + CALL_STAYS
+            fade = min(1.0, (second - one.begin) / 0.12, (over - second) / CALL_FADES)
+            blit(frame, label, x, round(y), fade)
+            y += label.shape[0] + 4 * self.scale
+            share = _left(one, second)
+            bar = (label.shape[1] - 8 * self.scale) * share
+            edge = x + 4 * self.scale
+            line = (edge, y, edge + bar, y + 4 * self.scale)
+            rectangle(frame, line, self.style.callout[one.severity], 0.9 * fade)
+            y += 14 * self.scale

@@ -1,0 +1,230 @@
+"""What the picture calls out beside the notes: the moves a learner has to know, a passage at a time.
+
+What the linter found is for authors; it stands there only where it is asked for.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.play import MOVE
+from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
+from dancetutor_cli.film.notes import Callout
+from dancetutor_cli.film.words import MINE, SAID_BY_A_BRACKET, filled, short_words
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+    from dancetutor_cli.chart.model import Chart
+    from dancetutor_cli.feet import Pad
+    from dancetutor_cli.feet.play import Play
+    from dancetutor_cli.film.choices import Ahead
+    from dancetutor_cli.film.notes import OnMine
+    from dancetutor_cli.film.scroll import ScrollSegments
+    from dancetutor_cli.lint.findings import Finding
+
+JOIN = 2 * TICKS_PER_BEAT, 0.8  # moves that follow within so many ticks, or seconds, are called out together,
+REST = 1.2  # if there is not so long a rest before them, seconds, and no jump with uncrossed feet;
+LONGEST = 16 * TICKS_PER_BEAT, 7.5  # but nothing is called out for longer than four measures, or so many seconds
+APART = 0.4  # seconds between moves of one passage that have each its tag and its countdown
+KINDS, LETTERS = 2, 42  # different moves in one call at most, and letters of these: more cannot be read in time
+_ORDER = ("move", "info", "warning", "error")
+_OF_PASSAGES, _PASSAGE = ("fast step", "unplayable"), 8 * TICKS_PER_BEAT  # one finding for so long (lint/rules)
+_OF_MINES = "mine under"  # what the linter calls such a mine begins so (DT303)
+_CROSSED = ("crossover-full", "crossover-half")  # go on over several rows; told where they begin
+
+
+@dataclass(frozen=True, slots=True)
+class CallStyle:
+    """What is called out, and when. words : name of a move -> what is said, with {who} and {places} to be filled in;
+    moves that are not in it are not. findings : the linter's, too; turned : she faces who looks on, and panels are
+    named as they are seen then"""
+
+    words: Mapping[str, str]
+    ahead: Ahead
+    findings: bool = False
+    turned: bool = False
+
+
+@dataclass
+class _Passage:
+    """Moves that follow each other closely. words : what is said -> how often, in order"""
+
+    first: int
+    last: int
+    words: dict[str, int] = field(default_factory=dict)
+    weight: int = 0
+    moves: list[tuple[int, str]] = field(default_factory=list)
+
+    def takes(self, tick: int, said: str, weight: int, told: _Told) -> bool:
+        """Is a move at `tick` part of it?"""
+        second = told.second
+
+        def within(since: int, most: tuple[int, float]) -> bool:
+            return tick - since <= most[0] or second[tick] - second[since] <= most[1]
+
+        near = within(self.last, JOIN) and second[tick] - second[self.last] < REST and within(self.first, LONGEST)
+        near = near and not told.parted(self.last, tick)
+        short = len(self.words) < KINDS and len(", ".join([*self.words, said])) <= LETTERS
+        return near and weight == self.weight and (said in self.words or short)
+
+    def text(self) -> str:
+        return ", ".join(said if count == 1 else f"{said} ×{count}" for said, count in self.words.items())
+
+    def tag(self, further: int) -> str:
+        """What it begins with, for the narrow place beside the notes, whose markers say which foot it is.
+
+        further : how many of its other moves have tags of their own; where all have, this one counts none
+        """
+        said, count = next(iter(self.words.items()))
+        counted = count > 1 and further + 1 < len(self.moves)
+        return f"{short_words(said)} ×{count}" if counted else short_words(said)
+
+    def further(self, second: Mapping[int, float]) -> list[tuple[int, str]]:
+        """Tick and tag of each other move that is well apart from the one before it."""
+        found, before = [], self.first
+        for tick, said in self.moves:
+            if second[tick] - second[before] >= APART:
+                found.append((tick, short_words(said)))
+                before = tick
+        return found
+
+
+class _Told(NamedTuple):
+    """second : of every tick that is asked for; jumps : ticks of jumps with uncrossed feet, ascending"""
+
+    second: Mapping[int, float]
+    jumps: Sequence[int]
+
+    def parted(self, since: int, tick: int) -> bool:
+        """Does she jump between these, her feet uncrossed?"""
+        return bisect_right(self.jumps, since) < bisect_left(self.jumps, tick)
+
+
+class Called(NamedTuple):
+    """What calls are about: a chart, the pad, and what the linter finds there, looked for when it is needed."""
+
+    chart: Chart
+    pad: Pad | None
+    findings: Callable[[], Iterable[Finding]]
+
+
+def callouts_of(
+    about: Called,
+    play: Play | None,
+    style: CallStyle,
+    scrolls: ScrollSegments,
+    on_mines: Iterable[OnMine] = (),
+) -> tuple[Callout, ...]:
+    """Everything to call out, a passage at a time, in order of time.
+
+    Moves in a row, such as one crossover after the other, are one passage with a count.
+
+    about : the chart; play : what the picture shows of it. Of a row with a note that nobody
+    plays, or a mine that a foot is on, it is always said what the linter finds there.
+    on_mines : those mines
+    """
+    ticks = () if play is None else play.rows.tick[(play.limb == Limb.UNPLAYED).any(axis=1)].tolist()
+    mined = sorted({one.tick for one in on_mines}) if MINE in style.words else []
+    findings = list(_findings(about.findings(), codes=not style.findings)) if style.findings or ticks or mined else []
+    why = {} if style.findings else dict(_reasons(ticks, findings))
+    under = {} if style.findings else {tick: said for tick, _, said, _ in findings if _OF_MINES in said}
+    found = [*_moves(about.pad, play, style, why), *(findings if style.findings else ())]
+    found += ((tick, tick, style.words[MINE] + (f" ({under[tick]})" if tick in under else ""), 0) for tick in mined)
+    timing = about.chart.timing
+    asked = sorted({tick for first, last, *_ in found for tick in (first, last)})
+    seconds = dict(zip(asked, timing.seconds(np.array(asked, dtype=np.int64)).tolist(), strict=True))
+    told = _Told(seconds, [] if play is None else _jumps(play))
+    passages: list[_Passage] = []
+    for first, last, said, weight in sorted(found):
+        here = next((p for p in reversed(passages[-2:]) if p.takes(first, said, weight, told)), None)
+        if here is None:
+            here = _Passage(first, last, weight=weight)
+            passages.append(here)
+        here.last = max(here.last, last)
+        here.words[said] = here.words.get(said, 0) + 1
+        here.moves.append((first, said))
+    ticks = np.array([(p.first, p.last) for p in passages], dtype=np.int64).reshape(-1, 2)
+    starts, ends = timing.seconds(ticks[:, 0]), timing.seconds(ticks[:, 1])
+    beats = scrolls.shown(ticks[:, 0] / TICKS_PER_BEAT)
+
+    def further(passage: _Passage) -> Iterator[tuple[float, float, str]]:
+        for tick, tag in passage.further(seconds):
+            yield seconds[tick], float(scrolls.shown(np.array([tick / TICKS_PER_BEAT]))[0]), tag
+
+    if style.ahead.in_beats:
+        begins = timing.seconds(ticks[:, 0] - round(style.ahead.length * TICKS_PER_BEAT))
+    else:
+        begins = starts - style.ahead.length
+    return tuple(
+        Callout(
+            float(start),
+            float(beat),
+            passage.text(),
+            _ORDER[passage.weight],
+            float(begin),
+            float(end),
+            passage.tag(len(passage.further(seconds))),
+            tuple(further(passage)),
+        )
+        for passage, start, beat, begin, end in zip(passages, starts, beats, begins, ends, strict=True)
+    )
+
+
+def _reasons(ticks: Iterable[int], findings: Iterable[tuple[int, int, str, int]]) -> Iterator[tuple[int, str]]:
+    """What the linter says of some rows, by tick: its finding there, or that of the passage, which goes on as long as
+    such rows do."""
+    told = sorted((tick, said) for tick, _, said, _ in findings)
+    last, passage = -_PASSAGE, ""
+    for tick in ticks:
+        here = [said for at, said in told if at == tick]
+        before = [said for at, said in told if said.endswith(_OF_PASSAGES) and tick - _PASSAGE <= at <= tick]
+        passage = before[-1] if before else passage if tick - last <= _PASSAGE else ""
+        last = tick
+        if here or passage:
+            yield tick, here[0] if here else passage
+
+
+def _moves(
+    pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[int, str]
+) -> Iterator[tuple[int, int, str, int]]:
+    """First and last tick of each move, what is said, and that it is no finding; why : what is added, by tick."""
+    words = style.words
+    if play is None or pad is None:
+        return
+    ticks = play.rows.tick.tolist()
+    crossed: dict[str, int] = {}  # kind of crossover -> where it began, of one that goes on
+    known: set[str] = set()  # kinds of it that are told, or that its half turn tells; a full one is a half one, too
+    for row, names in enumerate(moves_and_turns(play)):
+        now = next((name for name in _CROSSED if name in names), "")
+        if not now:
+            yield from ((first, ticks[row - 1], words[kind], 0) for kind, first in crossed.items())
+            crossed, known = {}, set()
+        elif now not in known and now in words and not {*HALF_TURNS}.intersection(names).intersection(words):
+            crossed[now] = ticks[row]
+        known |= {now, _CROSSED[-1]} if now else set()
+        told = {n for n in names if n in words and n not in _CROSSED}
+        for name in sorted(told - SAID_BY_A_BRACKET if "bracket" in told else told):
+            reason = f" ({why[ticks[row]]})" if name == MOVE and ticks[row] in why else ""
+            for said in filled(words[name], name, (play, row), pad, style.turned):
+                yield ticks[row], ticks[row], said + reason, 0
+    yield from ((first, ticks[-1], words[kind], 0) for kind, first in crossed.items())
+
+
+def _jumps(play: Play) -> list[int]:
+    rows = zip(play.rows.tick.tolist(), play.moves, strict=True)
+    return [tick for tick, names in rows if "jump" in names and not {*_CROSSED}.intersection(names)]
+
+
+def _findings(findings: Iterable[Finding], codes: bool) -> Iterator[tuple[int, int, str, int]]:
+    for finding in findings:
+        if finding.beat is not None and finding.note_column is not None and finding.severity in _ORDER:
+            tick = round(finding.beat * TICKS_PER_BEAT)
+            said = finding.name.replace("-", " ")
+            yield tick, tick, f"{finding.rule} {said}" if codes else said, _ORDER.index(finding.severity)

@@ -1,0 +1,206 @@
+"""The standing words of the picture but the song's: the legend; the strip with density, position and time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.feet.limbs import RGB
+from dancetutor_cli.film.layout import PixelBox
+from dancetutor_cli.film.overlay import blit as shapes
+from dancetutor_cli.film.overlay import sprites
+from dancetutor_cli.film.overlay.blit import Box, Sprite, blit, rectangle
+from dancetutor_cli.film.overlay.sprites import HighwayStyle
+from dancetutor_cli.film.overlay.text import Typeface
+from dancetutor_cli.film.picture import Frame
+
+WHITE = (255, 255, 255)
+SOFT = (196, 202, 222)
+INK = (12, 13, 22)
+TURNED = "facing you: her left is on the right"  # where there are no notes
+
+
+def box_of(sprite: Sprite, x: float, y: float) -> Box:
+    """Left, top, right and bottom of a sprite whose top left corner is at (x, y)."""
+    return x, y, x + sprite.shape[1], y + sprite.shape[0]
+
+
+def pill(text: str, size: float, colour: tuple[int, int, int], face: Typeface) -> Sprite:
+    """Dark words on a coloured lozenge."""
+    return plate([text], size, colour, face)
+
+
+def plate(lines: Sequence[str], size: float, colour: tuple[int, int, int], face: Typeface) -> Sprite:
+    """Lines of dark words on a coloured plate with round ends."""
+    words = [face.sprite(line, size, INK, weight=size / 62) for line in lines]
+    one, step = max(8, round(1.55 * size)), round(1.2 * size)
+    height = one + step * (len(lines) - 1)
+    width = max(max(line.shape[1] for line in words) + one // 2 + 2, one)
+    out = lozenge(height, width, one / 2 - 1, colour)
+    for number, line in enumerate(words):
+        sprites.centre(out[number * step : number * step + one], line)
+    return out
+
+
+def lozenge(
+    height: int,
+    width: int,
+    radius: float,
+    colour: tuple[int, int, int],
+    words: Sprite | None = None,
+    opacity: float = 1,
+) -> Sprite:
+    """A box with round corners, words in its middle."""
+    painter = shapes.Painter(height, width)
+    d = shapes.rounded_box(painter.x, painter.y, width / 2 - 1, height / 2 - 1, radius)
+    painter.paint(shapes.cover(d), colour, opacity)
+    out = painter.sprite()
+    if words is not None:
+        sprites.centre(out, words)
+    return out
+
+
+class Legend:
+    """What the markers mean, one under the other at the box's bottom; hands only where what is shown needs them.
+
+    A dark plate below keeps them readable over a panel of the pad. note : words below the last one; players : colours
+    of the notes of each of two.
+    More lines than the box holds stand out below it: what is above are the song's words.
+    """
+
+    def __init__(
+        self,
+        limbs: set[int],
+        box: PixelBox,
+        scale: float,
+        face: Typeface,
+        note: str = "",
+        players: tuple[RGB, ...] = (),
+    ) -> None:
+        names = ("left foot", "right foot", "left hand", "right hand")
+        size = max(8, round(24 * scale))
+        shown = [(sprites.marker(size, limb, face), names[limb]) for limb in sorted({0, 1} | limbs)]
+        shown += [(sprites.arrow(size, 0.0, colour), f"player {n}") for n, colour in enumerate(players, 1)]
+        step, edge = 31 * scale, 8 * scale
+        height = step * (len(shown) + bool(note))
+        top = max(box[3] - height, float(box[1]))
+        lines: list[tuple[Sprite, float, float]] = []
+        right = float(box[0])
+        for row, (mark, name) in enumerate(shown):
+            middle = top + (row + 0.5) * step
+            text = face.sprite(name, 16 * scale, WHITE, weight=0.2 * scale)
+            x = box[0] + mark.shape[1] + 5 * scale
+            lines += [(mark, box[0], middle - mark.shape[0] / 2), (text, x, middle - text.shape[0] / 2)]
+            right = max(right, x + text.shape[1])
+        if note:
+            text = face.sprite(note, 16 * scale, WHITE, weight=0.2 * scale)
+            lines.append((text, box[0], top + height - 0.5 * step - text.shape[0] / 2))
+            right = max(right, float(box[0] + text.shape[1]))
+        plate = lozenge(round(height + 1.2 * edge), round(right - box[0] + 2 * edge), 8 * scale, INK, opacity=0.62)
+        self.lines = [(plate, box[0] - edge, top - 0.6 * edge), *lines]
+
+    @property
+    def boxes(self) -> list[Box]:
+        """Where its plate stands: left, top, right, bottom."""
+        return [box_of(*self.lines[0])]
+
+    def draw(self, frame: Frame, opacity: float = 1.0) -> None:
+        """Lay the legend over the picture."""
+        for sprite, x, y in self.lines:
+            blit(frame, sprite, x, round(y), opacity)
+
+
+@dataclass(frozen=True, slots=True)
+class SongShape:
+    """The whole song for the strip. steps : float64 (n,), seconds of its steps, sorted; start, end : shown range;
+
+    section : the rendered part, (start, end) seconds
+    """
+
+    steps: NDArray[np.float64]
+    start: float
+    end: float
+    section: tuple[float, float]
+
+
+def strip_ground(picture: Frame, scale: float) -> None:
+    """What the strip stands on, with a line above it."""
+    picture[...] = (9, 10, 19)
+    picture[: max(1, round(1.2 * scale))] = (44, 48, 70)
+
+
+class ProgressStrip:
+    """The strip with the density of the whole song, the position, and the time."""
+
+    def __init__(self, song: SongShape, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle) -> None:
+        self.song, self.box, self.scale, self.face = song, box, scale, face
+        left, _, right, _ = box
+        self.text = 17 * scale
+        total = clock_text(song.end)
+        room = face.width(f"{total} / {total}", self.text) + 34 * scale
+        self.graph = (round(left + room), right - round(20 * scale))
+        self.ahead = self._paint(style, bright=False)
+        self.played = self._paint(style, bright=True)
+        self._sprite = lru_cache(maxsize=16)(self._time_sprite)
+
+    def _paint(self, style: HighwayStyle, bright: bool) -> Frame:
+        left, top, right, bottom = self.box
+        picture = np.empty((bottom - top, right - left, 3), dtype=np.uint8)
+        strip_ground(picture, self.scale)
+        a, b = self.graph[0] - left, self.graph[1] - left
+        if b <= a:
+            return picture
+        heights = density(self.song, b - a, max(2.0, 2.0 * self.scale))
+        floor = bottom - top - 7 * self.scale
+        room = floor - 7 * self.scale
+        colour = style.accent if bright else (92, 98, 128)
+        for x, height in enumerate(heights):
+            base = 1.5 * self.scale
+            rectangle(picture, (a + x, floor - base - (room - base) * height, a + x + 1, floor), colour, 0.88)
+        for edge in self.song.section:
+            at = a + self._position(edge) * (b - a)
+            if a < at < b:
+                box = (at - self.scale, 0, at + self.scale, bottom - top)
+                rectangle(picture, box, style.difficulty["Medium"], 0.8)
+        return picture
+
+    def _position(self, second: float) -> float:
+        return min(1.0, max(0.0, (second - self.song.start) / max(1e-9, self.song.end - self.song.start)))
+
+    def draw(self, frame: Frame, second: float) -> None:
+        """Draw the strip at `second` of the music."""
+        left, top, right, bottom = self.box
+        a, b = self.graph
+        x = a + self._position(second) * (b - a)
+        split = max(0, min(right - left, int(x) - left))
+        frame[top:bottom, left:right] = self.ahead
+        frame[top:bottom, left : left + split] = self.played[:, :split]
+        here = (x - 1.2 * self.scale, top + 4 * self.scale, x + 1.2 * self.scale, bottom - 4 * self.scale)
+        rectangle(frame, here, WHITE)
+        words = self._sprite(f"{clock_text(second)} / {clock_text(self.song.end)}")
+        blit(frame, words, left + 14 * self.scale, round((top + bottom - words.shape[0]) / 2))
+
+    def _time_sprite(self, text: str) -> Sprite:
+        return self.face.sprite(text, self.text, WHITE, weight=0.2 * self.scale)
+
+
+def density(song: SongShape, bins: int, smooth: float) -> NDArray[np.float64]:
+    """Steps per second along the song, `bins` values, the highest 1."""
+    counts, _ = np.histogram(song.steps, bins=bins, range=(song.start, max(song.end, song.start + 1e-6)))
+    width = max(1, round(max(smooth, bins * 1.2 / max(song.end - song.start, 1.0))))
+    kernel = np.hanning(width + 2)[1:-1]
+    values = np.convolve(counts, kernel / kernel.sum(), mode="same")
+    peak = values.max(initial=0.0)
+    result: NDArray[np.float64] = values / peak if peak > 0 else values.astype(np.float64)
+    return result
+
+
+def clock_text(second: float) -> str:
+    """ "1:05", with hours where there are any; before the music it stands at 0:00."""
+    whole = int(max(0.0, second))
+    hours, rest = divmod(whole, 3600)
+    return f"{hours}:{rest // 60:02d}:{rest % 60:02d}" if hours else f"{rest // 60}:{rest % 60:02d}"

@@ -1,0 +1,258 @@
+"""The pictures of the highway, made once for a lane width: arrows, receptors, flashes, mines, holds and L/R markers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.feet.limbs import limb_colours
+from dancetutor_cli.film.overlay import blit
+from dancetutor_cli.film.overlay.blit import Sprite
+from dancetutor_cli.film.overlay.text import Typeface
+from dancetutor_cli.film.words import move_words
+from dancetutor_cli.run.reading import config_path
+from dancetutor_cli.run.yaml_files import RGB, load
+
+# Corners of an arrow that points up, in halves of its size.
+_ARROW = np.array([
+    (0.0, -0.94), (0.94, 0.0), (0.62, 0.32), (0.36, 0.06), (0.36, 0.88),
+    (-0.36, 0.88), (-0.36, 0.06), (-0.62, 0.32), (-0.94, 0.0),
+])  # fmt: skip
+_SQUARE = np.array([(-0.86, -0.86), (0.86, -0.86), (0.86, 0.86), (-0.86, 0.86)])
+_WIDTH = 0.94  # of an arrow, in its size, whichever way it points
+
+
+FLAG_STEP = 1.15  # from one line of a label to the next, in sizes of its letters
+FLAG_EDGE = 0.55  # left and right of a label's words together, in sizes of its letters
+NOBODY = (150, 154, 170)  # colour of the mark of a note that is let go
+TAIL_DIM, TAIL_LONG = (
+    0.6,
+    0.75,
+)  # how much darker an arrow's tail ends, and over how much of its half: its head stands out
+
+
+@dataclass(frozen=True, slots=True)
+class HighwayStyle:
+    """configs/highway.yaml: colours sRGB 0..255; sizes in lane widths; times in seconds."""
+
+    quantisation: dict[int, RGB]
+    players: tuple[RGB, RGB]
+    hold: RGB
+    roll: RGB
+    mine: RGB
+    fake: RGB
+    receptor: RGB
+    background: RGB
+    lane_line: RGB
+    arrow: float
+    mark: float
+    mark_aside: tuple[float, float]
+    mark_tail: float
+    flash_seconds: float
+    panel_seconds: float
+    callouts: tuple[str, ...]
+    callout_ahead: str
+    callout: dict[str, RGB]
+    difficulty: dict[str, RGB]
+    accent: RGB
+
+
+def highway_style() -> HighwayStyle:
+    """The style of configs/highway.yaml."""
+    return load(config_path("highway.yaml"), HighwayStyle)
+
+
+def callout_words() -> dict[str, str]:
+    """The moves that configs/highway.yaml has called out, and their words; FileError names one that has none."""
+    return move_words(highway_style().callouts, config_path("highway.yaml"))
+
+
+def _outline(size: float, direction: float | None) -> NDArray[np.float64]:
+    """Corners of the note shape; direction in degrees clockwise from up. A diagonal fills its lane as others do."""
+    if direction is None:
+        return np.asarray(_SQUARE * size / 2)
+    a = np.radians(direction)
+    turn = np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]])
+    corners = np.asarray(_ARROW @ turn / 2)
+    if direction % 90:
+        least, most = corners.min(axis=0), corners.max(axis=0)
+        corners = (corners - (least + most) / 2) * _WIDTH / (most - least).max()
+    return corners * size
+
+
+@lru_cache(maxsize=64)
+def distance(canvas: int, size: float, direction: float | None) -> blit.Field:
+    """Distance to the note shape on a square canvas; the slow part of a sprite, shared by all its colours."""
+    x, y = blit.grid(canvas, canvas)
+    return blit.polygon(x, y, _outline(size * 0.96, direction)) - 0.02 * size
+
+
+def arrow(size: int, direction: float | None, colour: RGB, hollow: bool = False) -> Sprite:
+    """A note: white rim, body in `colour` lit from above, dark edge, its tail darker than its head.
+
+    hollow : a lift, only its rim in colour
+    """
+    p = blit.Painter(size, size)
+    d = distance(size, size * 0.95, direction)
+    unit = size / 64
+    base = np.array(colour, dtype=np.float64)
+    p.paint(blit.cover(d - 1.6 * unit), (8, 9, 16), 0.9)
+    bright = _bright(p, size, direction)
+    p.paint(blit.cover(d), (np.full(3, 255.0) if not hollow else base) * bright)
+    height = (p.y / size + 0.5)[..., None]
+    body = (base * (1.12 - 0.42 * height) + 26 * (1 - height)) * bright
+    inner = blit.cover(d + (3.2 if not hollow else 4.5) * unit)
+    p.paint(inner, np.clip(body, 0, 255) if not hollow else base * 0.22)
+    facet = np.clip((d + 9 * unit) / (6 * unit), 0, 1)  # a darker bevel towards the rim
+    p.paint(inner * facet, (0, 0, 0), 0.2)
+    return p.sprite()
+
+
+def _bright(p: blit.Painter, size: int, direction: float | None) -> NDArray[np.float64]:
+    """How bright an arrow is at each place: 1 from its head to its middle, less towards the tail's end."""
+    a = 0.0 if direction is None else np.radians(direction)
+    behind = np.zeros_like(p.x + p.y) if direction is None else (p.y * np.cos(a) - p.x * np.sin(a)) / (0.5 * size)
+    return np.asarray(1.0 - TAIL_DIM * np.clip(behind / TAIL_LONG, 0.0, 1.0)[..., None])
+
+
+def receptor(size: int, direction: float | None, colour: RGB) -> Sprite:
+    """The still target of a lane: a dark body with a bright rim."""
+    p = blit.Painter(size, size)
+    d = distance(size, size * 0.95, direction)
+    unit = size / 64
+    p.paint(blit.cover(d - 1.6 * unit), (6, 7, 14), 0.85)
+    p.paint(blit.cover(d), colour, 0.9)
+    p.paint(blit.cover(d + 3.4 * unit), (30, 33, 50))
+    return p.sprite()
+
+
+def glow(size: int, direction: float | None, colour: RGB) -> Sprite:
+    """Light around and on a receptor while its panel is pressed; 1.5 times as large as the arrow."""
+    full = size * 3 // 2
+    p = blit.Painter(full, full)
+    d = distance(full, size * 0.95, direction)
+    halo = np.exp(-np.maximum(d, 0) / (0.085 * size))
+    edge = np.clip((full / 2 - np.hypot(p.x, p.y)) / (0.12 * full), 0, 1)
+    p.paint(halo * edge, colour, 0.85)
+    p.paint(blit.cover(d + 0.08 * size, 0.12 * size * blit.SAMPLES), (255, 255, 255), 0.75)
+    return p.sprite()
+
+
+def mine(size: int, colour: RGB) -> Sprite:
+    """A round mine: dark ball, spikes, a burning middle. Its shape is unlike any arrow's."""
+    p = blit.Painter(size, size)
+    angle = np.arctan2(p.y, p.x)
+    spikes = 0.035 * size * np.cos(8 * angle)
+    d = blit.disc(p.x, p.y, 0.33 * size) - spikes
+    unit = size / 64
+    p.paint(blit.cover(d - 2 * unit), (255, 255, 255), 0.85)
+    p.paint(blit.cover(d), (26, 26, 34))
+    p.paint(blit.cover(np.abs(blit.disc(p.x, p.y, 0.235 * size)) - 2.4 * unit), colour)
+    cross = np.minimum(np.abs(p.x - p.y), np.abs(p.x + p.y)) / np.sqrt(2) - 2.4 * unit
+    p.paint(blit.cover(np.maximum(cross, blit.disc(p.x, p.y, 0.15 * size))), colour)
+    return p.sprite()
+
+
+def hold_body(width: int, colour: RGB, roll: bool) -> Sprite:
+    """A tile of a hold's body: a band; a roll's has a saw-tooth of light so that it differs without colour."""
+    height = 2 * (width // 2)
+    p = blit.Painter(height, width)
+    half = 0.5 * width
+    edge = half - np.abs(p.x) - 1
+    base = np.array(colour, dtype=np.float64)
+    p.paint(np.clip(edge, 0, 1), (255, 255, 255), 0.85)
+    shade = 1.0 - 0.25 * np.abs(p.x / half)[..., None]
+    p.paint(np.clip(edge - 0.05 * width, 0, 1), np.clip(base * shade, 0, 255))
+    if roll:
+        saw = (p.y - 0.5 * np.abs(p.x) * height / half) % height / height
+        p.paint(np.clip(edge - 0.05 * width, 0, 1) * (saw < 0.5), np.clip(base * 1.5 + 40, 0, 255), 0.75)
+    return p.sprite()
+
+
+def hold_tail(width: int, colour: RGB) -> Sprite:
+    """The lower end of a hold: a half disc of the body's width."""
+    height = width // 2 + 1
+    p = blit.Painter(2 * height, width)
+    d = blit.disc(p.x, p.y, 0.5 * width - 1)
+    p.paint(blit.cover(d), (255, 255, 255), 0.85)
+    p.paint(blit.cover(d + 0.05 * width), np.clip(np.array(colour) * 0.8, 0, 255))
+    return p.sprite()[height:]
+
+
+def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None, rim: bool = False) -> Sprite:
+    """Who steps a note: letter, colour and shape. Left foot a disc, right foot a square, hands the same with a ring.
+
+    limb : value of `feet.play.Limb`, 0..3; -1 : no foot is left for it, a grey disc with a cross
+    rim : a light one around the dark one, for it stands on a note, and these have all colours
+    """
+    p = blit.Painter(size, size)
+    paint = (NOBODY if limb < 0 else limb_colours().by_limb[limb]) if colour is None else colour
+    unit = size / 32
+    radius = 0.5 * size - 1
+    right = limb in (1, 3)
+    d = blit.rounded_box(p.x, p.y, 0.93 * radius, 0.93 * radius, 0.3 * radius) if right else blit.disc(p.x, p.y, radius)
+    edge = 2.2 * unit
+    if rim:
+        p.paint(blit.cover(d), (255, 255, 255))
+        d, edge = d + 1.5 * unit, 1.4 * unit
+    p.paint(blit.cover(d), (10, 11, 20))
+    p.paint(blit.cover(d + edge), paint)
+    if limb < 0:
+        cross = np.minimum(np.abs(p.x - p.y), np.abs(p.x + p.y)) * 0.7071 - 2.2 * unit
+        p.paint(blit.cover(np.maximum(cross, d + 6.0 * unit)), (10, 11, 20))
+        return p.sprite()
+    if limb >= 2:
+        p.paint(blit.cover(np.abs(d + edge + 3.0 * unit) - 0.9 * unit), (10, 11, 20))
+    out = p.sprite()
+    letter = face.sprite("R" if right else "L", (0.66 if limb < 2 else 0.52) * size, (10, 11, 20), weight=0.035 * size)
+    centre(out, letter)
+    return out
+
+
+def centre(target: Sprite, ink: Sprite) -> None:
+    """Lay `ink` over the middle of `target`, by its visible pixels."""
+    ys, xs = np.nonzero(ink[..., 3] > 8)
+    ink = ink[ys.min() : ys.max() + 1, xs.min() : xs.max() + 1]
+    top, left = ((t - i + 1) // 2 for t, i in zip(target.shape[:2], ink.shape[:2], strict=True))
+    _over(target[top : top + ink.shape[0], left : left + ink.shape[1]], ink)
+
+
+def _over(place: Sprite, ink: Sprite) -> None:
+    keep = 255 - ink[..., 3:].astype(np.int64)
+    place[...] = (place * keep + 127) // 255 + ink
+
+
+def flag_height(lines: int, size: float) -> int:
+    """Pixels that a label of so many lines of this size is high."""
+    return max(6, round(1.5 * size)) + round(FLAG_STEP * size) * (lines - 1)
+
+
+def flag(lines: Sequence[str], size: float, colour: RGB, face: Typeface, edge: RGB | None = None) -> Sprite:
+    """Lines of words on a dark label that stands beside the row they are about; edge : its colour, if another one."""
+    words = [face.sprite(line, size, colour, weight=0.012 * size) for line in lines]
+    step, height = round(FLAG_STEP * size), flag_height(len(lines), size)
+    one = height - step * (len(lines) - 1)
+    width = max(line.shape[1] for line in words) + round(FLAG_EDGE * size)
+    p = blit.Painter(height, width)
+    d = blit.rounded_box(p.x, p.y, width / 2 - 0.5, height / 2 - 0.5, 0.28 * one)
+    p.paint(blit.cover(d), colour if edge is None else edge, 0.9)
+    p.paint(blit.cover(d + 0.07 * size), (16, 18, 32))
+    out = p.sprite()
+    block = np.zeros((words[0].shape[0] + step * (len(words) - 1), max(line.shape[1] for line in words), 4), out.dtype)
+    for number, line in enumerate(words):
+        left = (block.shape[1] - line.shape[1]) // 2
+        _over(block[number * step : number * step + line.shape[0], left : left + line.shape[1]], line)
+    centre(out, block)
+    return out
+
+
+@lru_cache(maxsize=8)
+def shade(size: int) -> Sprite:
+    """A soft dark disc that lifts a marker off its arrow."""
+    p = blit.Painter(size, size)
+    p.paint(np.clip(1 - np.hypot(p.x, p.y) / (0.5 * size), 0, 1), (0, 0, 0), 0.6)
+    return p.sprite()

@@ -1,0 +1,275 @@
+"""The live part of the floor: shadow, contact shadows, lit panels and the marks under the feet."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.film.scene.cpu.raster import kernel
+from dancetutor_cli.film.scene.cpu.standing import SEVERAL, TILE, quantise
+from dancetutor_cli.film.scene.renderer import BESIDE, PLANTED, SHADOW_FADE, Cast
+from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
+
+Array = NDArray[np.float64]
+# Half a ring's width and its distance from the sole, metres, in the air, and what standing adds: tight and thick.
+RING = (0.0040, 0.0060, 0.0220, -0.0090)
+OUTSIDE = 0.030  # metres from the sole: no ring is farther out
+LIT = 0.80  # of its light that a lit panel keeps in the deepest shadow: hers must not hide what she presses
+
+
+@njit(cache=True, inline="always")
+def smooth(low: float, high: float, x: float) -> float:  # pragma: no cover
+    """0 below `low`, 1 above `high`, a cubic between."""
+    t = min(1.0, max(0.0, (x - low) / (high - low)))
+    return t * t * (3.0 - 2.0 * t)
+
+
+@njit(cache=True)
+def blur(whole: Any, box: Any, radius: int, room: Any) -> None:  # pragma: no cover
+    """Box blur of a picture's part x0, y0, x1, y1 in place, both ways; `room` has its shape. Beyond it counts as 0."""
+    left, top, right, bottom = box
+    mask, spare = whole[top:bottom, left:right], room[top:bottom, left:right]  # as wide as the picture, too: one kernel
+    height, width = mask.shape
+    share = 1.0 / (2 * radius + 1)
+    for row in range(height):
+        total = 0.0
+        for c in range(min(radius, width)):
+            total += mask[row, c]
+        for c in range(width):
+            if c + radius < width:
+                total += mask[row, c + radius]
+            if c - radius - 1 >= 0:
+                total -= mask[row, c - radius - 1]
+            spare[row, c] = total * share
+    column = np.zeros(width)
+    for row in range(min(radius, height)):
+        for c in range(width):
+            column[c] += spare[row, c]
+    for row in range(height):
+        ahead, behind = row + radius, row - radius - 1
+        for c in range(width):
+            if ahead < height:
+                column[c] += spare[ahead, c]
+            if behind >= 0:
+                column[c] -= spare[behind, c]
+            mask[row, c] = column[c] * share
+
+
+@njit(cache=True)
+def occupied(depth: Any, mask: Any) -> Any:  # pragma: no cover
+    """1 where a shadow map has something, else 0; returns x0, y0, x1, y1 around it."""
+    left, top, right, bottom = depth.shape[1], depth.shape[0], 0, 0
+    for row in range(depth.shape[0]):
+        some = False
+        for c in range(depth.shape[1]):
+            full = depth[row, c] > 0.0
+            mask[row, c] = 1.0 if full else 0.0
+            if full:
+                some = True
+                left, right = min(left, c), max(right, c + 1)
+        if some:
+            top, bottom = min(top, row), row + 1
+    return left, top, right, bottom
+
+
+@njit(cache=True, inline="always")
+def _bilinear(picture: Any, x: float, y: float) -> float:  # pragma: no cover
+    x -= 0.5
+    y -= 0.5
+    i, j = int(np.floor(x)), int(np.floor(y))
+    if i < 0 or j < 0 or i >= picture.shape[1] - 1 or j >= picture.shape[0] - 1:
+        return 0.0
+    fx, fy = x - i, y - j
+    top = picture[j, i] + (picture[j, i + 1] - picture[j, i]) * fx
+    bottom = picture[j + 1, i] + (picture[j + 1, i + 1] - picture[j + 1, i]) * fx
+    return float(top + (bottom - top) * fy)
+
+
+@njit(cache=True, inline="always")
+def _from_foot(x: float, z: float, feet: Any, f: int) -> float:  # pragma: no cover
+    """Distance from the line between heel and toe of foot f, columns 0 to 3."""
+    dx, dz = feet[f, 2] - feet[f, 0], feet[f, 3] - feet[f, 1]
+    length = dx * dx + dz * dz
+    t = 0.0
+    if length > 0.0:
+        t = min(1.0, max(0.0, ((x - feet[f, 0]) * dx + (z - feet[f, 1]) * dz) / length))
+    ax, az = x - feet[f, 0] - t * dx, z - feet[f, 1] - t * dz
+    return float(np.sqrt(ax * ax + az * az))
+
+
+class Shadow(NamedTuple):
+    """What takes light from the floor.
+
+    mask : float32 (s, s), how much; part : texels of it outside of which there is nothing, (left, top, right, bottom)
+    cast : where that is; dark : 0..1, of all
+    middles : (2, 2), `renderer.shadow_middles`; far : 0..1, how much is left a step away from them
+    """
+
+    mask: NDArray[np.float32]
+    part: tuple[int, int, int, int]
+    cast: Cast
+    dark: float
+    middles: Array
+    far: float
+
+
+@njit(cache=True, inline="always")
+def _left_of_shadow(x: float, z: float, middles: Any, far: float) -> float:  # pragma: no cover
+    """How much of the shadow, 0..1, is left at a place of the floor."""
+    first = (x - middles[0, 0]) ** 2 + (z - middles[0, 1]) ** 2
+    second = (x - middles[1, 0]) ** 2 + (z - middles[1, 1]) ** 2
+    return 1.0 - (1.0 - far) * smooth(SHADOW_FADE[0], SHADOW_FADE[1], np.sqrt(min(first, second)))
+
+
+class Live(NamedTuple):
+    """What changes on the floor from frame to frame.
+
+    lit, lit_colour : `renderer.panel_lights`; feet : `renderer.feet_on_floor`
+    numbers : contact darkness, its softness, strength of lit panels, sole radius
+    """
+
+    lit: Array
+    lit_colour: Array
+    feet: Array
+    numbers: Array
+
+
+@njit(cache=True, inline="always")
+def _is_lit(panel: int, lit: Any) -> bool:  # pragma: no cover
+    """Is the panel of a tile lit, or, of a tile with several, any panel?"""
+    most = 0.0
+    for p in range(lit.shape[0]):
+        if panel in (p, SEVERAL):
+            most = max(most, lit[p])
+    return most > 0.0
+
+
+@inner_kernel
+def _shaded(low: Any, high: Any, shade: Any) -> bool:  # pragma: no cover
+    """May the shadow fall on a place of the box between two corners?"""
+    left, top, right, bottom = shade.part
+    axes, origin, scale = shade.cast.axes, shade.cast.origin, shade.cast.scale
+    for k, first, last in ((0, left, right), (1, top, bottom)):
+        least, most = -origin[k], -origin[k]
+        for c in range(3):
+            a, b = axes[k, c] * low[c], axes[k, c] * high[c]
+            least, most = least + min(a, b), most + max(a, b)
+        if most * scale < first - 1.0 or least * scale > last + 1.0:
+            return False
+    return True
+
+
+@inner_kernel
+def _trodden(low: Any, high: Any, coarse: float, live: Any) -> bool:  # pragma: no cover
+    """May something of a foot fall on a place of the box between two corners? coarse : metres of its largest pixel"""
+    feet, numbers = live.feet, live.numbers
+    far = numbers[3] + max(1.6 * numbers[1], OUTSIDE + coarse)
+    for f in range(feet.shape[0]):
+        if (
+            feet[f, 5] >= 0.0
+            and low[1] - 0.03 <= feet[f, 4] <= high[1] + 0.03
+            and low[0] <= max(feet[f, 0], feet[f, 2]) + far
+            and high[0] >= min(feet[f, 0], feet[f, 2]) - far
+            and low[2] <= max(feet[f, 1], feet[f, 3]) + far
+            and high[2] >= min(feet[f, 1], feet[f, 3]) - far
+        ):
+            return True
+    return False
+
+
+@inner_kernel
+def _touched(tiles: Any, row: int, column: int, shade: Any, live: Any) -> int:  # pragma: no cover
+    """May light, shadow or a foot change a pixel of a tile? -1: nothing does; else how many feet must be looked at."""
+    low, high = tiles.low[row, column], tiles.high[row, column]
+    if low[0] > high[0]:
+        return -1
+    if _trodden(low, high, tiles.coarse[row, column], live):
+        return int(live.feet.shape[0])
+    lit = _is_lit(tiles.panel[row, column], live.lit)
+    return 0 if lit or (shade.dark > 0.0 and _shaded(low, high, shade)) else -1
+
+
+@kernel
+def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live: Any) -> None:  # pragma: no cover
+    """Redraw the pixels of `box` (x0, y0, x1, y1) that something falls on, tile by tile.
+
+    shift : columns that the standing picture, a `Background`, is ahead; shade : `Shadow`; live : `Live`
+    """
+    colour, ground, takes, panel = standing.colour, standing.ground, standing.takes, standing.panel
+    glow, white, foot = standing.glow, standing.white, standing.footprint
+    shadow, dark, axes, origin, scale = shade.mask, shade.dark, shade.cast.axes, shade.cast.origin, shade.cast.scale
+    lit, lit_colour, feet, numbers = live.lit, live.lit_colour, live.feet, live.numbers
+    radius = numbers[3]
+    far = 0.35 + 2.0 * numbers[1]  # nothing of a foot is farther than that from both heel and toe
+    for i in range(box[1] // TILE, (box[3] + TILE - 1) // TILE):
+        for j in range((box[0] + shift) // TILE, (box[2] + shift + TILE - 1) // TILE):
+            near_feet = _touched(standing.tiles, i, j, shade, live)
+            if near_feet < 0:
+                continue
+            for row in range(max(i * TILE, box[1]), min(i * TILE + TILE, box[3])):
+                for column in range(max(j * TILE - shift, box[0]), min(j * TILE + TILE - shift, box[2])):
+                    c = column + shift
+                    take = takes[row, c]
+                    if take <= 0.0:
+                        continue
+                    p = panel[row, c]
+                    shine = glow[row, c] * lit[p] * numbers[2] if p >= 0 else 0.0
+                    x, y, z = ground[row, c, 0], ground[row, c, 1], ground[row, c, 2]
+                    keep = 1.0
+                    if dark > 0.0:
+                        u = (axes[0, 0] * x + axes[0, 1] * y + axes[0, 2] * z - origin[0]) * scale
+                        v = (axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z - origin[1]) * scale
+                        keep = dark * _bilinear(shadow, u, v)
+                        keep = 1.0 - keep * _left_of_shadow(x, z, shade.middles, shade.far) if keep > 0.0 else 1.0
+                    ring, owner, pressed = 0.0, 0, 0.0
+                    for f in range(near_feet):
+                        if (
+                            feet[f, 5] < 0.0
+                            or abs(y - feet[f, 4]) > 0.03
+                            or max(abs(x - feet[f, 0]), abs(x - feet[f, 2])) > far
+                            or max(abs(z - feet[f, 1]), abs(z - feet[f, 3])) > far
+                        ):
+                            continue
+                        d = _from_foot(x, z, feet, f) - radius
+                        near = feet[f, 5]
+                        reach = numbers[1] * (1.6 - 0.6 * near)
+                        if d < reach:
+                            keep *= 1.0 - numbers[0] * near * (1.0 - smooth(0.0, reach, d))
+                        if d > OUTSIDE + foot[row, c]:
+                            continue
+                        soft = 0.5 * foot[row, c]
+                        planted = smooth(PLANTED[0], PLANTED[1], near)
+                        wide, off = RING[0] + RING[1] * planted, RING[2] + RING[3] * planted
+                        band = min(1.0, max(0.0, (wide - abs(d - off)) / (2.0 * soft) + 0.5))
+                        band *= feet[f, 9]
+                        if band <= ring:
+                            continue
+                        light = 0.0  # of the panel that this foot presses: its colour is the foot's
+                        if (
+                            feet[f, 10] > 0.0
+                            and p >= 0
+                            and lit_colour[p, 0] == feet[f, 6]
+                            and lit_colour[p, 1] == feet[f, 7]
+                            and lit_colour[p, 2] == feet[f, 8]
+                        ):
+                            light = lit[p] * feet[f, 10]
+                        if light <= 0.0:
+                            band *= 1.0 - (1.0 - BESIDE) * feet[f, 10]
+                        if band > ring:
+                            ring, owner, pressed = band, f, light
+                    if keep >= 1.0 and shine <= 0.0 and ring <= 0.0:
+                        continue
+                    keep = 1.0 - (1.0 - keep) * take
+                    hot = white[row, c] * lit[p] * numbers[2] if p >= 0 else 0.0
+                    for k in range(3):
+                        value = colour[row, c, k] * keep
+                        if shine > 0.0:
+                            bright = lit_colour[p, k] * (LIT + (1.0 - LIT) * keep)
+                            value += (bright - value) * shine
+                            value += (255.0 - value) * hot
+                        ink = feet[owner, 6 + k]
+                        ink += (255.0 - ink) * pressed
+                        value += (ink - value) * ring * take
+                        out[row, column, k] = quantise(value, row, c)

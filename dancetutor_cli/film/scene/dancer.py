@@ -1,0 +1,354 @@
+"""The dancer's part of the picture: her state at a moment of the music, and the camera that follows her."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.character.gltf import load_dancer
+from dancetutor_cli.character.mesh import PREFIX, rest_vertices, with_partner
+from dancetutor_cli.dance.motion import sample
+from dancetutor_cli.dance.rig.body import joint_matrices
+from dancetutor_cli.film.clock import Moment
+from dancetutor_cli.film.picture import FootFromAbove, Frame
+from dancetutor_cli.film.scene import renderer
+from dancetutor_cli.film.scene.camera import WHOLE, Camera, Region, preset, with_pan_range
+from dancetutor_cli.film.scene.look import default_look
+from dancetutor_cli.film.scene.props import GlassBar, bar_matrix, stands_before, with_bar
+from dancetutor_cli.film.scene.scene import PANEL, FootMark, FrameState, Scene, foot_marks
+from dancetutor_cli.film.scene.visibility import Silhouette, draw_hidden_feet
+
+if TYPE_CHECKING:
+    from dancetutor_cli.character.mesh import Character
+    from dancetutor_cli.dance.motion import Motion
+    from dancetutor_cli.film.choices import Quality, RendererKind
+    from dancetutor_cli.film.notes import PanelLights
+    from dancetutor_cli.film.picture import PadLike
+
+
+# A camera that slowly follows the dancer across a wide pad, and shows her whole as she walks on and off.
+#
+# It does not turn or travel: the picture pans (see `Camera.pan`), by whole pixels, so that the standing part of the
+# picture needs to be drawn only once. The whole song is known, so the pan has no lag: it is her place, smoothed over a
+# window that is symmetric in time.
+
+Array = NDArray[np.float64]
+_STEP = 1.0 / 30.0  # seconds between the places that are smoothed
+_ASIDE = 0.45  # metres from her root to her hands as she walks
+_COME, _EASE = 0.2, 0.6  # seconds that the camera is ahead of her at the picture's edge, and how softly it goes
+
+
+def is_wide(scene: Scene) -> bool:
+    """Is the pad wider than one square of 3 by 3 panels, so that following her shows more?"""
+    low, high = scene.extent
+    return bool(high[0] - low[0] > 3.5 * PANEL)
+
+
+class Follow:
+    """The camera at every second of a song.
+
+    scene : with its pad; name : a preset camera; size : (width, height) of the picture; region : the part she fills
+    seconds : float64 (f,), increasing; roots : float64 (f, 3), where the dancer's root is then, metres
+        or (2, f, 3) of two who dance: then the camera goes with neither, it only shows both as they walk on and off
+    cut : after that, how much of the pad is outside of the picture at the worst moment, picture widths
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        name: str,
+        size: tuple[int, int],
+        seconds: Array,
+        roots: Array,
+        region: Region = WHOLE,
+    ) -> None:
+        self._start = float(seconds[0])
+        count = max(2, int(np.ceil((float(seconds[-1]) - self._start) / _STEP)) + 1)
+        regular = self._start + _STEP * np.arange(count)
+        across = np.array([np.interp(regular, seconds, x) for x in np.atleast_2d(roots[..., 0])])
+        if is_wide(scene) and len(across) == 1:
+            camera, pans = _along(scene, _nearer(scene, name, size, region), size, across[0])
+        else:
+            camera, pans = scene.camera(name, size, region), np.zeros(count)
+        aside = max(_ASIDE, 1.1 * float(np.abs(rest_vertices(scene.character)[:, 2]).max()))  # seen from her side
+        seen = np.array([_seen_at(scene, camera, size, one) + pans for one in across])
+        pans = pans + _into_the_picture(seen, camera, size, aside)
+        self.cut = _pad_cut(scene, camera, size, pans)
+        self._pans = pans
+        self.camera = with_pan_range(camera, float(pans.min()), float(pans.max()))
+
+    def at(self, second: float) -> Camera:
+        """The camera at `second`; before the first and after the last it stands."""
+        place = min(max((second - self._start) / _STEP, 0.0), len(self._pans) - 1.0)
+        pan = float(np.interp(place, np.arange(len(self._pans)), self._pans))
+        return replace(self.camera, pan=pan)
+
+
+def _nearer(scene: Scene, name: str, size: tuple[int, int], region: Region) -> Camera:
+    """The preset camera for the middle square of a wide pad: nearer than for all of it."""
+    low, high = scene.extent
+    middle, half = (low + high) / 2, 1.5 * PANEL
+    square = low.copy(), high.copy()
+    square[0][0], square[1][0] = middle[0] - half, middle[0] + half
+    return preset(name, square, size, scene.look, region, scene.tall)
+
+
+def _along(scene: Scene, camera: Camera, size: tuple[int, int], across: Array) -> tuple[Camera, Array]:
+    """The camera and its pans (n,) along a wide pad. across : her place at every `_STEP`, (n,), metres to her left"""
+    low, high = scene.extent
+    middle = (low[0] + high[0]) / 2
+    reach = min((high[0] - low[0]) / 2 - 1.5 * PANEL, _reach_with_whole_pad(camera, size, low, high))
+    # Clipped first: what is smoothed afterwards stays within the limits and has no corner at them.
+    places = _smooth(np.clip(across, middle - reach, middle + reach), scene.look.follow.seconds)
+    there = _seen_at(scene, camera, size, np.append(places, middle))
+    return camera, there[-1] - there[:-1]
+
+
+def _seen_at(scene: Scene, camera: Camera, size: tuple[int, int], across: Array) -> Array:
+    """Where places across the pad are in the picture, (n,), picture widths.
+
+    Her height and depth do not move the camera: they are those of a point at waist height over the pad's middle.
+    """
+    low, high = scene.extent
+    points = np.column_stack([across, np.full(len(across), 0.9), np.full(len(across), (low[2] + high[2]) / 2)])
+    return np.asarray(camera.project(points, size)[:, 0] / size[0])
+
+
+def _into_the_picture(seen: Array, camera: Camera, size: tuple[int, int], aside: float) -> Array:
+    """Pans (n,) that bring all who dance into the picture where one of them is at its edge.
+
+    seen : their middles, (p, n), picture widths; aside : how far one reaches from it, metres
+    """
+    depth = float(np.linalg.norm(np.subtract(camera.target, camera.position)))
+    half = min(0.5, aside * camera.focal * size[1] / size[0] / depth)
+    from_left = np.maximum(half - seen.min(axis=0), 0.0)
+    from_right = np.maximum(seen.max(axis=0) - (1.0 - half), 0.0)
+    return _early(from_left) - _early(from_right)
+
+
+def _pad_cut(scene: Scene, camera: Camera, size: tuple[int, int], pans: Array) -> float:
+    """How much of the pad is beside the picture at the worst moment, picture widths."""
+    low, high = scene.extent
+    corners = np.array([(x, high[1], z) for x in (low[0], high[0]) for z in (low[2], high[2])])
+    edges = camera.project(corners, size)[:, 0] / size[0]
+    return max(0.0, -float(edges.min() + pans.min()), float(edges.max() + pans.max()) - 1.0)
+
+
+def farther(region: Region, back: float) -> Region:
+    """The part of the picture that is filled from `back` times as far away, at the same lower edge."""
+    left, top, right, bottom = region
+    middle, half = (left + right) / 2, (right - left) / 2 / back
+    return middle - half, bottom - (bottom - top) / back, middle + half, bottom
+
+
+def _early(pans: Array) -> Array:
+    """Pans as large as asked for, begun before and ended after, softly."""
+    half = max(1, round(_COME / _STEP / 2)) + round(_EASE / _STEP)
+    if not pans.any():
+        return pans
+    padded = np.pad(pans, half, mode="edge")
+    most = np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1).max(axis=1)
+    return _smooth(most, _EASE)
+
+
+def _reach_with_whole_pad(camera: Camera, size: tuple[int, int], low: Array, high: Array) -> float:
+    """How far from the pad's middle a camera may follow, metres, so that the pad is seen whole; no limit if it is not.
+
+    low, high : corners (3,) of the pad's surface
+    """
+    corners = np.array([(x, high[1], z) for x in (low[0], high[0]) for z in (low[2], high[2])])
+    edges = camera.project(corners, size)[:, 0]
+    spare = min(float(edges.min()), size[0] - float(edges.max()))
+    middle = (low + high) / 2
+    waist = np.array([(middle[0] + x, 0.9, middle[2]) for x in (-0.5, 0.5)])
+    metre = abs(float(np.diff(camera.project(waist, size)[:, 0])[0]))
+    return spare / metre if spare > 0 else np.inf
+
+
+def _smooth(values: Array, seconds: float) -> Array:
+    """Two running means over `seconds` each: as slow as it must be, and no corner in its path. Ends count on."""
+    half = max(1, round(seconds / _STEP / 2))
+    for _ in range(2):
+        padded = np.concatenate([np.full(half, values[0]), values, np.full(half, values[-1])])
+        total = np.cumsum(np.concatenate([[0.0], padded]))
+        values = (total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)
+    return values
+
+
+# The dancer's part of the picture: from her motions and a moment of the music to a state for the renderer.
+
+AWAY = 0.3  # metres from where she steps: she walks, and does not sway as she waits
+
+
+@dataclass(frozen=True, slots=True)
+class Shot:
+    """How the dancer is taken. size : (width, height); camera : by name or place; kind : the renderer
+
+    region : share of the picture that she fills
+    stands : the camera may not follow her, because something else in the picture is drawn for one place
+    """
+
+    size: tuple[int, int]
+    camera: str
+    quality: Quality
+    kind: RendererKind
+    region: Region = WHOLE
+    stands: bool = False
+
+
+class Dancer:
+    """Draws the dancer at any moment. Made in the process that draws: it may hold a GL context.
+
+    motions : at each rate those of one or two who dance, in seconds of the music as it is heard at that rate
+    character : who dances; None: the project's own dancer
+    """
+
+    def __init__(
+        self,
+        motions: Mapping[float, tuple[Motion, ...]],
+        pad: PadLike,
+        lights: PanelLights,
+        shot: Shot,
+        character: Character | None = None,
+    ) -> None:
+        self.motions, self.lights = motions, lights
+        self._count = max(map(len, motions.values()))
+        self._size = shot.size
+        bar, joints = next((some[0].bar, some[0].skeleton.names) for some in motions.values())
+        floor = -default_look().stage.pad_height
+        self.alone = character or load_dancer()
+        seen = with_partner(self.alone) if self._count > 1 else self.alone
+        self.scene = Scene(seen, pad)
+        self.camera: Camera = self.scene.camera(shot.camera, shot.size, shot.region)
+        glass = bar is not None and stands_before(bar, self.camera)
+        self._glass = GlassBar(bar, floor, shot.size) if bar is not None and glass else None
+        self._bar = None if glass else bar
+        self._follow = {} if shot.stands else self._followers(shot.camera, shot.size, shot.region)
+        self.scene = Scene(with_bar(seen, self._bar, floor), pad)
+        self.renderer = renderer.create(self.scene, shot.size, shot.quality, shot.kind)
+        skeleton = self.alone.skeleton
+        self._ours = np.array([j for j, name in enumerate(skeleton.names) if name in joints])
+        self._theirs = np.array([joints.index(skeleton.names[j]) for j in self._ours])
+
+    def frame(self, moment: Moment, joints: NDArray[np.float64]) -> Frame:
+        """The picture at a moment of the music, uint8 (h, w, 3); overwritten by the next call."""
+        (lit, by), view = self._lit(moment.second), self.view(moment)
+        frame = self.renderer.frame(FrameState(joints, view, lit, by))
+        draw_hidden_feet(frame, self.scene, joints, view)
+        if self._glass is not None and not view.feet_only:
+            self._glass.draw(frame, view)
+        return frame
+
+    def view(self, moment: Moment) -> Camera:
+        """The camera at a moment: the standing one, or the one that follows her across a wide pad."""
+        return self._follow[moment.rate].at(moment.heard) if self._follow else self.camera
+
+    def _followers(self, camera: str, size: tuple[int, int], region: Region) -> dict[float, Follow]:
+        """The camera that goes with her across a wide pad, for each rate, if it looks along the pad's short side.
+
+        On other pads it moves only while she walks on or off at the picture's edge.
+
+        It is made from the motion of the whole film, so that a frame does not depend on which process draws it.
+        """
+        look = self.scene.look
+        along = abs(float(self.camera.axes()[0][0])) > look.follow.along
+        named = camera in look.cameras
+        if not (named and along) or self.camera.feet_only:
+            return {}
+        if region == WHOLE and is_wide(self.scene):
+            region = look.follow.region
+        usual = look.cameras[camera].region if region == WHOLE else region
+        for back in (*np.arange(1.0, look.follow.back - 0.01, 0.04), look.follow.back):
+            box = farther(usual, float(back)) if back > 1 else region
+            found = {
+                rate: Follow(self.scene, camera, size, some[0].times, self._roots(rate), box)
+                for rate, some in self.motions.items()
+            }
+            if max(follow.cut for follow in found.values()) * size[0] < 1:
+                break
+        low, high = zip(*(follow.camera.pan_range for follow in found.values()), strict=True)
+        for follow in found.values():  # what stands is drawn once for all of them
+            follow.camera = with_pan_range(follow.camera, min(low), max(high))
+        return found
+
+    def _roots(self, rate: float) -> NDArray[np.float64]:
+        """Where her root is, (f, 3) metres, at the times of her motion; of two who dance (2, f, 3)."""
+        hers, *others = self.motions[rate]
+        if not others:
+            return hers.root
+        roots = [np.column_stack([np.interp(hers.times, one.times, x) for x in one.root.T]) for one in others]
+        return np.stack([hers.root, *roots])
+
+    def walks_behind(
+        self, boxes: Sequence[tuple[float, float, float, float]], seconds: NDArray[np.float64], step: float, rate: float
+    ) -> NDArray[np.bool_]:
+        """Whether she is where one of `boxes` (pixels of her picture) is, and `AWAY` from where she steps at `step`.
+
+        seconds : float64 (n,), of the music; rate : at which it plays
+        """
+        moments = [Moment(float(second), rate) for second in (*seconds, step)]
+        joints = self.joints(moments)
+        root = joints[:, 0, :3, 3][:, (0, 2)]
+        away = np.hypot(*(root[:-1] - root[-1]).T) > AWAY
+        outline, size = Silhouette(self.scene.character), self._size
+        found = [
+            bool(far) and outline.behind(boxes, joints[k], self.view(moments[k]), size) for k, far in enumerate(away)
+        ]
+        return np.array(found)
+
+    def heads_and_feet(self, moments: Sequence[Moment]) -> NDArray[np.float64]:
+        """Where her head and her feet are in her picture at some moments, (n, 4): left, top, right, bottom, pixels."""
+        outline = Silhouette(self.scene.character)
+        joints = self.joints(moments)
+        seen = [
+            outline.heads_and_feet(j, self.view(moment), self._size) for j, moment in zip(joints, moments, strict=True)
+        ]
+        return np.concatenate([np.zeros((0, 4)), *seen])
+
+    def still(self) -> Frame:
+        """The room without the dancer."""
+        joints = self.joints([Moment(0.0, next(iter(self.motions)))])[0]
+        joints[:, 1, 3] += 1000.0
+        nobody = np.zeros(self.scene.panels)
+        return self.renderer.frame(FrameState(joints, self.camera, nobody, nobody.astype(np.int64))).copy()
+
+    def feet(self, joints: NDArray[np.float64]) -> list[FootFromAbove | None]:
+        """Both feet from above, in panel widths of the pad; of two who dance all four."""
+        whose = ("", PREFIX)[: self._count]
+        return [self._foot(mark) for one in whose for mark in foot_marks(self.scene, joints, one)]
+
+    def _foot(self, mark: FootMark | None) -> FootFromAbove | None:
+        if mark is None:
+            return None
+        cx, cy = self.scene.pad.centre
+        heel, toe = ((cx - x / PANEL, cy + z / PANEL) for x, z in (mark.heel, mark.toe))
+        return FootFromAbove(heel, toe, mark.height)
+
+    def joints(self, moments: Sequence[Moment]) -> NDArray[np.float64]:
+        """World matrices (f, j, 4, 4) of the character's joints at f moments.
+
+        Joints go by name: a character's file may order them its own way.
+        """
+        parts = [self._joints_of(number, moments) for number in range(self._count)]
+        if self._bar is not None:
+            parts.append(np.broadcast_to(bar_matrix(self._bar), (len(moments), 1, 4, 4)))
+        return np.concatenate(parts, axis=1)
+
+    def _joints_of(self, number: int, moments: Sequence[Moment]) -> NDArray[np.float64]:
+        skeleton = self.alone.skeleton
+        rotations, root = np.zeros((len(moments), len(skeleton.names), 4)), np.zeros((len(moments), 3))
+        rotations[..., 0] = 1.0
+        rate, heard = (np.array([getattr(moment, name) for moment in moments]) for name in ("rate", "heard"))
+        for one in np.unique(rate):
+            here = np.flatnonzero(rate == one)
+            sampled, root[here] = sample(self.motions[float(one)][number], heard[here])
+            rotations[here[:, None], self._ours] = sampled[:, self._theirs]
+        return joint_matrices(skeleton, rotations, root)
+
+    def _lit(self, second: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        levels = [self.lights.at(column, second) for column in range(self.scene.panels)]
+        return np.array([level for level, _ in levels]), np.array([max(0, limb) for _, limb in levels])

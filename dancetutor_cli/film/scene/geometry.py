@@ -1,0 +1,246 @@
+"""A character's meshes as flat arrays and its textures in several sizes, as both renderers draw them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.character.gltf import load_dancer
+from dancetutor_cli.character.mesh import Character, Mesh
+from dancetutor_cli.feet.limbs import LIMBS
+from dancetutor_cli.run.errors import UsageError
+
+# Textures of a character, each with smaller copies of itself, so that far things do not shimmer.
+
+Image = NDArray[np.uint8]
+LEVELS = 4  # the texture itself, and three halvings
+
+
+@dataclass(frozen=True, slots=True)
+class Skins:
+    """The textures of m meshes. s different ones.
+
+    pyramids : s tuples of `LEVELS` images uint8 (h, w, 4), each half the size of the one before (1 texel at least)
+    of_mesh : int32 (m,), which of them a mesh has; tint : float32 (m, 3), 0..1, multiplies its colours
+    limb : bool (m,), whether it wears a limb's colour, which shade leaves readable (`look.ToonLook.limbs`)
+    """
+
+    pyramids: tuple[tuple[Image, ...], ...]
+    of_mesh: NDArray[np.int32]
+    tint: NDArray[np.float32]
+    limb: NDArray[np.bool_]
+
+    def flat(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float32]]:
+        """All texels in one array, for kernels.
+
+        texels int32 (n,), red in the lowest byte, then green and blue; table int32 (s * LEVELS, 3), first texel, width
+        and height of each image; and float32 (m, 5), each mesh's tint divided by 255, the row of its texture in the
+        table, and 1 for a limb's colour
+        """
+        images = [image for pyramid in self.pyramids for image in pyramid]
+        first = np.cumsum([0, *(i.shape[0] * i.shape[1] for i in images)])
+        table = np.array([(f, i.shape[1], i.shape[0]) for f, i in zip(first, images, strict=False)], dtype=np.int32)
+        colours = np.concatenate([image.reshape(-1, 4) for image in images]).astype(np.int32)
+        texels = colours[:, 0] | colours[:, 1] << 8 | colours[:, 2] << 16
+        meshes = np.column_stack([self.tint / np.float32(255.0), self.of_mesh * LEVELS, self.limb])
+        return texels, table, meshes.astype(np.float32)
+
+
+def skins_of(meshes: list[Mesh]) -> Skins:
+    """The textures of some meshes; those without one get a white texel, those that share one share it."""
+    white = np.full((1, 1, 4), 255, np.uint8)
+    different: list[NDArray[np.uint8]] = []
+    number = []
+    for mesh in meshes:
+        texture = white if mesh.material.texture is None else mesh.material.texture
+        same = [k for k, other in enumerate(different) if other is texture]
+        if not same:
+            different.append(texture)
+        number.append(same[0] if same else len(different) - 1)
+    return Skins(
+        tuple(_pyramid(np.ascontiguousarray(texture)) for texture in different),
+        np.array(number, dtype=np.int32),
+        np.array([mesh.material.base_color[:3] for mesh in meshes], dtype=np.float32),
+        np.array([mesh.material.name in LIMBS for mesh in meshes], dtype=np.bool_),
+    )
+
+
+def density(
+    positions: NDArray[np.float32], uv: NDArray[np.float32], triangles: NDArray[np.int32]
+) -> NDArray[np.float32]:
+    """How much of a texture, as a share of its side, there is on a metre of each triangle (t,), on average."""
+    corners, places = positions[triangles].astype(np.float64), uv[triangles].astype(np.float64)
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    surface = np.sqrt((across * across).sum(axis=1))
+    first, second = places[:, 1] - places[:, 0], places[:, 2] - places[:, 0]
+    used = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
+    return np.asarray(np.sqrt(used / np.maximum(surface, 1e-12)), dtype=np.float32)
+
+
+def _pyramid(image: Image) -> tuple[Image, ...]:
+    if image.shape[2] == 3:
+        image = np.dstack([image, np.full((*image.shape[:2], 1), 255, np.uint8)])
+    out = [image]
+    for _ in range(LEVELS - 1):
+        out.append(_halved(out[-1]))
+    return tuple(out)
+
+
+def _halved(image: Image) -> Image:
+    """Means of 2 by 2 texels, rounded; the last row or column counts twice where the size is odd."""
+    height, width = image.shape[:2]
+    if height == 1 and width == 1:
+        return image
+    padded = np.pad(image, ((0, height % 2), (0, width % 2), (0, 0)), mode="edge").astype(np.uint16)
+    total = padded[0::2, 0::2] + padded[1::2, 0::2] + padded[0::2, 1::2] + padded[1::2, 1::2]
+    return ((total + 2) // 4).astype(np.uint8)
+
+
+# A character's meshes as flat arrays, as both renderers draw them in one go.
+
+F32 = NDArray[np.float32]
+FEET = tuple(f"{side}_{part}" for side in "lr" for part in ("talocrural", "metatarsal"))  # joints of the feet
+TRUNK = ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4")
+BELOW = (*TRUNK, *(f"{side}_{part}" for side in "lr" for part in ("sternoclavicular", "hip", "knee")), *FEET)
+ABOVE = 4.0  # metres: more than she ever has between herself and the light
+OWN, SHARED = (
+    0.5,
+    0.2,
+)  # how much of a vertex, or of a whole closed piece as a shoe's collar, those move: then it is a foot's
+
+
+@dataclass(frozen=True, slots=True)
+class Packed:
+    """All meshes of a character in one. v vertices, t triangles, m materials.
+
+    positions, normals, hull : float32 (v, 3); `hull` is the normal averaged over vertices in one place, so that the
+    outline, drawn by moving vertices along it, has no gaps where a texture is cut
+    uv : float32 (v, 2); joints : int32 (v, 4); weights : float32 (v, 4), rows sum to 1
+    triangles : int32 (t, 3), counter-clockwise seen from outside, those of the feet first; feet : how many those are
+    material : int32 (v,), number of the mesh, whose texture is in `skins`
+    density : float32 (t,), texels of the largest image of its texture on a metre of a triangle
+    above : float32 (v,), metres nearer to the light at which a vertex asks for her own shadow: on trunk, neck and legs
+    it is so far that there is none, for a hand's shadow on a thigh, or a braid's on the shirt, is seen as a stain
+    patch : int32 (t,), which connected piece of surface, without cuts in its texture, a triangle belongs to
+    """
+
+    positions: F32
+    normals: F32
+    hull: F32
+    uv: F32
+    joints: NDArray[np.int32]
+    weights: F32
+    triangles: NDArray[np.int32]
+    feet: int
+    material: NDArray[np.int32]
+    above: F32
+    patch: NDArray[np.int32]
+    density: F32
+    skins: Skins
+
+
+def pack(character: Character) -> Packed:
+    """Put the meshes of a character together; UsageError if there is nothing to draw."""
+    return _dancer() if character is load_dancer() else _packed(character)
+
+
+@cache
+def _dancer() -> Packed:
+    """The project's own dancer, who is drawn most: once a process, and for workers before they are made."""
+    return _packed(load_dancer())
+
+
+def _packed(character: Character) -> Packed:
+    meshes = [m for m in character.meshes if len(m.triangles)]
+    if not meshes:
+        raise UsageError(f"character '{character.name}' has no triangles to draw")
+    first = np.cumsum([0, *(len(m.positions) for m in meshes)])
+    skins = skins_of(meshes)
+    positions = np.concatenate([m.positions for m in meshes]).astype(np.float32)
+    normals = np.concatenate([m.normals for m in meshes]).astype(np.float32)
+    material = np.repeat(np.arange(len(meshes), dtype=np.int32), np.diff(first))
+    triangles = np.concatenate([m.triangles + f for m, f in zip(meshes, first, strict=False)]).astype(np.int32)
+    joints = np.concatenate([m.joints for m in meshes]).astype(np.int32)
+    weights = np.concatenate([m.weights for m in meshes]).astype(np.float32)
+    place = _places(positions, material)
+    of_feet = _feet(character, joints, weights, place, triangles)[triangles].all(axis=1)
+    triangles = np.concatenate([triangles[of_feet], triangles[~of_feet]])
+    uv = np.concatenate([m.uv for m in meshes]).astype(np.float32)
+    sizes = [skins.pyramids[k][0].shape for k in skins.of_mesh]
+    side = np.sqrt([h * w for h, w, _ in sizes]).astype(np.float32)
+    return Packed(
+        positions=positions,
+        normals=normals,
+        hull=_welded(normals, place),
+        uv=uv,
+        joints=joints,
+        weights=weights,
+        triangles=triangles,
+        feet=int(of_feet.sum()),
+        material=material,
+        above=(ABOVE * np.clip(2.0 * _share(character, joints, weights, BELOW) - 0.5, 0.0, 1.0)).astype(np.float32),
+        patch=_patches(triangles, len(positions)),
+        density=density(positions, uv, triangles) * side[material[triangles[:, 0]]],
+        skins=skins,
+    )
+
+
+def _feet(
+    character: Character,
+    joints: NDArray[np.int32],
+    weights: F32,
+    place: NDArray[np.intp],
+    triangles: NDArray[np.int32],
+) -> NDArray[np.bool_]:
+    """Which vertices (v,) belong to a foot: those that hang mostly on ankles and toes, and shoes to their upper end.
+
+    What goes with the shin in part, as the rim of a high shoe, would leave a dark hole if it were cut off.
+    """
+    share = _share(character, joints, weights, FEET)
+    piece = _pieces(place[triangles], int(place.max()) + 1)[place]
+    mean = np.bincount(piece, share) / np.maximum(np.bincount(piece), 1)
+    return np.asarray((share > OWN) | (mean[piece] > SHARED))
+
+
+def _share(character: Character, joints: NDArray[np.int32], weights: F32, wanted: Iterable[str]) -> F32:
+    """How much (v,) of each vertex the wanted joints move, 0 to 1."""
+    names = character.skeleton.names
+    ours = [names.index(name) for name in wanted if name in names]
+    return np.asarray((weights * np.isin(joints, ours)).sum(axis=1))
+
+
+def _places(positions: F32, material: NDArray[np.int32]) -> NDArray[np.intp]:
+    """Number of the place of each vertex (v,): vertices of one mesh that lie in one place have the same."""
+    keys = np.column_stack([np.round(positions * 1e5).astype(np.int64), material])
+    return np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
+
+
+def _welded(normals: F32, place: NDArray[np.intp]) -> F32:
+    """Normals averaged over the vertices that lie in one place."""
+    total = np.zeros((int(place.max()) + 1, 3))
+    np.add.at(total, place, normals.astype(np.float64))
+    out = total[place]
+    length = np.sqrt((out * out).sum(axis=1, keepdims=True))
+    return np.where(length > 1e-6, out / np.maximum(length, 1e-6), normals).astype(np.float32)
+
+
+def _patches(triangles: NDArray[np.int32], vertices: int) -> NDArray[np.int32]:
+    """Number of the piece of surface of each triangle: triangles that share vertices are of one piece."""
+    return _pieces(triangles, vertices)[triangles[:, 0]].astype(np.int32)
+
+
+def _pieces(triangles: NDArray[np.integer], vertices: int) -> NDArray[np.intp]:
+    """The lowest vertex of the connected piece that each vertex belongs to, (vertices,)."""
+    label = np.arange(vertices)
+    while True:
+        lowest = label[triangles].min(axis=1)
+        before = label.copy()
+        for corner in range(3):
+            np.minimum.at(label, triangles[:, corner], lowest)
+        label = label[label]  # go to the lowest vertex known so far: few rounds even for long pieces
+        if (label == before).all():
+            return label

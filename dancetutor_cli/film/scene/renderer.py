@@ -1,0 +1,333 @@
+"""The one interface of both renderers, the choice between them, and what they work out alike for a frame."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.character.mesh import PREFIX
+from dancetutor_cli.film.choices import QUALITIES, RENDERERS, Quality, RendererKind
+from dancetutor_cli.film.scene.camera import NEAR, Camera
+from dancetutor_cli.film.scene.scene import (
+    PANEL,
+    FootMark,
+    FrameState,
+    Scene,
+    foot_marks,
+    hand_marks,
+    light_direction,
+    shadow_axes,
+)
+from dancetutor_cli.run.errors import UsageError
+
+# The one interface of both renderers, and the choice between them.
+
+MOST_JOINTS = 256  # what the uniform block of gl's shaders holds
+
+
+class Renderer(Protocol):
+    """Draws frames of one scene in one size. Not to be shared between threads; made after a process has started."""
+
+    @property
+    def name(self) -> str:
+        """``cpu`` or ``gl``."""
+
+    @property
+    def description(self) -> str:
+        """One line for people: what draws, and how."""
+
+    def frame(self, state: FrameState) -> NDArray[np.uint8]:
+        """Draw one frame: uint8 (h, w, 3), sRGB, top row first.
+
+        The array belongs to the renderer and is overwritten by the next call; the caller may draw on it until then.
+        """
+
+    def close(self) -> None:
+        """Give back what the renderer holds. It cannot draw after that."""
+
+
+def create(
+    scene: Scene, size: tuple[int, int] = (1280, 720), quality: Quality = "good", kind: RendererKind = "auto"
+) -> Renderer:
+    """Make a renderer.
+
+    Parameters
+    ----------
+    scene : what to draw; size : (width, height) in pixels
+    quality : ``draft`` one sample a pixel and no cast shadow, ``good`` 2x2 samples, ``best`` 4x4 samples
+    kind : ``cpu`` needs nothing; ``gl`` needs OpenGL through EGL; ``auto`` takes ``gl`` where it is a real GPU,
+        unless the character has too many joints for it
+
+    Raises
+    ------
+    UsageError : unknown quality or kind, or a size that no picture can have
+    UnavailableError : ``gl`` was asked for and there is no OpenGL
+    """
+    if quality not in QUALITIES:
+        raise UsageError(f"no quality '{quality}'; there are: {', '.join(QUALITIES)}")
+    if kind not in RENDERERS:
+        raise UsageError(f"no renderer '{kind}'; there are: {', '.join(RENDERERS)}")
+    if not (16 <= size[0] <= 8192 and 16 <= size[1] <= 8192):
+        raise UsageError(f"a picture of {size[0]}x{size[1]} pixels is not possible; 16 to 8192 each way")
+    many = kind == "auto" and len(scene.character.skeleton.names) > MOST_JOINTS
+    if not many and chosen(kind) == "gl":
+        return _create_gl(scene, size, quality)
+    from dancetutor_cli.film.scene.cpu.renderer import CpuRenderer
+
+    return CpuRenderer(scene, size, quality)
+
+
+def chosen(kind: RendererKind) -> RendererKind:
+    """The renderer that "auto" stands for here, or the one that is named."""
+    if kind == "auto":
+        return "gl" if _gpu() else "cpu"
+    return kind
+
+
+def _gpu() -> bool:
+    from dancetutor_cli.film.scene.gl.available import gpu_device
+
+    return gpu_device() is not None
+
+
+def _create_gl(scene: Scene, size: tuple[int, int], quality: Quality) -> Renderer:
+    from dancetutor_cli.film.scene.gl.available import load_pyrender
+
+    load_pyrender()
+    from dancetutor_cli.film.scene.gl.renderer import GlRenderer
+
+    return GlRenderer(scene, size, quality)
+
+
+# What both renderers work out alike before they draw a frame: matrices, the shadow map's place, feet, regions.
+
+Array = NDArray[np.float64]
+SAMPLES: dict[Quality, int] = {"draft": 1, "good": 2, "best": 4}  # across and down a pixel
+SHADOW_MAP: dict[Quality, int] = {"draft": 0, "good": 512, "best": 1024}  # texels across, 0: no cast shadow
+SHADOW_REACH = 2.5  # metres of the world that the shadow map shows, around the dancer's root
+_MARK_REACH = 0.1  # metres around a foot that its mark and its contact shadow may reach
+_MARK_HEIGHT = 1.0  # a foot higher than this has no mark
+SHADOW_FADE = (0.25, 0.95)  # metres from her, on the floor, over which her shadow grows light
+NO_FOOT = -1.0
+_UNDER = 0.75  # panel widths from a panel's middle at which a sole may still press it
+BESIDE = 0.2  # of its ring that a foot keeps beside the panel that it presses: on it the ring is white
+PLANTED = (0.88, 0.95)  # nearness to the ground from which on a foot stands: 26 mm above it, and 11 mm
+
+
+class Cast(NamedTuple):
+    """Where the shadow map is. axes : (3, 3), rows u, v and the direction to the light; origin : (2,), u and v of its
+    corner, metres; scale : texels a metre, 0 if there is none."""
+
+    axes: Array
+    origin: Array
+    scale: float
+
+
+class Shown(Enum):
+    """How much of the dancer a frame shows."""
+
+    NOTHING = 0
+    FEET = 1
+    ALL = 2
+
+
+def shown(state: FrameState) -> Shown:
+    """How much of the dancer this frame shows."""
+    if state.joints is None:
+        return Shown.NOTHING
+    return Shown.FEET if state.camera.feet_only else Shown.ALL
+
+
+def joints_of(scene: Scene, state: FrameState) -> Array:
+    """The joints' world matrices; those of the binding pose where the dancer is not shown."""
+    if state.joints is not None:
+        return state.joints
+    return np.asarray(np.linalg.inv(scene.character.inverse_bind), dtype=np.float64)
+
+
+def skin_matrices(scene: Scene, joints: Array) -> Array:
+    """Binding pose to world, (j, 3, 4), in a fixed order of additions: matrix libraries differ in the last bit."""
+    inverse = scene.character.inverse_bind
+    out = joints[:, :3, 0, None] * inverse[:, None, 0, :]
+    for k in (1, 2, 3):
+        out = out + joints[:, :3, k, None] * inverse[:, None, k, :]
+    return np.ascontiguousarray(out)
+
+
+def place_cast(scene: Scene, camera: Camera, joints: Array, texels: int) -> Cast:
+    """The shadow map around the dancer, on the texel grid of the world: its edge must not crawl as she moves."""
+    axes = shadow_axes(light_direction(scene.look, camera))
+    if texels == 0:
+        return Cast(axes, np.zeros(2), 0.0)
+    scale = texels / SHADOW_REACH
+    root = joints[0, :3, 3]
+    corner = [np.floor((axes[k] * root).sum() * scale) / scale - SHADOW_REACH / 2 for k in (0, 1)]
+    return Cast(axes, np.array(corner), scale)
+
+
+def shadow_middles(scene: Scene, joints: Array) -> Array:
+    """Where on the floor, x and z, those stand who dance, (2, 2): of one who is alone twice the same."""
+    names = scene.character.skeleton.names
+    roots = [j for j, name in enumerate(names) if name.removeprefix(PREFIX) == "HumanoidRoot"] or [0]
+    return np.ascontiguousarray(joints[[roots[0], roots[-1]]][:, (0, 2), 3])
+
+
+def pixels_per_metre(camera: Camera, joints: Array, size: tuple[int, int]) -> float:
+    """How large a metre is on the picture where the dancer's root is."""
+    forward = camera.axes()[2]
+    depth = float(((joints[0, :3, 3] - camera.position) * forward).sum())
+    return camera.focal * size[1] / max(depth, NEAR)
+
+
+def feet_on_floor(scene: Scene, state: FrameState) -> Array:
+    """Feet, then hands: rows of (heel x, z, toe x, z, ground, nearness to the ground 0..1 or NO_FOOT, red, green, blue,
+    strength of the mark 0..1, how much it presses a lit panel 0..1), (4, 11). A hand that is not near the floor
+    leaves nothing on it. Of two who dance the feet of the second come in place of hands."""
+    out = np.zeros((4, 11))
+    out[:, 5] = NO_FOOT
+    if state.joints is None:
+        return out
+    low = scene.look.light.contact_height
+    colours = scene.colours.by_limb
+    partner = any(name.startswith(PREFIX) for name in scene.character.skeleton.names)
+    others = foot_marks(scene, state.joints, PREFIX) if partner else hand_marks(scene, state.joints)
+    colours = (*colours[:2], *colours[:2]) if partner else colours
+    for limb, (mark, colour) in enumerate(zip((*foot_marks(scene, state.joints), *others), colours, strict=True)):
+        foot = limb < 2 or partner
+        if mark is not None and mark.height < (_MARK_HEIGHT if foot else low):
+            near = max(0.0, 1.0 - mark.height / low)
+            strength = scene.look.stage.mark * (_strength(near) if foot else near)
+            pressed = _pressed(scene, state, mark, limb % 2 if partner else limb) * (_planted(near) if foot else near)
+            out[limb] = (*mark.heel, *mark.toe, mark.ground, near, *colour, strength, pressed)
+    return out
+
+
+def _pressed(scene: Scene, state: FrameState, mark: FootMark, limb: int) -> float:
+    """How lit a panel is that this limb presses and that is under it, or partly so, 0..1."""
+    ours = np.flatnonzero((np.asarray(state.lit) > 0.0) & (np.asarray(state.lit_by) == limb))
+    if len(ours) == 0:
+        return 0.0
+    places = (np.asarray(scene.pad.panels, dtype=np.float64)[ours] - scene.pad.centre) * (-PANEL, PANEL)
+    heel, line = np.array(mark.heel), np.subtract(mark.toe, mark.heel)
+    along = np.clip((places - heel) @ line / max(float(line @ line), 1e-9), 0.0, 1.0)
+    far = np.linalg.norm(places - heel - along[:, None] * line, axis=1)
+    lit = np.asarray(state.lit, dtype=np.float64)[ours[far < _UNDER * PANEL]]
+    return float(np.clip(lit, 0.0, 1.0).max(initial=0.0))
+
+
+def _planted(near: float) -> float:
+    """Whether a foot stands, 0..1."""
+    t = min(1.0, max(0.0, (near - PLANTED[0]) / (PLANTED[1] - PLANTED[0])))
+    return t * t * (3.0 - 2.0 * t)
+
+
+def _strength(near: float) -> float:
+    """How strong a foot's ring is: solid where it stands, a faded trace of where it is in the air."""
+    planted = _planted(near)
+    return planted + (1.0 - planted) * (0.12 + 0.38 * near)
+
+
+def panel_lights(scene: Scene, state: FrameState) -> tuple[Array, Array]:
+    """How lit each panel is, (panels,) 0..1, and its colour, (panels, 3) 0..255."""
+    colours = np.array(scene.colours.by_limb, dtype=np.float64)
+    lit = np.clip(np.asarray(state.lit, dtype=np.float64), 0.0, 1.0)
+    return lit, colours[np.clip(np.asarray(state.lit_by, dtype=np.int64), 0, len(colours) - 1)]
+
+
+def ground_box(scene: Scene, camera: Camera, size: tuple[int, int], bounds: tuple[Array, Array], cast: Cast) -> Array:
+    """The part of the picture, x0, y0, x1, y1 in pixels, that holds the pad and all that falls on the floor.
+
+    bounds : least and greatest corner (3,) of the dancer
+    """
+    low, high = scene.extent
+    ground = -scene.look.stage.pad_height
+    points = [(x, y, z) for x in (low[0], high[0]) for y in (0.0, ground) for z in (low[2], high[2])]
+    least, most = bounds[0] - _MARK_REACH, bounds[1] + _MARK_REACH
+    under = [(x, ground, z) for x in (least[0], most[0]) for z in (least[2], most[2])]
+    if cast.scale > 0:  # the corners of her box, cast on the floor
+        slope = cast.axes[2] / cast.axes[2][1]
+        for x, _, z in tuple(under):
+            for y in (least[1] - ground, most[1] - ground):
+                under.append((x - slope[0] * y, ground, z - slope[2] * y))
+    return pixel_box(camera, np.array(points + under, dtype=np.float64), size)
+
+
+def pixel_box(camera: Camera, points: Array, size: tuple[int, int]) -> Array:
+    """Bounds of world points on the picture, int64 x0, y0, x1, y1; everything if one of them is behind the camera."""
+    places = camera.project(points, size)
+    if (places[:, 2] < NEAR).any():
+        return np.array([0, 0, *size], dtype=np.int64)
+    low, high = np.floor(places[:, :2].min(0)) - 2, np.ceil(places[:, :2].max(0)) + 3
+    return np.concatenate([np.clip(low, 0, size), np.clip(high, 0, size)]).astype(np.int64)
+
+
+# Matrices of the OpenGL renderer, and boxes that hold the dancer.
+
+FAR = 100.0  # metres; nothing farther is drawn
+CAST_DEPTH = (-2.0, 6.0)  # metres along the light that the shadow map covers
+
+
+def camera_matrix(camera: Camera, size: tuple[int, int]) -> Array:
+    """World to clip space (4, 4), the picture's first row at y = -1."""
+    m = camera.matrix(size)
+    out = np.empty((4, 4))
+    out[0] = 2.0 / size[0] * m[0] - m[2]
+    out[1] = 2.0 / size[1] * m[1] - m[2]
+    out[2] = (FAR + NEAR) / (FAR - NEAR) * m[2]
+    out[2, 3] -= 2.0 * FAR * NEAR / (FAR - NEAR)
+    out[3] = m[2]
+    return out
+
+
+def light_matrix(cast: Cast) -> Array:
+    """World to clip space of the shadow map (4, 4); what is nearer to the light has less depth."""
+    out = np.zeros((4, 4))
+    for k in (0, 1):
+        out[k, :3] = cast.axes[k] * (2.0 / SHADOW_REACH)
+        out[k, 3] = -cast.origin[k] * (2.0 / SHADOW_REACH) - 1.0
+    low, high = CAST_DEPTH
+    out[2, :3] = -cast.axes[2] * (2.0 / (high - low))
+    out[2, 3] = (high + low) / (high - low)
+    out[3, 3] = 1.0
+    return out
+
+
+class Held(NamedTuple):
+    """What hangs on each joint: any pose of the skin lies within these boxes, without skinning it here.
+
+    joint : int (k,), the joints that hold any; corners : (k, 8, 3), of the box around what one holds, binding pose
+    """
+
+    joint: NDArray[np.intp]
+    corners: Array
+
+
+def held_by(positions: NDArray[Any], joints: NDArray[Any], weights: NDArray[Any]) -> Held:
+    """The boxes of a mesh (v, 3), whose vertices hang on joints (v, 4) by weights (v, 4) that sum to 1."""
+    held = weights > 0
+    owner, vertex = joints[held], np.nonzero(held)[0]
+    ends = np.empty((2, int(joints.max()) + 1, 3))
+    ends[0], ends[1] = np.inf, -np.inf
+    np.minimum.at(ends[0], owner, positions[vertex])
+    np.maximum.at(ends[1], owner, positions[vertex])
+    joint = np.unique(owner)
+    corner = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+    return Held(joint, np.stack([ends[corner[:, k], joint[:, None], k] for k in range(3)], axis=-1))
+
+
+def places_of(held: Held, matrices: Array) -> Array:
+    """World points (n, 3) whose hull holds the dancer. matrices : (j, 3, 4), binding pose to world"""
+    turn = matrices[held.joint]
+    return np.asarray(held.corners @ turn[:, :, :3].transpose(0, 2, 1) + turn[:, None, :, 3]).reshape(-1, 3)
+
+
+def within(light: Array, places: Array) -> Array:
+    """The part of the shadow map (4,), left, top, right and bottom from 0 to 1, beyond which nothing of her is.
+
+    light : `light_matrix`; places : `places_of`
+    """
+    there = (places @ light[:2, :3].T + light[:2, 3]) * 0.5 + 0.5
+    return np.concatenate([there.min(0), there.max(0)])

@@ -1,0 +1,172 @@
+"""How fast notes scroll: the games' C, X and M modifiers, and the scroll and speed segments of a chart."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.run.errors import UsageError
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart, Song
+
+Seconds = NDArray[np.float64]
+Beats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Scroll:
+    """Speed of the notes. `mode` "C": `value` beats a minute whatever the song does; "X": times the song's own beats;
+    "M": like X, so that the fastest part of the chart that matters (`reading_bpm`) scrolls like C at `value`. One beat
+    is one arrow's spacing at 1.
+    """
+
+    mode: str
+    value: float
+
+    def factor(self, scroll_bpm: float) -> float:
+        """Arrow spacings per second (C) or per beat (X and M); scroll_bpm : for M."""
+        if self.mode == "C":
+            return self.value / 60
+        return self.value if self.mode == "X" else self.value / max(scroll_bpm, 1.0)
+
+
+READ = 0.9  # of the time in which notes come: so much of it is at most as fast as what an M mod takes for the fastest
+REST = 1.0  # seconds until the next note that count at most
+
+
+def reading_bpm(seconds: Seconds, beats: Beats, speeds: NDArray[np.float64]) -> float | None:
+    """Beats a minute, as drawn, that a chart's notes come at, but for its fastest tenth; None where there is no tempo.
+
+    The games take the song's displayed or highest tempo. A burst of a gimmick, which may be sixteen times as fast, or
+    tempos written at an eighth with #SCROLLS of 8, would have the notes lie over each other, or fly past.
+
+    seconds, beats : of the rows, float64 (r,), ascending, beats as drawn; speeds : factor of the speed segments there
+    """
+    length = np.diff(seconds)
+    here = length > 1e-4
+    moved = np.abs(np.diff(beats)) * speeds[1:]
+    tempo, weight = 60 * moved[here] / length[here], np.minimum(length[here], REST)
+    weight = weight[tempo > 1.0]
+    tempo = tempo[tempo > 1.0]
+    if len(tempo) == 0:
+        return None
+    order = np.argsort(tempo, kind="stable")
+    heard = np.cumsum(weight[order])
+    return float(tempo[order][np.searchsorted(heard, READ * heard[-1])])
+
+
+def parse_scroll(text: str) -> Scroll:
+    """ "C600", "X2", "2x" or "M600"; UsageError says what is allowed."""
+    match = re.fullmatch(r"([CXM])(\d+(?:\.\d+)?)|(\d+(?:\.\d+)?)([XCM])", text.strip().upper())
+    if match:
+        mode, value = (match[1], match[2]) if match[1] else (match[4], match[3])
+        low, high = (0.1, 20.0) if mode == "X" else (30.0, 3000.0)
+        if low <= float(value) <= high:
+            return Scroll(mode, float(value))
+        raise UsageError(f"scroll speed {text!r} is out of range: {mode} takes {low:g} to {high:g}")
+    raise UsageError(f"unknown scroll speed {text!r}: write C600 (constant), X2 (times the song) or M600 (at most)")
+
+
+@dataclass(frozen=True, slots=True)
+class ScrollSegments:
+    """#SCROLLS of a chart: from each beat on, notes move `ratio` times as far per beat. Beats ascend."""
+
+    beats: Beats
+    ratios: NDArray[np.float64]
+
+    def shown(self, beat: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The beats as far as they are drawn: the integral of the ratios."""
+        if len(self.beats) == 0:
+            return beat
+        starts = np.concatenate([[0.0], np.cumsum(np.diff(self.beats) * self.ratios[:-1])])
+        index = np.clip(np.searchsorted(self.beats, beat, side="right") - 1, 0, None)
+        result: NDArray[np.float64] = starts[index] + (beat - self.beats[index]) * self.ratios[index]
+        return result
+
+
+def parse_segments(text: str) -> ScrollSegments:
+    """Read a #SCROLLS value, "beat=ratio,..."; entries that make no sense are left out, as the games do."""
+    found: dict[float, float] = {}
+    for entry in text.split(","):
+        left, equals, right = entry.partition("=")
+        try:
+            beat, ratio = float(left), float(right)
+        except ValueError:
+            continue
+        if equals and math.isfinite(beat) and math.isfinite(ratio):
+            found[beat] = ratio
+    if not found or set(found.values()) == {1.0}:
+        return ScrollSegments(np.zeros(0), np.zeros(0))
+    beats = sorted(found)
+    return ScrollSegments(np.array(beats), np.array([found[b] for b in beats]))
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedSegments:
+    """#SPEEDS of a chart: how far apart all notes are drawn, as a factor that changes while the song runs; s segments.
+
+    start, end : float64 (s,), seconds of the music, ascending: from start to end the factor goes evenly from that of
+    the segment before (1 before the first) to ratio : float64 (s,), and stays there. With C mods games leave it out.
+    """
+
+    start: Seconds
+    end: Seconds
+    ratio: NDArray[np.float64]
+
+    def at(self, seconds: Seconds) -> NDArray[np.float64]:
+        """The factor at each second."""
+        if len(self.start) == 0:
+            return np.ones(len(seconds))
+        index = np.searchsorted(self.start, seconds, side="right") - 1
+        before = np.concatenate([[1.0], self.ratio])[np.maximum(index, 0)]
+        here = np.maximum(index, 0)
+        length = self.end[here] - self.start[here]
+        passed = np.divide(seconds - self.start[here], length, out=np.ones(len(seconds)), where=length > 0)
+        factor = before + (self.ratio[here] - before) * np.minimum(passed, 1.0)
+        # Before the first segment a sudden one holds already, and one that takes time has not begun.
+        early = 1.0 if self.end[0] > self.start[0] else float(self.ratio[0])
+        return np.asarray(np.where(index < 0, early, factor))
+
+
+def parse_speeds(text: str, seconds_of: Callable[[Beats], Seconds]) -> SpeedSegments:
+    """Read a #SPEEDS value, "beat=ratio=length=unit,..." with a length in beats (unit 0) or seconds (unit 1).
+
+    seconds_of : second of the music of each beat. Entries that make no sense are left out, as the games do.
+    """
+    found: dict[float, tuple[float, float, bool]] = {}
+    for entry in text.split(","):
+        try:
+            beat, ratio, length, *unit = (float(part) for part in entry.split("="))
+        except ValueError:
+            continue
+        if all(map(math.isfinite, (beat, ratio, length))) and length >= 0:
+            found[beat] = ratio, length, bool(unit and unit[0] == 1)
+    if not found or {ratio for ratio, _, _ in found.values()} == {1.0}:
+        return SpeedSegments(np.zeros(0), np.zeros(0), np.zeros(0))
+    beats = np.array(sorted(found))
+    rows = np.array([found[b] for b in beats.tolist()], dtype=np.float64)
+    lengths, start = rows[:, 1], seconds_of(beats)
+    end = np.where(rows[:, 2] > 0, start + lengths, seconds_of(beats + lengths))
+    return SpeedSegments(start, end, rows[:, 0])
+
+
+def segments_of(song: Song, chart: Chart) -> ScrollSegments:
+    """The chart's #SCROLLS."""
+    return parse_segments(_timing_tag(song, chart, "SCROLLS"))
+
+
+def speeds_of(song: Song, chart: Chart) -> SpeedSegments:
+    """The chart's #SPEEDS."""
+    return parse_speeds(_timing_tag(song, chart, "SPEEDS"), chart.timing.seconds_of_beats)
+
+
+def _timing_tag(song: Song, chart: Chart, name: str) -> str:
+    """A timing tag as it holds for the chart: its own if it has split timing, else the song's."""
+    return (song.tags if chart.timing is song.timing else chart.tags).get(name, "")

@@ -1,0 +1,286 @@
+"""Many films: which charts of folders, under which names; what is done already, and the list of work."""
+
+from __future__ import annotations
+
+import re
+import string
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.film.media.encoder import Encoding
+from dancetutor_cli.film.media.ffmpeg import PICTURES
+from dancetutor_cli.film.work import segments
+from dancetutor_cli.film.work.records import FilmRecord, FilmRecords, find_records, new_work_name, remove_work
+from dancetutor_cli.film.work.request import FilmRequest
+from dancetutor_cli.film.work.segments import FilmJob, FilmOutcome, Opened, render_segment
+from dancetutor_cli.run.errors import DancetutorError, NoChartsError, UsageError
+from dancetutor_cli.run.pool import Finished, Task, Workers
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart, Song
+
+
+# From folders to the films of a batch: which charts, in which order, under which names.
+
+DEFAULT_NAME = "{folder}-{steps_type}-{difficulty}"
+FIELDS = ("title", "artist", "folder", "pack", "file", "steps_type", "difficulty", "meter", "index")
+
+
+@dataclass(frozen=True, slots=True)
+class BatchRequest:
+    """What a batch shall make. request : the film wanted of each chart (its path and selection are replaced)
+
+    name : template of the films' names; meters : least and greatest meter or None; shard : (number from 1, of how many)
+    """
+
+    paths: tuple[Path, ...]
+    request: FilmRequest
+    encoding: Encoding
+    folder: Path
+    name: str = DEFAULT_NAME
+    meters: tuple[int, int] | None = None
+    shard: tuple[int, int] = (1, 1)
+    longest: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class UnreadableFile:
+    """A chart file that cannot be read."""
+
+    path: Path
+    error: str
+
+
+class FilmList(NamedTuple):
+    """The films of a batch, the files that could not be read, and those that have no chart that is wanted."""
+
+    films: list[FilmJob]
+    unreadable: list[UnreadableFile]
+    without: list[Path]
+
+
+def parse_meters(text: str) -> tuple[int, int]:
+    """ "8", "8-12", "8-" or "-12"; UsageError for anything else."""
+    match = re.fullmatch(r"\s*(\d*)\s*(-?)\s*(\d*)\s*", text)
+    if not match or not (match[1] or match[3]):
+        raise UsageError(f"meter '{text}': write a number as 9, or a range as 8-12")
+    low = int(match[1] or 0)
+    high = int(match[3]) if match[3] else (10**9 if match[2] else low)
+    if high < low:
+        raise UsageError(f"meter '{text}': the range runs backwards")
+    return low, high
+
+
+def parse_shard(text: str) -> tuple[int, int]:
+    """ "2/5" to (2, 5); UsageError for anything else."""
+    match = re.fullmatch(r"\s*(\d{1,6})\s*/\s*(\d{1,6})\s*", text)
+    if not match or not 1 <= int(match[1]) <= int(match[2]):
+        raise UsageError(f"shard '{text}': write it as 2/5, the second of five parts")
+    return int(match[1]), int(match[2])
+
+
+def check_name(template: str) -> None:
+    """UsageError if a template names a field that does not exist, or could lead out of the folder."""
+    try:
+        fields = [name for _, name, _, _ in string.Formatter().parse(template) if name is not None]
+    except ValueError as error:
+        raise UsageError(f"name '{template}': {error}") from error
+    if unknown := [name for name in fields if name not in FIELDS]:
+        raise UsageError(f"name '{template}': unknown {{{unknown[0]}}}; there are: {', '.join(FIELDS)}")
+    if "/" in template or "\\" in template:
+        raise UsageError(f"name '{template}': the films of a batch lie in one folder; leave slashes out")
+
+
+def film_list(batch: BatchRequest) -> FilmList:
+    """The films of the batch (of this shard), sorted by path. Of what is no film only the first shard tells."""
+    check_name(batch.name)
+    jobs: list[FilmJob] = []
+    bad: list[UnreadableFile] = []
+    without: list[Path] = []
+    taken: set[str] = set()
+    for path in chart_files(batch.paths):
+        try:
+            from dancetutor_cli import chart as charts
+
+            song = charts.load(path)
+        except NoChartsError:  # the music of a menu: nobody meant it to be danced
+            without.append(path)
+            continue
+        except (DancetutorError, OSError) as error:
+            bad.append(UnreadableFile(path, str(error)))
+            continue
+        found = [_job(batch, song, chart, taken) for chart in _charts(batch, song)]
+        jobs += found
+        without += [] if found else [path]
+    number, count = batch.shard
+    return FilmList(jobs[number - 1 :: count], *((bad, without) if number == 1 else ([], [])))
+
+
+def chart_files(paths: Sequence[Path]) -> Iterator[Path]:
+    """Chart files; of a song with both kinds the .ssc, as the games do."""
+    from dancetutor_cli.chart import find_files, twin
+
+    for path in find_files(paths):
+        if path.suffix.lower() == ".sm" and path not in paths and twin(path) is not None:
+            continue
+        yield path
+
+
+def _charts(batch: BatchRequest, song: Song) -> Iterator[Chart]:
+    low, high = batch.meters or (0, 10**9)
+    for chart in batch.request.dance.selection.charts(song):
+        if low <= chart.meter <= high and chart.columns and len(chart.notes):
+            yield chart
+
+
+def _job(batch: BatchRequest, song: Song, chart: Chart, taken: set[str]) -> FilmJob:
+    suffix = "" if batch.encoding.target == PICTURES else f".{batch.encoding.target}"
+    stem = file_name(batch.name, song, chart)
+    name, number = stem, 2
+    while name.lower() in taken:  # two charts of one name; file systems may not tell upper from lower case
+        name, number = f"{stem}-{number}", number + 1
+    taken.add(name.lower())
+    dance = replace(batch.request.dance, path=song.path, selection=Selection(index=chart.index))
+    request = replace(batch.request, dance=dance)
+    return FilmJob(request, chart.label, batch.folder / f"{name}{suffix}", batch.encoding, batch.longest)
+
+
+def file_name(template: str, song: Song, chart: Chart) -> str:
+    """A template filled in, in characters that every file system takes."""
+    folder = song.path.resolve().parent
+    values = {
+        "title": song.title or song.path.stem,
+        "artist": song.artist,
+        "folder": folder.name,
+        "pack": folder.parent.name,
+        "file": song.path.stem,
+        "steps_type": chart.steps_type,
+        "difficulty": chart.difficulty,
+        "meter": chart.meter,
+        "index": chart.index,
+    }
+    return plain_name(template.format(**values)) or "film"
+
+
+def plain_name(text: str) -> str:
+    """Lower case, with "_" for whatever a file system might refuse."""
+    plain = re.sub(r"[^\w.-]+", "_", text.lower()).strip("._")
+    return plain[:120]
+
+
+# Many films: what is wanted, what is done already, and the work list that any workers may take apart.
+#
+# Each chart's film is prepared, drawn in segments and joined by pieces of work of their own, so that all workers stay
+# busy to the end of a pack. Finished segments stay when a run is interrupted; finished films are known by a hash of
+# everything that they are made of, and are not made again. What is kept of that (`film_records`) this process writes.
+
+
+@dataclass
+class _Film:
+    """A film in work. record : what is kept of it; work : name of its folder; waiting : segments not drawn yet."""
+
+    job: FilmJob
+    began: float
+    record: FilmRecord
+    work: str
+    opened: Opened | None = None
+    waiting: int = 0
+    error: DancetutorError | None = None
+
+
+@dataclass
+class Batch:
+    """Runs film jobs on workers; yields one outcome per job as they end, whatever happens to single ones.
+
+    ahead : pieces of work, for each that is done at a time, below which the next film is opened. A film to be opened
+        is one, and so is each of its segments: short films are opened by many workers at once, long ones one by one.
+    """
+
+    jobs: Sequence[FilmJob]
+    workers: Workers
+    opened: Callable[[int], None] = lambda frames: None
+    ahead: int = 2
+    records: FilmRecords = field(default_factory=lambda: find_records()[0])
+    _films: dict[int, _Film] = field(default_factory=dict)
+    _queue: deque[int] = field(default_factory=deque)
+
+    def run(self) -> Iterator[FilmOutcome]:
+        """Do it all. The order of outcomes depends on the workers; the films do not."""
+        self._queue = deque(range(len(self.jobs)))
+        self._fill()
+        for done in self.workers.done():
+            outcome = self._ended(done)
+            self._fill()
+            if outcome is not None:
+                yield outcome
+
+    def _fill(self) -> None:
+        """Open films until there is enough to do."""
+        enough = self.ahead * self.workers.at_once()
+        while self._queue and sum(map(self._left, self._films.values())) < enough:
+            number = self._queue.popleft()
+            job, work = self.jobs[number], new_work_name()
+            record = self.records.read(job.output)
+            film = self._films[number] = _Film(job, time.monotonic(), record, work)
+            if record.size is None:  # else it is probably done
+                self._keep(film, replace(record, folders=(*record.folders, work)))
+            self.workers.submit(Task(("open", number), segments.open_film, (job, record, work)))
+
+    def _keep(self, film: _Film, record: FilmRecord) -> None:
+        film.record = record
+        self.records.write(film.job.output, record)
+
+    @staticmethod
+    def _left(film: _Film) -> int:
+        return 1 if film.opened is None else film.waiting
+
+    def _ended(self, done: Finished) -> FilmOutcome | None:
+        kind, number = done.key[:2]
+        film = self._films[number]
+        if done.error is not None:
+            film.error = film.error or done.error
+        if kind == "open":
+            return self._after_open(number, film, done)
+        if kind == "segment":
+            film.waiting -= 1
+            if done.error is None:
+                digests = {**film.record.digests, done.key[2]: done.result}
+                self._keep(film, replace(film.record, digests=digests))
+            return self._after_segments(number, film) if film.waiting == 0 else None
+        if done.error is None:
+            self._keep(film, replace(film.record, folders=(), digests={}, size=done.result))
+        return self._outcome(number, film)
+
+    def _after_open(self, number: int, film: _Film, done: Finished) -> FilmOutcome | None:
+        if film.error is not None or done.result.skipped:
+            film.opened = done.result
+            return self._outcome(number, film)
+        opened: Opened = done.result
+        film.opened, film.waiting = opened, len(opened.missing)
+        kept = {number: film.record.digests[number] for number in opened.finished}
+        self._keep(film, FilmRecord(opened.key, (film.work,), kept))
+        self.opened(sum(part.last - part.first for part in opened.missing))
+        for part in opened.missing:
+            arguments = (opened.plan, part, film.job.encoding)
+            self.workers.submit(Task(("segment", number, part.number), render_segment, arguments))
+        return None if opened.missing else self._after_segments(number, film)
+
+    def _after_segments(self, number: int, film: _Film) -> FilmOutcome | None:
+        if film.error is not None:
+            return self._outcome(number, film)
+        arguments = (film.job, film.opened, film.record.digests)
+        self.workers.submit(Task(("close", number), segments.close_film, arguments))
+        return None
+
+    def _outcome(self, number: int, film: _Film) -> FilmOutcome:
+        del self._films[number]
+        if film.error is not None and not film.record.digests:  # nothing of it is worth going on with
+            remove_work(film.job.output.parent / film.work)
+            self._keep(film, replace(film.record, folders=tuple(f for f in film.record.folders if f != film.work)))
+        seconds = time.monotonic() - film.began
+        return segments.outcome(film.job, film.opened, film.error, seconds)

@@ -1,0 +1,18 @@
+"""Imported once for all workers that make films: what they have in common stands in memory before they are made.
+
+That is modules, kernels as they were kept, and the dancer: two thirds of what a worker does before its first frame.
+"""
+
+from __future__ import annotations
+
+import gc
+from contextlib import suppress
+
+from dancetutor_cli.film.work import planning as planning
+from dancetutor_cli.film.work import segments
+from dancetutor_cli.run.process import collect_seldom
+
+collect_seldom()
+with suppress(Exception):  # a film that needs what is missing will say so
+    segments.warm_up(lambda units: None)
+gc.freeze()  # nobody looks through it for garbage, which would give each worker a copy

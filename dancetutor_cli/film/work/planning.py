@@ -1,0 +1,304 @@
+"""From a request to a film's plan: who dances in it, and everything laid on the clock."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dancetutor_cli.chart.density import fastest_bpm
+from dancetutor_cli.dance.motion import Motion, shifted
+from dancetutor_cli.dance.performance import as_heard, pad_of, perform, play_of_all, playable, pooled, solve
+from dancetutor_cli.dance.two import place_on
+from dancetutor_cli.film.choices import parse_ahead
+from dancetutor_cli.film.clock import whole_song
+from dancetutor_cli.film.media.sound import SoundPlan, clicks_of
+from dancetutor_cli.film.media.subtitles import cues_of, subtitle_words
+from dancetutor_cli.film.notes import OnMine, beat_lines, note_track, presses_of
+from dancetutor_cli.film.overlay.callouts import Called, CallStyle, callouts_of
+from dancetutor_cli.film.overlay.captions import SongShape
+from dancetutor_cli.film.overlay.diagram import step_rows
+from dancetutor_cli.film.overlay.header import title_warnings, words_of
+from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
+from dancetutor_cli.film.plan import FilmPlan, turned
+from dancetutor_cli.film.scroll import ScrollSegments, SpeedSegments, reading_bpm, segments_of, speeds_of
+from dancetutor_cli.film.work.request import (
+    FilmRequest,
+    FilmSubject,
+    notes_without,
+    play_without,
+    quiet_after,
+    quiet_in,
+)
+from dancetutor_cli.run.errors import UsageError
+
+if TYPE_CHECKING:
+    from dancetutor_cli.character.mesh import Character
+    from dancetutor_cli.chart.model import Chart
+    from dancetutor_cli.dance.performance import Performance
+    from dancetutor_cli.feet.pads import Pad
+    from dancetutor_cli.feet.play import Play
+    from dancetutor_cli.feet.solved import Solved
+    from dancetutor_cli.film.clock import Clock
+    from dancetutor_cli.film.layout import FilmLook
+    from dancetutor_cli.film.notes import Callout, Cue, NoteTrack
+    from dancetutor_cli.lint.findings import Finding
+
+
+# Who dances in a film, and how: the play that it shows, and the motions of all who dance it.
+
+
+@dataclass(frozen=True)
+class FilmDance:
+    """A chart as a film shows it.
+
+    solved : each player's part, one for most charts; plays : of each, without the notes that nobody plays at the
+    fastest rate, nor those of which the film shows nothing; play : all of them on the pad under all, `pad`
+    motions : of each dancer at each rate; none where the picture has no dancer
+    on_mines : mines that a foot is on at the fastest rate as they pass
+    """
+
+    solved: tuple[Solved, ...]
+    plays: tuple[Play, ...]
+    play: Play
+    pad: Pad
+    motions: Mapping[float, tuple[Motion, ...]]
+    on_mines: tuple[OnMine, ...] = ()
+
+
+def film_dance(request: FilmRequest, subject: FilmSubject) -> FilmDance:
+    """Find the feet and bake the motions. UsageError for a steps type without a pad."""
+    clock = subject.clock
+    solved = solve(request.dance, subject.choice)
+    rates = sorted({one.rate for one in clock.passes})
+    quiet, after = quiet_in(clock.passes), quiet_after(clock.passes)
+    plays = tuple(play_without(play_without(playable(one, rates), quiet), after) for one in solved)
+    motions: dict[float, tuple[Motion, ...]] = {}
+    if request.look.layout.dancer is not None:
+        dance = replace(request.dance, rates=tuple(rates))
+        for rate in rates:
+            performance = perform(solved, dance, rate)
+            motions[rate] = _given(request, performance) if request.motions else _cut(request, performance, clock)
+    told, on_mines = _mines(motions, list(zip(solved, plays, strict=True)), rates[-1])
+    shown = play_without(play_without(play_of_all(solved, plays), quiet), after)  # rows of which nothing is left, too
+    return FilmDance(solved, plays, shown, pad_of(solved), told, on_mines)
+
+
+def _cut(request: FilmRequest, performance: Performance, clock: Clock) -> tuple[Motion, ...]:
+    """What the film shows of a performance, each dancer where she stands on the pad under all."""
+    done = performance.motions(clock.cut_at(performance.rate), pooled(), request.background)
+    return tuple(shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True))
+
+
+def _given(request: FilmRequest, performance: Performance) -> tuple[Motion, ...]:
+    """The motions of files in place of the performance's own."""
+    from dancetutor_cli.formats.npz import read_npz
+
+    count = len(performance.dancers)
+    if performance.rate != 1.0:
+        raise UsageError("--dance is of music at its own speed; leave --rate out, or bake the file again")
+    if len(request.motions) != count:
+        raise UsageError(f"the chart is danced by {count}, so give --dance {count} time{'s' if count > 1 else ''}")
+    return tuple(read_npz(path) for path in request.motions)
+
+
+def _mines(
+    motions: Mapping[float, Sequence[Motion]], plays: Sequence[tuple[Solved, Play]], fastest: float
+) -> tuple[dict[float, tuple[Motion, ...]], tuple[OnMine, ...]]:
+    """The motions, whose notes tell of mines that a foot is on, and these mines at the fastest rate."""
+    from dancetutor_cli.dance.bake import mines_of
+    from dancetutor_cli.dance.quality.contact import feet_on_mines, told_mines
+
+    pad = pad_of([one for one, _ in plays])
+    out: dict[float, tuple[Motion, ...]] = {}
+    found: list[OnMine] = []
+    for rate, some in motions.items():
+        told = []
+        for motion, (one, play) in zip(some, plays, strict=True):
+            assert one.pad is not None
+            mines = mines_of(as_heard(play, one.chart.timing.at_rate(rate)), one.pad)
+            if len(plays) > 1:
+                mines += [0.0, *place_on(pad, one.chart, one.pad)]
+            under = feet_on_mines(motion, mines)
+            told.append(replace(motion, notes=(*motion.notes, *told_mines(mines[under >= 0, 0]))))
+            if rate == fastest:
+                found += _on_mines(one, play, under, len(plays) > 1)
+        out[rate] = tuple(told)
+    return out, tuple(found)
+
+
+def _on_mines(one: Solved, play: Play, under: np.ndarray, by_two: bool) -> list[OnMine]:
+    row, column = (places[under >= 0] for places in np.nonzero(play.rows.mines))
+    at, who = (one.chart.first_column, one.chart.player) if by_two else (0, 0)
+    ticks = play.rows.tick[row].tolist()
+    return [
+        OnMine(tick, c + at, foot, who)
+        for tick, c, foot in zip(ticks, column.tolist(), under[under >= 0].tolist(), strict=True)
+    ]
+
+
+# From a request to a film's plan: read the chart, solve the feet, bake the dancer, and lay everything on the clock.
+
+FADE = 0.6  # seconds in which a film's picture goes dark at its end, and that of a GIF before it goes round
+HIGH = "front-high"  # the camera of configs/picture.yaml for who hides her feet from behind
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """A film's plan, its sound (None: silent), and warnings that the subject had not yet."""
+
+    plan: FilmPlan
+    sound: SoundPlan | None
+    warnings: tuple[str, ...]
+
+
+def prepare(request: FilmRequest, subject: FilmSubject) -> Prepared:
+    """Do everything dear that comes before the first frame. DancetutorError says in one line what is wrong."""
+    from dancetutor_cli.character import dressed
+
+    song, chart, clock = subject.song, subject.chart, subject.clock
+    dance = film_dance(request, subject)
+    play, pad = dance.play, dance.pad
+    scrolls, speeds = segments_of(song, chart), speeds_of(song, chart)
+    quiet, whole_track = quiet_in(clock.passes), note_track(chart, play, scrolls, dance.on_mines)
+    after = quiet_after(clock.passes)
+    track = notes_without(notes_without(whole_track, quiet), after)
+    presses = presses_of(track)
+    start, end = clock.passes[0].start, clock.passes[-1].until
+    whole = whole_song(chart)
+    seconds = np.array([clock.at(k)[0] for k in range(clock.frames)])
+    who = dressed(request.character, request.dance.gait)
+    character, motions = _fitted(who, dance.motions, bool(request.motions))
+    look = _seen(request.look, character, pad)
+    plan = FilmPlan(
+        look=look,
+        clock=clock,
+        words=words_of(song, chart, request.look.font),
+        song=SongShape(np.unique(presses_of(whole_track).start), max(0.0, whole[0]), max(whole[1], end), (start, end)),
+        notes=track,
+        presses=presses,
+        lines=beat_lines(chart, scrolls, clock.passes[-1].end),
+        beats=scrolls.shown(chart.timing.beats(seconds)),
+        speeds=speeds.at(seconds),
+        scroll_bpm=_scroll_bpm(chart, track, speeds),
+        directions=pad.directions,
+        motions=motions,
+        pad=pad,
+        rows=step_rows(play, _dancers(dance)),
+        character=character,
+        callouts=() if request.background else _callouts(dance, _calls(look), scrolls),
+        cues=tuple(_cues(dance, turned(look))),
+        fade=FADE if request.practice.rest and not request.background else 0.0,
+    )
+    fade = clock.passes[-1].rest / clock.passes[-1].rate if request.section else 1.0
+    practice = replace(request.practice, claps=request.practice.claps or subject.music is None)
+    clicks = clicks_of(practice, clock.passes[0], chart.timing, presses.start)
+    sound = None if request.mute or request.background else SoundPlan(subject.music, request.sync, clicks, fade)
+    notes = [note for rate, some in motions.items() for motion in some for note in _at_rate(rate, motion.notes)]
+    return Prepared(plan, sound, (*notes, *title_warnings(song, plan.words, request.look.font)))
+
+
+def _dancers(dance: FilmDance) -> list[tuple[Play, int]]:
+    """Of several who dance each one's play, and which column its first one is."""
+    plays = [(play, one.chart.first_column) for one, play in zip(dance.solved, dance.plays, strict=True)]
+    return plays if len(plays) > 1 else []
+
+
+def _scroll_bpm(chart: Chart, track: NoteTrack, speeds: SpeedSegments) -> float:
+    """The tempo of which M mods make their speed."""
+    seconds, first = np.unique(track.second[track.judged], return_index=True)
+    return reading_bpm(seconds, track.beat[track.judged][first], speeds.at(seconds)) or fastest_bpm(chart)
+
+
+def _seen(look: FilmLook, character: Character | None, pad: Pad) -> FilmLook:
+    """The look, with a camera that shows the feet of who hides them from behind, where no camera is asked for."""
+    part = look.layout.dancer
+    if character is None or part is None or look.camera is not None or look.layout.screen is not None:
+        return look
+    from dancetutor_cli.film.scene.scene import Scene
+    from dancetutor_cli.film.scene.visibility import feet_hidden
+
+    camera = Scene(character, pad).camera(part.camera, look.size, part.region)
+    return replace(look, camera=HIGH) if feet_hidden(character, camera, look.size) else look
+
+
+def _callouts(dance: FilmDance, style: CallStyle, scrolls: ScrollSegments) -> tuple[Callout, ...]:
+    """What is called out; of two who dance what both do, for no call says whom it means, but for one's mines."""
+    if len(dance.solved) == 1:
+        return callouts_of(_about(dance.solved[0]), dance.play, style, scrolls, dance.on_mines)
+    pairs = zip(dance.solved, dance.plays, strict=True)
+    first, *others = (callouts_of(_about(one), play, style, scrolls) for one, play in pairs)
+    both = [call for call in first if all(call in of_other for of_other in others)]
+    return tuple(sorted([*both, *_mines_of_each(dance, style, scrolls)], key=lambda call: call.second))
+
+
+def _about(one: Solved) -> Called:
+    return Called(one.chart, one.pad, partial(_findings, one))
+
+
+def _findings(one: Solved) -> tuple[Finding, ...]:
+    from dancetutor_cli.lint.check import findings_of
+    from dancetutor_cli.lint.subject import subject_of
+
+    return findings_of(subject_of(one))
+
+
+def _mines_of_each(dance: FilmDance, style: CallStyle, scrolls: ScrollSegments) -> Iterator[Callout]:
+    """Of two who dance the mines that a foot is on, with whose foot it is."""
+    mines_alone = replace(style, findings=False)
+    for one in dance.solved:
+        under = [mine for mine in dance.on_mines if mine.player == one.chart.player]
+        for call in callouts_of(_about(one), None, mines_alone, scrolls, under):
+            yield replace(call, text=f"player {one.chart.player}: {call.text.replace(': ', ' ')}")
+
+
+def _calls(look: FilmLook) -> CallStyle:
+    style = highway_style()
+    return CallStyle(callout_words(), look.ahead or parse_ahead(style.callout_ahead), look.findings, turned(look))
+
+
+def _cues(dance: FilmDance, facing: bool) -> Iterator[Cue]:
+    """The moves for subtitles; of two who dance with the player's number. facing : she faces who looks on"""
+    words = subtitle_words()
+    if len(dance.solved) == 1:
+        yield from cues_of(dance.play, dance.solved[0].chart.timing, words, dance.pad, facing)
+        return
+    cues = [
+        replace(cue, text=f"P{one.chart.player}: {cue.text}")
+        for one, play in zip(dance.solved, dance.plays, strict=True)
+        if one.pad is not None
+        for cue in cues_of(play, one.chart.timing, words, one.pad, facing)
+    ]
+    yield from sorted(cues, key=lambda cue: (cue.second, cue.text))
+
+
+def _at_rate(rate: float, notes: tuple[str, ...]) -> list[str]:
+    return [note if rate == 1.0 else f"at rate {rate:g}, {note}" for note in notes]
+
+
+def _fitted(
+    name: str, motions: Mapping[float, tuple[Motion, ...]], given: bool
+) -> tuple[Character | None, Mapping[float, tuple[Motion, ...]]]:
+    """The character who dances and the motions for its skeleton; None for the dancer, whom who draws has at hand.
+
+    given : the motions are of files, which may be for the character's skeleton already
+    """
+    from dancetutor_cli.character import DANCER, load_character
+
+    if not motions or (name == DANCER and not given):
+        return None, motions
+    from dancetutor_cli.character.mesh import with_foot_colours
+    from dancetutor_cli.character.retarget import retarget
+
+    character = with_foot_colours(load_character(name))
+
+    def fitted(motion: Motion) -> Motion:
+        if given and motion.skeleton.names == character.skeleton.names:
+            return motion
+        return retarget(motion, character)
+
+    some = {rate: tuple(map(fitted, both)) for rate, both in motions.items()}
+    return None if name == DANCER else character, some

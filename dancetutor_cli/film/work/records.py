@@ -1,0 +1,134 @@
+"""What a batch keeps of its films between runs: which are done, and digests of the segments of those that are not.
+
+Records lie in the user's own cache and never beside the films, because a folder of charts, and what lies in it, may
+come from anybody. Films in work lie beside the output, so that the last step is a rename and a cluster's machines see
+them: in a folder that each run makes anew, under a name that nobody can foresee. A segment of an interrupted run moves
+over from the folder of that run, and counts only with the digest that is kept here.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import secrets
+import shutil
+import stat
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.files import encoded, write_atomic
+from dancetutor_cli.run.reading import read_json
+from dancetutor_cli.run.trust import exclude, kept_folder, results_folder
+
+WORK = ".dancetutor-"  # how the folder of a film in work begins; behind it 32 random hexadecimal digits
+_WORK_NAME = re.compile(re.escape(WORK) + "[0-9a-f]{32}")
+_DIGEST = re.compile("[0-9a-f]{64}")
+_NO_LINK = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+
+
+@dataclass(frozen=True, slots=True)
+class FilmRecord:
+    """What earlier runs have left of a film.
+
+    key : hash of what the film is made of, see `film_key`; folders : names of the folders in which it was in work
+    digests : SHA-256 of each finished segment, by number; size : that of the finished film, None while it is in work
+    """
+
+    key: str = ""
+    folders: tuple[str, ...] = ()
+    digests: dict[int, str] = field(default_factory=dict)
+    size: int | None = None
+
+
+class FilmRecords:
+    """One file per film in a private folder; without a folder nothing is kept, and a second run begins anew."""
+
+    def __init__(self, folder: Path | None) -> None:
+        self._folder = folder
+
+    def read(self, output: Path) -> FilmRecord:
+        """What is kept of the film of that name; an empty record if there is nothing, or nothing that can be used."""
+        if self._folder is None:
+            return FilmRecord()
+        try:
+            return _checked(read_json(self._path(output)))
+        except (FileError, KeyError, TypeError, ValueError, AttributeError):
+            return FilmRecord()
+
+    def write(self, output: Path, record: FilmRecord) -> None:
+        """Keep a record; one that cannot be written is left out, for the film itself does without."""
+        if self._folder is None:
+            return
+        data = {
+            "schema": 1,
+            "output": os.path.realpath(output.parent) + os.sep + output.name,
+            "key": record.key,
+            "size": record.size,
+            "folders": record.folders,
+            "digests": record.digests,
+        }
+        path = self._path(output)
+        with suppress(OSError, FileError):
+            path.parent.mkdir(mode=0o700, exist_ok=True)
+            write_atomic(path, encoded(json.dumps(data, ensure_ascii=False, indent=1) + "\n"))
+
+    def _path(self, output: Path) -> Path:
+        assert self._folder is not None
+        return self._folder / _hash(os.path.realpath(output.parent)) / f"{_hash(output.name)}.json"
+
+
+def _hash(text: str) -> str:
+    return hashlib.sha256(os.fsencode(text)).hexdigest()[:32]
+
+
+def _checked(data: Any) -> FilmRecord:
+    """A record as read; whatever is wrong with it is an exception."""
+    digests = {int(number): digest for number, digest in data["digests"].items() if _DIGEST.fullmatch(digest)}
+    folders = tuple(name for name in data["folders"] if _WORK_NAME.fullmatch(name))
+    return FilmRecord(str(data["key"]), folders, digests, None if data["size"] is None else int(data["size"]))
+
+
+def find_records(foreign: tuple[Path, ...] = ()) -> tuple[FilmRecords, str]:
+    """The records of this user, and "" or why there can be none.
+
+    foreign : folders with what others may have written, such as a pack; a cache that a variable puts there is not used
+    """
+    for path in foreign:
+        exclude(path)
+    return FilmRecords(kept_folder("films")), results_folder()[1]
+
+
+def new_work_name() -> str:
+    """The name of a folder for a film in work."""
+    return f"{WORK}{secrets.token_hex(16)}"
+
+
+def remove_work(folder: Path) -> None:
+    """Remove the folder of a film in work, or whatever has its name; of a link the link, and not what it leads to."""
+    try:
+        folder.unlink()
+    except OSError:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def move_segment(source: Path, target: Path, digest: str) -> bool:
+    """Move a segment of an earlier run into the folder of this one. Whether it is what that run had written."""
+    with suppress(OSError):
+        source.rename(target)  # of a link the link itself
+        if digest_of(target) == digest:
+            return True
+    remove_work(target)
+    return False
+
+
+def digest_of(path: Path) -> str:
+    """SHA-256 of an ordinary file; OSError for a link, and "" for a device, a pipe or a folder."""
+    with open(os.open(path, os.O_RDONLY | _NO_LINK), "rb") as file:  # noqa: PTH123
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            return ""
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,0 +1,157 @@
+"""The piece of work of `retarget`: a captured motion and a character in, the character's motion out."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.run.errors import DancetutorError, FileError
+
+if TYPE_CHECKING:
+    from dancetutor_cli.character.mesh import Character
+    from dancetutor_cli.dance.motion import Motion
+    from dancetutor_cli.dance.physics.pipeline import Passed, Tuning, Wishes
+    from dancetutor_cli.dance.physics.style import Style
+    from dancetutor_cli.dance.quality.figures import MotionReport
+    from dancetutor_cli.dance.rig.skeleton import Skeleton
+
+SCHEMA = b"1"  # of what a body's tuning depends on besides body and neutral style
+
+
+@dataclass(frozen=True, slots=True)
+class RetargetTask:
+    """What to retarget. source : the file; animation : the one wanted of a .glb, None for its first
+
+    style : name or file, as `dance.physics.style.load_style` takes it; wishes : corrections, pushes, trips
+    """
+
+    source: Path
+    character: str
+    animation: str | None
+    style: str
+    wishes: Wishes
+
+
+@dataclass
+class Retargeting:
+    """A task's results, made when they are first wanted. Everything raises a DancetutorError of one line."""
+
+    task: RetargetTask
+
+    @cached_property
+    def character(self) -> Character:
+        """Who shall move."""
+        from dancetutor_cli.character import load_character
+
+        return load_character(self.task.character)
+
+    @cached_property
+    def body(self) -> Skeleton:
+        """The rig's joints in the character's proportions."""
+        from dancetutor_cli.character.fitting import body_of
+
+        return body_of(self.character.skeleton)
+
+    @cached_property
+    def given(self) -> Motion:
+        """The file's motion on the body, before any physics."""
+        from dancetutor_cli.character.humanoid import humanoid_of
+        from dancetutor_cli.character.retarget import onto
+        from dancetutor_cli.dance.physics.captured import on_body
+        from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
+        from dancetutor_cli.formats.captured import of_motion, read_captured
+        from dancetutor_cli.formats.npz import read_npz
+
+        path = self.task.source
+        if path.suffix.lower() == ".npz":
+            motion = read_npz(path)
+            if set(dancer_skeleton().names) <= set(motion.skeleton.names):
+                of_motion(path, motion)  # says what is wrong with it
+                return onto(motion, self.body)
+        captured = read_captured(path, self.task.animation)
+        found = humanoid_of(path, captured.names, captured.parents).joints()
+        return on_body(captured, {joint: node for node, joint in found.items()}, self.body)
+
+    @cached_property
+    def style(self) -> Style:
+        """The style, with springs and densities of the body."""
+        from dancetutor_cli.dance.physics.style import load_style
+        from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
+
+        style = load_style(self.task.style)
+        if "limits" not in self.task.wishes.corrections:
+            style = replace(style, limits=False)
+        same = self.body.offsets.tobytes() == dancer_skeleton().offsets.tobytes()
+        return style if same else tuning_of(self.body).of(style)
+
+    @cached_property
+    def passed(self) -> Passed:
+        """Behind the ragdoll, on the body."""
+        from dancetutor_cli.dance.physics.hair import add_hair
+        from dancetutor_cli.dance.physics.pipeline import through_ragdoll
+        from dancetutor_cli.dance.settings import default_settings
+
+        try:
+            passed = through_ragdoll(self.given, self.style, self.task.wishes)
+        except FileError:
+            raise
+        except DancetutorError as error:
+            raise FileError(self.task.source, str(error)) from error
+        motion = passed.motion
+        add_hair(motion.skeleton, motion.times, motion.rotations, motion.root, default_settings().hair)
+        return passed
+
+    @cached_property
+    def motion(self) -> Motion:
+        """For the character's skeleton."""
+        from dancetutor_cli.character.retarget import retarget
+
+        return retarget(self.passed.motion, self.character)
+
+    @property
+    def title(self) -> str:
+        """For people."""
+        return self.task.source.stem
+
+    def report(self) -> MotionReport:
+        """The quality of the motion on the body, its faults before and after, and the ragdoll's distances."""
+        import numpy as np
+
+        from dancetutor_cli.dance.quality.report import fault_figures, report, with_distances
+
+        passed = self.passed
+        whole = report(passed.motion)
+        faults = fault_figures(self.given, passed.motion, passed.plants)
+        curves = {name: (t, v) for name, (t, v) in whole.curves.items() if len(v) and np.isfinite(v).any()}
+        whole = replace(whole, figures=(*whole.figures, *faults), curves=curves)
+        plain = not set(self.task.wishes.corrections) - {"limits"}
+        return with_distances(whole, passed.distances, self.task.style if plain else None)
+
+
+def tuning_of(body: Skeleton) -> Tuning:
+    """Springs and densities of a body: those found before, or a short search, whose result is kept."""
+    from dancetutor_cli.dance.physics.pipeline import Tuning, tuned
+    from dancetutor_cli.dance.physics.style import NEUTRAL, load_style
+    from dancetutor_cli.run.files import write_atomic
+    from dancetutor_cli.run.reading import config_path, read_json
+    from dancetutor_cli.run.trust import kept_folder
+
+    digest = hashlib.sha256(body.offsets.round(6).tobytes())
+    digest.update(config_path(f"styles/{NEUTRAL}.yaml").read_bytes() + SCHEMA)
+    folder = kept_folder("bodies")
+    path = None if folder is None else folder / f"{digest.hexdigest()[:32]}.json"
+    if path is not None:
+        with suppress(FileError):
+            found = Tuning.from_json(read_json(path))
+            if found is not None:
+                return found
+    tuning = tuned(body, load_style(NEUTRAL))
+    if path is not None:
+        with suppress(OSError, FileError):
+            write_atomic(path, json.dumps(tuning.as_json(), indent=1).encode())
+    return tuning

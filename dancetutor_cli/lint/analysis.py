@@ -1,0 +1,360 @@
+"""The piece of work of `analyze`: one file in, one `FileResult` out; a failure is part of the result."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.chart.density import Density, density
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.lint.check import check_chart
+from dancetutor_cli.lint.configuration import PresetChoice, mismatch, preset_for
+from dancetutor_cli.lint.findings import AUTO, AlternativeResult, Cause, Figures, Finding
+from dancetutor_cli.lint.results import ChartResult, FileResult
+from dancetutor_cli.lint.rule_settings import Settings
+from dancetutor_cli.lint.subject import ChartSubject
+from dancetutor_cli.run.errors import FileError, NoChartsError
+from dancetutor_cli.run.process import keep_what_is_there
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart, Song
+    from dancetutor_cli.feet.preset import Preset
+    from dancetutor_cli.lint.meters import Meters
+
+
+# What is told of one chart of `analyze`: findings, and what else is wanted.
+
+
+def chart_result(subject: ChartSubject, task: AnalyzeTask) -> ChartResult:
+    """What a task wants to know of a chart."""
+    from dancetutor_cli.lint.figures import arrows, with_excerpts
+
+    chart, play = subject.chart, subject.play
+    preset = preset_for(chart, task.path, task.presets)
+    findings, causes = _findings(subject, task, preset)
+    return ChartResult(
+        index=chart.index,
+        steps_type=chart.written_type,
+        player=chart.player,
+        difficulty=chart.difficulty,
+        meter=chart.meter,
+        description=chart.description,
+        playable=play is not None,
+        row_count=len(subject.step_rows),
+        cost=0 if play is None else play.total,
+        counts=subject.counts,
+        findings=with_excerpts(findings, play) if play is not None and task.want_excerpts else findings,
+        rows=_rows(subject) if task.want_rows else None,
+        arrows="" if subject.pad is None else arrows(subject.pad),
+        figures=_figures(subject, task) if task.want_figures else None,
+        alternatives=_alternatives(subject, preset, task.alternatives) if task.alternatives else None,
+        causes=causes,
+        ambiguous=tuple(_ambiguous(subject)) if task.want_rows else None,
+        preset=None if play is None else play.preset,
+        mismatch=None if play is None else mismatch(preset, chart.steps_type),
+    )
+
+
+def _rows(subject: ChartSubject) -> str:
+    from dancetutor_cli.feet.play_json import json_rows
+
+    return "[]" if subject.play is None else json_rows(subject.play, subject.file_lines)
+
+
+def _findings(
+    subject: ChartSubject, task: AnalyzeTask, preset: Preset
+) -> tuple[tuple[Finding, ...], tuple[Cause, ...] | None]:
+    """What the linter finds; causes of doublesteps and suggestions where somebody wants them: they take long."""
+    from dancetutor_cli.lint.check import check_chart
+
+    findings, causes = check_chart(subject, task.settings), None
+    if task.want_rows or task.suggest:
+        from dancetutor_cli.lint.figures import causes_of, with_causes
+
+        causes = causes_of(subject, preset)
+        findings = with_causes(findings, causes, subject.pad.names if subject.pad else ())
+    if task.suggest:
+        from dancetutor_cli.lint.suggest import with_suggestions
+
+        findings = with_suggestions(findings, subject, task.settings, preset)
+    return findings, causes
+
+
+def _alternatives(subject: ChartSubject, preset: Preset, count: int) -> tuple[AlternativeResult, ...]:
+    from dancetutor_cli.lint.figures import alternatives_of
+
+    return alternatives_of(subject, preset, count)
+
+
+def _figures(subject: ChartSubject, task: AnalyzeTask) -> Figures:
+    from dancetutor_cli.chart.density import density
+    from dancetutor_cli.lint.figures import facing_counts, tech_counts
+
+    dense = density(subject.chart, task.settings.stream_rows)
+    return Figures(
+        dense.mean, dense.peak, dense.breakdown, dense.stream_measures, tech_counts(subject),
+        subject.seconds_played(), facing_counts(subject),
+    )  # fmt: skip
+
+
+def _ambiguous(subject: ChartSubject) -> Iterator[tuple[float, str]]:
+    from dancetutor_cli.chart.model import TICKS_PER_BEAT
+    from dancetutor_cli.feet import Ambiguity
+
+    play = subject.play
+    if play is not None and play.ambiguity is not None:
+        for row in play.ambiguity.nonzero()[0].tolist():
+            kind = Ambiguity(int(play.ambiguity[row])).name.lower()
+            yield round(int(play.rows.tick[row]) / TICKS_PER_BEAT, 6), kind
+
+
+# The piece of work of `analyze`: one file in, one `FileResult` out; a failure is part of the result.
+
+_ROWS = 16_000  # of charts that are looked at together; some more, so that no chart stands alone
+_CHART = 50  # rows that a chart counts for, however short
+_OTHERS = 20  # charts of a file that are solved only because they tell the scale of its meters
+
+
+@dataclass(frozen=True, slots=True)
+class AnalyzeTask:
+    """What to do with one file. Pickles, so that another process can do it.
+
+    presets : which cost preset each chart gets
+    want_rows : whether the result shall carry every row, for JSON
+    data : the bytes to read in place of the file's, for standard input
+    suggest : whether findings shall tell which moved note would remove them
+    alternatives : how many other plays shall be told of
+    want_figures : whether the result shall carry densities and technical steps, for CSV
+    want_excerpts : whether findings shall carry the rows around them, for text
+    meter_scale, rate : the scale that meters are estimated on, and how fast the music plays for that
+    """
+
+    path: Path
+    presets: PresetChoice
+    selection: Selection
+    settings: Settings
+    want_rows: bool = False
+    data: bytes | None = None
+    suggest: bool = False
+    alternatives: int = 0
+    want_figures: bool = False
+    want_excerpts: bool = True
+    meter_scale: str = AUTO
+    rate: float = 1.0
+
+
+def analyze_file(task: AnalyzeTask) -> FileResult:
+    """Read, solve and lint one file, see `analyze_files`."""
+    return next(analyze_files([task]))
+
+
+def analyze_files(tasks: Iterable[AnalyzeTask]) -> Iterator[FileResult]:
+    """Read, solve and lint files, in order; charts of several are looked at together.
+
+    Never raises for what is wrong with a chart file: that is `error` in its result. FileError if dancetutor.yaml cannot
+    be read, after the results of the files before.
+    """
+    window = _Window()
+    for task in tasks:
+        try:
+            window.add(_File(task))
+        except Exception:
+            yield from window.results()
+            raise
+        if window.is_full:
+            yield from window.results()
+            keep_what_is_there()  # everything that is needed is imported
+    yield from window.results()
+
+
+class _Window:
+    """Files whose charts wait to be looked at together: most charts have few rows, and each question has its price."""
+
+    def __init__(self) -> None:
+        self._files: list[_File] = []
+        self._waiting: list[tuple[_File, ChartSubject]] = []
+        self._rows = 0
+
+    @property
+    def is_full(self) -> bool:
+        return self._rows >= _ROWS
+
+    def add(self, file: _File) -> None:
+        """Solve the charts of a file. One that fails leaves the window as it was."""
+        before = len(self._waiting), self._rows
+        try:
+            for subject in file.solved():
+                self._waiting.append((file, subject))
+                self._rows += subject.row_count + _CHART
+                if self.is_full:  # a file may hold thousands of charts
+                    self._look()
+                    before = 0, 0
+        except Exception:
+            del self._waiting[before[0] :]
+            self._rows = before[1]
+            raise
+        self._files.append(file)
+
+    def results(self) -> Iterator[FileResult]:
+        """The results of all files that have been added since the last time."""
+        self._look()
+        files, self._files = self._files, []
+        for file in files:
+            yield file.result()
+
+    def _look(self) -> None:
+        from dancetutor_cli.lint.subject import look_at_together
+
+        waiting, self._waiting, self._rows = self._waiting, [], 0
+        look_at_together(subject for _, subject in waiting)
+        for file, subject in waiting:
+            try:
+                file.add(subject)
+            except Exception:  # only the files before are told: of others some charts are missing
+                if file in self._files:
+                    del self._files[self._files.index(file) :]
+                raise
+
+
+class _File:
+    """A file on its way from its task to its result."""
+
+    def __init__(self, task: AnalyzeTask) -> None:
+        self._task = task
+        self._charts: list[ChartResult] = []
+        self._failed: FileResult | None = None
+        try:
+            self._song = load_song(task)
+        except NoChartsError as error:
+            self._failed = FileResult(str(task.path), "", "", None, (f"{error.message}: nothing to dance",), (), ())
+        except FileError as error:
+            self._failed = _unreadable(task, error)
+        else:
+            from dancetutor_cli.lint.meters import Meters
+
+            self._selected = task.selection.charts(self._song)
+            self._meters = Meters(self._song, task.settings)
+
+    def solved(self) -> Iterator[ChartSubject]:
+        """The charts that are asked for, one by one."""
+        return iter(()) if self._failed else solved(self._song, self._selected, self._task)
+
+    def add(self, subject: ChartSubject) -> None:
+        """Take down what is told of one of them."""
+        self._charts.append(chart_result(subject, self._task))
+        self._meters.add(subject, self._task.rate)
+
+    def result(self) -> FileResult:
+        """What is told of the file."""
+        if self._failed:
+            return self._failed
+        from dancetutor_cli.lint.check import check_file
+        from dancetutor_cli.lint.subject import FileSubject
+
+        task, song, charts = self._task, self._song, self._with_meters()
+        return FileResult(
+            str(task.path),
+            song.title,
+            song.artist,
+            None,
+            tuple(_warnings(song, charts)),
+            check_file(FileSubject(song), task.settings),
+            charts,
+            _unselected(song, self._selected),
+        )
+
+    def _with_meters(self) -> tuple[ChartResult, ...]:
+        """The charts with what only all of them together tell: the scale of the meters."""
+        task = self._task
+        for subject in _others(self._song, self._selected, task, self._meters):
+            self._meters.add(subject, task.rate)
+        told = self._meters.told(task.meter_scale)
+        return tuple(
+            replace(chart, estimate=told[chart.index].estimate, findings=told[chart.index].among(chart.findings))
+            if chart.index in told
+            else chart
+            for chart in self._charts
+        )
+
+
+def _others(song: Song, selected: tuple[Chart, ...], task: AnalyzeTask, meters: Meters) -> Iterator[ChartSubject]:
+    """Charts that were not asked for, solved nevertheless: a chart plays like the same meter whatever is asked for."""
+    from dancetutor_cli.lint.subject import solved_chart
+
+    kinds, meant = meters.ask_for_others(task.meter_scale), {chart.index for chart in selected}
+    others = (chart for chart in song.charts if chart.steps_type in kinds and chart.index not in meant)
+    for chart in islice(others, _OTHERS):
+        yield solved_chart(song, chart, preset_for(chart, task.path, task.presets))
+
+
+def _unselected(song: Song, selected: tuple[Chart, ...]) -> tuple[str, ...]:
+    meant = {chart.index for chart in selected}  # a file may hold thousands of charts
+    return tuple(chart.label for chart in song.charts if chart.index not in meant)
+
+
+def load_song(task: AnalyzeTask) -> Song:
+    """Read the task's file; FileError if that fails."""
+    from dancetutor_cli import chart as reader
+
+    return reader.load(task.path) if task.data is None else reader.parse(task.data, task.path)
+
+
+def solved(song: Song, charts: tuple[Chart, ...], task: AnalyzeTask) -> Iterator[ChartSubject]:
+    """Each of the charts with its play; of those for two, each player's part."""
+    from dancetutor_cli.lint.subject import solved_charts
+
+    parts = [part for chart in charts for part in task.selection.parts(chart)]
+    return solved_charts(song, parts, lambda part: preset_for(part, task.path, task.presets))
+
+
+def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
+    from dancetutor_cli.chart.names import is_lights
+
+    yield from (warning.message for warning in song.warnings)
+    for result in charts:
+        if is_lights(result.steps_type):  # nobody dances them
+            continue
+        if result.player < 2:  # of charts for two told once
+            yield from (f"{result.label}: {warning.message}" for warning in song.charts[result.index].warnings)
+        if not result.playable:
+            yield f"{result.label}: steps type '{result.steps_type}' has no pad, so its feet are not known"
+        elif result.mismatch:
+            yield f"{result.label}: {result.mismatch}"
+
+
+def failed(task: AnalyzeTask, message: str) -> FileResult:
+    """The result of a task that broke down."""
+    return _unreadable(task, FileError(task.path, message))
+
+
+def _unreadable(task: AnalyzeTask, error: FileError) -> FileResult:
+    finding = Finding("DT101", "unreadable", "error", error.message, error.line, error.column)
+    return FileResult(str(task.path), "", "", str(error), (), (finding,), ())
+
+
+# Charts to be drawn as a sheet: solved, linted and counted.
+
+
+@dataclass(frozen=True)
+class Drawable:
+    """A chart with all that a sheet shows of it. `counts` : name of a move -> rows."""
+
+    subject: ChartSubject
+    findings: tuple[Finding, ...]
+    density: Density
+    counts: dict[str, int]
+
+
+def drawable_charts(task: AnalyzeTask) -> Iterator[Drawable]:
+    """The selected charts of a file that have notes; FileError if the file cannot be read."""
+    song = load_song(task)
+    for subject in solved(song, task.selection.charts(song), task):
+        if len(subject.chart.notes):
+            findings = check_chart(subject, task.settings)
+            moves = subject.play.moves if subject.play else ()
+            counts = Counter(name for names in moves for name in names)
+            yield Drawable(subject, findings, density(subject.chart, task.settings.stream_rows), dict(counts))

@@ -1,0 +1,173 @@
+"""What is told of a chart, as plain data without numpy: findings, figures, and the bill of its meter."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from operator import attrgetter
+from typing import Any, NamedTuple
+
+# What the linter found.
+
+
+class ExcerptRow(NamedTuple):
+    """One of the rows around a finding; a character for each column.
+
+    notes : "1" tap, "2" hold, "4" roll, "L" lift, "M" mine, "|" a hold that goes on, " " nothing
+    limbs : "L", "R" foot ("l", "r" its toe in a bracket), "<", ">" hand, "?" no limb is left, " " no step
+    here : whether the finding is about this row
+    """
+
+    beat: float
+    notes: str
+    limbs: str
+    here: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One finding in a chart file.
+
+    rule : "DT201"; name : "doublestep"; severity : "error", "warning" or "info"
+    line, column : 1-based place in the file for the text form (column of the note's character); None: the whole file
+    note_column : column of the note from 0, or None; beat, measure, second : None for findings about the file
+    chart : index of the chart in the file, None for findings about the file
+    excerpt : the rows around it; suggestion : the small edit that would remove it, None if there is none
+    """
+
+    rule: str
+    name: str
+    severity: str
+    message: str
+    line: int | None = None
+    column: int | None = None
+    note_column: int | None = None
+    beat: float | None = None
+    measure: int | None = None
+    second: float | None = None
+    margin: int | None = None
+    chart: int | None = None
+    excerpt: tuple[ExcerptRow, ...] = ()
+    suggestion: str | None = None
+
+    def with_excerpt(self, rows: tuple[ExcerptRow, ...]) -> Finding:
+        """The same with the rows around it; many times quicker than `dataclasses.replace`."""
+        values: tuple[Any, ...] = _VALUES(self)
+        return Finding(*(*values[:_EXCERPT], rows, *values[_EXCERPT + 1 :]))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle as a call: ten times quicker to read back than what frozen dataclasses do, and there are many."""
+        return Finding, _VALUES(self)
+
+
+_EXCERPT = [field.name for field in fields(Finding)].index("excerpt")
+_VALUES = attrgetter(*(field.name for field in fields(Finding)))
+
+
+# What is told of a chart besides its findings: figures, other ways to play it, what makes its doublesteps.
+#
+# Imports neither numpy nor numba, so that kept results can be read back quickly.
+
+# Names of ITGmania's TechCounts, and after their pattern those that it does not tell apart; see `lint.figures`.
+TECH_COUNTS = (
+    "Crossovers", "HalfCrossovers", "FullCrossovers", "Footswitches", "UpFootswitches", "DownFootswitches",
+    "Sideswitches", "LeftSideswitches", "RightSideswitches", "Jacks", "Brackets", "Doublesteps", "ForcedDoublesteps",
+    "UnforcedDoublesteps",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class DifferentRun:
+    """Rows one after the other that two plays step with other limbs, with their letters in each, as in {dt1 ...}."""
+
+    first_beat: float
+    last_beat: float
+    best: str
+    other: str
+
+
+@dataclass(frozen=True, slots=True)
+class AlternativeResult:
+    """Another way to play a chart. extra : how much more it costs; terms : what differs in cost, the largest first"""
+
+    extra: int
+    terms: tuple[tuple[str, int], ...]
+    runs: tuple[DifferentRun, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """What makes a doublestep.
+
+    beat : of the doublestep; forced : whether the other foot holds; cause : "hold", "mine", "jump" or "pattern"
+    at_beat, column : of the cause; None for a pattern
+    """
+
+    beat: float
+    forced: bool
+    cause: str
+    at_beat: float | None
+    column: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Figures:
+    """What `--format csv` tells of a chart.
+
+    nps_mean, nps_peak, breakdown, stream_measures : see `chart.density.Density`
+    tech : how often each of `TECH_COUNTS` happens
+    seconds : from the first to the last row with a step
+    facing : rows by how far she faces away from the screen: up to 22, 67, 112 and 157 degrees, and further
+    """
+
+    nps_mean: float
+    nps_peak: float
+    breakdown: str
+    stream_measures: int
+    tech: Mapping[str, int]
+    seconds: float = 0.0
+    facing: tuple[int, ...] = ()
+
+
+# The estimate of a chart's meter as it is kept and told. Imports no numpy, so that kept results are read quickly.
+
+AUTO = "auto"
+SCALES = (AUTO, "itg", "ddr", "low")
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """How hard a chart plays.
+
+    meter : the estimate; low, high : 80 of 100 labels lie between; scale : name of the scale
+    known : whether something says that it is this scale: a tag, two other charts of the song, or the user
+    terms : (name, meters) of what adds to it, the largest first, then "rest", small ones together; their sum is `meter`
+    rate : that it was estimated for
+    """
+
+    meter: float
+    low: float
+    high: float
+    scale: str
+    known: bool
+    terms: tuple[tuple[str, float], ...]
+    rate: float = 1.0
+
+    @property
+    def bill(self) -> str:
+        """For people: "11.4: streams +3.1, crossovers +0.6, rest +0.2"."""
+        return f"{self.meter:.1f}: {', '.join(self._told())}"
+
+    def most(self, count: int) -> str:
+        """The same with so many terms at most."""
+        return f"{self.meter:.1f}: {', '.join(self._told()[:count])}"
+
+    def _told(self) -> list[str]:
+        return [f"{name} {meters:+.1f}" for name, meters in self.terms if round(abs(meters), 1) > 0]
+
+    @property
+    def span(self) -> str:
+        """For people: "10.2 to 12.6 on the scale itg"; what is not known is said."""
+        rate = "" if self.rate == 1.0 else f" at rate {self.rate:g}"
+        guess = "" if self.known else ", a guess: nothing tells the scale"
+        return f"{self.low:.1f} to {self.high:.1f} on the scale {self.scale}{rate}{guess}"

@@ -1,0 +1,256 @@
+"""Fixes as bytes: characters of notes replaced, what that must come to, and those that no ear hears."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.chart.cells import PLAYERS
+from dancetutor_cli.chart.edits import Splice
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Kind, NoteTable
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.note_questions import Notes
+from dancetutor_cli.lint.suggest import MovedNote
+
+# Where the characters of notes stand in a file, and the fix: some of them replaced, with what that must come to.
+
+EMPTY = b"0"
+_LETTERS = b"01234MLFK"  # of one player's notes; a row with more than these and PLAYERS (keysounds) is left alone
+
+Note = tuple[int, int, int, int]  # tick, column, kind, end
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """A few characters of a chart's note data replaced, one for one.
+
+    rule : code of the rule whose findings it removes; lines : where those stand, 1-based; words : it in words
+    gone, come : the notes that the games do not read any more, and those that they read in their place
+    """
+
+    rule: str
+    lines: frozenset[int]
+    words: str
+    splices: tuple[Splice, ...]
+    gone: frozenset[Note] = field(default_factory=frozenset)
+    come: frozenset[Note] = field(default_factory=frozenset)
+
+    @property
+    def is_silent(self) -> bool:
+        """Whether the games read the very same notes after it."""
+        return self.gone == self.come
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A note's character. at : its byte in the file; tick, column, line : of its row; text : the character"""
+
+    at: int
+    tick: int
+    column: int
+    line: int
+    text: bytes
+
+
+def cells_of(data: bytes, chart: Chart) -> Iterator[Cell]:
+    """The written cells of a chart, also the empty ones, row by row in file order.
+
+    Rows with anything but the letters of notes in them are left out, and so is what stands beyond the chart's columns.
+    """
+    for row in range(len(chart.rows.tick)):
+        yield from _cells_of_row(data, chart, row)
+
+
+def is_plain(data: bytes, chart: Chart) -> bool:
+    """Whether its rows are one player's notes and nothing else, a letter for each: `cells_of` sees all of them."""
+    spans = zip(chart.rows.start.tolist(), chart.rows.end.tolist(), strict=True)
+    return not chart.players and not any(data[start:end].translate(None, _LETTERS) for start, end in spans)
+
+
+def cells_at(data: bytes, chart: Chart, tick: int) -> dict[int, Cell]:
+    """Column -> cell of the row at a tick; empty if none or several stand there, or if it is no plain row."""
+    rows = (chart.rows.tick == tick).nonzero()[0].tolist()
+    return {cell.column: cell for cell in _cells_of_row(data, chart, rows[0])} if len(rows) == 1 else {}
+
+
+def _cells_of_row(data: bytes, chart: Chart, row: int) -> Iterator[Cell]:
+    start, end = int(chart.rows.start[row]), int(chart.rows.end[row])
+    text = data[start:end]
+    if text.translate(None, _LETTERS + PLAYERS):
+        return
+    tick, line = int(chart.rows.tick[row]), int(chart.rows.line[row])
+    for column in range(min(len(text), chart.columns)):
+        yield Cell(start + column, tick, column, line, text[column : column + 1])
+
+
+def replaced(cells: Iterable[tuple[Cell, bytes]]) -> tuple[Splice, ...]:
+    """Other characters in the place of cells."""
+    return tuple(Splice(cell.at, cell.at + 1, text) for cell, text in cells)
+
+
+def notes_of(table: NoteTable) -> frozenset[Note]:
+    """The notes as a set, to be compared."""
+    columns = (table.tick.tolist(), table.column.tolist(), table.kind.tolist(), table.end.tolist())
+    return frozenset(zip(*columns, strict=True))
+
+
+# The edit that `--suggest` tells, as a fix: one note's character and that of a free panel in its row change places.
+
+_TAPS = (b"1", b"L", b"l", b"X", b"Y")
+
+
+def moved(data: bytes, chart: Chart, finding: Finding, move: MovedNote) -> Fix | None:
+    """The fix; None where the row is not one plain row of characters with the note and an empty place for it."""
+    cells = cells_at(data, chart, move.tick)
+    away, there = cells.get(move.column), cells.get(move.to)
+    if away is None or there is None or away.text not in _TAPS or there.text != EMPTY:
+        return None
+    notes = chart.notes
+    found = ((notes.tick == move.tick) & (notes.column == move.column)).nonzero()[0].tolist()
+    if len(found) != 1:
+        return None
+    kind = int(notes.kind[found[0]])
+    return Fix(
+        finding.rule,
+        frozenset({finding.line or 0}),
+        move.words,
+        replaced([(away, EMPTY), (there, away.text)]),
+        gone=frozenset({(move.tick, move.column, kind, -1)}),
+        come=frozenset({(move.tick, move.to, kind, -1)}),
+    )
+
+
+# The fixes that no ear hears: mines under the head of a hold, halves of holds, notes less than 3 ms off the grid.
+#
+# What of a chart these touch is what the games throw away, or what nobody can tell apart; so they need no solver to be
+# found. `mend` proves them by one nevertheless.
+
+BROKEN_HOLD, OFF_GRID = "DT106", "DT401"
+RULES = (BROKEN_HOLD, OFF_GRID)
+UNHEARD = 0.003  # seconds that no one hears or sees
+_KIND = {b"2": Kind.HOLD, b"4": Kind.ROLL}
+_MINE, _TAIL = b"M", b"3"
+_SILENT = (EMPTY, b"K")  # cells that come between nothing
+
+
+def safe_fixes(data: bytes, chart: Chart, grid: Sequence[int]) -> list[Fix]:
+    """All such fixes of a chart, in file order; none of a chart whose rows hold other things than notes.
+
+    data : the bytes of its file; grid : the usual quantisations, as rule DT401 has them
+    """
+    if not is_plain(data, chart):
+        return []
+    return sorted((*_holds(data, chart), *_off_grid(data, chart, grid)), key=lambda fix: fix.splices)
+
+
+def _holds(data: bytes, chart: Chart) -> Iterator[Fix]:
+    """In every column: heads that find no end, ends that find no head, and mines that come between two of them."""
+    columns: dict[int, list[Cell]] = {}
+    for cell in cells_of(data, chart):
+        if cell.text not in _SILENT:
+            columns.setdefault(cell.column, []).append(cell)
+    for cells in columns.values():
+        yield from _of_column(cells)
+
+
+def _of_column(cells: list[Cell]) -> Iterator[Fix]:
+    at = 0
+    while at < len(cells):
+        cell = cells[at]
+        at += 1
+        if cell.text == _TAIL:
+            yield _dropped(cell, "the end of a hold without a head")
+        if cell.text not in _KIND:
+            continue
+        after = at
+        while after < len(cells) and cells[after].text == _MINE:
+            after += 1
+        if after == len(cells) or cells[after].text != _TAIL:
+            yield _dropped(cell, f"a {_KIND[cell.text].name.lower()} without an end")
+            continue
+        if mines := cells[at:after]:
+            yield _without_mines(cell, mines, cells[after])
+        at = after + 1
+
+
+def _dropped(cell: Cell, what: str) -> Fix:
+    """Half a hold goes: the games drop it too, so they read the same notes as before."""
+    words = f"take {what} out, on beat {_beat(cell)}; the games drop it as well"
+    return Fix(BROKEN_HOLD, frozenset({cell.line}), words, replaced([(cell, EMPTY)]))
+
+
+def _without_mines(head: Cell, mines: list[Cell], tail: Cell) -> Fix:
+    """The mines go, and the hold is one: the games delete a head that has a mine before its end."""
+    kind = _KIND[head.text]
+    many = "a mine" if len(mines) == 1 else f"{len(mines)} mines"
+    words = f"take {many} out from under the head of the {kind.name.lower()} on beat {_beat(head)}"
+    return Fix(
+        BROKEN_HOLD,
+        frozenset({head.line, tail.line}),
+        words,
+        replaced((mine, EMPTY) for mine in mines),
+        gone=frozenset((mine.tick, mine.column, int(Kind.MINE), -1) for mine in mines),
+        come=frozenset({(head.tick, head.column, int(kind), tail.tick)}),
+    )
+
+
+def _off_grid(data: bytes, chart: Chart, grid: Sequence[int]) -> Iterator[Fix]:
+    """Runs of rows that go to the nearest row of the grid as they are, each by less than 3 ms."""
+    known = notes_of(chart.notes)
+    steps = np.unique(chart.notes.tick[chart.notes.kind != Kind.MINE])
+    for first, line, count in Notes(chart).off_grid(grid):
+        start = int(steps.searchsorted(first))
+        ticks = [tick for tick in steps[start:].tolist() if not _is_on(tick, grid)][:count]
+        moves = {tick: to for tick in ticks if (to := _nearest(chart, tick, steps, grid)) is not None}
+        cells = [pair for tick, to in moves.items() for pair in _moved(data, chart, tick, to)]
+        if len(moves) < count or len({cell.tick for cell, _ in cells}) < 2 * count:
+            continue
+        changed = {note: _shifted(note, moves) for note in known}
+        gone = frozenset(note for note, new in changed.items() if note != new)
+        words = f"move {count} row{'s' if count > 1 else ''} from beat {first / TICKS_PER_BEAT:g} on onto the grid"
+        come = frozenset(changed[note] for note in gone)
+        yield Fix(OFF_GRID, frozenset({line}), f"{words}, by less than 3 ms", replaced(cells), gone, come)
+
+
+def _is_on(tick: int, grid: Sequence[int]) -> bool:
+    return any(tick % (TICKS_PER_MEASURE // name) == 0 for name in grid)
+
+
+def _nearest(chart: Chart, tick: int, steps: NDArray[np.int64], grid: Sequence[int]) -> int | None:
+    """The tick of the grid that is nearest in time; None if it is 3 ms away or more, or if others are as near.
+
+    Where several rows come within 3 ms the song plays tricks with its tempo, and their order is there to be seen.
+    steps : ticks of all rows with notes
+    """
+    reach = TICKS_PER_MEASURE // max(grid)
+    near = [to for to in range(max(tick - reach, 0), tick + reach + 1) if _is_on(to, grid)]
+    at = int(steps.searchsorted(tick))
+    others = steps[max(at - 2, 0) : at + 3].tolist()
+    seconds = chart.timing.seconds(np.array([tick, *near, *others]))
+    away = np.abs(seconds[1:] - seconds[0])
+    if not near or away[: len(near)].min() >= UNHEARD:
+        return None
+    nearest = near[int(away[: len(near)].argmin())]
+    crowd = (away[len(near) :] < UNHEARD) & ~np.isin(others, (tick, nearest))
+    return None if crowd.any() else nearest
+
+
+def _moved(data: bytes, chart: Chart, tick: int, to: int) -> list[tuple[Cell, bytes]]:
+    """Everything of one row in another that is free there; nothing if that cannot be."""
+    away, there = cells_at(data, chart, tick), cells_at(data, chart, to)
+    full = [cell for cell in away.values() if cell.text != EMPTY]
+    if not full or any(cell.column not in there or there[cell.column].text != EMPTY for cell in full):
+        return []
+    return [pair for cell in full for pair in ((cell, EMPTY), (there[cell.column], cell.text))]
+
+
+def _shifted(note: Note, moves: dict[int, int]) -> Note:
+    tick, column, kind, end = note
+    return moves.get(tick, tick), column, kind, moves.get(end, end)
+
+
+def _beat(cell: Cell) -> str:
+    return f"{round(cell.tick / TICKS_PER_BEAT, 3):g}"

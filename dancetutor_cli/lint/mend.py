@@ -1,0 +1,211 @@
+"""Fixes put into a chart one after the other, each proved on top of those before it by reading and solving it again."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from dancetutor_cli.chart.edits import apply, unchanged
+from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Chart, Song
+from dancetutor_cli.chart.names import is_lights
+from dancetutor_cli.feet.preset import Preset
+from dancetutor_cli.lint import fixes as safe_fixes
+from dancetutor_cli.lint.check import check_chart
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.fixes import Fix, moved, notes_of
+from dancetutor_cli.lint.rule import ReaderRule, all_rules
+from dancetutor_cli.lint.rule_settings import Settings
+from dancetutor_cli.lint.subject import ChartSubject, solved_chart
+from dancetutor_cli.lint.suggest import MENDABLE, mending_moves
+
+FIXABLE = (*MENDABLE, *safe_fixes.RULES)  # rules that `--fix` knows a fix for
+_RANKED = "DT213"  # tells the rows that are least sure: the next one takes the place of one that is gone
+NO_MOVE = "no single note moved to another panel of its row removes it without bringing another finding"
+NO_FIX = {
+    safe_fixes.BROKEN_HOLD: "its chart holds more than plain notes, or mending it would bring another finding",
+    safe_fixes.OFF_GRID: "it is 3 ms or more off the grid, or there is no free row for it in the file",
+}
+GONE = "an edit before it has removed it, too"
+
+PresetOf = Callable[[Chart], Preset]
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """One thing done. place : the finding it was asked for, None: one of the safe fixes; fix : what was written"""
+
+    chart: str
+    fix: Fix
+    finding: Finding | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Left:
+    """A finding that stays as it is, or has gone without an edit of its own, and why."""
+
+    chart: str
+    finding: Finding
+    why: str
+
+    @property
+    def is_gone(self) -> bool:
+        """Whether an edit made for another one has removed it too."""
+        return self.why == GONE
+
+
+@dataclass
+class Mending:
+    """A song on its way: `song` is as far as it has come, with its bytes in `song.data`.
+
+    settings : of the rules; preset_of : the costs of each chart
+    """
+
+    song: Song
+    settings: Settings
+    preset_of: PresetOf
+    done: list[Done] = field(default_factory=list)
+    left: list[Left] = field(default_factory=list)
+    _latest: _State | None = None
+
+    def safe(self, chart: int) -> None:
+        """All safe fixes of a chart: of a rule at once if that brings no finding, else each that brings none."""
+        for player in range(max(len(self.song.charts[chart].players), 1)):
+            for rule in safe_fixes.RULES:
+                fixes = [fix for fix in self._safe_fixes(self._part(chart, player + 1)) if fix.rule == rule]
+                if fixes and not self._try(self._state(chart, player + 1), fixes):
+                    for fix in fixes:
+                        self._try(self._state(chart, player + 1), [fix])
+
+    def finding(self, chart: int, finding: Finding, player: int = 0) -> None:
+        """Mend one finding of a chart with the smallest edit that does it; `left` tells where there is none.
+
+        player : in whose part of a chart for two it was found
+        """
+        state = self._state(chart, player)
+        if not _count(state, finding):
+            self.left.append(Left(state.chart.label, finding, GONE))
+            return
+        for fix in self._fixes(state, finding):
+            if self._try(state, [fix], finding):
+                return
+        why = NO_FIX.get(finding.rule, NO_MOVE)
+        self.left.append(Left(state.chart.label, finding, why))
+
+    def _fixes(self, state: _State, finding: Finding) -> Iterator[Fix]:
+        if finding.rule in MENDABLE:
+            preset = self.preset_of(state.chart)
+            for move in mending_moves(finding, state.findings, state.subject, self.settings, preset):
+                if fix := moved(self.song.data, state.chart, finding, move):
+                    yield fix
+            return
+        for fix in self._safe_fixes(state.chart):
+            if fix.rule == finding.rule and finding.line in fix.lines:
+                yield fix
+
+    def _safe_fixes(self, chart: Chart) -> list[Fix]:
+        """Those of a chart as it is now; of the grid that rule DT401 has for it, none where that rule is off."""
+        if is_lights(chart.steps_type):
+            return []
+        path = self.song.path.absolute()
+        rules = self.settings.for_chart(path, chart.written_type, chart.difficulty, chart.meter)
+        grid = rules[safe_fixes.OFF_GRID]["grid"] if safe_fixes.OFF_GRID in rules else [TICKS_PER_MEASURE]
+        return safe_fixes.safe_fixes(self.song.data, chart, [int(name) for name in grid])
+
+    def _part(self, index: int, player: int) -> Chart:
+        """A chart as it is now, or of one for two the part of a player."""
+        return _part(self.song, index, player)
+
+    def _state(self, index: int, player: int = 0) -> _State:
+        chart = self._part(index, player)
+        if self._latest is None or self._latest.chart is not chart:
+            self._latest = _State.of(self.song, chart, self.settings, self.preset_of(chart))
+        return self._latest
+
+    def _try(self, state: _State, fixes: Sequence[Fix], finding: Finding | None = None) -> bool:
+        """Put fixes in if the file then reads as it must, the finding is gone and no other has come."""
+        splices = [splice for fix in fixes for splice in fix.splices]
+        if len({splice.start for splice in splices}) < len(splices):
+            return False
+        after = unchanged(self.song, apply(self.song.data, splices), lambda one: one.index == state.chart.index)
+        chart = _part(after, state.chart.index, state.chart.player)
+        if not _as_meant(state.chart, chart, fixes) or not _apart(state.chart, after, fixes):
+            return False
+        if finding is not None or not all(fix.is_silent for fix in fixes):
+            new = _State.of(after, chart, self.settings, self.preset_of(chart))
+            if not new.is_no_worse_than(state) or (finding and _count(new, finding) >= _count(state, finding)):
+                return False
+            self._latest = new
+        self.song = after
+        self.done += (Done(state.chart.label, fix, finding) for fix in fixes)
+        return True
+
+
+@dataclass(frozen=True, slots=True)
+class _State:
+    """A chart as it is now, with what the linter finds in it."""
+
+    chart: Chart
+    subject: ChartSubject
+    findings: tuple[Finding, ...]
+
+    @staticmethod
+    def of(song: Song, chart: Chart, settings: Settings, preset: Preset) -> _State:
+        subject = solved_chart(song, chart, preset)
+        return _State(chart, subject, check_chart(subject, settings))
+
+    def is_no_worse_than(self, before: _State) -> bool:
+        """Whether nothing is found that was not found there before.
+
+        Of what the reader warns of only the first few are told, so there it is the number that counts.
+        """
+        return not _told(self.findings) - _told(before.findings)
+
+
+def _part(song: Song, index: int, player: int) -> Chart:
+    chart = song.charts[index]
+    return chart.players[player - 1] if chart.players and player else chart
+
+
+def _told(findings: Iterable[Finding]) -> Counter[tuple[str, float | None]]:
+    return Counter(
+        (one.rule, None if issubclass(all_rules()[one.rule], ReaderRule) else one.beat)
+        for one in findings
+        if one.rule != _RANKED
+    )
+
+
+def _count(state: _State, finding: Finding) -> int:
+    """How many findings of its rule stand in a finding's place."""
+    place = (finding.rule, finding.line, finding.beat)
+    return sum((one.rule, one.line, one.beat) == place for one in state.findings)
+
+
+def _apart(before: Chart, after: Song, fixes: Sequence[Fix]) -> bool:
+    """Whether the other player of a chart for two has the same notes as before, and none where one came to."""
+    if before.written is None:
+        return True
+    places = {(tick, column + before.first_column) for fix in fixes for tick, column, _, _ in fix.come}
+    whole = before.written.notes
+    mine = {(tick, column + before.first_column) for tick, column, _, _ in notes_of(before.notes)}
+    others = set(zip(whole.tick.tolist(), whole.column.tolist(), strict=True)) - mine
+    return not places & others and all(
+        len(part.notes) + len(before.notes) == sum(len(one.notes) for one in after.charts[before.index].players)
+        for part in after.charts[before.index].players
+        if part.player != before.player
+    )
+
+
+def _as_meant(before: Chart, after: Chart, fixes: Sequence[Fix]) -> bool:
+    """Whether a chart reads as the one before it with these fixes, note by note, and all else is as it was."""
+    gone = frozenset(note for fix in fixes for note in fix.gone)
+    come = frozenset(note for fix in fixes for note in fix.come)
+    same = ("steps_type", "difficulty", "meter", "description", "columns", "timing", "tags", "notes_span")
+    notes = notes_of(before.notes)
+    return (
+        gone <= notes
+        and not come & (notes - gone)
+        and notes_of(after.notes) == (notes - gone) | come
+        and all(getattr(before, name) == getattr(after, name) for name in same)
+        and bool((before.rows.tick == after.rows.tick).all())
+    )

@@ -1,0 +1,332 @@
+"""The model of meters: what feet do in how little time, and the curves of named terms that only rise with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import accumulate, pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.solver.vocabulary import EVENTS
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.reading import config_path
+from dancetutor_cli.run.yaml_files import MarkedYaml, read
+
+# What the feet have to do in how little time: numbers of a play that never fall when it is played faster.
+
+_SWITCHES = ("footswitch-up", "footswitch-down", "footswitch", "sideswitch-left", "sideswitch-right", "jump-footswitch")
+# What is counted -> the moves of a row that it is.
+_NAMED = {
+    "crossovers": ("crossover-half", "crossover-full"),
+    "footswitches": _SWITCHES,
+    "brackets": ("bracket",),
+    "doublesteps": ("doublestep", "forced-doublestep"),
+    "jacks": ("jack",),
+    "hands": ("hand",),
+    "spins": ("spin",),
+    "stream rows": ("stream",),
+    "jumps": ("jump",),
+}
+THINGS = ("steps", *_NAMED, "turns", "held")
+_COUNTED = (*_NAMED, "held")  # what a row is or is not
+_BITS = np.array([sum(1 << EVENTS.index(name) for name in _NAMED.get(thing, ())) for thing in _COUNTED])
+_PLACES, _TURNS = [THINGS.index(thing) for thing in _COUNTED], THINGS.index("turns")
+HOWS = ("mean", "peak", "count")  # the last two of steps alone
+_PLACE = {thing: n for n, thing in enumerate(THINGS)}
+_PEAK = 0.98  # the share of rows that are easier than a peak
+_QUARTER = 90.0  # degrees
+_PLAY = 40  # bits of a tick: everything in a later play comes after every tick of the one before
+
+
+class Feature(NamedTuple):
+    """One number of a chart: how often `thing` happens in a second.
+
+    thing : one of `THINGS`. "turns": quarter turns of the body; "held": steps while the other foot holds; "crossovers"
+        counts the step that crosses, not those that stay crossed
+    seconds : how far back each row looks; how : "mean" of all rows with a step, and of steps alone "peak": what 98 in
+        100 rows do not exceed, "count": of the whole chart, whatever its time
+    """
+
+    thing: str
+    seconds: float
+    how: str
+
+
+def features(play: Play, wanted: Sequence[Feature], rate: float = 1.0) -> list[float]:
+    """These numbers of a play, see `features_of`."""
+    return features_of([play], wanted, rate)[0]
+
+
+def features_of(plays: Sequence[Play], wanted: Sequence[Feature], rate: float = 1.0) -> list[list[float]]:
+    """These numbers of each play, 0 or more; none of them is less at a higher rate: a window then holds no fewer rows.
+
+    plays : all of one pad; rate : how fast the music plays, above 0. The feet are those of rate 1
+    """
+    steps = _steps_of(plays)
+    return [_of_one(steps, first, after, wanted, rate) for first, after in pairwise(steps.first)]
+
+
+def _of_one(steps: _Steps, first: int, after: int, wanted: Sequence[Feature], rate: float) -> list[float]:
+    """The numbers of the play that has these steps."""
+    out, count = [0.0] * len(wanted), after - first
+    if not count:
+        return out
+    second, order = steps.second[first:after], steps.order[:count]
+    firsts = {seconds: second.searchsorted(second - seconds * rate) for seconds in _spans(tuple(wanted))}
+    means: dict[float, list[float]] = {}
+    for place, (thing, seconds, how) in enumerate(wanted):
+        if how == "count":
+            out[place] = float(count)
+        elif how == "peak":
+            out[place] = _peak(order - firsts[seconds]) / seconds
+        else:
+            if seconds not in means:
+                windows = np.bincount(firsts[seconds], minlength=count).cumsum() - order  # that each row is in
+                means[seconds] = (_sums(steps, first, after, windows.astype(float)) / (count * seconds)).tolist()
+            out[place] = means[seconds][_PLACE[thing]]
+    return out
+
+
+def _peak(before: NDArray[np.int64]) -> float:
+    """What 98 in 100 windows have no more rows than. before : rows in each, but for its last one"""
+    at = int(_PEAK * (len(before) - 1))
+    before.partition(at)
+    return float(before[at]) + 1.0
+
+
+@cache
+def _spans(wanted: tuple[Feature, ...]) -> tuple[float, ...]:
+    """The different seconds of some features."""
+    return tuple(dict.fromkeys(feature.seconds for feature in wanted if feature.seconds))
+
+
+class _Steps(NamedTuple):
+    """The rows with a step of some plays, n, one play after the other; taps of rolls, too: somebody has to tap them.
+
+    first : where the rows of each play begin; and n; order : 0 to n - 1
+    second : never less than in the row before; turned : degrees from the row before, of no meaning in a first one
+    happens : (t, n) 1.0 where one of `_COUNTED` happens, else 0.0
+    """
+
+    first: list[int]
+    order: NDArray[np.int64]
+    second: NDArray[np.float64]
+    turned: NDArray[np.float64]
+    happens: NDArray[np.float64]
+
+
+def _steps_of(plays: Sequence[Play]) -> _Steps:
+    bounds = np.array([0, *accumulate(len(play.rows) for play in plays)])
+    columns = np.concatenate([play.rows.steps for play in plays]).T
+    rows = np.flatnonzero(np.logical_or.reduce(list(columns)))  # few columns, and rows by the thousand
+    first = rows.searchsorted(bounds).tolist()
+    later = np.ones(len(rows), dtype=bool)
+    later[[one for one in first if one < len(rows)]] = False  # the first row of a play has none before it
+    second = np.concatenate([play.rows.second for play in plays])[rows]
+    if (later[1:] & (second[1:] < second[:-1])).any():
+        for a, b in pairwise(first):
+            second[a:b] = np.maximum.accumulate(second[a:b])
+    happens = np.concatenate([_marks(play) for play in plays], axis=1)[:, rows]
+    crossed = happens[_COUNTED.index("crossovers")]
+    crossed[1:][(crossed[1:] > 0) & (crossed[:-1] > 0) & later[1:]] = 0.0
+    # the last of all holds so far; those of later plays end after everything in those before
+    play_of = np.arange(len(plays)).repeat(np.diff(bounds)) << _PLAY
+    until = np.maximum.reduce([*np.concatenate([play.rows.hold_end for play in plays]).T]) + play_of
+    ticks = (np.concatenate([play.rows.tick for play in plays]) + play_of)[rows]
+    happens[_COUNTED.index("held")] = later & (np.maximum.accumulate(until)[rows - 1] > ticks)
+    facing = np.concatenate([play.facing for play in plays])[rows]
+    turned = np.zeros(len(rows))
+    turned[1:] = np.abs(facing[1:] - facing[:-1])
+    turned = np.minimum(turned, 360.0 - np.minimum(turned, 360.0))
+    return _Steps(first, np.arange(len(rows)), second, turned, happens)
+
+
+def _marks(play: Play) -> NDArray[np.float64]:
+    """(`_COUNTED`, n) which of them each row of a play is, as far as the names of its moves tell."""
+    if play.events is None:
+        marks = np.array([_marked(names) for names in play.moves], dtype=float).reshape(-1, len(_COUNTED)).T
+    else:
+        marks = ((play.events & _BITS[:, None]) != 0).astype(float)
+    return marks
+
+
+def _sums(steps: _Steps, first: int, after: int, windows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(`THINGS`,): how often each happens in all windows of a play together. windows : that each of its rows is in"""
+    out = np.empty(len(THINGS))
+    out[0] = windows.sum()
+    out[_PLACES] = steps.happens[:, first:after] @ windows
+    out[_TURNS] = steps.turned[first + 1 : after] @ windows[1:] / _QUARTER
+    return out
+
+
+@cache
+def _marked(names: tuple[str, ...]) -> tuple[float, ...]:
+    """Which of `_COUNTED` a row with these moves is."""
+    return tuple(float(any(name in names for name in _NAMED.get(thing, ()))) for thing in _COUNTED)
+
+
+# The model of meters: named terms, each a few curves that only rise; read from configs/meter/.
+
+# Steps type -> file of configs/meter/. Two players' charts and other pads have no model: nobody's meters to learn from.
+_PADS = {
+    "dance-single": "dance-single",
+    "dance-double": "dance-double",
+    "pump-single": "pump-single",
+    "pump-double": "pump-double",
+    "pump-halfdouble": "pump-double",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """Meters that a feature adds: straight between the points (`at`, `meters`), both rising; on as at the end."""
+
+    feature: Feature
+    at: tuple[float, ...]
+    meters: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """How a community numbers its charts.
+
+    start : meter of a chart that asks for nothing; terms : name -> its curves, whose meters are added
+    up_to : estimate at which each band of the interval ends, one less than there are bands
+    below, above : of each band, how far under and over the estimate 80 of 100 labels lie
+    """
+
+    name: str
+    about: str
+    charts: int
+    start: float
+    terms: Mapping[str, tuple[Curve, ...]]
+    up_to: tuple[float, ...]
+    below: tuple[float, ...]
+    above: tuple[float, ...]
+
+
+class _Pieces(NamedTuple):
+    """All straight pieces of all curves of all scales, side by side: what is worked out at once.
+
+    feature : its place in `MeterModel.wanted`; low, width : where it begins, and how long it is (the last: endless)
+    slope : meters for each unit; starts : the piece that each term of each scale begins with
+    """
+
+    feature: NDArray[np.int64]
+    low: NDArray[np.float64]
+    width: NDArray[np.float64]
+    slope: NDArray[np.float64]
+    starts: NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class MeterModel:
+    """All scales of a pad, the usual one first. alone : the same as below and above where nothing tells the scale.
+
+    wanted : every feature that a curve asks for, once
+    """
+
+    scales: tuple[Scale, ...]
+    alone: tuple[float, float]
+    wanted: tuple[Feature, ...]
+    _pieces: _Pieces
+
+    def terms(self, values: Sequence[float]) -> list[dict[str, float]]:
+        """For each scale: name of the term -> the meters that it adds. values : those of `wanted`"""
+        pieces = self._pieces
+        inside = np.asarray(values)[pieces.feature] - pieces.low
+        np.minimum(np.maximum(inside, 0.0, out=inside), pieces.width, out=inside)
+        inside *= pieces.slope
+        meters = iter(np.add.reduceat(inside, pieces.starts).tolist())
+        return [dict(zip(scale.terms, meters, strict=False)) for scale in self.scales]
+
+
+@cache
+def model_for(steps_type: str) -> MeterModel | None:
+    """The model of a steps type; None where nobody has fitted one. FileError says what is wrong with its file."""
+    pad = _PADS.get(steps_type)
+    return None if pad is None else load_model(config_path(f"meter/{pad}.yaml"))
+
+
+def load_model(path: Path) -> MeterModel:
+    """Read a model; FileError names the line of what cannot be."""
+    source = read(path)
+    source.only((), ("scales", "alone"))
+    scales = source.data.get("scales")
+    if not isinstance(scales, dict) or not scales:
+        raise FileError(path, "'scales' must be a mapping of names to scales", 1)
+    found = tuple(_scale(source, name) for name in scales)
+    alone = _numbers(source, ("alone",), source.data.get("alone"), 2)
+    curves = [curve for scale in found for curves in scale.terms.values() for curve in curves]
+    return model_of(found, (alone[0], alone[1]), tuple(dict.fromkeys(curve.feature for curve in curves)))
+
+
+def model_of(scales: tuple[Scale, ...], alone: tuple[float, float], wanted: tuple[Feature, ...]) -> MeterModel:
+    """A model for features in this order."""
+    rows: list[tuple[int, float, float, float]] = []
+    starts = []
+    for scale in scales:
+        for curves in scale.terms.values():
+            starts.append(len(rows))
+            for curve in curves:
+                place, last = wanted.index(curve.feature), len(curve.at) - 1
+                for n, ((a, low), (b, high)) in enumerate(pairwise(zip(curve.at, curve.meters, strict=True)), 1):
+                    width = np.inf if n == last else b - a
+                    rows.append((place, a, width, (high - low) / (b - a)))
+    feature, low_ends, widths, slopes = (np.array(column, dtype=np.float64) for column in zip(*rows, strict=True))
+    pieces = _Pieces(feature.astype(np.int64), low_ends, widths, slopes, np.array(starts))
+    return MeterModel(scales, alone, wanted, pieces)
+
+
+def _scale(source: MarkedYaml, name: str) -> Scale:
+    keys = ("scales", name)
+    source.only(keys, ("about", "charts", "start", "terms", "interval"))
+    said = source.data["scales"][name]
+    terms = said.get("terms")
+    if not isinstance(terms, dict) or not terms:
+        raise source.error((*keys, "terms"), "'terms' must be a mapping of names to lists of curves")
+    source.only((*keys, "interval"), ("up_to", "below", "above"))
+    interval = said["interval"]
+    up_to = _numbers(source, (*keys, "interval", "up_to"), interval.get("up_to"), None)
+    below, above = (
+        _numbers(source, (*keys, "interval", side), interval.get(side), len(up_to) + 1) for side in ("below", "above")
+    )
+    start, charts = _numbers(source, keys, [said.get("start"), said.get("charts")], 2)
+    curves = {
+        term: tuple(_curve(source, (*keys, "terms", term, n), one) for n, one in enumerate(listed))
+        for term, listed in terms.items()
+    }
+    return Scale(name, str(said.get("about", "")), int(charts), start, curves, up_to, below, above)
+
+
+def _curve(source: MarkedYaml, keys: tuple[str | int, ...], said: Any) -> Curve:
+    if not isinstance(said, dict) or set(said) != {"of", "seconds", "how", "at", "meters"}:
+        raise source.error(keys, "a curve has the keys of, seconds, how, at, meters")
+    if said["of"] not in THINGS or said["how"] not in HOWS:
+        raise source.error(keys, f"'of' is one of {', '.join(THINGS)}; 'how' one of {', '.join(HOWS)}")
+    at = _numbers(source, keys, said["at"], None)
+    meters = _numbers(source, keys, said["meters"], len(at))
+    if len(at) < 2 or any(b <= a for a, b in pairwise(at)):
+        raise source.error(keys, "'at' must have two numbers or more, each above the one before")
+    if any(b < a for a, b in pairwise(meters)):
+        raise source.error(keys, "'meters' must not fall: what is played faster is never easier")
+    seconds = _numbers(source, keys, [said["seconds"]], 1)[0]
+    if seconds < 0 or (seconds == 0) != (said["how"] == "count"):
+        raise source.error(keys, "'seconds' must be above 0, and 0 for a count")
+    if said["how"] != "mean" and said["of"] != "steps":
+        raise source.error(keys, "only steps have a peak or a count; of others 'how' is mean")
+    return Curve(Feature(said["of"], seconds, said["how"]), at, meters)
+
+
+def _numbers(source: MarkedYaml, keys: tuple[str | int, ...], given: Any, length: int | None) -> tuple[float, ...]:
+    """A list of numbers, of this length if one is asked for."""
+    right = isinstance(given, Sequence) and all(isinstance(x, int | float) and not isinstance(x, bool) for x in given)
+    if not right or (length is not None and len(given) != length):
+        raise source.error(keys, f"must be a list of {'' if length is None else f'{length} '}numbers")
+    return tuple(map(float, given))

@@ -1,0 +1,163 @@
+"""What `analyze` knows about a file after the work is done: plain data that pickles, as JSON behind a checksum."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, fields, replace
+from operator import attrgetter
+from typing import Any
+
+from dancetutor_cli.lint.findings import AlternativeResult, Cause, DifferentRun, Estimate, ExcerptRow, Figures, Finding
+
+# What `analyze` knows about a file after the work is done: plain data that pickles and turns into JSON.
+#
+# Imports neither numpy nor numba, so that results can be read back quickly.
+
+
+@dataclass(frozen=True, slots=True)
+class ChartResult:
+    """One analysed chart. `rows` is the JSON text of its rows (docs/formats.md), None where nobody asked for it.
+
+    counts : name of the move -> rows in which it happens
+    playable : False if the steps type has no pad; then there are no rows and no cost
+    arrows : a sign for each panel, to draw rows with; figures, alternatives, causes : None where nobody asked for them
+    ambiguous : beat of each row with ties, and "resolved" or "open", see `feet.play.Ambiguity`; None likewise
+    player : of a chart for several whose part this is, from 1, else 0
+    estimate : how hard it plays; None for a pad without a model of meters
+    preset : name of the cost preset, None without a pad; mismatch : a line if it was made for other pads, else None
+    """
+
+    index: int
+    steps_type: str
+    difficulty: str
+    meter: int
+    description: str
+    playable: bool
+    row_count: int
+    cost: int
+    counts: Mapping[str, int]
+    findings: tuple[Finding, ...]
+    rows: str | None = None
+    arrows: str = ""
+    figures: Figures | None = None
+    alternatives: tuple[AlternativeResult, ...] | None = None
+    causes: tuple[Cause, ...] | None = None
+    ambiguous: tuple[tuple[float, str], ...] | None = None
+    preset: str | None = None
+    mismatch: str | None = None
+    estimate: Estimate | None = None
+    player: int = 0
+
+    @property
+    def label(self) -> str:
+        """For people: "dance-single Hard 8"; of one of several players "dance-couple Hard 8 P2"."""
+        return f"{self.steps_type} {self.difficulty} {self.meter}{self.whose}"
+
+    @property
+    def whose(self) -> str:
+        """ " P1", " P2" and so on of a chart for several, else ""."""
+        return f" P{self.player}" if self.player else ""
+
+
+@dataclass(frozen=True, slots=True)
+class FileResult:
+    """One file: either an error in one line, or its charts."""
+
+    path: str
+    title: str
+    artist: str
+    error: str | None
+    warnings: tuple[str, ...]
+    findings: tuple[Finding, ...]  # about the file, not about one chart
+    charts: tuple[ChartResult, ...]
+    unselected: tuple[str, ...] = ()  # labels of the charts that were not asked for
+
+    def without_infos(self) -> FileResult:
+        """The same without findings that only inform, and without charts of which nothing is left to tell."""
+        charts = (replace(c, findings=_no_infos(c.findings)) for c in self.charts)
+        return replace(self, findings=_no_infos(self.findings), charts=tuple(c for c in charts if c.findings))
+
+    def all_findings(self) -> Iterator[tuple[Finding, ChartResult | None]]:
+        """Every finding with the chart it is about."""
+        for finding in self.findings:
+            yield finding, None
+        for chart in self.charts:
+            for finding in chart.findings:
+                yield finding, chart
+
+
+def _no_infos(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
+    return tuple(finding for finding in findings if finding.severity != "info")
+
+
+# A `FileResult` as bytes and back: JSON behind a checksum, so that a damaged or foreign file is no result.
+#
+# Nothing of what is read can run: of JSON come numbers and texts, and what is made of them are this module's own
+# classes. Values stand in lists, in the order of the fields, for there are thousands of findings in a pack.
+
+_HEAD = b"dancetutor result 2\n"  # another number whenever the form below changes
+_DIGEST = 32  # bytes of SHA-256
+_CLASSES = (FileResult, ChartResult, Finding, Figures, AlternativeResult, DifferentRun, Cause, Estimate)
+_VALUES = {kind: attrgetter(*(field.name for field in fields(kind))) for kind in _CLASSES}
+_CHART_FIELDS = tuple(field.name for field in fields(ChartResult))
+_EXCERPT = [field.name for field in fields(Finding)].index("excerpt")
+
+
+def to_bytes(result: FileResult, key: str) -> bytes:
+    """The content of the file of a result; `key` tells what the result depends on, and belongs to it."""
+    text = json.dumps(result, default=lambda one: _VALUES[type(one)](one), separators=(",", ":"))
+    data = text.encode("ascii")
+    return _HEAD + _digest(data, key) + data
+
+
+def from_bytes(content: bytes, key: str) -> FileResult | None:
+    """The result in a file's content; None unless it is just what `to_bytes` gave for this key."""
+    data = content[len(_HEAD) + _DIGEST :]
+    if content[: len(_HEAD)] != _HEAD or content[len(_HEAD) : len(_HEAD) + _DIGEST] != _digest(data, key):
+        return None
+    try:
+        return _file(json.loads(data))
+    except (ValueError, TypeError, KeyError, IndexError, RecursionError):
+        return None  # somebody else's work, whose checksum is right
+
+
+def _digest(data: bytes, key: str) -> bytes:
+    return hashlib.sha256(key.encode() + b"\0" + data).digest()
+
+
+def _file(values: list[Any]) -> FileResult:
+    path, title, artist, error, warnings, findings, charts, unselected = values
+    return FileResult(
+        path, title, artist, error, tuple(warnings), _findings(findings), tuple(map(_chart, charts)), tuple(unselected)
+    )
+
+
+def _findings(listed: Iterable[list[Any]]) -> tuple[Finding, ...]:
+    for values in listed:
+        values[_EXCERPT] = tuple(ExcerptRow(*row) for row in values[_EXCERPT])
+    return tuple(Finding(*values) for values in listed)
+
+
+def _chart(values: list[Any]) -> ChartResult:
+    given = dict(zip(_CHART_FIELDS, values, strict=True))
+    given["findings"] = _findings(given["findings"])
+    if given["figures"] is not None:
+        mean, peak, breakdown, stream, tech, seconds, facing = given["figures"]
+        given["figures"] = Figures(mean, peak, breakdown, stream, tech, seconds, tuple(facing))
+    if given["alternatives"] is not None:
+        given["alternatives"] = tuple(map(_alternative, given["alternatives"]))
+    if given["causes"] is not None:
+        given["causes"] = tuple(Cause(*cause) for cause in given["causes"])
+    if given["ambiguous"] is not None:
+        given["ambiguous"] = tuple(map(tuple, given["ambiguous"]))
+    if given["estimate"] is not None:
+        meter, low, high, scale, known, terms, rate = given["estimate"]
+        given["estimate"] = Estimate(meter, low, high, scale, known, tuple(map(tuple, terms)), rate)
+    return ChartResult(**given)
+
+
+def _alternative(values: list[Any]) -> AlternativeResult:
+    extra, terms, runs = values
+    return AlternativeResult(extra, tuple(map(tuple, terms)), tuple(DifferentRun(*run) for run in runs))

@@ -1,0 +1,321 @@
+"""A run of `analyze`: which configuration holds for which file, many files in order, and again when they are saved."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.chart.pack_files import find_settings_file, places_of_feet
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_files, failed
+from dancetutor_cli.lint.check import Baseline, Key, load_baseline
+from dancetutor_cli.lint.configuration import (
+    Configuration,
+    PresetChoice,
+    choice_of,
+    load_configuration,
+    with_assignments,
+    with_selection,
+)
+from dancetutor_cli.lint.findings import AUTO
+from dancetutor_cli.lint.results import ChartResult, FileResult
+from dancetutor_cli.run.errors import DancetutorError
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.cache import ResultCache
+    from dancetutor_cli.lint.findings import Finding
+
+
+# A run of `analyze`: which configuration holds for which file, the tasks, the baseline.
+
+
+@dataclass(frozen=True, slots=True)
+class LintRequest:
+    """What the command line asks for; None where it says nothing and the configuration decides.
+
+    config : file or name of a configuration; assignments : "key=value"; select, ignore : rules
+    """
+
+    selection: Selection = field(default_factory=Selection)
+    preset: str | None = None
+    config: str | None = None
+    assignments: Sequence[str] = ()
+    select: Sequence[str] = ()
+    ignore: Sequence[str] = ()
+    fail_on: str | None = None
+    baseline: Path | None = None
+    update_baseline: bool = False
+    want_rows: bool = False
+    want_figures: bool = False
+    want_excerpts: bool = True
+    suggest: bool = False
+    alternatives: int = 0
+    meter_scale: str = AUTO
+    rate: float = 1.0
+
+
+@dataclass
+class LintRun:
+    """Turns files into tasks, and raw results into what is reported."""
+
+    request: LintRequest
+    _by_source: dict[Path | None, Configuration] = field(default_factory=dict)
+    _sources: dict[Path, Path | None] = field(default_factory=dict)
+    _choices: dict[int, PresetChoice] = field(default_factory=dict)
+    _baseline: Baseline | None = None
+    _found: list[Key] = field(default_factory=list)
+
+    def configuration(self, path: Path) -> Configuration:
+        """What holds for a file: --config, or the nearest dancetutor.yaml up the tree, and the command line on top."""
+        given = self.request.config
+        source = None if given is not None else self._source(path.parent)
+        if source not in self._by_source:
+            loaded = load_configuration(given if given is not None else source, found=given is None)
+            loaded = with_assignments(loaded, self.request.assignments)
+            self._by_source[source] = with_selection(loaded, self.request.select, self.request.ignore)
+        return self._by_source[source]
+
+    def _source(self, folder: Path) -> Path | None:
+        if folder not in self._sources:
+            self._sources[folder] = find_settings_file(folder)
+        return self._sources[folder]
+
+    def presets(self, path: Path) -> PresetChoice:
+        """What is said about the cost presets of a file's charts; UsageError or FileError if one cannot be loaded."""
+        configuration = self.configuration(path)
+        if id(configuration) not in self._choices:  # one object for all files of a source, see `_by_source`
+            self._choices[id(configuration)] = choice_of(self.request.preset, configuration)
+        return self._choices[id(configuration)]
+
+    def needs(self, path: Path) -> Iterator[Path]:
+        """What else the findings in a file depend on, there or not: what the author said elsewhere, settings, baseline.
+
+        A configuration that cannot be read is no error here: only what it names is not known.
+        """
+        yield from places_of_feet(path)
+        yield path.with_suffix(".sm" if path.suffix.lower() == ".ssc" else ".ssc")
+        if self.request.config is not None:
+            yield Path(self.request.config)
+        with suppress(DancetutorError):
+            configuration = self.configuration(path)
+            yield from configuration.sources
+            yield from (Path(preset) for _, preset in configuration.presets)
+            if self.request.preset:
+                yield Path(self.request.preset)
+            baseline = self.request.baseline or configuration.baseline
+            if baseline is not None and not self.request.update_baseline:
+                yield baseline
+
+    def task(self, path: Path, data: bytes | None = None) -> AnalyzeTask:
+        """The piece of work for a file."""
+        settings = self.configuration(path).settings
+        request = self.request
+        return AnalyzeTask(
+            path, self.presets(path), request.selection, settings, request.want_rows, data, request.suggest,
+            request.alternatives, request.want_figures, request.want_excerpts, request.meter_scale, request.rate,
+        )  # fmt: skip
+
+    def fail_on(self, path: Path) -> str:
+        """The least severity that fails the run, as the configuration of the first file says."""
+        return self.request.fail_on or self.configuration(path).fail_on or "warning"
+
+    def open_baseline(self, path: Path) -> None:
+        """Read the baseline that the command line, or the configuration of this file, names."""
+        where = self.request.baseline or self.configuration(path).baseline
+        if where is None and self.request.update_baseline:
+            where = Path("dancetutor-baseline.json")
+        if where is not None:
+            is_new = self.request.update_baseline and not where.exists()
+            self._baseline = Baseline(where) if is_new else load_baseline(where)
+
+    @property
+    def has_baseline(self) -> bool:
+        """Whether findings are compared with a baseline."""
+        return self._baseline is not None
+
+    def without_known(self, result: FileResult) -> FileResult:
+        """The result without the findings that the baseline knows."""
+        baseline = self._baseline
+        if baseline is None or result.error is not None:
+            return result
+        self._tell_what_ran(baseline, result)
+        found = [(f, chart, baseline.key(result.path, _name(chart), f)) for f, chart in result.all_findings()]
+        self._found += [key for _, _, key in found]
+        known = self.request.update_baseline  # what is written now is known from now on
+        left = [(f, chart) for f, chart, key in found if not known and not baseline.absorbs(key)]
+        of_chart: dict[int, list[Finding]] = {}
+        for finding, chart in left:
+            of_chart.setdefault(id(chart), []).append(finding)
+        charts = tuple(replace(chart, findings=tuple(of_chart.get(id(chart), ()))) for chart in result.charts)
+        return replace(result, findings=tuple(of_chart.get(id(None), ())), charts=charts)
+
+    def _tell_what_ran(self, baseline: Baseline, result: FileResult) -> None:
+        path = Path(result.path).absolute()
+        settings = self.configuration(Path(result.path)).settings
+        baseline.saw(result.path, "", settings.for_file(path))
+        for chart in result.charts:
+            rules = settings.for_chart(path, chart.steps_type, chart.difficulty, chart.meter)
+            baseline.saw(result.path, _name(chart), rules)
+        if not result.unselected:
+            baseline.saw_all_charts(result.path)
+
+    def close_baseline(self) -> list[str]:
+        """Write the baseline if that was asked for; lines to be said about it."""
+        if self._baseline is None:
+            return []
+        path = self._baseline.path
+        if self.request.update_baseline:
+            new = self._baseline.replaced(self._found)
+            new.write()
+            others = sum(new.known.values()) - len(self._found)
+            kept = f", {others} of other files and rules kept" if others else ""
+            return [f"{path}: {len(self._found)} finding{'' if len(self._found) == 1 else 's'} written{kept}"]
+        unused = self._baseline.unused()
+        if not unused:
+            return []
+        what = "1 entry is" if len(unused) == 1 else f"{len(unused)} entries are"
+        file, chart, rule, place = unused[0]
+        first = f"{file} {chart} {rule} " + (f"beat {place / 48:g}" if chart else f"line {place}")
+        return [f"{path}: {what} no longer needed (the first: {first}); --update-baseline takes them out"]
+
+
+def _name(chart: ChartResult | None) -> str:
+    return "" if chart is None else f"{chart.steps_type} {chart.difficulty} {chart.description}".strip() + chart.whose
+
+
+# Many files: results from the cache, the rest from this process or from worker processes, always in order.
+
+# Below this number of files the start of workers costs more than they save.
+_WORTH_WORKERS = 8
+_SHARES = 4  # a worker gets at once this part of what would be its share of the rest
+_MOST_AT_ONCE = 8  # files, whose results wait for each other
+
+
+def analyze_all(
+    tasks: Sequence[AnalyzeTask],
+    jobs: int | None,
+    cache: ResultCache | None,
+    before_work: Callable[[Sequence[AnalyzeTask]], None] = lambda tasks: None,
+) -> Iterator[FileResult]:
+    """The result of every task, in the order of the tasks, as early as they are known.
+
+    jobs : worker processes for what is not in the cache; None: one for each core, 1: this process does it
+    before_work : called with the tasks whose results are not in the cache, if there are any
+    """
+    keys = [cache.key(task) if cache else None for task in tasks]
+    known = {n: found for n, key in enumerate(keys) if cache and key and (found := cache.get(key)) is not None}
+    missing = [n for n in range(len(tasks)) if n not in known]
+    if cache and missing:
+        cache.prune()
+    if missing:
+        before_work([tasks[n] for n in missing])
+    work = _in_workers if jobs != 1 and len(missing) >= _WORTH_WORKERS else _here
+    fresh = work([tasks[n] for n in missing], jobs)
+    done: dict[int, FileResult] = dict(known)
+    for n in range(len(tasks)):
+        while n not in done:
+            place, result, sound = next(fresh)
+            done[missing[place]] = result
+            key = keys[missing[place]]
+            if cache and key and sound:
+                cache.put(key, result)
+        yield done.pop(n)
+
+
+# Place and result of each task, and whether the result is about the file: not that a worker broke down.
+_Fresh = Iterator[tuple[int, FileResult, bool]]
+
+
+def _here(tasks: Sequence[AnalyzeTask], _: int | None) -> _Fresh:
+    for place, result in enumerate(analyze_files(tasks)):
+        yield place, result, True
+
+
+def _in_workers(tasks: Sequence[AnalyzeTask], jobs: int | None) -> _Fresh:
+    from dancetutor_cli.run.pool import Task as Work
+    from dancetutor_cli.run.pool import default_jobs, open_workers
+
+    count = jobs or default_jobs()
+    workers = open_workers(count, lambda key, n: None)
+    try:
+        for places in _batches(len(tasks), count):
+            workers.submit(Work(places, _analyze, ([tasks[place] for place in places],)))
+        for done in workers.done():
+            if done.error is None:
+                for place, result in zip(done.key, done.result, strict=True):
+                    yield place, result, True
+            elif len(done.key) > 1:  # one of them: each has a try of its own
+                for place in done.key:
+                    workers.submit(Work(range(place, place + 1), _analyze, ([tasks[place]],)))
+            else:
+                yield done.key[0], failed(tasks[done.key[0]], str(done.error)), False
+    finally:
+        workers.close()
+
+
+def _batches(tasks: int, jobs: int) -> Iterator[range]:
+    """The places of tasks that go to a worker at once: many at first, so that it need not wait for more after each,
+    and has neighbours, whose charts are alike; one by one in the end, so that all are done at about the same time."""
+    first = 0
+    while first < tasks:
+        after = first + min(max((tasks - first) // (_SHARES * jobs), 1), _MOST_AT_ONCE)
+        yield range(first, after)
+        first = after
+
+
+def _analyze(_: Callable[[int], None], tasks: Sequence[AnalyzeTask]) -> list[FileResult]:
+    return list(analyze_files(tasks))
+
+
+# Wait for files to be saved, on every system alike: by looking at their times.
+
+Stamp = tuple[int, int]
+INTERVAL = 0.3  # seconds between two looks
+_SETTLED = 0.15  # an editor may still be writing; a file counts as saved when it did not change for so long
+
+
+def changes(
+    files: Callable[[], Sequence[Path]],
+    needs: Callable[[Path], Iterable[Path]] = lambda _: (),
+    wait: Callable[[float], None] = time.sleep,
+) -> Iterator[tuple[list[Path], list[Path]]]:
+    """Yield (all files, those that are new or saved) at once, then after every change; ends with KeyboardInterrupt.
+
+    files : finds the files anew, so that charts that are added later are seen
+    needs : what else the result for a file depends on, whether it is there or not: a change of these counts as one of
+        the file
+    wait : how to sleep
+    """
+    known: dict[Path, Stamp] = {}
+    before: list[Path] | None = None
+    while True:
+        found = list(files())
+        watched = {path: [path, *needs(path)] for path in found}
+        seen = {path: _stamp(path) for path in {path for group in watched.values() for path in group}}
+        changed = [path for path, group in watched.items() if path not in known or _differ(group, known, seen)]
+        if changed and before is not None:
+            wait(_SETTLED)
+            if any(_stamp(path) != stamp for path, stamp in seen.items()):
+                continue  # still being written
+        known = seen
+        if changed or before is None or set(before) - set(found):
+            before = found
+            yield found, changed
+        wait(INTERVAL)
+
+
+def _differ(paths: Collection[Path], known: Mapping[Path, Stamp], seen: Mapping[Path, Stamp]) -> bool:
+    """Whether one of the paths has another stamp than before; one that was not watched before has not changed."""
+    return any(path in known and known[path] != seen[path] for path in paths)
+
+
+def _stamp(path: Path) -> Stamp:
+    try:
+        status = path.stat()
+    except OSError:
+        return (-1, -1)
+    return status.st_mtime_ns, status.st_size

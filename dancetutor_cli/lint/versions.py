@@ -1,0 +1,400 @@
+"""Two things laid side by side: two versions of a pack, and our technique counts and the game's."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path, PurePosixPath
+
+import numpy as np
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Kind, Song
+from dancetutor_cli.chart.msd import Tag, plain, scan
+from dancetutor_cli.chart.names import difficulty as named
+from dancetutor_cli.chart.reader import load
+from dancetutor_cli.chart.selection import find_files
+from dancetutor_cli.lint.analysis import AnalyzeTask, load_song, solved
+from dancetutor_cli.lint.figures import tech_rows
+from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
+from dancetutor_cli.run.foreign_text import text_of
+from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
+
+# What changed between two versions of a pack, by file, chart and row: the notes, their times, the meters.
+
+_SIGNS = {
+    Kind.TAP: "1", Kind.HOLD: "2", Kind.ROLL: "4", Kind.MINE: "M", Kind.LIFT: "L", Kind.FAKE: "F", Kind.KEYSOUND: "K",
+}  # fmt: skip
+_SHIFT = 0.0005  # seconds that two times may be apart and still be the same
+Row = tuple[tuple[int, int, int], ...]  # (column, kind, tick of the end or -1) of each note, by column
+
+
+@dataclass(frozen=True, slots=True)
+class RowChange:
+    """A row that is other than it was. before, now : as in the file, "" where there was or is none; note : of holds"""
+
+    tick: int
+    before: str
+    now: str
+    note: str = ""
+
+    def __str__(self) -> str:
+        what = f"{self.before} → {self.now}" if self.before and self.now else ""
+        what = what or (f"new {self.now}" if self.now else f"gone {self.before}")
+        beat = f"measure {self.tick // TICKS_PER_MEASURE} beat {round(self.tick / TICKS_PER_BEAT, 3):g}"
+        return f"{beat}: {what}{f', {self.note}' if self.note else ''}"
+
+
+@dataclass(frozen=True, slots=True)
+class ChartChange:
+    """What is other in a file or in one of its charts. chart : its label, "" for the file; said : a line each"""
+
+    file: str
+    chart: str
+    said: tuple[str, ...]
+    rows: tuple[RowChange, ...] = ()
+
+
+def compare(before: Path, now: Path) -> Iterator[ChartChange]:
+    """Everything that changed from one version to another: two files, or two folders. UsageError without charts."""
+    old, new = _files(before), _files(now)
+    if before.is_file() and now.is_file():
+        old, new = {now.name: before}, {now.name: now}
+    for name in sorted(old.keys() | new.keys()):
+        if name not in old:
+            yield ChartChange(name, "", ("is new",))
+        elif name not in new:
+            yield ChartChange(name, "", ("is gone",))
+        else:
+            yield from _file(name, old[name], new[name])
+
+
+def _files(path: Path) -> dict[str, Path]:
+    """Name below the folder -> file."""
+    root = path if path.is_dir() else path.parent
+    return {Path(os.path.relpath(file, root)).as_posix(): file for file in find_files([path])}
+
+
+def _file(name: str, before: Path, now: Path) -> Iterator[ChartChange]:
+    try:
+        old = load(before)
+    except FileError as error:
+        yield ChartChange(name, "", (f"could not be read before: {error.message}",))
+        return
+    try:
+        new = load(now)
+    except FileError as error:
+        yield ChartChange(name, "", (f"cannot be read any more: {error.message}",))
+        return
+    if old.data == new.data:
+        return
+    if said := tuple(_head(old, new)):
+        yield ChartChange(name, "", said)
+    charts, others = _by_key(old), _by_key(new)
+    for key in dict.fromkeys((*charts, *others)):
+        if key not in charts:
+            yield ChartChange(name, others[key].label, (f"is new: {len(_rows(others[key]))} rows",))
+        elif key not in others:
+            yield ChartChange(name, charts[key].label, ("is gone",))
+        elif (change := _chart(name, charts[key], others[key])) is not None:
+            yield change
+
+
+def _head(old: Song, new: Song) -> Iterator[str]:
+    """What a player sees and hears of the song itself."""
+    for what, a, b in (
+        ("title", old.title, new.title),
+        ("artist", old.artist, new.artist),
+        ("music", old.music, new.music),
+    ):
+        if a != b:
+            yield f"{what} '{a}' → '{b}'"
+
+
+def _by_key(song: Song) -> dict[tuple[str, str, int], Chart]:
+    """Charts by type, difficulty and place among those that share both."""
+    found: dict[tuple[str, str, int], Chart] = {}
+    for chart in song.charts:
+        place = 0
+        while (key := (chart.steps_type, chart.difficulty, place)) in found:
+            place += 1
+        found[key] = chart
+    return found
+
+
+def _chart(name: str, old: Chart, new: Chart) -> ChartChange | None:
+    said: list[str] = []
+    if old.meter != new.meter:
+        said.append(f"meter {old.meter} → {new.meter}")
+    if old.description != new.description:
+        said.append(f"description '{old.description}' → '{new.description}'")
+    a, b = _rows(old), _rows(new)
+    said += _times(old, new, sorted(a.keys() & b.keys()))
+    columns = max(old.columns, new.columns)
+    rows = tuple(_row(tick, a.get(tick, ()), b.get(tick, ()), columns) for tick in sorted(a.keys() | b.keys())
+                 if a.get(tick) != b.get(tick))  # fmt: skip
+    if rows:
+        added, lost = sum(not row.before for row in rows), sum(not row.now for row in rows)
+        kinds = ((added, "new"), (lost, "gone"), (len(rows) - added - lost, "other"))
+        said.append(f"rows: {', '.join(f'{count} {kind}' for count, kind in kinds if count)}")
+    return ChartChange(name, new.label, tuple(said), rows) if said else None
+
+
+def _rows(chart: Chart) -> Mapping[int, Row]:
+    """Tick -> the notes of a row."""
+    notes, found = chart.notes, dict[int, list[tuple[int, int, int]]]()
+    columns = (notes.tick.tolist(), notes.column.tolist(), notes.kind.tolist(), notes.end.tolist())
+    for tick, column, kind, end in zip(*columns, strict=True):
+        found.setdefault(tick, []).append((column, kind, end))
+    return {tick: tuple(row) for tick, row in found.items()}
+
+
+def _row(tick: int, before: Row, now: Row, columns: int) -> RowChange:
+    ends = {column: end for column, kind, end in before if kind in (Kind.HOLD, Kind.ROLL)}
+    moved = [
+        f"held to beat {ends[column] / TICKS_PER_BEAT:g} → {end / TICKS_PER_BEAT:g}"
+        for column, kind, end in now
+        if kind in (Kind.HOLD, Kind.ROLL) and ends.get(column, end) != end
+    ]
+    return RowChange(tick, _signs(before, columns), _signs(now, columns), "; ".join(moved))
+
+
+def _signs(row: Row, columns: int) -> str:
+    if not row:
+        return ""
+    signs = ["0"] * max(columns, row[-1][0] + 1)
+    for column, kind, _ in row:
+        signs[column] = _SIGNS.get(Kind(kind), "?")
+    return "".join(signs)
+
+
+def _times(old: Chart, new: Chart, ticks: Sequence[int]) -> Iterator[str]:
+    """How the times of the rows that both have differ: all alike (the sync), or from some beat on (the tempo)."""
+    if not ticks:
+        return
+    at = np.array(ticks, dtype=np.int64)
+    shift = np.asarray(new.timing.seconds(at)) - np.asarray(old.timing.seconds(at))
+    moved = np.abs(shift) > _SHIFT
+    if not moved.any():
+        return
+    if moved.all() and float(np.ptp(shift)) <= _SHIFT:
+        yield f"all rows {abs(shift[0]) * 1000:.0f} ms {'later' if shift[0] > 0 else 'earlier'}"
+        return
+    first = ticks[int(moved.argmax())] / TICKS_PER_BEAT
+    yield f"{int(moved.sum())} rows at other times from beat {first:g} on, by up to {np.abs(shift).max() * 1000:.0f} ms"
+
+
+def change_lines(changes: Sequence[ChartChange], most_rows: int | None) -> Iterator[str]:
+    """The changes for people: a line for a file or chart, below it its rows. most_rows : of a chart, None: all"""
+    for change in _folded(changes):
+        yield f"{change.file}{f' [{change.chart}]' if change.chart else ''}: {'; '.join(change.said)}"
+        shown = change.rows if most_rows is None else change.rows[:most_rows]
+        yield from (f"  {row}" for row in shown)
+        if len(shown) < len(change.rows):
+            yield f"  ... and {len(change.rows) - len(shown)} more rows"
+
+
+def _folded(changes: Sequence[ChartChange]) -> Iterator[ChartChange]:
+    """What is said alike of several charts of a file, without rows, said once."""
+    alike: dict[tuple[str, tuple[str, ...]], list[ChartChange]] = {}
+    for n, change in enumerate(changes):
+        own = (str(n),) if change.rows or not change.chart else ()
+        alike.setdefault((change.file, (*change.said, *own)), []).append(change)
+    for found in alike.values():
+        yield found[0] if len(found) == 1 else replace(found[0], chart=f"{len(found)} charts")
+
+
+# Our technique counts beside those that ITGmania wrote: its song cache, or tables in CSV with its names.
+#
+# A file of the cache (`Cache/Songs` in the game's folder) is an .ssc without a suffix and without notes, whose charts
+# say how often the game counts what (`#TECHCOUNTS`: with six decimals, for each of two players, who get the same) and,
+# last, where they are from (`#STEPFILENAME:/Songs/Pack/Song/song.ssc`). A player has ten numbers since ITGmania tells
+# half and full crossovers apart, six before, and five before it counted doublesteps. The game finds feet for dance-
+# single and dance-double only; what it writes for other steps types are zeros that say nothing.
+#
+# A cache has numbers, no rows: both mean the same at most as often as the lesser number. A CSV that says the beat of
+# each time tells which rows are the same.
+
+TEN = (
+    "Crossovers", "HalfCrossovers", "FullCrossovers", "Footswitches", "UpFootswitches", "DownFootswitches",
+    "Sideswitches", "Jacks", "Brackets", "Doublesteps",
+)  # fmt: skip
+SIX = ("Crossovers", "Footswitches", "Sideswitches", "Jacks", "Brackets", "Doublesteps")
+FIVE = SIX[:5]
+COUNTED = ("dance-single", "dance-double")  # steps types that the game has a pad for
+# Technique -> how often, or the tick of each time, ascending.
+Theirs = Mapping[str, int] | Mapping[str, Sequence[int]]
+_PLAYERS = 2  # of the game: it writes the numbers of both, whatever the chart
+_MOST = 1_000_000  # times that anything happens in a chart
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """Which chart: its song's folder and file, both in lower case; steps type, difficulty and description."""
+
+    song: tuple[str, ...]
+    steps_type: str
+    difficulty: str
+    description: str
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """One chart that both know. ours : technique -> tick of each time, ascending; theirs : as `Theirs`"""
+
+    file: str
+    label: str
+    ours: Mapping[str, Sequence[int]]
+    theirs: Theirs
+
+    def shared(self, name: str) -> int:
+        """How often both mean the same: times in the same row, or at most so where only numbers are known."""
+        ours, theirs = self.ours[name], self.theirs[name]
+        if isinstance(theirs, int):
+            return min(len(ours), theirs)
+        return (Counter(ours) & Counter(theirs)).total()
+
+    def differs(self, name: str) -> bool:
+        """Whether the numbers differ or, where rows are known, any row does."""
+        theirs = self.theirs[name]
+        return len(self.ours[name]) != theirs if isinstance(theirs, int) else [*self.ours[name]] != [*theirs]
+
+
+@dataclass
+class Beside:
+    """All charts that both know, and how many only one of them has."""
+
+    charts: list[Compared] = field(default_factory=list)
+    only_ours: int = 0
+    only_theirs: int = 0
+
+
+def read_theirs(path: Path) -> Mapping[Key, Theirs]:
+    """What the game wrote: a CSV file, a file of its cache, or a folder of such. UsageError if nothing is in it."""
+    found: Mapping[Key, Theirs]
+    if path.is_file() and path.suffix.lower() == ".csv":
+        rows = list(_table_rows(path))
+        found = (
+            _technique_times(path, rows)
+            if rows and {"technique", "beat"} <= rows[0][1].keys()
+            else dict(_table(path, rows))
+        )
+    else:
+        files = [path] if path.is_file() else sorted(one for one in path.rglob("*") if one.is_file())
+        found = {key: counts for file in files for key, counts in _cached(file)}
+    if not found:
+        raise UsageError(f"{path}: has no #TECHCOUNTS; give ITGmania's Cache/Songs, or a CSV with its technique names")
+    return found
+
+
+def _cached(path: Path) -> Iterator[tuple[Key, dict[str, int]]]:
+    try:
+        data = read_bytes(path, CHART_LIMIT)
+    except FileError:
+        return
+    said: dict[str, str] = {}
+    for tag in [*scan(data), Tag("NOTEDATA", len(data), ())]:
+        if tag.name != "NOTEDATA":
+            said[tag.name] = _text(data, tag)
+            continue
+        counts = _counts(said.get("TECHCOUNTS", ""))
+        if counts is not None and said.get("STEPSTYPE", "").lower() in COUNTED:
+            # A cached chart names its file; any other .ssc that says TECHCOUNTS is its own.
+            name = said.get("STEPFILENAME") or path.as_posix()
+            description = said.get("DESCRIPTION", "")
+            yield _key(name, said.get("STEPSTYPE", ""), said.get("DIFFICULTY", ""), description), counts
+        said = {}
+
+
+def _text(data: bytes, tag: Tag) -> str:
+    return plain(data[slice(*tag.spans[0])]).decode("utf-8", "replace").strip() if tag.spans else ""
+
+
+def _counts(text: str) -> dict[str, int] | None:
+    """The first player's numbers by name; None if it is no such list: another length, or -1, for not counted."""
+    try:
+        numbers = [round(float(part)) for part in text.split(",")]
+    except (ValueError, OverflowError):
+        return None
+    for names in (TEN, SIX, FIVE):
+        if len(numbers) == _PLAYERS * len(names) and all(0 <= n <= _MOST for n in numbers):
+            return dict(zip(names, numbers, strict=False))
+    return None
+
+
+def _table_rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
+    """Line and cells of each row of a CSV file."""
+    text = io.StringIO(read_bytes(path, CHART_LIMIT).decode("utf-8-sig", "replace"), newline="")
+    for number, row in enumerate(csv.DictReader(text), 2):
+        yield number, {name: text_of(value or "") for name, value in row.items() if name}
+
+
+def _table(path: Path, rows: Iterable[tuple[int, dict[str, str]]]) -> Iterator[tuple[Key, dict[str, int]]]:
+    """A chart a row: the columns file, steps_type, difficulty, description and names of techniques."""
+    for number, row in rows:
+        try:
+            counts = {name: round(float(row[name])) for name in TEN if row.get(name)}
+        except (ValueError, OverflowError) as error:
+            raise FileError(path, "a count is no number", number) from error
+        if counts:
+            yield _key_of(row), counts
+
+
+def _technique_times(path: Path, rows: Sequence[tuple[int, dict[str, str]]]) -> dict[Key, dict[str, list[int]]]:
+    """A time a row: the columns that name a chart, technique and beat; rows without a technique only name a chart."""
+    names = [name for name in TEN if any(row["technique"] == name for _, row in rows)]
+    found: dict[Key, dict[str, list[int]]] = {}
+    for number, row in rows:
+        times = found.setdefault(_key_of(row), {name: [] for name in names})
+        if row["technique"] in times:
+            try:
+                times[row["technique"]].append(round(float(row["beat"]) * TICKS_PER_BEAT))
+            except (ValueError, OverflowError) as error:
+                raise FileError(path, "a beat is no number", number) from error
+    for times in found.values():
+        for ticks in times.values():
+            ticks.sort()
+    return found if names else {}
+
+
+def _key_of(row: Mapping[str, str]) -> Key:
+    return _key(*(row.get(name, "") for name in ("file", "steps_type", "difficulty", "description")))
+
+
+def _key(file: str, steps_type: str, difficulty: str, description: str) -> Key:
+    parts = PurePosixPath(file.replace("\\", "/").lower()).parts
+    return Key(parts[-2:], steps_type.strip().lower(), named(difficulty, description, 0, True)[0], description.strip())
+
+
+def beside(tasks: Iterable[AnalyzeTask], theirs: Mapping[Key, Theirs]) -> Beside:
+    """Our counts of every chart that the game knows; charts of files that neither of us can read are left out."""
+    found, seen = Beside(), set[Key]()
+    by_chart: dict[tuple[object, ...], list[Key]] = defaultdict(list)
+    for key in theirs:
+        by_chart[key.song, key.steps_type, key.difficulty].append(key)
+    songs = {key.song for key in theirs}
+    for task in tasks:
+        if _key(task.path.absolute().as_posix(), "", "", "").song not in songs:
+            continue
+        try:
+            song = load_song(task)
+        except DancetutorError:
+            continue
+        for subject in solved(song, task.selection.charts(song), task):
+            chart, play = subject.chart, subject.play
+            if play is None or chart.player:  # the game finds no feet in charts for two
+                continue
+            mine = _key(task.path.absolute().as_posix(), chart.steps_type, chart.difficulty, chart.description)
+            near = by_chart[mine.song, mine.steps_type, mine.difficulty]
+            same = mine if mine in theirs else near[0] if len(near) == 1 else None
+            if same is None or same in seen:
+                found.only_ours += 1
+                continue
+            seen.add(same)
+            ours = {name: sorted(play.rows.tick[rows].tolist()) for name, rows in tech_rows(subject).items()}
+            found.charts.append(Compared(task.path.as_posix(), chart.label, ours, theirs[same]))
+    found.only_theirs = len(theirs) - len(seen)
+    return found

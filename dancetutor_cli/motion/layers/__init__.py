@@ -1,1 +1,0 @@
-"""What comes on top of the solved body: gaze, breath, blinks, wrists."""

@@ -1,0 +1,350 @@
+"""The piece of work of `page`: one chart in, its practice page out; and a folder of them with an index."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance.motion import shifted
+from dancetutor_cli.dance.performance import pad_of, perform, play_of_all, playable, pooled, solve
+from dancetutor_cli.page.document import IndexEntry, index_page
+from dancetutor_cli.run.errors import DancetutorError, FileError, NoChartsError, UsageError
+
+if TYPE_CHECKING:
+    from dancetutor_cli.character.mesh import Character
+    from dancetutor_cli.chart.model import Chart, Song
+    from dancetutor_cli.dance.motion import Motion
+    from dancetutor_cli.dance.request import DanceRequest
+    from dancetutor_cli.feet.play import Play
+    from dancetutor_cli.feet.solved import Solved
+    from dancetutor_cli.lint.findings import Finding
+    from dancetutor_cli.page.content import Content
+
+
+# The piece of work of `page`: one chart in, its practice page out.
+
+MUSIC_TYPES = {".ogg": "audio/ogg", ".oga": "audio/ogg", ".mp3": "audio/mpeg", ".wav": "audio/wav",
+               ".flac": "audio/flac", ".opus": "audio/ogg"}  # fmt: skip
+MOST_MUSIC = 64_000_000  # bytes that are put into a page
+NEXT = "next"
+
+
+@dataclass(frozen=True, slots=True)
+class PageRequest:
+    """What page is wanted. Pickles, so that another process can make it.
+
+    dance : which chart, and how it is danced; character : who; music : the song's file goes into the page
+    beside : what a second dancer plays: NEXT, the next best play, the name or file of a preset, or a play as JSON
+    jobs : processes for the pieces of a long song
+    """
+
+    dance: DanceRequest
+    character: str = "dancer"
+    music: bool = False
+    beside: str | None = None
+    jobs: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """A page that is made. sizes : compressed bytes by part, for whoever wants to know what weighs."""
+
+    html: bytes
+    title: str
+    label: str
+    warnings: tuple[str, ...]
+    sizes: dict[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class PageSubject:
+    """What a page is about: its chart is read and solved.
+
+    solved : each player's part, one for most charts; warnings : lines for people, of presets for other pads
+    """
+
+    request: PageRequest
+    character: Character
+    solved: tuple[Solved, ...]
+    warnings: tuple[str, ...]
+
+    @property
+    def song(self) -> Song:
+        """The song."""
+        return self.solved[0].song
+
+    @property
+    def chart(self) -> Chart:
+        """The chart that the page shows: of one for two as it is written."""
+        first = self.solved[0].chart
+        return first if len(self.solved) == 1 else self.song.charts[first.index]
+
+    @property
+    def title(self) -> str:
+        """Of the song; that of its file where it has none."""
+        return self.song.title or self.song.path.stem
+
+    @property
+    def label(self) -> str:
+        """Of the chart, for people."""
+        return self.chart.label
+
+
+def make_page(request: PageRequest) -> Page:
+    """Read, solve, bake and pack. Raises a DancetutorError of one line for all that is wrong with the request."""
+    return pack_page(look_up_page(request))
+
+
+def look_up_page(request: PageRequest) -> PageSubject:
+    """The quick part of `make_page`: read and solve."""
+    from dancetutor_cli.character import dressed, load_character
+    from dancetutor_cli.character.mesh import with_foot_colours
+    from dancetutor_cli.dance.request import check_request, read_chart
+
+    character = with_foot_colours(load_character(dressed(request.character, request.dance.gait)))
+    check_request(request.dance)
+    choice = read_chart(request.dance)
+    if len(choice.parts) > 1 and request.beside is not None:
+        raise UsageError(
+            f"{request.dance.path}: --beside is for one dancer, and the chart is for two: choose with --player"
+        )
+    return PageSubject(request, character, solve(request.dance, choice), choice.warnings)
+
+
+def pack_page(page: PageSubject) -> Page:
+    """The rest of it: bake and pack."""
+    from dancetutor_cli.character.retarget import retarget
+    from dancetutor_cli.page.content import pack_content
+    from dancetutor_cli.page.document import document
+
+    request, solved = page.request, page.solved
+    music, warnings = _music(page.song, page.chart) if request.music else (None, ())
+    beside = _beside(page)
+    motions = [motion for some in (solved, beside) if some for motion in _motions(request, some)]
+    warnings = (*page.warnings, *warnings, *(note for motion in motions for note in motion.notes))
+    fitted = [retarget(motion, page.character) for motion in motions]
+    doc, blob = pack_content(_content(page, beside, fitted, music))
+    html = document(doc, blob, music[1] if music else None)
+    return Page(html, page.title, page.label, warnings, _sizes(blob.sizes, music))
+
+
+def _motions(request: PageRequest, solved: tuple[Solved, ...]) -> list[Motion]:
+    """Of each who dances, where she stands on the pad under all."""
+    performance = perform(solved, request.dance)
+    done = performance.motions(each=pooled(request.jobs))
+    return [shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True)]
+
+
+def _beside(page: PageSubject) -> tuple[Solved, ...]:
+    """The other play that a second dancer dances: the next best, another preset's, or a file's; empty if none is."""
+    wanted, path, one = page.request.beside, page.request.dance.path, page.solved[0]
+    if wanted is None:
+        return ()
+    from dancetutor_cli.feet import alternatives, load_preset
+    from dancetutor_cli.feet.play_json import read_play
+    from dancetutor_cli.feet.solved import solve_song
+
+    assert one.play is not None and one.pad is not None
+    if wanted.lower().endswith(".json"):
+        return (replace(one, play=read_play(Path(wanted), one.chart, one.play.rows, one.pad)),)
+    if wanted != NEXT:
+        preset = load_preset(wanted)
+        return tuple(solve_song(one.song, [one.chart], lambda _: preset))
+    found = alternatives(one.play.rows, one.pad, one.preset, 2, one.overrides)
+    if len(found) < 2:
+        raise UsageError(f"{path}: {one.chart.label}: there is no other way to play it")
+    return (replace(one, play=found[1].play),)
+
+
+def _content(
+    page: PageSubject, beside: tuple[Solved, ...], motions: list[Motion], music: tuple[str, bytes] | None
+) -> Content:
+    from dancetutor_cli.film.notes import note_track
+    from dancetutor_cli.film.scroll import parse_segments
+    from dancetutor_cli.page.content import Content
+    from dancetutor_cli.page.facts import beats_of, flips_of, ticks_of, words_of
+
+    solved, chart, pad = page.solved, page.chart, pad_of(page.solved)
+    first = solved[0]
+    shown = play_of_all(solved, [playable(one, page.request.dance.rates) for one in solved])
+    play = first.play if len(solved) == 1 else shown
+    assert play is not None
+    # only of the solver's own play for one can it say what else would cost
+    alone = page.request.dance.play is None and len(solved) == 1
+    return Content(
+        words=words_of(page.song, chart, first.preset.name),
+        play=replace(play, moves=shown.moves, events=None),
+        pad=pad,
+        notes=note_track(chart, shown, parse_segments("")),
+        ticks=ticks_of(chart),
+        beats=beats_of(chart),
+        findings=list(_findings(solved)),
+        character=page.character,
+        motions=motions,
+        directions=pad.directions,
+        beside=Path(page.request.beside or "").stem,
+        beside_rows=[row for one in beside for row in _differing(one.play, play)],
+        passages=_passages(solved),
+        flips=flips_of(play, pad, first.preset, overrides)
+        if alone and (overrides := first.overrides) is not None
+        else (),
+        pair=len(solved) > 1,
+        music=music,
+    )
+
+
+def _differing(other: Play | None, play: Play) -> list[int]:
+    """Rows that two plays step with other limbs."""
+    assert other is not None
+    rows: list[int] = np.flatnonzero((other.limb != play.limb).any(axis=1)).tolist()
+    return rows
+
+
+def _findings(solved: tuple[Solved, ...]) -> Iterator[Finding]:
+    """What the linter finds; of two parts told with whose it is."""
+    from dancetutor_cli.lint.check import findings_of
+    from dancetutor_cli.lint.subject import subject_of
+
+    for one in solved:
+        for found in findings_of(subject_of(one)):
+            if len(solved) == 1:
+                yield found
+                continue
+            column = None if found.note_column is None else found.note_column + one.chart.first_column
+            yield replace(found, message=f"P{one.chart.player}: {found.message}", note_column=column)
+
+
+def _passages(solved: tuple[Solved, ...]) -> list[dict[str, Any]]:
+    """The hardest passages, the hardest first; of two parts told with whose they are."""
+    from dancetutor_cli.lint.passages import hardest
+    from dancetutor_cli.page.facts import told
+
+    pairs = [(found, one.chart) for one in solved if one.play for found in hardest(one.play, one.chart.timing)]
+    if len(solved) == 1:
+        return [told(passage) for passage, _ in pairs]
+    out = []
+    for passage, chart in sorted(pairs, key=lambda one: -one[0].score):
+        data = told(passage)
+        out.append({**data, "sentence": {name: f"P{chart.player}: {text}" for name, text in data["sentence"].items()}})
+    return out
+
+
+def _music(song: Song, chart: Chart) -> tuple[tuple[str, bytes] | None, tuple[str, ...]]:
+    from dancetutor_cli.chart.music import find_music
+
+    path, missing = find_music(song, chart)
+    if path is None:
+        return None, (f"{missing}; the page claps",)
+    try:
+        if path.stat().st_size > MOST_MUSIC:
+            limit = f"{MOST_MUSIC // 1_000_000} MB"
+            raise FileError(path, f"is larger than {limit}; leave --music out and drop it on the page")
+        return (MUSIC_TYPES[path.suffix.lower()], path.read_bytes()), ()
+    except OSError as error:
+        raise FileError(path, f"cannot be read: {error.strerror}") from error
+
+
+def _sizes(arrays: dict[str, int], music: tuple[str, bytes] | None) -> dict[str, int]:
+    out: dict[str, int] = {}
+    for name, size in arrays.items():
+        part = name.partition(".")[0]
+        out[part] = out.get(part, 0) + size
+    if music is not None:
+        out["music"] = len(music[1])
+    return out
+
+
+# A folder of charts: a practice page for each, and an index that leads to them.
+
+INDEX = "index.html"
+
+
+@dataclass(frozen=True, slots=True)
+class PageJob:
+    """One page of a batch: what to make, as which file, and how the index names it."""
+
+    request: PageRequest
+    target: Path
+    entry: IndexEntry
+
+
+@dataclass(frozen=True, slots=True)
+class PageOutcome:
+    """A page that is written, or the error in its place."""
+
+    job: PageJob
+    size: int = 0
+    warnings: tuple[str, ...] = ()
+    error: str | None = None
+
+
+def page_jobs(request: PageRequest, folder: Path) -> tuple[list[PageJob], list[tuple[Path, str]]]:
+    """The pages to make of all charts below `request.dance.path` that match, and the files that cannot be read.
+
+    Charts without a pad, and those without notes, are left out. Files get names as films do.
+    """
+    from dancetutor_cli import chart as charts
+    from dancetutor_cli.feet import load_pad
+    from dancetutor_cli.film.overlay.text import clean
+    from dancetutor_cli.film.work.batch import DEFAULT_NAME, chart_files, file_name
+
+    jobs: list[PageJob] = []
+    bad: list[tuple[Path, str]] = []
+    taken = {Path(INDEX).stem}
+    for path in chart_files((request.dance.path,)):
+        try:
+            song = charts.load(path)
+        except NoChartsError:  # the music of a menu: nobody meant it to be danced
+            continue
+        except (DancetutorError, OSError) as error:
+            bad.append((path, str(error)))
+            continue
+        for chart in request.dance.selection.charts(song):
+            if not len(chart.notes) or load_pad(chart.steps_type) is None:
+                continue
+            stem = name = file_name(DEFAULT_NAME, song, chart)
+            number = 2
+            while name.lower() in taken:
+                name, number = f"{stem}-{number}", number + 1
+            taken.add(name.lower())
+            dance = replace(request.dance, path=path, selection=Selection(index=chart.index))
+            entry = IndexEntry(
+                f"{name}.html", clean(song.title) or song.path.stem, clean(song.artist), clean(chart.label)
+            )
+            jobs.append(PageJob(replace(request, dance=dance, jobs=1), folder / entry.file, entry))
+    return jobs, bad
+
+
+def make_all(jobs: list[PageJob], processes: int) -> Iterator[PageOutcome]:
+    """Make pages, in several processes; outcomes come as they are done."""
+    from dancetutor_cli.run.pool import Task, open_workers
+
+    workers = open_workers(min(processes, max(len(jobs), 1)), lambda key, n: None)
+    try:
+        for k, job in enumerate(jobs):
+            workers.submit(Task(k, _make, (job,)))
+        for done in workers.done():
+            job = jobs[done.key]
+            yield PageOutcome(job, error=str(done.error)) if done.error is not None else PageOutcome(job, *done.result)
+    finally:
+        workers.close()
+
+
+def write_index(folder: Path, outcomes: list[PageOutcome], title: str) -> None:
+    """The index of what was made, in the order of the charts."""
+    from dancetutor_cli.run.files import write_atomic
+
+    write_atomic(folder / INDEX, index_page([one.job.entry for one in outcomes if one.error is None], title))
+
+
+def _make(_: Callable[[int], None], job: PageJob) -> tuple[int, tuple[str, ...]]:
+    from dancetutor_cli.run.files import write_atomic
+
+    page = make_page(job.request)
+    write_atomic(job.target, page.html)
+    return len(page.html), page.warnings

@@ -1,1 +1,0 @@
-"""Things that only follow the body: hair."""

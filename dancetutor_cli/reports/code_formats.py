@@ -1,0 +1,288 @@
+"""Formats for code review: SARIF 2.1.0, GitHub, GitLab, JUnit; one entry per finding with a fingerprint."""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path, PurePath
+from typing import IO, Any
+from urllib.parse import quote
+from xml.sax.saxutils import escape, quoteattr
+
+import dancetutor_cli
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.results import ChartResult, FileResult
+from dancetutor_cli.lint.rule import FAMILIES, Rule, all_rules
+from dancetutor_cli.lint.rule_settings import default_rules
+from dancetutor_cli.reports.formats import Tally
+from dancetutor_cli.reports.terminal import safe, safe_path
+from dancetutor_cli.run.foreign_text import json_without_commands, write_command, xml_without_commands
+
+# What the formats for other programs share: one entry per finding, with its file, its chart and a fingerprint.
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A finding with where it is; texts are safe to print. `path` is relative to the working folder where it can be."""
+
+    path: str
+    finding: Finding
+    chart: ChartResult | None
+    fingerprint: str
+
+    @property
+    def message(self) -> str:
+        """The finding's message with the edit that would mend it and the chart it is about."""
+        better = self.finding.suggestion
+        text = safe(self.finding.message) + (f"; better: {safe(better)}" if better else "")
+        return f"{text} [{safe(self.chart.label)}]{self.moment}" if self.chart else text
+
+    @property
+    def moment(self) -> str:
+        """ " measure 4 beat 16", or nothing."""
+        beat, measure = self.finding.beat, self.finding.measure
+        return "" if beat is None else f" measure {measure} beat {round(beat, 3):g}"
+
+    @property
+    def place(self) -> str:
+        """Where in the chart, as a path: "dance-single Hard 8/measure 4/beat 16"; "" for the file itself."""
+        if self.chart is None:
+            return ""
+        steps = [safe(self.chart.label)]
+        if self.finding.beat is not None:
+            steps += [f"measure {self.finding.measure}", f"beat {round(self.finding.beat, 3):g}"]
+        return "/".join(steps)
+
+
+def entries(result: FileResult) -> Iterator[Entry]:
+    """Every finding of a file. The fingerprint is made of chart, beat and rule, so that it survives edits elsewhere."""
+    path = relative(result.path)
+    seen: dict[str, int] = {}
+    for finding, chart in result.all_findings():
+        place = "" if chart is None else f"{chart.steps_type}|{chart.difficulty}|{chart.description}{chart.whose}"
+        beat = finding.line if finding.beat is None else round(finding.beat * 48)
+        identity = f"{path}|{place}|{beat}|{finding.rule}"
+        seen[identity] = seen.get(identity, 0) + 1
+        text = f"{identity}|{seen[identity]}" if seen[identity] > 1 else identity
+        yield Entry(path, finding, chart, hashlib.sha256(text.encode("utf-8", "replace")).hexdigest()[:32])
+
+
+def relative(path: str) -> str:
+    """`path` with forward slashes, relative to the working folder if it lies inside."""
+    pure = PurePath(path)
+    if pure.is_absolute() and pure.is_relative_to(Path.cwd()):
+        pure = pure.relative_to(Path.cwd())
+    return safe_path(pure.as_posix())
+
+
+# `--format sarif`: SARIF 2.1.0, which code scanning and editors read.
+
+SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
+_LEVELS = {"error": "error", "warning": "warning", "info": "note"}
+
+
+class SarifReport:
+    """Writes one log with one run; every finding is a result with a region and a logical location."""
+
+    def __init__(self, stream: IO[str]) -> None:
+        self._stream = stream
+        self._results: list[dict[str, Any]] = []
+        self._unreadable: list[str] = []
+        self._places = {code: number for number, code in enumerate(all_rules())}
+
+    def begin(self) -> None:
+        """Nothing is written before the end."""
+
+    def add(self, result: FileResult) -> None:
+        """Remember the findings of one file."""
+        self._results += [self._result(entry) for entry in entries(result)]
+        if result.error is not None:
+            self._unreadable.append(safe(result.error))
+
+    def end(self, tally: Tally) -> None:
+        """Write the log."""
+        notes = [{"level": "error", "message": {"text": text}} for text in self._unreadable]
+        run = {
+            "tool": {
+                "driver": {
+                    "name": "dancetutor",
+                    "version": dancetutor_cli.__version__,
+                    "rules": [_rule(rule) for rule in all_rules().values()],
+                }
+            },
+            "columnKind": "unicodeCodePoints",
+            "invocations": [{"executionSuccessful": not notes, "toolExecutionNotifications": notes}],
+            "results": self._results,
+        }
+        log = {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
+        self._stream.write(json_without_commands(json.dumps(log, indent=1)) + "\n")
+
+    def _result(self, entry: Entry) -> dict[str, Any]:
+        finding = entry.finding
+        physical: dict[str, Any] = {"artifactLocation": {"uri": uri(entry.path)}}
+        if finding.line is not None:
+            physical["region"] = {"startLine": finding.line, "startColumn": finding.column or 1}
+        location: dict[str, Any] = {"physicalLocation": physical}
+        if not entry.place:
+            location["logicalLocations"] = [{"name": entry.path.rsplit("/", 1)[-1], "kind": "song"}]
+        else:
+            name = entry.place.rsplit("/", 1)[-1]
+            location["logicalLocations"] = [{"name": name, "fullyQualifiedName": entry.place, "kind": "chart"}]
+        return {
+            "ruleId": finding.rule,
+            "ruleIndex": self._places[finding.rule],
+            "level": _LEVELS[finding.severity],
+            "message": {"text": entry.message},
+            "locations": [location],
+            "partialFingerprints": {"chartBeatRule/v1": entry.fingerprint},
+        }
+
+
+def uri(path: str) -> str:
+    """A relative or absolute path as a URI reference."""
+    pure = PurePath(path)
+    return pure.as_uri() if pure.is_absolute() else quote(path)
+
+
+def _rule(rule: type[Rule]) -> dict[str, Any]:
+    text = inspect.cleandoc(rule.__doc__ or "")
+    severity = default_rules()[rule.code]["severity"]
+    return {
+        "id": rule.code,
+        "name": "".join(word.capitalize() for word in rule.name.split("-")),
+        "shortDescription": {"text": text.splitlines()[0]},
+        "fullDescription": {"text": text},
+        "help": {"text": text},
+        "defaultConfiguration": {"enabled": severity != "off", "level": _LEVELS.get(severity, "none")},
+        "properties": {"tags": [FAMILIES[int(rule.code[2])]]},
+    }
+
+
+# `--format github`: workflow commands that GitHub Actions shows as annotations beside the lines.
+
+_COMMANDS = {"error": "error", "warning": "warning", "info": "notice"}
+
+
+class GithubReport:
+    """Writes one command for each finding, and the summary as an ordinary line."""
+
+    def __init__(self, stream: IO[str]) -> None:
+        self._stream = stream
+
+    def begin(self) -> None:
+        """Nothing comes before the first finding."""
+
+    def add(self, result: FileResult) -> None:
+        """Write the findings of one file."""
+        for entry in entries(result):
+            finding = entry.finding
+            properties = {"file": entry.path, "line": finding.line, "col": finding.column}
+            properties["title"] = f"{finding.rule} {finding.name}"
+            told = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items() if value is not None)
+            write_command(self._stream, f"::{_COMMANDS[finding.severity]} {told}::{_data(entry.message)}\n")
+
+    def end(self, tally: Tally) -> None:
+        """Write the summary."""
+        self._stream.write(f"{tally.summary()}\n")
+
+
+def _data(text: str) -> str:
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")
+
+
+# `--format gitlab`: a code quality report, which GitLab shows in merge requests.
+
+_SEVERITIES = {"error": "major", "warning": "minor", "info": "info"}
+
+
+class GitlabReport:
+    """Writes one JSON list."""
+
+    def __init__(self, stream: IO[str]) -> None:
+        self._stream = stream
+        self._issues: list[dict[str, Any]] = []
+
+    def begin(self) -> None:
+        """Nothing is written before the end."""
+
+    def add(self, result: FileResult) -> None:
+        """Remember the findings of one file."""
+        self._issues += [
+            {
+                "type": "issue",
+                "check_name": f"{entry.finding.rule} {entry.finding.name}",
+                "description": entry.message,
+                "categories": ["Style"],
+                "severity": _SEVERITIES[entry.finding.severity],
+                "fingerprint": entry.fingerprint,
+                "location": {"path": entry.path, "lines": {"begin": entry.finding.line or 1}},
+            }
+            for entry in entries(result)
+        ]
+
+    def end(self, tally: Tally) -> None:
+        """Write the list."""
+        self._stream.write(json_without_commands(json.dumps(self._issues, indent=1)) + "\n")
+
+
+# `--format junit`: a suite for each file, a test case for each chart, a failure for each finding that is no info.
+
+
+class JunitReport:
+    """Writes the XML that CI servers read."""
+
+    def __init__(self, stream: IO[str]) -> None:
+        self._stream = stream
+        self._suites: list[str] = []
+        self._failures = self._tests = self._errors = 0
+
+    def begin(self) -> None:
+        """Nothing is written before the end: the root carries the sums."""
+
+    def add(self, result: FileResult) -> None:
+        """Add the suite of one file; the case "file" is about the file itself."""
+        path, found = relative(result.path), list(entries(result))
+        cases = [self._case(path, "file", [e for e in found if e.chart is None], result.error)]
+        for chart in result.charts:
+            name = f"{chart.label} (chart {chart.index})"
+            cases.append(self._case(path, name, [e for e in found if e.chart is chart]))
+        failures = sum("<failure" in case for case in cases)
+        errors = int(result.error is not None)
+        sums = f'tests="{len(cases)}" failures="{failures}" errors="{errors}"'
+        self._suites.append(f"<testsuite name={quoteattr(path)} {sums}>\n{''.join(cases)}</testsuite>\n")
+        self._tests += len(cases)
+        self._failures += failures
+        self._errors += errors
+
+    def end(self, tally: Tally) -> None:
+        """Write everything."""
+        sums = f'tests="{self._tests}" failures="{self._failures}" errors="{self._errors}"'
+        self._stream.write('<?xml version="1.0" encoding="UTF-8"?>\n')
+        suites = xml_without_commands("".join(self._suites))
+        self._stream.write(f'<testsuites name="dancetutor" {sums}>\n{suites}</testsuites>\n')
+
+    def _case(self, path: str, name: str, found: Iterable[Entry], error: str | None = None) -> str:
+        inside = [f'  <error type="unreadable" message={quoteattr(safe(error))}/>\n'] if error else []
+        failed = [entry for entry in found if entry.finding.severity != "info"] if not error else []
+        if failed:
+            first = f"{failed[0].finding.rule} {safe(failed[0].finding.message)}"
+            lines = "\n".join(escape(_line(entry)) for entry in failed)
+            inside.append(f'  <failure type="{failed[0].finding.rule}" message={quoteattr(first)}>{lines}</failure>\n')
+        told = [_line(entry) for entry in found if entry.finding.severity == "info"]
+        if told:
+            text = "\n".join(escape(line) for line in told)
+            inside.append(f"  <system-out>{text}</system-out>\n")
+        head = f" <testcase classname={quoteattr(path)} name={quoteattr(safe(name))}"
+        return f"{head}>\n{''.join(inside)} </testcase>\n" if inside else f"{head}/>\n"
+
+
+def _line(entry: Entry) -> str:
+    place = f"{entry.path}:{entry.finding.line}" if entry.finding.line else entry.path
+    return f"{place} {entry.finding.rule} {entry.message}"

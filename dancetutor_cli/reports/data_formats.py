@@ -1,0 +1,259 @@
+"""Formats for programs that want all: JSON (docs/formats.md), JSON lines, CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict
+from typing import IO, Any
+
+import dancetutor_cli
+from dancetutor_cli.lint.findings import TECH_COUNTS, Cause, Estimate, Finding
+from dancetutor_cli.lint.results import ChartResult, FileResult
+from dancetutor_cli.reports.code_formats import entries, relative
+from dancetutor_cli.reports.formats import Tally
+from dancetutor_cli.reports.terminal import safe
+from dancetutor_cli.run.foreign_text import as_text, json_without_commands
+
+# `--format json`: the object of docs/formats.md, written file by file.
+
+SCHEMA = 1
+
+
+class JsonReport:
+    """Writes one JSON object, UTF-8; every file is a line of its own inside `files`.
+
+    preset : what the head names where the first file has no chart with a preset
+    """
+
+    def __init__(self, stream: IO[bytes], preset: str) -> None:
+        self._stream = stream
+        self._preset = preset
+        self._files = 0
+
+    def begin(self) -> None:
+        """The head waits for the first file, whose preset it names."""
+
+    def add(self, result: FileResult) -> None:
+        """Write one file."""
+        if not self._files:
+            self._head(next((chart.preset for chart in result.charts if chart.preset), self._preset))
+        self._write(f"{',' if self._files else ''}\n ", *file_texts(result))
+        self._files += 1
+
+    def end(self, tally: Tally) -> None:
+        """Close the object."""
+        if not self._files:
+            self._head(self._preset)
+        self._write("\n]}\n")
+        self._stream.flush()
+
+    def _head(self, preset: str) -> None:
+        head = {"schema": SCHEMA, "tool": f"dancetutor {dancetutor_cli.__version__}", "preset": preset}
+        self._write(json.dumps(head, ensure_ascii=False)[:-1] + ', "files": [')
+
+    def _write(self, *texts: str) -> None:
+        for text in texts:  # not writelines: a stream that copies what is written, as click's for tests, misses that
+            self._stream.write(json_without_commands(text).encode("utf-8", "replace"))
+
+
+def file_texts(result: FileResult) -> Iterator[str]:
+    """One entry of `files`, in pieces, for it may be long; findings about the file itself follow its charts."""
+    head = _members({"path": result.path, "error": result.error, "warnings": list(result.warnings)})
+    tail = _members({"findings": [finding_object(finding) for finding in result.findings]})
+    yield f'{{{head}, "charts": ['
+    for number, chart in enumerate(result.charts):
+        yield from _chart_texts(chart, ", " if number else "")
+    yield f"], {tail}}}"
+
+
+def _chart_texts(chart: ChartResult, before: str) -> Iterator[str]:
+    """One entry of `charts`; its rows are JSON already."""
+    head = {
+        "index": chart.index,
+        "steps_type": chart.steps_type,
+        **({"player": chart.player} if chart.player else {}),
+        "difficulty": chart.difficulty,
+        "meter": chart.meter,
+        "description": chart.description,
+        "cost": chart.cost,
+    }
+    tail = {
+        "findings": [finding_object(finding) for finding in chart.findings],
+        "preset": chart.preset,
+        "doublesteps": [_cause_object(cause) for cause in chart.causes or ()],
+        "ambiguous": [{"beat": beat, "kind": kind} for beat, kind in chart.ambiguous or ()],
+        "plays_like": None if chart.estimate is None else _estimate_object(chart.estimate),
+        **({} if chart.alternatives is None else {"alternatives": [asdict(other) for other in chart.alternatives]}),
+    }
+    yield f'{before}{{{_members(head)}, "rows": '
+    yield chart.rows or "[]"
+    yield f", {_members(tail)}}}"
+
+
+def _cause_object(cause: Cause) -> dict[str, Any]:
+    """One entry of `doublesteps`; ten times quicker than `asdict`, and there are many."""
+    return {
+        "beat": cause.beat,
+        "forced": cause.forced,
+        "cause": cause.cause,
+        "at_beat": cause.at_beat,
+        "column": cause.column,
+    }
+
+
+def _estimate_object(estimate: Estimate) -> dict[str, Any]:
+    """How hard a chart plays, rounded to hundredths of a meter."""
+    return {
+        "meter": round(estimate.meter, 2),
+        "low": round(estimate.low, 2),
+        "high": round(estimate.high, 2),
+        "scale": estimate.scale,
+        "scale_known": estimate.known,
+        "rate": estimate.rate,
+        "terms": {name: round(meters, 2) for name, meters in estimate.terms},
+    }
+
+
+def _members(data: dict[str, Any]) -> str:
+    """The members of an object as JSON, without its braces."""
+    return json.dumps(data, ensure_ascii=False)[1:-1]
+
+
+def finding_object(finding: Finding) -> dict[str, Any]:
+    """One entry of `findings`."""
+    return {
+        "rule": finding.rule,
+        "name": finding.name,
+        "severity": finding.severity,
+        "beat": None if finding.beat is None else round(finding.beat, 6),
+        "measure": finding.measure,
+        "second": None if finding.second is None else round(finding.second, 6),
+        "line": finding.line,
+        "column": finding.note_column,
+        "message": finding.message,
+        "margin": finding.margin,
+        "suggestion": finding.suggestion,
+    }
+
+
+# `--format jsonl`: one JSON object a line for each finding.
+
+
+class JsonLinesReport:
+    """Writes each finding as a line, with its file and its chart in front."""
+
+    def __init__(self, stream: IO[str]) -> None:
+        self._stream = stream
+
+    def begin(self) -> None:
+        """Nothing comes before the first finding."""
+
+    def add(self, result: FileResult) -> None:
+        """Write the findings of one file."""
+        for entry in entries(result):
+            chart = entry.chart
+            named = {
+                name: getattr(chart, name, None) for name in ("index", "steps_type", "difficulty", "meter", "preset")
+            }
+            line = {"path": entry.path, **named, **finding_object(entry.finding), "fingerprint": entry.fingerprint}
+            text = json_without_commands(json.dumps(line, ensure_ascii=False))
+            self._stream.write(text.encode("utf-8", "replace").decode("utf-8") + "\n")
+
+    def end(self, tally: Tally) -> None:
+        """Nothing comes after the last finding."""
+
+
+# `--format csv`: one line for each chart, tech counts under the names of ITGmania and counted as it does.
+
+# Further columns -> moves whose rows they count; ITGmania knows none of these.
+OWN = {
+    "Spins": ("spin",),
+    "JumpFootswitches": ("jump-footswitch",),
+    "Holdswitches": ("holdswitch",),
+    "Candles": ("candle",),
+    "Gallops": ("gallop",),
+    "Hands": ("hand",),
+}
+
+
+_COMMAND = ("::", "##[")  # at the start of a line, for the log of a CI job
+
+
+class CsvReport:
+    """Writes a header and one line a chart; files that could not be read go to `errors`.
+
+    Texts of other people that a spreadsheet would take for a formula begin with an apostrophe; numbers stay.
+    """
+
+    def __init__(self, stream: IO[str], errors: IO[str]) -> None:
+        self._stream = stream
+        self._errors = errors
+        self._names = list(_line("", "", "", None))
+
+    def begin(self) -> None:
+        """The header needs no chart."""
+        self._stream.write(",".join(self._names) + "\n")
+
+    def add(self, result: FileResult) -> None:
+        """Write the charts of one file."""
+        if result.error is not None:
+            self._errors.write(f"dancetutor: {safe(result.error)}\n")
+        file = (relative(result.path), safe(result.title), safe(result.artist)) if result.charts else ("", "", "")
+        for chart in result.charts:
+            self._stream.write(_written(_line(*file, chart).values()))
+
+    def end(self, tally: Tally) -> None:
+        """Nothing comes after the last chart."""
+
+
+def _written(cells: Iterable[Any]) -> str:
+    """One line of the file."""
+    line = io.StringIO()
+    csv.writer(line, lineterminator="\n").writerow([as_text(cell) if isinstance(cell, str) else cell for cell in cells])
+    text = line.getvalue()
+    if text.startswith(_COMMAND):  # the first cell, which nothing has made stand in quotes
+        first, comma, rest = text.partition(",")
+        text = f'"{first}"{comma}{rest}'
+    return text
+
+
+def _line(path: str, title: str, artist: str, chart: ChartResult | None) -> Mapping[str, Any]:
+    counts: Mapping[str, int] = chart.counts if chart else {}
+    figures = chart.figures if chart else None
+    return {
+        "file": path,
+        "title": title,
+        "artist": artist,
+        "index": chart.index if chart else 0,
+        "steps_type": safe(chart.steps_type) if chart else "",
+        "difficulty": chart.difficulty if chart else "",
+        "meter": chart.meter if chart else 0,
+        "description": safe(chart.description) if chart else "",
+        "rows": chart.row_count if chart else 0,
+        "cost": chart.cost if chart else 0,
+        "nps_mean": round(figures.nps_mean, 3) if figures else 0,
+        "nps_peak": round(figures.nps_peak, 3) if figures else 0,
+        "stream_measures": figures.stream_measures if figures else 0,
+        "breakdown": figures.breakdown if figures else "",
+        **{name: figures.tech.get(name, 0) if figures else 0 for name in TECH_COUNTS},
+        **{name: sum(counts.get(move, 0) for move in moves) for name, moves in OWN.items()},
+        "findings": len(chart.findings) if chart else 0,
+        "preset": safe(chart.preset or "") if chart else "",
+        **_estimated(chart),
+        "player": (chart.player or "") if chart else "",
+    }
+
+
+def _estimated(chart: ChartResult | None) -> Mapping[str, Any]:
+    """How hard it plays; empty where the pad has no model of meters."""
+    told = chart.estimate if chart else None
+    return {
+        "plays_like": round(told.meter, 2) if told else "",
+        "plays_low": round(told.low, 2) if told else "",
+        "plays_high": round(told.high, 2) if told else "",
+        "meter_scale": told.scale if told else "",
+        "bill": "; ".join(f"{name} {meters:.2f}" for name, meters in told.terms) if told else "",
+    }

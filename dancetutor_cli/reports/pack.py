@@ -1,0 +1,284 @@
+"""A pack in facts and in a few lines of text: each chart once, what is missing, our tech counts beside the game's."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
+from dancetutor_cli.chart.pack_files import pack_folder, read_pack_ini
+from dancetutor_cli.lint.results import ChartResult, FileResult
+from dancetutor_cli.lint.versions import TEN, Beside, Compared
+from dancetutor_cli.reports.terminal import safe, safe_path
+
+# What is known of a pack: its charts, each once, and what is missing or stands out.
+
+# What a pack's charts are sorted by: name -> the moves that it is.
+TECHNIQUES = {
+    "crossovers": ("crossover-half", "crossover-full"),
+    "footswitches": ("footswitch", "footswitch-up", "footswitch-down", "sideswitch-left", "sideswitch-right"),
+    "brackets": ("bracket",),
+    "doublesteps": ("doublestep",),
+    "jacks": ("jack",),
+    "spins": ("spin",),
+    "hands": ("hand",),
+}
+_ORDER = ("Beginner", "Easy", "Medium", "Hard", "Challenge")
+_MUSIC, _PAIR, _BROKEN = "DT107", "DT109", "DT101"
+_MOST_HAVE = 0.8  # a difficulty that so many of the songs have is missed in the others
+_FEWEST_SONGS = 5
+_FEW = 2.0  # meters between label and estimate, from which on a chart stands out
+_LEAST_ROWS = 8  # with a technique that a chart stands out for
+_TIMES = 4.0  # how many times as much of a technique as the pack's charts of its meter have
+
+
+@dataclass(frozen=True, slots=True)
+class PackChart:
+    """A chart of the pack. song : title for people; file : its path below the pack's folder"""
+
+    song: str
+    file: str
+    result: ChartResult
+
+    @property
+    def name(self) -> str:
+        """For people: "Max 300 Hard 9"."""
+        return f"{self.song} {safe(self.result.difficulty)} {self.result.meter}"
+
+    def rows_of(self, technique: str) -> int:
+        """Rows with a technique."""
+        return sum(self.result.counts.get(move, 0) for move in TECHNIQUES[technique])
+
+
+class Pack:
+    """Takes results as they come. A song that lies there as .sm and .ssc counts once: as .ssc, which games prefer."""
+
+    def __init__(self) -> None:
+        self._results: dict[str, FileResult] = {}
+        self._unreadable: list[str] = []
+        self.problems: dict[str, list[str]] = {"music": [], "differ": []}
+
+    def add(self, result: FileResult) -> None:
+        """Take note of a file. What is heavy of it (rows, excerpts) is not kept."""
+        path = Path(result.path)
+        title = safe(result.title) or safe_path(path.stem)
+        if result.error is not None:
+            self._unreadable.append(result.path)
+            return
+        rules = {finding.rule for finding in result.findings}
+        if _MUSIC in rules:
+            self.problems["music"].append(title)
+        if _PAIR in rules:
+            self.problems["differ"].append(title)
+        key = os.fspath(path.with_suffix(""))
+        if key not in self._results or path.suffix.lower() == ".ssc":
+            charts = tuple(replace(chart, findings=(), rows=None, causes=None) for chart in result.charts)
+            self._results[key] = replace(result, findings=(), charts=charts)
+
+    @property
+    def songs(self) -> int:
+        """How many there are."""
+        return len(self._results)
+
+    @property
+    def folder(self) -> str:
+        """The folder that all of it is in."""
+        paths = [os.path.dirname(os.path.abspath(one.path)) for one in self._results.values()]  # noqa: PTH100, PTH120
+        return os.path.commonpath(paths) if paths else "."
+
+    def _unread(self) -> Iterator[str]:
+        """Files that could not be read, by their paths below the folder of everything that was looked at."""
+        paths = [os.path.abspath(path) for path in (*self._unreadable, self.folder)]  # noqa: PTH100
+        above = os.path.commonpath([os.path.dirname(path) for path in paths[:-1]] + paths[-1:])  # noqa: PTH120
+        return (safe_path(os.path.relpath(path, above)) for path in paths[:-1])
+
+    def charts(self) -> list[PackChart]:
+        """Every chart that is danced, by song."""
+        below, out = self.folder, []
+        for result in self._results.values():
+            name = safe_path(os.path.relpath(os.path.abspath(result.path), below))  # noqa: PTH100
+            title = safe(result.title) or safe_path(Path(result.path).stem)
+            out += [PackChart(title, name, chart) for chart in result.charts if chart.playable and chart.row_count]
+        return out
+
+    def missing(self) -> Iterator[str]:
+        """What the pack lacks, a line each."""
+        yield from self._missing_difficulties()
+        for kind, said in (("music", "no music"), ("differ", ".sm and .ssc differ")):
+            songs = list(dict.fromkeys(self.problems[kind]))
+            if songs:
+                yield f"{said}: {_some(songs)}"
+        if self._unreadable:
+            yield f"cannot be read: {_some(list(self._unread()))}"
+        yield from self._sync()
+
+    def _missing_difficulties(self) -> Iterator[str]:
+        by_type: dict[str, dict[str, set[str]]] = defaultdict(dict)
+        for path, result in self._results.items():
+            for chart in result.charts:
+                by_type[chart.steps_type].setdefault(path, set()).add(chart.difficulty)
+        for steps_type, songs in sorted(by_type.items()):
+            counted = Counter(name for has in songs.values() for name in has if name in _ORDER)
+            for name in _ORDER:
+                lacking = [path for path, has in songs.items() if name not in has]
+                if lacking and len(songs) >= _FEWEST_SONGS and counted[name] >= _MOST_HAVE * len(songs):
+                    titles = [safe(self._results[path].title) or safe_path(Path(path).name) for path in lacking]
+                    yield f"no {safe(steps_type)} {name}: {_some(titles)}"
+
+    def _sync(self) -> Iterator[str]:
+        """What is wrong with the Pack.ini of each pack that files of these lie in."""
+        folders = {pack_folder(Path(result.path).absolute()) for result in self._results.values()}
+        beside = {Path(result.path).absolute().parent for result in self._results.values()}
+        found = [ini for folder in sorted(folders | beside) if (ini := read_pack_ini(folder)) is not None]
+        for ini in found:
+            if ini.problem is not None:
+                yield f"{safe_path(os.fspath(ini.path.parent.name))}/{safe(ini.path.name)}: {safe(ini.problem)}"
+        if not found:
+            yield "no Pack.ini, which tells ITGmania whether the sync is NULL or ITG"
+
+    def outliers(self) -> Iterator[str]:
+        """Charts that stand out, a line each, the farthest first."""
+        charts = self.charts()
+        off = [
+            (abs(told.meter - one.result.meter), one, told.meter)
+            for one in charts
+            if (told := one.result.estimate) is not None and told.known and one.result.meter > 0
+        ]
+        for how_far, one, meter in sorted(off, key=lambda x: -x[0]):
+            if how_far >= _FEW:
+                yield f"{one.name} plays like {meter:.1f}"
+        yield from (said for _, said in sorted(_much_of(charts), reverse=True))
+
+
+def _much_of(charts: list[PackChart]) -> Iterator[tuple[float, str]]:
+    """Charts with far more of a technique than others of about their meter: how many times, and a line."""
+    for technique in TECHNIQUES:
+        shares: dict[tuple[str, int], list[float]] = defaultdict(list)
+        for one in charts:
+            for meter in range(one.result.meter - 1, one.result.meter + 2):
+                shares[one.result.steps_type, meter].append(one.rows_of(technique) / one.result.row_count)
+        for one in charts:
+            others = shares[one.result.steps_type, one.result.meter]
+            usual = max(sum(others) / len(others), 0.01)
+            share = one.rows_of(technique) / one.result.row_count
+            enough = one.rows_of(technique) >= _LEAST_ROWS and len(others) >= _FEWEST_SONGS
+            if enough and share >= _TIMES * usual:
+                rows = f"{one.rows_of(technique)} rows with {technique}, {share:.0%} of all"
+                said = f"{one.name}: {rows} (others {usual:.0%})"
+                yield share / usual, said
+
+
+def _some(names: list[str], most: int = 3) -> str:
+    """The first names and how many more there are."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more
+
+
+# A pack in a few lines of text, at the end of a run over many songs.
+
+LINES = 18  # at most
+_TYPES, _OUTLIERS, _MISSING = 2, 4, 5
+_LAST = 20  # it and all meters above stand together, below a +
+
+
+def pack_lines(pack: Pack, width: int) -> list[str]:
+    """The page: at most `LINES` lines, none wider than `width`."""
+    charts = pack.charts()
+    if not charts:
+        return []
+    lines = [f"pack {safe_path(pack.folder.rsplit('/', 1)[-1])}: {pack.songs} songs, {len(charts)} charts"]
+    types = Counter(one.result.steps_type for one in charts)
+    for steps_type, _ in types.most_common(_TYPES):
+        lines += _by_meter(steps_type, [one for one in charts if one.result.steps_type == steps_type])
+    lines.append(_by_technique(charts))
+    lines += _listed("stands out", pack.outliers(), _OUTLIERS)
+    lines += _listed("missing", pack.missing(), _MISSING)
+    return [line if len(line) <= width else line[: width - 1] + "…" for line in lines[:LINES]]
+
+
+def _by_meter(steps_type: str, charts: list[PackChart]) -> Iterator[str]:
+    """Three rows: meters, charts labelled so, charts that play so."""
+    labels = Counter(min(one.result.meter, _LAST) for one in charts)
+    plays = Counter(min(round(one.result.estimate.meter), _LAST) for one in charts if one.result.estimate)
+    shown = range(min([*labels, *plays]), max([*labels, *plays]) + 1)
+    heads = {meter: "+" if meter == _LAST else str(meter) for meter in shown}
+    wide = 1 + max(len(str(one)) for one in (*labels.values(), *plays.values(), *heads.values()))
+    yield f"  {steps_type:14}" + "".join(f"{heads[meter]:>{wide}}" for meter in shown)
+    yield f"  {'  labelled':14}" + "".join(f"{labels[meter] or '·':>{wide}}" for meter in shown)
+    if plays:
+        yield f"  {'  plays like':14}" + "".join(f"{plays[meter] or '·':>{wide}}" for meter in shown)
+
+
+def _by_technique(charts: list[PackChart]) -> str:
+    """How many charts have each technique."""
+    told = [f"{technique} {sum(one.rows_of(technique) > 0 for one in charts)}" for technique in TECHNIQUES]
+    return f"  charts with {', '.join(told)}"
+
+
+def _listed(what: str, said: Iterable[str], most: int) -> Iterator[str]:
+    lines = list(said)
+    for line in lines[:most]:
+        yield f"  {what}: {line}"
+    if len(lines) > most:
+        yield f"  {what}: {len(lines) - most} more; --report-html FILE shows them"
+
+
+# Our technique counts beside the game's, as a table in Markdown; and chart by chart where they differ.
+
+
+def table_lines(found: Beside) -> Iterator[str]:
+    """The table: for each technique how often each counts it, how often both do in the same chart, charts alike."""
+    rows = [["technique", "charts", "ours", "theirs", "both", "charts alike"]]
+    for name in TEN:
+        charts = [one for one in found.charts if name in one.theirs]
+        if charts:
+            ours, theirs = sum(len(one.ours[name]) for one in charts), sum(_count(one, name) for one in charts)
+            both, alike = sum(one.shared(name) for one in charts), sum(not one.differs(name) for one in charts)
+            share = f"{alike} ({100 * alike / len(charts):.0f} %)"
+            rows.append([name, *map(str, (len(charts), ours, theirs, both)), share])
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for number, row in enumerate(rows):
+        first, *others = zip(row, widths, strict=True)
+        yield " | ".join([f"| {first[0]:<{first[1]}}", *(f"{cell:>{width}}" for cell, width in others)]) + " |"
+        if number == 0:
+            yield f"|{'-' * (widths[0] + 2)}|" + "".join(f"{'-' * (width + 1)}:|" for width in widths[1:])
+    yield ""
+    count = f"{len(found.charts)} chart{'' if len(found.charts) == 1 else 's'}"
+    yield f"{count} of both; only ours: {found.only_ours}; only theirs: {found.only_theirs}"
+
+
+def chart_lines(found: Beside) -> Iterator[str]:
+    """Every chart that differs, a technique a line: the measures of ours, or the rows that only one has."""
+    for one in found.charts:
+        for name in TEN:
+            if name in one.theirs and one.differs(name):
+                yield f"{safe_path(one.file)} [{safe(one.label)}] {name}: {_told(one, name)}"
+
+
+def _count(one: Compared, name: str) -> int:
+    theirs = one.theirs[name]
+    return theirs if isinstance(theirs, int) else len(theirs)
+
+
+def _told(one: Compared, name: str) -> str:
+    ours, theirs = one.ours[name], one.theirs[name]
+    if isinstance(theirs, int):
+        where = _places("measures", [tick // TICKS_PER_MEASURE for tick in dict.fromkeys(ours)])
+        return f"ours {len(ours)}{where}, theirs {theirs}"
+    return f"{_side('ours', ours, theirs)}, {_side('theirs', theirs, ours)}"
+
+
+def _side(whose: str, times: Sequence[int], others: Sequence[int]) -> str:
+    only = sorted((Counter(times) - Counter(others)).elements())
+    return f"{whose} {len(times)}{_places(f'only {whose}: beats', [tick / TICKS_PER_BEAT for tick in only])}"
+
+
+def _places(what: str, places: Sequence[float]) -> str:
+    named = list(dict.fromkeys(places))
+    if not named:
+        return ""
+    words = " ".join(f"{place:.3f}".rstrip("0").rstrip(".") for place in named)
+    return f" ({what} {words})"

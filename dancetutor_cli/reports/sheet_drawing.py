@@ -1,0 +1,256 @@
+"""The notes of a system of measures: grid, holds, arrows with L and R, feet where they cross, findings beside them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Kind
+from dancetutor_cli.feet.limbs import Part
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.subject import ChartSubject
+from dancetutor_cli.reports.sheet_places import LETTERS, SheetLayout, SheetStyle, number, tag, text, title
+from dancetutor_cli.reports.text_report import clock
+
+HOLD_OPACITY = 0.55
+_BAND_OPACITY = 0.2
+_HEADS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
+_FEET_SPACING = 27.0  # diagrams of feet nearer than this would overlap
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """One chart to be drawn. `limbs` : (tick, column) -> limb and part of every step, `arrows` : angle per column."""
+
+    subject: ChartSubject
+    findings: Sequence[Finding]
+    layout: SheetLayout
+    limbs: Mapping[tuple[int, int], tuple[int, int]]
+    arrows: Sequence[float | None]
+
+    @property
+    def style(self) -> SheetStyle:
+        """Sizes and colours."""
+        return self.layout.style
+
+
+def definitions(style: SheetStyle) -> str:
+    """Shapes used again and again: the arrow (pointing up) and the middle panel, one unit high."""
+    arrow = "M0,-.5 L.48,-.02 L.34,.14 L.13,-.06 L.13,.5 L-.13,.5 L-.13,-.06 L-.34,.14 L-.48,-.02 Z"
+    shapes = f'<path id="arrow" d="{arrow}"/><rect id="middle" x="-.4" y="-.4" width=".8" height=".8" rx=".15"/>'
+    return tag("defs", shapes)
+
+
+def system(sheet: Sheet, which: int) -> str:
+    """All that stands in one system, as SVG elements."""
+    measures = sheet.layout.measures_of(which)
+    ticks = range(measures.start * TICKS_PER_MEASURE, measures.stop * TICKS_PER_MEASURE)
+    parts = [
+        *(_measure(sheet, measure) for measure in measures),
+        *_unsure_bands(sheet, ticks),
+        *_holds(sheet, ticks),
+        *_notes(sheet, ticks),
+        *_unsure_marks(sheet, ticks),
+        *_feet(sheet, ticks),
+        *_findings(sheet, ticks),
+    ]
+    return "\n".join(parts)
+
+
+def _measure(sheet: Sheet, measure: int) -> str:
+    """Shade, lines and number of a measure."""
+    layout, style = sheet.layout, sheet.style
+    left, top = layout.left(measure), layout.top(measure)
+    width, height = layout.lanes * style.lane, layout.measure_height
+    shade = style.colours["shade"] if measure % 2 else style.colours["paper"]
+    parts = [tag("rect", x=left, y=top, width=width, height=height, fill=shade)]
+    for beat in range(1, 4):
+        y = top + beat * layout.beat
+        parts.append(_line(left, y, left + width, y, style.colours["line"], 0.5))
+    for lane in range(layout.lanes + 1):
+        x = left + lane * style.lane
+        parts.append(_line(x, top, x, top + height, style.colours["line"], 0.5))
+    ends = (top, top + height) if measure == layout.column_of(measure)[-1] else (top,)
+    parts += [_line(left, y, left + width, y, style.colours["measure_line"], 1.2) for y in ends]
+    second = float(sheet.subject.chart.timing.seconds(np.array([measure * TICKS_PER_MEASURE]))[0])
+    parts.append(text(str(measure), left - 5, top + 4, "number", text_anchor="end"))
+    parts.append(text(clock(second)[:-4], left - 5, top + 13, "time", text_anchor="end"))
+    return "".join(parts)
+
+
+def _line(x1: float, y1: float, x2: float, y2: float, colour: str, width: float) -> str:
+    return tag("line", x1=x1, y1=y1, x2=x2, y2=y2, stroke=colour, stroke_width=width)
+
+
+def _holds(sheet: Sheet, ticks: range) -> Iterator[str]:
+    """Bodies of holds and rolls, cut where a column of measures ends."""
+    layout, style, notes = sheet.layout, sheet.style, sheet.subject.chart.notes
+    at = np.flatnonzero((notes.end > ticks.start) & (notes.tick < ticks.stop))
+    for n in at.tolist():
+        start, end, lane = int(notes.tick[n]), int(notes.end[n]), int(notes.column[n])
+        colour = style.colours["roll" if notes.kind[n] == Kind.ROLL else "hold"]
+        first = max(start, ticks.start)
+        while first < min(end, ticks.stop):
+            last = min(layout.column_of(first // TICKS_PER_MEASURE).stop * TICKS_PER_MEASURE, end, ticks.stop)
+            x, y = layout.x(first, lane) - style.arrow * 0.27, layout.y(first)
+            height = (last - first) / TICKS_PER_BEAT * layout.beat
+            yield tag(
+                "rect", x=x, y=y, width=style.arrow * 0.54, height=height, rx=3, fill=colour, fill_opacity=HOLD_OPACITY
+            )
+            first = last
+
+
+def _notes(sheet: Sheet, ticks: range) -> Iterator[str]:
+    """Arrows and mines, and then the letters: no arrow hides the letter of another one."""
+    notes, marks = sheet.subject.chart.notes, []
+    at = np.flatnonzero((notes.tick >= ticks.start) & (notes.tick < ticks.stop))
+    for n in at.tolist():
+        tick, lane, kind = int(notes.tick[n]), int(notes.column[n]), int(notes.kind[n])
+        x, y = sheet.layout.x(tick, lane), sheet.layout.y(tick)
+        if kind == Kind.MINE:
+            yield _mine(sheet.style, x, y)
+        elif kind == Kind.FAKE or (kind in _HEADS and not notes.judged[n]):
+            yield _arrow(sheet, lane, (x, y), sheet.style.colours["fake"], 0.45)
+        elif kind in _HEADS:
+            yield _arrow(sheet, lane, (x, y), sheet.style.note_colour(tick), 0.4 if kind == Kind.LIFT else 1.0)
+            if (tick, lane) in sheet.limbs:
+                marks.append(mark(sheet.style, x, y, *sheet.limbs[tick, lane]))
+    yield from marks
+
+
+def _arrow(sheet: Sheet, lane: int, at: tuple[float, float], colour: str, opacity: float) -> str:
+    angle = sheet.arrows[lane]
+    move = f"translate({number(at[0])} {number(at[1])}) scale({number(sheet.style.arrow)})"
+    turn = f" rotate({number(angle)})" if angle else ""
+    return tag(
+        "use", href="#middle" if angle is None else "#arrow", transform=move + turn, fill=colour,
+        fill_opacity=opacity, stroke=sheet.style.colours["ink"], stroke_width="0.045",
+    )  # fmt: skip
+
+
+def _mine(style: SheetStyle, x: float, y: float) -> str:
+    r = style.arrow * 0.36
+    cross = (
+        f"M{number(x - r / 2)},{number(y - r / 2)} l{number(r)},{number(r)} m0,{number(-r)} l{number(-r)},{number(r)}"
+    )
+    return tag("circle", cx=x, cy=y, r=r, fill=style.colours["mine"]) + tag("path", d=cross, class_="cross")
+
+
+def mark(style: SheetStyle, x: float, y: float, limb: int, part: int) -> str:
+    """L in a disc, R in a square, hands in a lozenge: told apart without colours. Toes in small letters."""
+    half, colour = style.mark / 2, style.limbs[limb] if limb >= 0 else style.colours["mine"]
+    letter = LETTERS[limb] if limb >= 0 else "?"
+    letter = letter.lower() if part == Part.TOE else letter
+    ink = style.colours["ink"]
+    if limb == 0:
+        shape = tag("circle", cx=x, cy=y, r=half, fill=colour, stroke=ink, stroke_width=0.6)
+    elif limb == 1:
+        shape = tag("rect", x=x - half + 0.4, y=y - half + 0.4, width=style.mark - 0.8, height=style.mark - 0.8,
+                    fill=colour, stroke=ink, stroke_width=0.6)  # fmt: skip
+    else:
+        points = f"{number(x)},{number(y - half - 1)} {number(x + half + 1)},{number(y)} "
+        points += f"{number(x)},{number(y + half + 1)} {number(x - half - 1)},{number(y)}"
+        shape = tag("polygon", points=points, fill=colour, stroke=ink, stroke_width=0.6)
+    return shape + text(letter, x, y + 3.1, "mark", text_anchor="middle")
+
+
+def unsure_rows(sheet: Sheet) -> list[tuple[int, int, float]]:
+    """Row, tick and confidence in per cent of every row that is less sure than the style says; none if unknown."""
+    play = sheet.subject.play
+    if play is None or play.confidence is None:
+        return []
+    percent = 100 * play.confidence
+    rows = np.flatnonzero((percent < sheet.style.unsure) & play.rows.steps.any(axis=1))
+    return [(row, int(play.rows.tick[row]), float(percent[row])) for row in rows.tolist()]
+
+
+def _unsure_bands(sheet: Sheet, ticks: range) -> Iterator[str]:
+    """A band across each unsure row, behind its notes."""
+    for _, tick, percent in unsure_rows(sheet):
+        if tick in ticks:
+            left, width = sheet.layout.left(tick // TICKS_PER_MEASURE), sheet.layout.lanes * sheet.style.lane
+            told = title(f"whose foot it is here is {percent:.0f} % sure")
+            yield tag("rect", told, x=left, y=sheet.layout.y(tick) - 7, width=width, height=14, rx=4,
+                      fill=sheet.style.colours["unsure"], fill_opacity=_BAND_OPACITY)  # fmt: skip
+
+
+def _unsure_marks(sheet: Sheet, ticks: range) -> Iterator[str]:
+    """How sure each unsure row is, in per cent, at the corner of its last note: over the arrows beside it."""
+    play = sheet.subject.play
+    for row, tick, percent in unsure_rows(sheet):
+        if play is not None and tick in ticks:
+            lane = int(np.flatnonzero(play.rows.steps[row])[-1])
+            corner, x, y = sheet.style.arrow / 2, sheet.layout.x(tick, lane), sheet.layout.y(tick)
+            yield badge(sheet.style, x + corner - 1, y - corner + 3, percent)
+
+
+def badge(style: SheetStyle, x: float, y: float, percent: float) -> str:
+    """A confidence in per cent, white on a plate; x, y : its middle."""
+    plate = tag("rect", x=x - 7, y=y - 5, width=14, height=10, rx=3, fill=style.colours["unsure"],
+                stroke=style.colours["paper"], stroke_width=0.8)  # fmt: skip
+    return plate + text(f"{percent:.0f}", x, y + 3, "sure", text_anchor="middle")
+
+
+def _feet(sheet: Sheet, ticks: range) -> Iterator[str]:
+    """Small diagrams of the pad where the feet are crossed, as many as there is room for."""
+    play, pad = sheet.subject.play, sheet.subject.pad
+    if play is None or pad is None:
+        return
+    crossed = (np.abs(play.facing) > 90 + 1e-6) & play.rows.steps.any(axis=1) & (play.feet >= 0).all(axis=1)
+    last = (-1.0, -math.inf)
+    for row in np.flatnonzero(crossed).tolist():
+        tick = int(play.rows.tick[row])
+        if tick not in ticks:
+            continue
+        x = sheet.layout.left(tick // TICKS_PER_MEASURE) + sheet.layout.lanes * sheet.style.lane + 17
+        y = sheet.layout.y(tick)
+        if last[0] == x and y - last[1] < _FEET_SPACING:
+            continue
+        last = (x, y)
+        yield _pose(sheet, x, y, play.feet[row].tolist(), float(play.facing[row]))
+
+
+def _pose(sheet: Sheet, x: float, y: float, feet: Sequence[int], facing: float) -> str:
+    """The pad from above with the panels around the feet, and two soles that point where she faces."""
+    pad, style = sheet.subject.pad, sheet.style
+    assert pad is not None
+    middle = pad.panels[list(feet)].mean(axis=0)
+    near = [panel for panel in pad.panels if np.abs(panel - middle).max() <= 1.6]
+    near += [pad.panels[column] for column in feet if np.abs(pad.panels[column] - middle).max() > 1.6]
+    scale = 7.5
+    parts = []
+    for panel in near:
+        px, py = x + (panel[0] - middle[0]) * scale, y - (panel[1] - middle[1]) * scale
+        parts.append(tag("rect", x=px - 3.4, y=py - 3.4, width=6.8, height=6.8, rx=1, class_="panel"))
+    for limb, column in enumerate(feet):
+        px, py = x + (pad.panels[column][0] - middle[0]) * scale, y - (pad.panels[column][1] - middle[1]) * scale
+        turn = f"rotate({number(-facing)} {number(px)} {number(py)})"
+        parts.append(
+            tag("ellipse", cx=px, cy=py, rx=2.4, ry=4.6, fill=style.limbs[limb], class_="sole", transform=turn)
+        )
+    return tag("g", title(f"crossed: facing {facing:g} degrees") + "".join(parts))
+
+
+def _findings(sheet: Sheet, ticks: range) -> Iterator[str]:
+    """A line across the row and the codes beside it."""
+    by_tick: dict[int, list[Finding]] = {}
+    for finding in sheet.findings:
+        if finding.beat is not None and (tick := round(finding.beat * TICKS_PER_BEAT)) in ticks:
+            by_tick.setdefault(tick, []).append(finding)
+    bottom = (-1.0, -math.inf)
+    for tick, found in sorted(by_tick.items()):
+        left = sheet.layout.left(tick // TICKS_PER_MEASURE)
+        right, y = left + sheet.layout.lanes * sheet.style.lane, sheet.layout.y(tick)
+        column = left
+        for finding in sorted(found, key=lambda f: ("error", "warning", "info").index(f.severity)):
+            colour = sheet.style.colours[finding.severity]
+            label = y if bottom[0] != column else max(y, bottom[1] + 9)
+            bottom = (column, label)
+            line = tag("path", d=f"M{number(left - 3)},{number(y)} H{number(right + 2)}", stroke=colour, class_="flag")
+            lead = tag("path", d=f"M{number(right + 31)},{number(y)} L{number(right + 33)},{number(label)}",
+                       stroke=colour, class_="flag")  # fmt: skip
+            code = text(finding.rule, right + 34, label + 2.5, "code", style=f"fill:{colour}")
+            yield tag("g", title(f"{finding.rule} {finding.message}") + line + lead + code)

@@ -1,0 +1,208 @@
+"""Where measures stand on a chart sheet, its sizes and colours (configs/sheet.yaml), and pieces of SVG."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
+from functools import cache
+from itertools import accumulate
+from typing import Any
+from xml.sax.saxutils import escape, quoteattr
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
+from dancetutor_cli.feet.limbs import hex_colour, limb_colours
+from dancetutor_cli.reports.terminal import safe
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.reading import config_path
+from dancetutor_cli.run.yaml_files import read
+
+# Pieces of SVG text: escaped, with short numbers.
+
+
+def number(value: float) -> str:
+    """As short as one decimal allows: "3", "2.5"."""
+    return f"{value:.1f}".rstrip("0").rstrip(".") if value != 0 else "0"
+
+
+def tag(name: str, inside: str = "", /, **attributes: object) -> str:
+    """An element. Attributes: underscores stand for hyphens, floats are shortened, None is left out."""
+    told = []
+    for key, value in attributes.items():
+        if value is None:
+            continue
+        text = number(value) if isinstance(value, float | int) else str(value)
+        told.append(f" {key.rstrip('_').replace('_', '-')}={quoteattr(text)}")
+    return f"<{name}{''.join(told)}>{inside}</{name}>" if inside else f"<{name}{''.join(told)}/>"
+
+
+def text(content: str, x: float, y: float, class_: str, **attributes: object) -> str:
+    """A line of text of other people: made safe and escaped."""
+    return tag("text", escape(safe(content)), x=x, y=y, class_=class_, **attributes)
+
+
+def title(content: str) -> str:
+    """What is shown when the pointer rests on an element."""
+    return f"<title>{escape(safe(content))}</title>"
+
+
+# Sizes and colours of the chart sheet: configs/sheet.yaml, with the colours of notes and feet.
+
+LETTERS = ("L", "R", "<", ">")  # by limb
+
+
+@dataclass(frozen=True, slots=True)
+class SheetStyle:
+    """Sizes in CSS pixels, colours as "#rrggbb".
+
+    unsure : per cent; rows whose feet are less sure are marked
+    beat : least and greatest height of a beat; limbs : by `feet.play.Limb`
+    quantisation : colour of a note by the coarsest grid it stands on (4 for 4ths ...)
+    """
+
+    page_width: float
+    page_height: float
+    heading: float
+    lane: float
+    arrow: float
+    mark: float
+    row_spacing: float
+    beat: tuple[float, float]
+    margin: float
+    gutter: float
+    density: float
+    unsure: float
+    colours: Mapping[str, str]
+    quantisation: Mapping[int, str]
+    limbs: tuple[str, ...]
+
+    def note_colour(self, tick: int) -> str:
+        """Colour of a note at a tick."""
+        finest = max(self.quantisation)
+        fits = (q for q in sorted(self.quantisation) if tick % max(TICKS_PER_MEASURE // q, 1) == 0)
+        return self.quantisation[next(fits, finest)]
+
+
+@cache
+def sheet_style() -> SheetStyle:
+    """The style of the project's configuration; FileError names what is missing or unknown."""
+    path = config_path("sheet.yaml")
+    data: dict[str, Any] = read(path).data
+    notes = read(config_path("highway.yaml")).data
+    data["quantisation"] = {int(grid): str(colour) for grid, colour in notes["quantisation"].items()}
+    data["limbs"] = tuple(hex_colour(rgb) for rgb in limb_colours().by_limb)
+    names = [field.name for field in fields(SheetStyle)]
+    if sorted(data) != sorted(names):
+        own = [name for name in names if name not in ("quantisation", "limbs")]
+        raise FileError(path, f"must have exactly these keys: {', '.join(own)}")
+    data["beat"] = (float(data["beat"][0]), float(data["beat"][1]))
+    return SheetStyle(**data)
+
+
+# Where measures stand on a sheet: columns of measures side by side, systems of columns one below the other.
+
+_COMMON_SHARE = 0.1  # a rhythm is common if at least this share of the distances between rows is as short
+_SHRUNK = 0.9  # a beat may be as much lower than the rhythm needs, so that one more measure fits the page
+_EDGE = 12.0  # beside the outermost columns
+_TOP = 18.0  # above the first measure of a column and below its last, for half an arrow
+
+
+@dataclass(frozen=True, slots=True)
+class SheetLayout:
+    """Places in CSS pixels: measures in columns, columns in systems, each system a page when printed.
+
+    beat : height of a beat; columns : side by side in a system
+    heights : for each system, how many measures its columns have
+    """
+
+    style: SheetStyle
+    lanes: int
+    measures: int
+    beat: float
+    columns: int
+    heights: tuple[int, ...]
+
+    @property
+    def column_width(self) -> float:
+        """Width of a column with its margin and gutter."""
+        return (self.style.page_width - 2 * _EDGE) / self.columns
+
+    @property
+    def measure_height(self) -> float:
+        """Height of a measure."""
+        return self.beat * 4
+
+    @property
+    def systems(self) -> int:
+        """How many systems the chart needs."""
+        return len(self.heights)
+
+    def system_height(self, system: int) -> float:
+        """Height of a system."""
+        return self.heights[system] * self.measure_height + 2 * _TOP
+
+    def measures_of(self, system: int) -> range:
+        """Measures of a system."""
+        before = sum(self.heights[:system]) * self.columns
+        return range(before, min(before + self.heights[system] * self.columns, self.measures))
+
+    def column_of(self, measure: int) -> range:
+        """Measures of the column that a measure stands in."""
+        system = self._system_of(measure)
+        here, height = self.measures_of(system), self.heights[system]
+        start = here.start + (measure - here.start) // height * height
+        return range(start, min(start + height, here.stop))
+
+    def left(self, measure: int) -> float:
+        """x of the first lane of a measure, inside its system."""
+        system = self._system_of(measure)
+        column = (measure - self.measures_of(system).start) // self.heights[system]
+        return _EDGE + column * self.column_width + self.style.margin
+
+    def top(self, measure: int) -> float:
+        """y of the start of a measure, inside its system."""
+        return _TOP + (measure - self.column_of(measure).start) * self.measure_height
+
+    def _system_of(self, measure: int) -> int:
+        starts = [0, *accumulate(height * self.columns for height in self.heights[:-1])]
+        return bisect_right(starts, measure) - 1
+
+    def x(self, tick: int, lane: int) -> float:
+        """Middle of a lane at a tick."""
+        return self.left(tick // TICKS_PER_MEASURE) + (lane + 0.5) * self.style.lane
+
+    def y(self, tick: int) -> float:
+        """Height of a tick."""
+        measure, inside = divmod(tick, TICKS_PER_MEASURE)
+        return self.top(measure) + inside / TICKS_PER_BEAT * self.beat
+
+
+def lay_out(ticks: NDArray[np.int64], lanes: int, style: SheetStyle, last: int = 0) -> SheetLayout:
+    """A layout for rows at these ticks: a beat as high as the chart's densest common rhythm needs.
+
+    last : tick of the last end of a hold
+    """
+    measures = max(int(ticks.max(initial=0)), last) // TICKS_PER_MEASURE + 1
+    gaps = np.diff(np.unique(ticks))
+    gap = float(np.quantile(gaps, _COMMON_SHARE)) if len(gaps) else TICKS_PER_BEAT
+    low, high = style.beat
+    beat = min(max(style.row_spacing * TICKS_PER_BEAT / gap, low), high)
+    room = style.page_height - 2 * _TOP
+    tallest = max(1, int(room // (beat * 4 * _SHRUNK)))
+    beat = min(room / tallest / 4, high)  # whole measures fill the page
+    first = max(1, int((room - style.heading) // (beat * 4)))
+    columns = max(1, int((style.page_width - 2 * _EDGE) // (style.margin + lanes * style.lane + style.gutter)))
+    return SheetLayout(style, lanes, measures, beat, columns, tuple(_heights(measures, columns, first, tallest)))
+
+
+def _heights(measures: int, columns: int, first: int, tallest: int) -> Iterator[int]:
+    """Measures in the columns of each system; the last one has no more than it needs to fill its columns."""
+    most = first
+    while measures > most * columns:
+        yield most
+        measures, most = measures - most * columns, tallest
+    yield max(1, math.ceil(measures / columns))

@@ -1,0 +1,176 @@
+"""What is read: the program's own configs, and files of strangers, bounded in kind, size and depth."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import stat
+from collections.abc import Iterator
+from functools import cache, lru_cache
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from dancetutor_cli.run.errors import FileError, MissingFileError, UnavailableError
+
+# Reads the files of strangers: only regular files, of a bounded size; JSON of a bounded depth, every name once.
+#
+# A folder of songs may hold anything: named pipes that never end, devices, links in circles, and files that somebody
+# has made to break whoever opens them. What is wrong is one line, which quotes nothing of a file's content.
+
+MEGABYTE = 1_000_000
+CHART_LIMIT = 64 * MEGABYTE  # the largest charts of real packs have four
+SETTINGS_LIMIT = MEGABYTE  # presets, layouts, dancetutor.yaml
+JSON_LIMIT = 256 * MEGABYTE  # plays and baselines of whole packs
+FONT_LIMIT = 128 * MEGABYTE  # those of all of East Asia have half of that
+MAX_DEPTH = 48  # mappings and lists inside of each other
+_FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
+_KINDS = (
+    (stat.S_ISDIR, "is a folder; it cannot be read as a file"),
+    (stat.S_ISFIFO, "is a named pipe, no file; it is not read"),
+    (stat.S_ISSOCK, "is a socket, no file; it is not read"),
+    (stat.S_ISCHR, "is a device, no file; it is not read"),
+    (stat.S_ISBLK, "is a device, no file; it is not read"),
+)
+
+
+def read_bytes(path: Path, limit: int) -> bytes:
+    """The content of a regular file of at most `limit` bytes.
+
+    Raises MissingFileError if there is none, FileError for a pipe, a device, a folder, a circle of links, too many
+    bytes, or what the system says.
+    """
+    try:
+        descriptor = os.open(path, _FLAGS)
+    except FileNotFoundError:
+        said = "is a link to a file that is not there" if os.path.islink(path) else "no such file or folder"  # noqa: PTH114
+        raise MissingFileError(path, f"cannot be read: {said}") from None
+    except (OSError, ValueError) as error:
+        said = f"cannot be read: {getattr(error, 'strerror', None) or error}"
+        is_too_long = getattr(error, "errno", None) == errno.ENAMETOOLONG  # so no file can have that name
+        raise (MissingFileError if is_too_long else FileError)(path, said) from None
+    try:
+        status = os.fstat(descriptor)
+        for is_kind, what in _KINDS:
+            if is_kind(status.st_mode):
+                raise FileError(path, what)
+        data = b""
+        if status.st_size <= limit:
+            with open(descriptor, "rb", closefd=False) as file:
+                data = file.read(status.st_size + 1)  # not more: a buffer of the whole limit would be made for it
+                if len(data) > status.st_size:
+                    data += file.read(limit + 1 - len(data))
+        if max(status.st_size, len(data)) > limit:  # it has grown, or has no size, as files of /proc
+            raise FileError(path, f"is larger than {limit / MEGABYTE:.3g} MB; it is not read")
+        return data
+    except (OSError, MemoryError) as error:
+        raise FileError(path, f"cannot be read: {getattr(error, 'strerror', None) or 'out of memory'}") from None
+    finally:
+        os.close(descriptor)
+
+
+def is_regular(path: Path) -> bool:
+    """Whether there is a regular file, links followed; never raises."""
+    try:
+        return stat.S_ISREG(path.stat().st_mode)
+    except (OSError, ValueError):
+        return False
+
+
+def leads_out(path: Path, folder: Path) -> bool:
+    """Whether a path leads out of a folder, by its name or by a link."""
+    try:
+        return not path.resolve().is_relative_to(folder.resolve())
+    except (OSError, RuntimeError, ValueError):  # RuntimeError: a circle of links, before Python 3.13
+        return True
+
+
+def read_json(path: Path, limit: int = JSON_LIMIT) -> Any:
+    """What a JSON file says; FileError as `read_bytes` and `parse_json`."""
+    return parse_json(read_bytes(path, limit), path)
+
+
+def parse_json(data: bytes, path: Path) -> Any:
+    """What JSON says, UTF-8 with or without a mark: depth at most `MAX_DEPTH`, only finite numbers, each name once.
+
+    path : for errors. Raises FileError with the place, never with the content.
+    """
+    try:
+        value = json.loads(
+            data.decode("utf-8-sig"), object_pairs_hook=_once, parse_float=_finite, parse_constant=_finite
+        )
+    except json.JSONDecodeError as error:
+        raise FileError(path, f"is not JSON: {error.msg}", error.lineno, error.colno) from None
+    except UnicodeDecodeError:
+        raise FileError(path, "is not JSON: the text is not UTF-8") from None
+    except RecursionError:
+        raise FileError(path, f"is nested deeper than {MAX_DEPTH} levels; it is not read") from None
+    except _BadValueError as error:
+        raise FileError(path, str(error)) from None
+    except ValueError:
+        raise FileError(path, "has a number of too many digits; it is not read") from None
+    if any(depth > MAX_DEPTH for depth in _depths(value)):
+        raise FileError(path, f"is nested deeper than {MAX_DEPTH} levels; it is not read")
+    return value
+
+
+class _BadValueError(ValueError):
+    """Something that JSON allows and we do not."""
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        seen: set[str] = set()
+        twice = next(name for name, _ in pairs if name in seen or seen.add(name))  # type: ignore[func-returns-value]
+        raise _BadValueError(f"has the name '{shown_key(twice)}' twice in one object; only one of them can be meant")
+    return found
+
+
+def _finite(text: str) -> float:
+    number = float(text)
+    if not isfinite(number):
+        raise _BadValueError("has a number that is infinite or none; write an ordinary one")
+    return number
+
+
+def _depths(value: Any) -> Iterator[int]:
+    """The depth of every mapping and list, without recursion."""
+    open_values = [(value, 1)] if isinstance(value, dict | list) else []
+    while open_values:
+        one, depth = open_values.pop()
+        yield depth
+        inside = one.values() if isinstance(one, dict) else one
+        open_values += [(below, depth + 1) for below in inside if isinstance(below, dict | list)]
+
+
+def shown_key(key: object) -> str:
+    """A key of a stranger's file for an error: short, on one line, without what harms a terminal."""
+    text = str(key)
+    plain = "".join(c if c.isprintable() else "?" for c in text[:40])
+    return plain + ("..." if len(text) > 40 else "")
+
+
+# Where the program's own data is: `configs/` and `charts/`, in a checkout or inside an installed wheel.
+
+PACKAGE = Path(__file__).resolve().parent.parent
+
+
+@cache
+def _root(name: str) -> Path:
+    for candidate in (PACKAGE / "_data" / name, PACKAGE.parent / name):
+        if candidate.is_dir():
+            return candidate
+    raise UnavailableError(f"the installation is incomplete: folder '{name}' is missing; install dancetutor again")
+
+
+@lru_cache(maxsize=256)
+def config_path(name: str) -> Path:
+    """Path of a file or folder in `configs/`, for example ``config_path("presets/thesis.yaml")``."""
+    return _root("configs") / name
+
+
+def charts_path() -> Path:
+    """The folder of the demo songs."""
+    return _root("charts")

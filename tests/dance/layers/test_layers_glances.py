@@ -1,0 +1,65 @@
+"""Glances: where there is time, never alike, mirrored for a mirror image."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from bake_mirror import mirrored_play
+from bake_plays import Event, L, R, chart, context, pad, play, stream
+
+from dancetutor_cli.dance.bake import bake, plan_of
+from dancetutor_cli.dance.foot_path import both_feet
+from dancetutor_cli.dance.layers import Glances, glances_at
+from dancetutor_cli.dance.quality.report import report
+from dancetutor_cli.dance.trajectory.posture import body_trajectory
+from dancetutor_cli.feet.play import Play
+
+SINGLE = np.array([3, 1, 2, 0])  # of each column its mirror image
+GRID = np.arange(0.0, 40.0, 1 / 60)
+SLOW: list[Event] = [(2.0 + 1.2 * k, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k in range(28)]
+
+
+def glanced(danced: Play) -> Glances:
+    where = context()
+    plan = plan_of(chart().timing, danced, pad())
+    body = body_trajectory(plan, GRID, both_feet(plan.feet, GRID, where.settings), where)
+    return glances_at(plan, body, GRID, where)
+
+
+@pytest.fixture(scope="module")
+def slow() -> Glances:
+    return glanced(play(SLOW))
+
+
+def test_in_slow_steps_she_looks_about(slow: Glances) -> None:
+    inner = (GRID > 3.0) & (GRID < 34.0)
+    yaw = np.degrees(slow.yaw[inner])
+    assert yaw.max() > 8.0 and yaw.min() < -8.0
+    assert 0.1 < (np.abs(yaw) > 2.0).mean() < 0.6, "mostly she looks at the screen"
+    assert np.degrees(slow.pitch).max() > 4.0 and np.degrees(np.abs(slow.tilt)).max() > 4.0
+    assert np.abs(np.diff(yaw)).max() < 4.0  # a frame
+
+
+def test_no_two_glances_are_alike(slow: Glances) -> None:
+    looks = np.abs(slow.pitch) > 1e-4
+    edges = np.flatnonzero(np.diff(looks.astype(int)))
+    runs = [slice(a + 1, b + 1) for a, b in zip(edges[::2], edges[1::2], strict=False)]
+    kinds = {(round(float(np.ptp(slow.yaw[run])), 3), round(float(np.ptp(slow.pitch[run])), 3)) for run in runs}
+    assert len(runs) > 4 and len(kinds) == len(runs)
+
+
+def test_in_a_stream_she_looks_at_the_screen() -> None:
+    fast = glanced(play(stream(2.0, 120, 0.15)))
+    during = (GRID > 3.0) & (GRID < 19.0)
+    assert not fast.yaw[during].any() and not fast.pitch[during].any() and not fast.eyes[during].any()
+
+
+def test_a_mirrored_play_glances_mirrored(slow: Glances) -> None:
+    image = glanced(mirrored_play(play(SLOW), SINGLE))
+    for name, sign in (("yaw", -1.0), ("tilt", -1.0), ("eyes", -1.0), ("pitch", 1.0)):
+        np.testing.assert_allclose(getattr(image, name), sign * getattr(slow, name), atol=1e-9)
+
+
+def test_neck_and_eyes_stay_within_their_limits() -> None:
+    measured = report(bake(chart().timing, play(SLOW[:8]), pad()))
+    assert measured["frames past joint limits"].value == 0.0

@@ -1,0 +1,113 @@
+"""Free arms: raised in streams, hanging in waits, never quite still and never one the mirror image of the other."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from bake_plays import L, R, chart, pad, play, stream
+
+from dancetutor_cli.dance.bake import bake
+from dancetutor_cli.dance.ik.hands import Torso
+from dancetutor_cli.dance.ik.targets import _out_from_a_lean
+from dancetutor_cli.dance.motion import Motion, sample
+from dancetutor_cli.dance.quality.report import report
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.dance.settings import default_settings
+
+STREAM, WAIT = np.arange(3.0, 6.5, 0.05), np.arange(9.0, 16.0, 0.05)
+
+
+@pytest.fixture(scope="module")
+def danced() -> Motion:
+    return bake(chart().timing, play([*stream(2.0, 40, 0.125), (17.0, {0: L}), (17.5, {3: R})]), pad())
+
+
+def hands(motion: Motion, at: np.ndarray) -> np.ndarray:
+    """Wrists (2, f, 3) as seen from their shoulders, in the world's axes, the right one mirrored."""
+    places, _ = world_transforms(motion.skeleton, *sample(motion, at))
+    index = motion.skeleton.index
+    out = np.stack([places[:, index(f"{s}_radiocarpal")] - places[:, index(f"{s}_shoulder")] for s in "lr"])
+    out[1, :, 0] *= -1.0
+    return out
+
+
+def test_hands_are_up_in_streams_and_hang_in_waits(danced: Motion) -> None:
+    busy, waiting = hands(danced, STREAM), hands(danced, WAIT)
+    for side in (0, 1):
+        assert busy[side, :, 1].mean() > waiting[side, :, 1].mean() + 0.04
+        assert waiting[side, :, 1].mean() < -0.38
+
+
+def test_hands_in_streams_are_aside_and_each_at_its_own_height(danced: Motion) -> None:
+    """Not both before the belly, as at a keyboard."""
+    busy, waiting = hands(danced, STREAM), hands(danced, WAIT)
+    more = busy.mean(axis=(0, 1)) - waiting.mean(axis=(0, 1))
+    assert more[0] > 0.04 and more[2] < 0.025
+    assert np.abs(busy[0] - busy[1])[:, 1].mean() > 0.06
+
+
+def test_forearms_are_not_held_level_in_streams(danced: Motion) -> None:
+    """A sleepwalker's or a boxer's are; what swings through is not held."""
+    places, _ = world_transforms(danced.skeleton, *sample(danced, STREAM))
+    index = danced.skeleton.index
+    for side in "lr":
+        forearm = places[:, index(f"{side}_radiocarpal")] - places[:, index(f"{side}_elbow")]
+        level = np.abs(forearm[:, 1]) < np.sin(np.radians(15.0)) * np.linalg.norm(forearm, axis=1)
+        edges = np.flatnonzero(np.diff(np.concatenate(([False], level, [False])).astype(int)))
+        assert (edges[1::2] - edges[::2]).max(initial=0) * 0.05 <= 0.4
+
+
+@pytest.mark.parametrize(("gap", "least", "most"), [(1.2, 0.10, 0.30), (0.30, 0.0, 0.06)])
+def test_both_arms_swing_up_in_jumps_and_down_as_she_lands(gap: float, least: float, most: float) -> None:
+    """By the jump's height: those for which there is little time have little of it."""
+    jumps = [(2.0 + gap * k, {(0, 1)[k % 2]: L, (3, 2)[k % 2]: R}) for k in range(8)]
+    motion = bake(chart().timing, play(jumps), pad())
+    land = jumps[4][0]
+    up, crouched, landed = (
+        hands(motion, np.arange(land + first, land + last, 0.01))[..., 1]
+        for first, last in ((-0.22, 0.0), (-0.5, -0.2), (0.0, 0.28))
+    )
+    for low in (crouched, landed):
+        rise = up.max(axis=1) - low.min(axis=1)
+        assert least < rise.min() and (rise.max() < most or least > 0.0)
+
+
+def test_hands_are_never_quite_still_nor_mirror_images(danced: Motion) -> None:
+    waiting = hands(danced, WAIT)
+    assert np.ptp(waiting, axis=1).max(axis=1).min() > 0.015
+    assert np.linalg.norm(waiting[0] - waiting[1], axis=1).mean() > 0.012
+
+
+def test_wrists_of_free_hands_are_bent_a_little(danced: Motion) -> None:
+    rotations, _ = sample(danced, WAIT)
+    for side in "lr":
+        turned = quat.angle_between(rotations[:, danced.skeleton.index(f"{side}_radiocarpal")], quat.IDENTITY)
+        assert 5.0 < np.degrees(turned).mean() < 30.0
+
+
+def test_no_arm_is_in_a_trunk_that_leans_far_aside() -> None:
+    """Wide steps to and fro on two pads: the hand of the higher shoulder would hang against the trunk."""
+    events = [(1.0 + 0.8 * k, {(0, 4, 3, 7)[k % 4]: (R, L)[k % 2]}) for k in range(12)]
+    measured = report(bake(chart().timing, play(events, True), pad(True)))
+    assert [f.value for f in measured.figures if f.name == "limb in torso"] == [0.0]
+
+
+def test_no_hand_hangs_in_hips_that_turn_and_sway() -> None:
+    """From panel to panel over two pads and back, two steps a second: the hips are ahead of the shoulders."""
+    events = [(1.0 + 0.5 * k, {(0, 1, 2, 3, 4, 5, 6, 7, 6, 5, 4, 3, 2, 1)[k % 14]: (L, R)[k % 2]}) for k in range(20)]
+    measured = report(bake(chart().timing, play(events, True), pad(True)))
+    assert [f.value for f in measured.figures if f.name in ("limb in torso", "arm in leg")] == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_the_hand_of_the_higher_shoulder_goes_outward(side: int) -> None:
+    """A trunk that leans 20 degrees aside; both wrists hang straight down."""
+    arms, out = default_settings().arms, (1.0, -1.0)[side]
+    turn = quat.from_axis_angle(np.array([0.0, 0.0, 1.0]), np.radians(np.array([0.0, 20.0 * out])))
+    shoulders = quat.rotate(turn[:, None], np.array([[0.16, 0.5, 0.0], [-0.16, 0.5, 0.0]]))
+    wrists = shoulders - [0.0, 0.36, 0.0]
+    way = _out_from_a_lean(wrists, Torso(shoulders, turn), np.tile(quat.IDENTITY, (2, 1)), arms)
+    assert np.abs(way[0]).max() == 0.0
+    assert way[1, side, 0] * out == pytest.approx(arms.aside_out, abs=0.002)
+    assert np.abs(way[1, 1 - side]).max() == 0.0

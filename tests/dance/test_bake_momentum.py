@@ -1,0 +1,62 @@
+"""Chest and arms turn against the legs: the whole body has less momentum about the vertical than without that."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bake_plays import MEDLEY, L, R, chart, pad, play
+
+from dancetutor_cli.dance import settle
+from dancetutor_cli.dance.bake import bake
+from dancetutor_cli.dance.motion import Motion, sample
+from dancetutor_cli.dance.quality.report import report
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import mass_points, world_transforms
+from dancetutor_cli.dance.settings import default_settings
+
+RATE = 120.0
+
+
+def momentum(motion: Motion, start: float, end: float) -> np.ndarray:
+    """Momentum about the vertical through the centre of mass (f,), of point masses, m^2/s per mass of the body."""
+    rotations, root = sample(motion, np.arange(start, end, 1.0 / RATE))
+    places, world = world_transforms(motion.skeleton, rotations, root)
+    joints, masses, offsets = mass_points(motion.skeleton)
+    points = places[:, joints] + quat.rotate(world[:, joints], offsets)
+    arms = points - np.einsum("m,fmx->fx", masses, points)[:, None]
+    speeds = np.gradient(arms, 1.0 / RATE, axis=0)
+    return np.einsum("m,fm->f", masses, arms[..., 2] * speeds[..., 0] - arms[..., 0] * speeds[..., 2])
+
+
+def test_the_whole_body_turns_less_than_with_a_stiff_chest() -> None:
+    dance = play([e for e in MEDLEY if e[0] < 11.5])
+    settings = default_settings()
+    stiff = replace(settings, arms=replace(settings.arms, twist=0.0))
+    loose, still = (momentum(bake(chart().timing, dance, pad(), settings=s), 2.0, 11.5) for s in (settings, stiff))
+    assert np.sqrt(np.mean(loose**2)) < 0.9 * np.sqrt(np.mean(still**2))
+
+
+def test_the_chest_does_not_turn_far_for_it() -> None:
+    settings = default_settings()
+    dance = play([e for e in MEDLEY if e[0] < 11.5])
+    at = np.arange(2.0, 11.5, 0.02)
+    yaws = []
+    for arms in (settings.arms, replace(settings.arms, twist=0.0)):
+        motion = bake(chart().timing, dance, pad(), settings=replace(settings, arms=arms))
+        places, _ = world_transforms(motion.skeleton, *sample(motion, at))
+        across = places[:, motion.skeleton.index("l_shoulder")] - places[:, motion.skeleton.index("r_shoulder")]
+        yaws.append(np.arctan2(-across[:, 2], across[:, 0]))
+    apart = np.degrees((yaws[0] - yaws[1] + np.pi) % (2 * np.pi) - np.pi)
+    assert 2.0 < np.abs(apart).max() < settings.arms.twist + 3.0
+
+
+def test_the_weight_makes_up_for_legs_that_swing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a stream the ground has less to supply that it cannot, and her hips are no more jerked for it."""
+    dance = play([(1.0 + 0.14 * k, {(0, 1, 3, 2, 0, 2, 3, 1)[k % 8]: (L, R)[k % 2]}) for k in range(48)])
+    with_it = report(bake(chart().timing, dance, pad()))
+    monkeypatch.setattr(settle, "moved_by_turning", lambda _, places, *rest: np.zeros((len(places), 2)))
+    without = report(bake(chart().timing, dance, pad()))
+    assert with_it["residual moment, median"].value < 0.9 * without["residual moment, median"].value
+    assert with_it["jerk of the root"].value < without["jerk of the root"].value

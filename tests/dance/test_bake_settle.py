@@ -1,0 +1,26 @@
+"""The fixed point of a bake: each round knows better where the centre of mass is, and tells how far it was off."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from bake_plays import MEDLEY, chart, pad, play, stream
+
+from dancetutor_cli.dance.bake import planned
+from dancetutor_cli.dance.foot_path import both_feet
+from dancetutor_cli.dance.settle import ROUNDS, ROUNDS_WITH_PALMS, Settled, settle
+
+
+def settled(events: list, until: float) -> Settled:  # type: ignore[type-arg]
+    plan, context = planned(chart().timing, play(events), pad())
+    grid = np.arange(240.0, 240.0 * until) / 240.0
+    return settle(plan, grid, both_feet(plan.feet, grid, context.settings), context)
+
+
+@pytest.mark.parametrize(("events", "rounds"), [(stream(2.0, 16, 0.25), ROUNDS), (MEDLEY, ROUNDS_WITH_PALMS)])
+def test_residuals_shrink_round_by_round(events: list, rounds: int) -> None:  # type: ignore[type-arg]
+    found = settled(events, events[-1][0] + 1.0)
+    assert found.rounds == rounds == len(found.residuals)
+    assert found.residuals[0] > 0.02  # the rest pose knows nothing of bent knees and arms
+    assert found.residuals[-1] < 0.7 * found.residuals[0]
+    assert np.isfinite(found.trajectory.ground).all() and not found.trajectory.softened

@@ -1,0 +1,110 @@
+"""Pushed and tripped: she gives way, takes the notes or says which she misses, and stands as before within a second."""
+
+import bake_plays as plays
+import numpy as np
+import pytest
+
+from dancetutor_cli.dance.bake import bake
+from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.physics.pipeline import Wishes, through_ragdoll
+from dancetutor_cli.dance.physics.pushes import Push, Stumble, parse_push
+from dancetutor_cli.dance.physics.style import load_style
+from dancetutor_cli.dance.quality.report import report
+from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.run.errors import UsageError
+
+NEUTRAL = load_style("neutral")
+WHEN = 1.72
+
+
+@pytest.fixture(scope="module")
+def plain() -> Motion:
+    turns = (0, 3, 1, 2, 0, 3, 2, 1)
+    events = [(1.0 + 0.3 * k, {c: (plays.L, plays.R)[k % 2]}) for k, c in enumerate(turns)]
+    return bake(plays.chart().timing, plays.play(events), plays.pad(), section=(0.6, 3.6))
+
+
+@pytest.fixture(scope="module")
+def undisturbed(plain: Motion) -> Motion:
+    return through_ragdoll(plain, NEUTRAL).motion
+
+
+def apart(one: Motion, other: Motion, joint: str) -> np.ndarray:
+    """Metres (f,) between a joint of two motions."""
+    k = one.skeleton.index(joint)
+    first, second = (world_transforms(m.skeleton, m.rotations, m.root)[0][:, k] for m in (one, other))
+    return np.asarray(np.linalg.norm(first - second, axis=1))
+
+
+@pytest.mark.parametrize("degrees", [0.0, 90.0, 180.0])
+def test_300_newtons_move_her_and_she_takes_every_note(plain: Motion, undisturbed: Motion, degrees: float) -> None:
+    made = through_ragdoll(plain, NEUTRAL, Wishes(pushes=(Push(WHEN, 300.0, degrees),))).motion
+    away = apart(made, undisturbed, "skullbase")
+    assert away.max() >= 0.05, "she gives way"
+    assert away[made.times < WHEN - 0.04].max() < 0.005, "not before"
+    assert away[made.times > WHEN + 1.0].max() < 0.005, "and stands as before"
+    measured = report(made)
+    for name in ("contact error", "contacts missed", "plant slide", "penetration", "frames past joint limits"):
+        assert measured[name].met, measured[name]
+    assert len(made.contacts) == len(plain.contacts)
+    assert made.notes[-1].startswith("pushed at 1.720 s with 300 N: her hips give way by ")
+    assert made.notes[-1].endswith("; no note is missed")
+
+
+def test_a_push_to_her_left_moves_her_to_her_left(plain: Motion, undisturbed: Motion) -> None:
+    left, right = (
+        through_ragdoll(plain, NEUTRAL, Wishes(pushes=(Push(WHEN, 300.0, d),))).motion.root - undisturbed.root
+        for d in (90.0, 270.0)
+    )
+    assert left[:, 0].max() > 0.04 > left[:, 0].min() + 0.03 and right[:, 0].min() < -0.04
+
+
+def test_nobody_stands_a_shove_of_1500_newtons_and_the_notes_missed_are_named(plain: Motion) -> None:
+    made = through_ragdoll(plain, NEUTRAL, Wishes(pushes=(Push(WHEN, 1500.0, 270.0),))).motion
+    missed = [c for c in plain.contacts if WHEN <= c.start < WHEN + 0.8]
+    assert len(made.contacts) == len(plain.contacts) - len(missed) < len(plain.contacts)
+    for contact in missed:
+        assert f"{contact.start:.3f} s column {contact.column} (" in made.notes[-1]
+    measured = report(made)
+    assert measured["contact error"].met and measured["contacts missed"].met, "of those that she takes"
+    assert measured["frames past joint limits"].met
+
+
+def test_a_caught_foot_is_late_and_she_pitches_ahead(plain: Motion, undisturbed: Motion) -> None:
+    made = through_ragdoll(plain, NEUTRAL, Wishes(trips=(Stumble(WHEN),))).motion
+    assert apart(made, undisturbed, "skullbase").max() >= 0.05
+    feet = [apart(made, undisturbed, f"{s}_talocrural") for s in "lr"]
+    assert max(f.max() for f in feet) > 0.03 and min(f.max() for f in feet) < 0.003, "one foot"
+    assert max(f[made.times > WHEN + 1.0].max() for f in feet) < 0.001
+    assert "foot is caught; missed: " in made.notes[-1]
+    assert report(made)["contact error"].met and report(made)["penetration"].met
+
+
+def test_two_runs_give_the_same_bytes(plain: Motion) -> None:
+    runs = [through_ragdoll(plain, NEUTRAL, Wishes(pushes=(Push(WHEN, 400.0, 45.0),))).motion for _ in range(2)]
+    assert runs[0].rotations.tobytes() == runs[1].rotations.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("12:300", "give TIME:FORCE:DIRECTION, for example 12.5:300:left"),
+        ("x:300:left", "the time 'x' is not a number"),
+        ("nan:300:left", "the time 'nan' is not a number"),
+        ("12:0:left", "the force must be more than 0 and at most 3000 newtons"),
+        ("12:300:lef", r"no direction 'lef' \(did you mean left\?\); there are: ahead, left, back, right, or degrees"),
+        ("12:300:400", "the direction must be at most 360 degrees"),
+        ("12:300:nan", "the direction must be at most 360 degrees"),
+    ],
+)
+def test_a_push_that_is_none_is_said_in_one_line(text: str, said: str) -> None:
+    with pytest.raises(UsageError, match=said):
+        parse_push(text)
+
+
+def test_pushes_outside_of_the_motion_are_refused(plain: Motion) -> None:
+    assert parse_push("12.5:300:Back") == Push(12.5, 300.0, 180.0) and parse_push("1:2:-45").degrees == -45
+    with pytest.raises(UsageError, match=r"--push 9: the motion lasts from 0\.600 s to 3\.600 s"):
+        through_ragdoll(plain, NEUTRAL, Wishes(pushes=(Push(9.0, 300.0, 0.0),)))
+    with pytest.raises(UsageError, match=r"--trip 3\.59: no foot is in the air from then on"):
+        through_ragdoll(plain, NEUTRAL, Wishes(trips=(Stumble(3.59),)))

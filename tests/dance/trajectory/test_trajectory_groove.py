@@ -1,0 +1,104 @@
+"""Her trunk in jacks: it goes with the beat, not in streams, never twice alike, within the goals."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bake_mirror import mirrored_play
+from bake_plays import Event, L, R, chart, context, pad, play
+
+from dancetutor_cli.dance.bake import bake_plan, plan_of
+from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.quality.figures import Body, body_of
+from dancetutor_cli.dance.quality.report import report
+from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
+from dancetutor_cli.dance.trajectory.groove import Engaged, Groove, groove_of, repeated
+
+BEATS = tuple(np.arange(0.0, 20.0, 0.5))
+TIMES = np.arange(0.0, 12.0, 1.0 / 240.0)
+STILL = np.zeros(len(TIMES))
+SINGLE = np.array([3, 1, 2, 0])
+
+
+def jack(gap: float, count: int = 24) -> list[Event]:
+    return [(2.0 + gap * k, {0: L}) for k in range(count)]
+
+
+def stream(gap: float, count: int = 24) -> list[Event]:
+    return [(2.0 + gap * k, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k in range(count)]
+
+
+def heard(groove: bool = True) -> Context:
+    out = replace(context(), beats=BEATS)
+    still = replace(out.settings.groove, lean=0.0, twist=0.0, nod=0.0, shrug=0.0, hands=0.0, jack=0.0)
+    return out if groove else replace(out, settings=replace(out.settings, groove=still))
+
+
+def groove(events: list[Event], tempo: float = 0.0, busy: float = 0.0, waits: float = 0.0) -> Groove:
+    engaged = Engaged(STILL + tempo, STILL + busy, STILL + waits)
+    return groove_of(plan_of(chart().timing, play(events), pad()), TIMES, engaged, heard())
+
+
+def test_what_is_tapped_again_is_found() -> None:
+    settings = context().settings
+    jacks, steps = (plan_of(chart().timing, play(events), pad()) for events in (jack(0.25), stream(0.25)))
+    inside = (TIMES > 3.0) & (TIMES < 7.0)
+    assert repeated(jacks, TIMES, settings)[inside].min() > 0.99
+    assert repeated(steps, TIMES, settings).max() < 0.01
+
+
+def test_jumps_are_no_jacks_and_one_tap_in_a_stream_is_nothing() -> None:
+    settings = context().settings
+    jumps = [(2.0 + 0.5 * k, {0: L, 3: R}) for k in range(12)]
+    assert repeated(plan_of(chart().timing, play(jumps), pad()), TIMES, settings).max() < 0.01
+    assert np.abs(groove(jumps).sway[(TIMES > 3.0) & (TIMES < 7.0)]).max() < 0.1, "straight up"
+    one = [*stream(0.25, 8), (4.0, {3: R}), *[(4.25 + 0.25 * k, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k in range(8)]]
+    assert repeated(plan_of(chart().timing, play(one), pad()), TIMES, settings).max() < 0.5
+
+
+def test_she_sways_from_side_to_side_on_beats_and_never_alike() -> None:
+    sway = groove(jack(0.25, 36)).sway
+    inside = (TIMES > 3.0) & (TIMES < 9.0)
+    turns = TIMES[1:-1][(np.diff(np.sign(np.diff(sway))) != 0) & inside[1:-1]]
+    assert len(turns) >= 7 and np.abs(turns / 0.5 - np.round(turns / 0.5)).max() < 0.02
+    ends = np.abs(sway[np.searchsorted(TIMES, turns)])
+    assert len(np.unique(np.round(ends, 3))) == len(ends) and np.ptp(ends) > 0.1
+
+
+@pytest.mark.parametrize("other", [{"tempo": 1.0}, {"busy": 1.0}, {"waits": 1.0}])
+def test_there_is_none_in_streams_with_busy_hands_or_in_waits(other: dict[str, float]) -> None:
+    assert not groove(stream(0.125, 40), **other).sway.any()
+
+
+def test_the_mirror_image_sways_the_other_way() -> None:
+    events = jack(0.25)
+    image = plan_of(chart().timing, mirrored_play(play(events), SINGLE), pad())
+    other = groove_of(image, TIMES, Engaged(STILL, STILL, STILL), heard())
+    np.testing.assert_allclose(other.sway, -groove(events).sway, atol=1e-12)
+    np.testing.assert_allclose(other.sink, groove(events).sink, atol=1e-12)
+
+
+def danced(events: list[Event], groove: bool) -> Motion:
+    return bake_plan(plan_of(chart().timing, play(events), pad()), heard(groove), 60.0, (3.0, 7.0))
+
+
+def moves(body: Body, joint: str) -> float:
+    """How far a joint goes from where it is on average over a second and a half, metres."""
+    path = body.joints[:, dancer_skeleton().index(joint)]
+    wide = np.ones(90) / 90
+    calm = np.column_stack([np.convolve(axis, wide, "valid") for axis in path.T])
+    return float(np.sqrt(np.mean(np.sum((path[45 : 45 + len(calm)] - calm) ** 2, axis=1))))
+
+
+@pytest.mark.parametrize("gap", [0.25, 0.375])
+def test_shoulders_hands_and_head_take_part_in_jacks_within_the_goals(gap: float) -> None:
+    still, lively = (danced(jack(gap), on) for on in (False, True))
+    before, after = body_of(still), body_of(lively)
+    for joint, more in (("l_shoulder", 1.3), ("r_shoulder", 1.3), ("skullbase", 1.2), ("r_radiocarpal", 1.5)):
+        assert moves(after, joint) > more * moves(before, joint), joint
+    measured = report(lively)
+    assert [f.name for f in measured.figures if f.met is False] == []
+    assert measured["jerk of the head"].value < 120.0

@@ -1,0 +1,168 @@
+"""The marks of who steps a note: beside an arrow's tip, and none over another where notes are dense."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from film_plans import film_plan
+
+from dancetutor_cli.chart.model import Kind
+from dancetutor_cli.film.overlay import sprites
+from dancetutor_cli.film.overlay.highway import Highway, Score
+from dancetutor_cli.film.overlay.marks import HighwayGeometry
+from dancetutor_cli.film.overlay.text import Typeface
+from dancetutor_cli.film.scroll import parse_scroll
+
+FACE = Typeface()
+NARROW, USUAL, PHONE = (0, 0, 512, 672), (0, 0, 400, 672), (0, 0, 940, 800)
+
+
+def highway(seconds: list[float], limbs: list[int], lane: float, box: tuple[int, int, int, int]) -> Highway:
+    """One lane of notes; C60 makes a second as long as a lane is wide."""
+    plan = film_plan(np.array(seconds))
+    alone = np.zeros(len(seconds), np.int16)
+    notes = replace(plan.notes, column=alone, limb=np.array(limbs, np.int8))
+    score = Score(notes, replace(plan.presses, column=alone), plan.lines)
+    return Highway(score, HighwayGeometry(box, lane, 0.0, (0.0,)), parse_scroll("C60"), 120.0, FACE)
+
+
+@pytest.mark.parametrize("direction", [0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0])
+@pytest.mark.parametrize(("lane", "box"), [(40.0, NARROW), (76.0, USUAL), (139.0, PHONE)])
+def test_a_mark_stands_on_the_tail_of_an_arrow(direction: float, lane: float, box: tuple[int, int, int, int]) -> None:
+    """Of the arrow's half towards which it points most is to be seen beside the mark, which keeps to its lane.
+
+    In the middle of a lane of 40 pixels it left a third.
+    """
+    plan = film_plan(np.array([1.0]))
+    geometry = HighwayGeometry(box, lane, 50.0, (direction,))
+    alone = np.zeros(1, np.int16)
+    score = Score(replace(plan.notes, column=alone), replace(plan.presses, column=alone), plan.lines)
+    marks = Highway(score, geometry, parse_scroll("M300"), 120.0, FACE).marks
+    size = round(lane * sprites.highway_style().arrow)
+    arrow = sprites.arrow(size, direction, (200, 60, 60))[..., 3] > 128
+    y, x = np.mgrid[:size, :size] + 0.5 - size / 2
+    aside, below = marks.behind(direction)
+    radius = marks.of(direction) / 2
+    covered = (np.abs(x - aside) < radius) & (np.abs(y - below) < radius)
+    a = np.radians(direction)
+    ahead = x * np.sin(a) - y * np.cos(a) > 0
+    assert (arrow & ahead & ~covered).sum() > (0.85 if direction % 90 else 0.7) * (arrow & ahead).sum()
+    if not direction % 90 or lane > 40:  # the tail's end is seen whole, no crumbs of it
+        behind = y * np.cos(a) - x * np.sin(a) > (0.39 if direction % 90 else 0.4) * size
+        assert (arrow & behind).any() and not (np.hypot(x - aside, y - below) < radius)[behind].any()
+    assert abs(aside) + radius <= lane / 2 and abs(below) + radius <= lane / 2
+    frame = np.zeros((200, box[2], 3), np.uint8)
+    marks.draw(frame, 0, 100.0, marks.places(300.0))
+    rows, columns = np.nonzero(frame.any(axis=2))
+    middle = geometry.left + lane / 2
+    assert columns.mean() - middle == pytest.approx(aside, abs=1.5) and rows.mean() - 99.5 == pytest.approx(
+        below, abs=1.5
+    )
+
+
+@pytest.mark.parametrize(("lane", "box"), [(40.0, NARROW), (76.0, USUAL), (139.0, PHONE)])
+@pytest.mark.parametrize("apart", [0.5, 0.25, 0.12, 0.06, 0.01])
+@pytest.mark.parametrize(
+    "limbs",
+    [[0] * 12, [0, 1] * 6, [0, 0, 1, 1, 1, 0] * 2, [0, -1] * 6, [-1, 0, 1] * 4, [-1] * 12, [0, 1, 1, -1, -1, 0] * 2],
+)
+def test_no_mark_covers_another_however_dense_notes_are(
+    lane: float, box: tuple[int, int, int, int], apart: float, limbs: list[int]
+) -> None:
+    marks = highway([1 + apart * k for k in range(12)], limbs, lane, box).marks
+    places = marks.places(lane)
+    middle = places.side * 0.25 * lane
+    shown = np.flatnonzero(places.size)
+    for n, i in enumerate(shown):
+        for j in shown[n + 1 :]:
+            least = (places.size[i] + places.size[j]) / 2 - 1
+            assert max(abs(middle[i] - middle[j]), (j - i) * apart * lane) >= least, (i, j)
+    assert (places.size[shown] >= marks.least).all()
+    for limb in set(limbs) - {-1}:
+        assert places.size[limbs.index(limb)] > 0, "the first of each foot is marked"
+    assert (abs(middle) + places.size / 2 <= lane / 2).all()
+
+
+@pytest.mark.parametrize("limbs", [[0, 1] * 6, [0, -1, 1] * 4])
+def test_marks_have_the_room_that_there_is(limbs: list[int]) -> None:
+    """Whatever the spacing: sizes are found for few of them, and none is for more room than there is."""
+    marks = highway([1 + 0.25 * k for k in range(12)], limbs, 76.0, USUAL).marks
+    for spacing in np.geomspace(20.0, 300.0, 40).tolist():
+        places = marks.places(spacing)
+        shown = np.flatnonzero(places.size)
+        for i in shown.tolist():
+            for j in shown[shown > i].tolist():
+                if places.side[i] == places.side[j] or 0 in (places.side[i], places.side[j]):
+                    assert (j - i) * 0.25 * spacing >= (places.size[i] + places.size[j]) / 2 - 1e-6, (spacing, i, j)
+
+
+def test_a_cross_is_seen_between_marks_where_there_is_room_for_it() -> None:
+    marks = highway([1 + 0.25 * k for k in range(6)], [0, -1, 1, -1, 0, 1], 76.0, USUAL).marks
+    roomy = marks.places(4 * (marks.least + 6) * 1.0)
+    assert (roomy.size >= marks.least).all() and roomy.side.tolist() == [-1, 0, 1, 0, -1, 1]
+    assert (marks.places(2 * marks.least).size > 0).tolist()[1] is False, "a foot's mark comes before it"
+
+
+def test_marks_say_the_foot_by_their_side_where_notes_are_dense() -> None:
+    marks = highway([1.0, 1.1, 1.2, 3.0], [0, 1, 0, 1], 76.0, USUAL).marks
+    places = marks.places(76.0)
+    assert places.side.tolist() == [-1, 1, -1, 0]
+    assert places.size[3] == marks.of(0.0) == places.size.max(), "one with room is as large as ever"
+
+
+def test_notes_that_nobody_steps_have_no_mark() -> None:
+    mine = highway([1.0, 2.0], [-1, 0], 76.0, USUAL)
+    kinds = mine.notes.kind.copy()
+    kinds[0] = Kind.MINE
+    score = Score(replace(mine.notes, kind=kinds), mine.presses, mine.lines)
+    again = Highway(score, mine.geometry, parse_scroll("C60"), 120.0, FACE)
+    assert mine.marks.places(76.0).size[0] > 0, "a note that is let go has one"
+    assert (again.marks.places(76.0).size > 0).tolist() == [False, True]
+
+
+def test_an_arrow_that_comes_sooner_does_not_cover_a_mark() -> None:
+    """The second note's mark is as whole as it is alone."""
+    colours = []
+    for seconds in ([1.0, 1.45], [0.2, 1.45]):
+        drawn = highway(seconds, [0, 1], 76.0, USUAL)
+        frame = np.zeros((672, 400, 3), np.uint8)
+        drawn.draw(frame, 0.0, 0.0)
+        x, y = drawn.geometry.left + 38, 1.45 * 76 + drawn.marks.behind(0.0)[1]
+        half = drawn.marks.full // 2 - 5
+        colours.append(frame[round(y) - half : round(y) + half, round(x) - half : round(x) + half])
+    assert (colours[0] == colours[1]).all()
+
+
+@pytest.mark.parametrize("limb", [0, 1])
+def test_letters_of_a_small_picture_are_eight_pixels_high_on_diagonals_too(limb: int) -> None:
+    """The lane of a pump-single's GIF, 720x404."""
+    one = highway([1.0], [limb], 36.0, (0, 0, 230, 378)).marks
+    size = one.of(45.0)
+    letter = sprites.marker(size, limb, FACE)
+    dark = (letter[..., :3].max(axis=2) < 90) & (letter[..., 3] > 250)
+    y, x = np.mgrid[:size, :size] + 0.5 - size / 2
+    dark &= np.hypot(x, y) < 0.38 * size
+    assert np.ptp(np.flatnonzero(dark.any(axis=1))) + 1 >= 8
+
+
+@pytest.mark.parametrize("hollow", [False, True])
+@pytest.mark.parametrize("direction", [0.0, 45.0, 135.0, 225.0, 270.0, 315.0])
+def test_the_tail_of_an_arrow_is_darker_than_its_head(direction: float, hollow: bool) -> None:
+    """A mark on a tail as bright as the head was taken for the head: diagonal arrows seemed to point backwards."""
+    size = 72
+    arrow = sprites.arrow(size, direction, (120, 120, 120), hollow)
+    y, x = np.mgrid[:size, :size] + 0.5 - size / 2
+    a = np.radians(direction)
+    ahead, shown = (x * np.sin(a) - y * np.cos(a)) / (size / 2), arrow[..., 3] > 250
+    head, tail = (arrow[shown & part][:, :3].max() for part in (ahead > 0.2, ahead < -0.65))
+    assert tail < 0.55 * head
+
+
+@pytest.mark.parametrize("limb", [-1, 0, 1, 2, 3])
+def test_a_mark_on_a_note_has_a_light_and_a_dark_rim(limb: int) -> None:
+    """Cyan on blue and orange on red were hardly seen."""
+    mark = sprites.marker(32, limb, FACE, rim=True).astype(int)[16]
+    light, dark = mark[:, :3].min(axis=1) > 180, (mark[:, :3].max(axis=1) < 90) & (mark[:, 3] > 250)
+    assert light.any() and dark.any() and np.flatnonzero(light)[0] < np.flatnonzero(dark)[0] < 6

@@ -1,0 +1,82 @@
+"""Estimates in what `analyze` prints, in every format that has them."""
+
+from __future__ import annotations
+
+import csv
+import json
+import sys
+from io import StringIO
+
+import pytest
+from click.testing import CliRunner
+
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.commands.analyze import command
+from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
+from dancetutor_cli.lint.configuration import choice_of, load_configuration
+from dancetutor_cli.lint.results import from_bytes, to_bytes
+from dancetutor_cli.run.reading import charts_path
+
+DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
+
+
+def printed(*words: str) -> str:
+    result = CliRunner().invoke(command, [str(DEMO), "--no-cache", "--jobs", "1", "--exit-zero", *words])
+    assert result.exit_code in (0, 1), result.output
+    return result.stdout
+
+
+def test_text_tells_the_bill() -> None:
+    told = [line for line in printed("--full").splitlines() if line.startswith("plays like")]
+    assert len(told) == 6
+    assert "rest" in told[-1] or "+" in told[-1]
+    assert "on the scale" in told[0]
+
+
+def test_the_brief_form_tells_the_number_alone() -> None:
+    assert "plays like" in printed("--brief")
+    assert "streams +" not in printed("--brief", "--select", "DT501")
+
+
+def test_json_and_csv_tell_the_same() -> None:
+    charts = json.loads(printed("--format", "json"))["files"][0]["charts"]
+    lines = list(csv.DictReader(StringIO(printed("--format", "csv"))))
+    for chart, line in zip(charts, lines, strict=True):
+        told = chart["plays_like"]
+        assert float(line["plays_like"]) == pytest.approx(told["meter"])
+        assert line["meter_scale"] == told["scale"]
+        assert sum(told["terms"].values()) == pytest.approx(told["meter"], abs=0.1)
+
+
+def test_a_higher_rate_and_another_scale_are_told() -> None:
+    usual = json.loads(printed("--format", "json"))["files"][0]["charts"]
+    fast = json.loads(printed("--format", "json", "--rate", "1.3"))["files"][0]["charts"]
+    ddr = json.loads(printed("--format", "json", "--meter-scale", "ddr"))["files"][0]["charts"]
+    for a, b, c in zip(usual, fast, ddr, strict=True):
+        assert b["plays_like"]["meter"] > a["plays_like"]["meter"]
+        assert b["plays_like"]["rate"] == 1.3
+        assert b["findings"] == a["findings"]  # labels are of rate 1
+        assert (c["plays_like"]["scale"], c["plays_like"]["scale_known"]) == ("ddr", True)
+
+
+def test_a_chart_plays_like_the_same_whatever_is_asked_for() -> None:
+    """The song's other charts tell the scale of its meters, also when they are not asked for."""
+    whole = json.loads(printed("--format", "json"))["files"][0]["charts"]
+    for index in (0, 3, 4):
+        (alone,) = json.loads(printed("--format", "json", "--index", str(index)))["files"][0]["charts"]
+        assert alone["plays_like"] == whole[index]["plays_like"] and alone["findings"] == whole[index]["findings"]
+
+
+def test_a_kept_result_has_its_estimates() -> None:
+    configuration = load_configuration(None)
+    result = analyze_file(AnalyzeTask(DEMO, choice_of(None, configuration), Selection(), configuration.settings))
+    assert all(chart.estimate is not None for chart in result.charts)
+    assert from_bytes(to_bytes(result, "k"), "k") == result
+
+
+def test_kept_results_are_read_without_numpy() -> None:
+    import subprocess
+
+    code = "import dancetutor_cli.lint.results, sys; print('numpy' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
