@@ -61,5 +61,5 @@ def test_the_colours_of_a_palette(tmp_path: Path) -> None:
 
 def test_pictures_are_written_in_one_place() -> None:
     saving = re.compile(r"""\.save\(|imwrite|imopen|libwebp""")
-    found = {path.name for path in PACKAGE.rglob("*.py") if saving.search(path.read_text(encoding="utf-8"))}
-    assert found == {"run/pictures.py"}
+    files = [path for path in PACKAGE.rglob("*.py") if saving.search(path.read_text(encoding="utf-8"))]
+    assert files == [PACKAGE / "run" / "pictures.py"]

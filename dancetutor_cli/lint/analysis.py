@@ -9,21 +9,20 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.chart.density import Density, density
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.configuration import PresetChoice, mismatch, preset_for
 from dancetutor_cli.lint.findings import AUTO, AlternativeResult, Cause, Figures, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.lint.rule_settings import Settings
-from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.run.errors import FileError, NoChartsError
 from dancetutor_cli.run.process import keep_what_is_there
 
 if TYPE_CHECKING:
+    from dancetutor_cli.chart.density import Density
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.feet.preset import Preset
     from dancetutor_cli.lint.meters import Meters
+    from dancetutor_cli.lint.subject import ChartSubject
 
 
 # What is told of one chart of `analyze`: findings, and what else is wanted.
@@ -351,6 +350,9 @@ class Drawable:
 
 def drawable_charts(task: AnalyzeTask) -> Iterator[Drawable]:
     """The selected charts of a file that have notes; FileError if the file cannot be read."""
+    from dancetutor_cli.chart.density import density
+    from dancetutor_cli.lint.check import check_chart
+
     song = load_song(task)
     for subject in solved(song, task.selection.charts(song), task):
         if len(subject.chart.notes):

@@ -213,7 +213,7 @@ def test_inner_kernels_are_only_called_by_kernels() -> None:
         (path.relative_to(root.parent).with_suffix("").as_posix().replace("/", "."), node.name)
         for path, tree in trees.items()
         for node, is_inner in _kernels(tree)
-        if is_inner and path.parent.name != "play"  # whose stay functions of Python's
+        if is_inner and path.parent.name != "solver"  # whose stay functions of Python's
     }
     assert len(inner) > 40
     others = [*Path(__file__).parents[1].rglob("*.py"), *(Path(__file__).parents[2] / "tools").glob("*.py")]
