@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image, ImageSequence
 
-from dancetutor_cli.run.pictures import picture_bytes, read_palette, write_gif, write_webp
+from dancetutor_cli.run.pictures import picture_bytes, read_palette, texture_bytes, write_gif, write_webp
 
 PACKAGE = Path(__file__).resolve().parent.parent / "dancetutor_cli"
 
@@ -24,6 +24,7 @@ def test_a_picture_is_pillows_to_the_byte(suffix: str, shape: tuple[int, ...]) -
     out = io.BytesIO()
     Image.fromarray(pixels).save(out, suffix[1:], **options)
     assert picture_bytes(pixels, suffix, **options) == out.getvalue()  # type: ignore[arg-type]
+    assert texture_bytes(pixels, suffix, **options) == out.getvalue()  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("fps", [10, 25, 30, 60])

@@ -152,7 +152,7 @@ def command(file: Path, selection: Selection, dance: DanceOptions, result: Resul
     _allow_long(performance, section, file, result.yes)
     places = _Places(target, _report_file(result), result.plot)
     animation = Animation(performance, section, pooled(result.jobs))
-    for k, who in enumerate((dances, partner_of(dances))[: len(performance.dancers)]):
+    for k, who in enumerate((dances,) if len(performance.dancers) == 1 else (dances, partner_of(dances))):
         player = choice.parts[k].player
         own = places if len(performance.dancers) == 1 else places.of(player)
         _write(AnimatedDancer(animation, k, who), own, result.report_to is not None)

@@ -18,7 +18,7 @@ from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.run.files import write_atomic
-from dancetutor_cli.run.pictures import picture_bytes
+from dancetutor_cli.run.pictures import texture_bytes
 
 # Which keys of a motion each joint needs: a file need not repeat, for the sake of the feet, what hands and hair do.
 #
@@ -362,4 +362,4 @@ def _four_joints(mesh: Mesh) -> tuple[NDArray[Any], NDArray[Any]]:
 
 def _png(pixels: NDArray[np.uint8]) -> bytes:
     opaque = bool((pixels[..., 3] == 255).all())
-    return picture_bytes(pixels[..., :3] if opaque else pixels, compress_level=7)
+    return texture_bytes(pixels[..., :3] if opaque else pixels, compress_level=7)

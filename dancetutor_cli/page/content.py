@@ -21,7 +21,7 @@ from dancetutor_cli.film.scene.props import JOINT, bar_matrix, with_bar
 from dancetutor_cli.film.scene.scene import PANEL, SOLE_RADIUS, Scene
 from dancetutor_cli.formats.glb import clocks
 from dancetutor_cli.page.document import Blob
-from dancetutor_cli.run.pictures import picture_bytes
+from dancetutor_cli.run.pictures import texture_bytes
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
@@ -153,7 +153,7 @@ def _runs(material: NDArray[np.int32], side: NDArray[np.int64]) -> list[tuple[in
 
 
 def _webp(image: NDArray[np.uint8]) -> bytes:
-    return picture_bytes(image[..., :3], ".webp", quality=QUALITY, method=6)
+    return texture_bytes(image[..., :3], ".webp", quality=QUALITY, method=6)
 
 
 # What a page holds: chart, feet, findings and passages, the dancer and the look of the films, as plain data.
