@@ -73,7 +73,7 @@ build/venv-character/.ready: requirements-character.lock pyproject.toml | $(BIN)
 	@touch $@
 
 character: build/venv-character/.ready
-	@build/venv-character/bin/python tools/build_character.py
+	@build/venv-character/bin/python research/build_character.py
 
 bench: setup-dev
 	@$(BIN)/python tools/bench.py $(BENCH_ARGS)
@@ -87,11 +87,11 @@ kill-test: setup-dev
 	@$(BIN)/python tools/kill_test.py --count $(KILLS)
 
 fit: setup-dev
-	@$(BIN)/python tools/fit_weights.py $(FIT_ARGS)
+	@$(BIN)/python research/fit_weights.py $(FIT_ARGS)
 
 # CHARTS: a folder of charts whose meters are to be learned
 fit-meter: setup-dev
-	@$(BIN)/python tools/fit_meter.py $(CHARTS) $(FIT_ARGS)
+	@$(BIN)/python research/fit_meter.py $(CHARTS) $(FIT_ARGS)
 
 COUNT ?= 100
 motion-report: setup-dev

@@ -39,12 +39,12 @@ def comments(song: Song, chart: Chart) -> dict[int, str]:
 def test_both_files_come_from_the_script(tmp_path: Path) -> None:
     before = {p.name: p.read_bytes() for p in FOLDER.iterdir()}
     code = (
-        "import sys; sys.path.insert(0, 'tools'); import make_demo_song as m\n"
+        "import sys; sys.path.insert(0, 'research'); import make_demo_song as m\n"
         "from pathlib import Path; m.HERE = Path(sys.argv[1]); sys.argv[1:] = ['--charts-only']; m.main()"
     )
     subprocess.run([sys.executable, "-c", code, str(tmp_path)], cwd=ROOT, check=True)
     for path in tmp_path.iterdir():
-        assert path.read_bytes() == before[path.name], f"{path.name} is not what tools/make_demo_song.py writes"
+        assert path.read_bytes() == before[path.name], f"{path.name} is not what research/make_demo_song.py writes"
     assert {p.suffix for p in tmp_path.iterdir()} == {".ssc", ".sm"}
 
 

@@ -99,16 +99,18 @@ def test_links_between_pages_lead_somewhere(name: str) -> None:
 
 
 def test_the_tables_of_costs_are_those_of_the_presets() -> None:
-    spec = importlib.util.spec_from_file_location("cost_tables", ROOT / "tools" / "cost_tables.py")
+    spec = importlib.util.spec_from_file_location("cost_tables", ROOT / "research" / "cost_tables.py")
     assert spec is not None and spec.loader is not None
     tool = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(tool)
-    assert tool.tables() in PAGES["docs/cost-model.md"], "run tools/cost_tables.py"
+    assert tool.tables() in PAGES["docs/cost-model.md"], "run research/cost_tables.py"
 
 
 CITED = re.compile(r"\bdocs/([\w-]+\.(?:md|json|svg))")
 CITING = [
-    p for part in ("dancetutor_cli", "configs", "tests", "tools") for p in sorted((ROOT / part).rglob("*.[py][ya]*"))
+    path
+    for part in ("dancetutor_cli", "configs", "tests", "tools", "research")
+    for path in sorted((ROOT / part).rglob("*.[py][ya]*"))
 ]
 
 

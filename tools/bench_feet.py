@@ -5,10 +5,14 @@ takes some minutes.
 
 from __future__ import annotations
 
-import feet_data
-import fit_weights
+import sys
+from pathlib import Path
 
 from dancetutor_cli.feet import Preset, load_preset, solve
+
+sys.path.append(str(Path(__file__).resolve().parent.parent / "research"))
+import feet_data
+import fit_weights
 
 GOALS = {"song": "99", "pattern": "97", "pump-single": "97", "pump-double": "97", "pump-halfdouble": "97"}
 PEERS = {  # on songs, patterns and Pump charts that are not here; see docs/feet.md

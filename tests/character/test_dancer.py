@@ -213,7 +213,7 @@ def test_the_build_gives_the_same_bytes(tmp_path: Path) -> None:
     python = str(own) if own.exists() else sys.executable
     if subprocess.run([python, "-c", "import skimage, numba, scipy"], capture_output=True, check=False).returncode:
         pytest.skip("scikit-image is not here; `make character` sets it up")
-    command = [python, str(ROOT / "tools" / "build_character.py"), str(tmp_path)]
+    command = [python, str(ROOT / "research" / "build_character.py"), str(tmp_path)]
     subprocess.run(command, check=True, capture_output=True, cwd=ROOT, env={**os.environ, "PYTHONPATH": str(ROOT)})
     for name in ("dancer", "mannequin", "heels"):
         kept = ROOT / "dancetutor_cli" / "character" / "data" / f"{name}.glb"

@@ -1,4 +1,4 @@
-"""The fits of tools/fit_weights.py: true gradients, weights that learn what labels say, and an author's own preset."""
+"""The fits of research/fit_weights.py: true gradients, weights that learn what labels say, an author's own preset."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from play_rows import pad_of, rows_of
 from dancetutor_cli import feet as play
 from dancetutor_cli.feet.solver.engine import cost_at
 
-TOOLS = Path(__file__).parents[2] / "tools"
+RESEARCH = Path(__file__).parents[2] / "research"
 ITG = play.load_preset("itg")
 
 
 @pytest.fixture(scope="module")
 def tools() -> Iterator[SimpleNamespace]:
-    sys.path.insert(0, str(TOOLS))
+    sys.path.insert(0, str(RESEARCH))
     try:
         import feet_confidence
         import feet_data
@@ -29,7 +29,7 @@ def tools() -> Iterator[SimpleNamespace]:
 
         yield SimpleNamespace(confidence=feet_confidence, data=feet_data, fit=feet_fit, weights=fit_weights)
     finally:
-        sys.path.remove(str(TOOLS))
+        sys.path.remove(str(RESEARCH))
 
 
 @pytest.fixture(scope="module")

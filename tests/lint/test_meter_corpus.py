@@ -1,5 +1,5 @@
 """The shipped models on real charts: near their labels, and never easier faster. How far songs not seen are missed is
-measured by tools/fit_meter.py, see docs/meter.md; this notices if the program and the models grow apart."""
+measured by research/fit_meter.py, see docs/meter.md; this notices if the program and the models grow apart."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 from dancetutor_cli.lint.meter_model import model_for
 from dancetutor_cli.lint.meters import on_scale, scales_of, sized
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "tools"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "research"))
 from meter_data import Labelled, labelled, sorted_out
 
 

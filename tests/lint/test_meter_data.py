@@ -10,7 +10,7 @@ import pytest
 
 from dancetutor_cli.chart import parse
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "tools"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "research"))
 from meter_data import Families, Labelled, is_modded, placeholder, sorted_out
 
 GOOD = Labelled("a.sm", "", "t", "dance-single", "Hard", 9, 400, 100.0, ())

@@ -216,7 +216,8 @@ def test_inner_kernels_are_only_called_by_kernels() -> None:
         if is_inner and path.parent.name != "solver"  # whose stay functions of Python's
     }
     assert len(inner) > 40
-    others = [*Path(__file__).parents[1].rglob("*.py"), *(Path(__file__).parents[2] / "tools").glob("*.py")]
+    repository = Path(__file__).parents[2]
+    others = [path for part in ("tests", "tools", "research") for path in (repository / part).rglob("*.py")]
     trees.update({path: ast.parse(path.read_text("utf-8")) for path in others})
     for path, tree in trees.items():
         inside = frozenset(node for node, _ in _kernels(tree))

@@ -15,12 +15,14 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from unpacking import unpack
 
 from dancetutor_cli import chart as reader
 from dancetutor_cli import feet as play
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.feet import Pad, Rows, load_pad, overrides_for
+
+sys.path.append(str(Path(__file__).resolve().parent.parent / "tools"))
+from unpacking import unpack
 
 SHARED = Path(__file__).resolve().parent.parent.parent / "shared" / "data"
 FEET = SHARED / "feet"

@@ -61,7 +61,7 @@ PADS = {
     "pump-double": ("pump",),
 }
 HEAD = """\
-# How hard {pad} plays: meters that terms add up to, see docs/meter.md. By tools/fit_meter.py from {charts} charts.
+# How hard {pad} plays: meters that terms add up to, see docs/meter.md. By research/fit_meter.py from {charts} charts.
 # of: what is counted; seconds, how: in so many seconds before each row, the mean of all rows, or what 98 in 100 rows
 # do not exceed (count: of the whole chart). at, meters: the curve, which only rises. interval: 80 of 100 labels lie
 # between the estimate less `below` and plus `above`, by bands that end at `up_to`. alone: where no scale is told.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Make the demo song in charts/: synthesise the music and write its charts as .ssc and .sm.
 
-usage: .venv/bin/python tools/make_demo_song.py [--charts-only]
+usage: .venv/bin/python research/make_demo_song.py [--charts-only]
 
 The charts are written out below, one measure a line, in a short notation: panels `L D U R` of a single pad; `l d u r`
 and `L D U R` of the left and the right pad in doubles; `.` an empty row; behind a panel `(` starts a hold, `<` a roll,
