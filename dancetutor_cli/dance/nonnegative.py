@@ -14,6 +14,12 @@ _SMALL = 1e-12  # of a gradient, of what is new in a column
 def nonnegative_least_squares(columns: Array, target: Array) -> Array:
     """The x >= 0 (n,) for which |columns x - target| is least; Lawson and Hanson's active set.
 
+        minimise over x >= 0     |A x - b|^2 ,   A : columns, b : target
+
+    At the minimum the gradient w = A^T (b - A x) is 0 where x_j > 0, and at most 0 where x_j = 0. Columns enter by the
+    largest w_j; those that would turn negative leave. C. L. Lawson and R. J. Hanson, *Solving least squares problems*,
+    1974, chapter 23, algorithm NNLS. x has the unit of b by that of A.
+
     Parameters
     ----------
     columns : (m, n); m is small, since at most m of x are not 0 at a time; target : (m,)

@@ -23,6 +23,13 @@ REACH = 4  # nodes that a term touches at most, if nothing else is said: third d
 class BandedLeastSquares:
     """Collects terms  weight * (sum_i coefficients_i x[start + i] - target)^2 , finds the x (n, d) of least sum.
 
+    For terms k with weights w_k, rows a_k and targets t_k the minimum solves the normal equations
+
+        B x = r ,   B = sum_k w_k a_k a_k^T ,   r = sum_k w_k a_k t_k^T .
+
+    B is symmetric and has no entry further than `reach` - 1 from its diagonal: `bands[i, k]` is B[i, i + k]. It is
+    factored by a banded Cholesky decomposition. Units are those that the terms give x and t.
+
     Parameters
     ----------
     nodes : n, number of unknowns in time; width : d, number of paths solved at once with the same terms
@@ -167,6 +174,17 @@ def solve_surely(problem: BandedLeastSquares, limits: list[Limits], what: str) -
 
 def solve(problem: BandedLeastSquares, limits: list[Limits], most: int | None = None) -> Solution:
     """The least sum of a problem of width 1 within limits. Scale limits so that 1 is a usual value.
+
+        minimise over x, e     1/2 x^T B x - r^T x + sum_i e_i^2 / (2 give_i)
+        subject to             c_i^T x <= high_i + e_i ,   e_i = 0 where give_i is 0
+
+    B and r are those of `BandedLeastSquares`; each side of a limit is a row c_i of its own. With slack s and
+    multipliers z the conditions of a minimum are
+
+        B x - r + C^T z = 0 ,   C x + s - give z = high ,   s_i z_i = 0 ,   s, z >= 0
+
+    so that e = give z needs no unknown. Newton's steps towards s_i z_i = mu by S. Mehrotra, *On the implementation of a
+    primal-dual interior point method*, SIAM Journal on Optimization, 1992: a predictor with mu = 0, then a corrector.
 
     most : rounds after which it is given up, None for `ROUNDS`
     """

@@ -28,6 +28,12 @@ def smooth(s: ArrayLike) -> Array:
 def smooth_path(target: Array, weight: Array, rate: float, time_constant: float) -> Array:
     """The path near `target` whose jerk is least.
 
+        minimise over x     sum_k (w_k + 1e-6) |x_k - target_k|^2 + sum_k | (rate T)^3 D3 x_k |^2
+
+    D3 x_k = x_k+3 - 3 x_k+2 + 3 x_k+1 - x_k, so that rate^3 D3 x is the jerk in units of x per second cubed; T is
+    `time_constant`, w is `weight`. The least squares of `BandedLeastSquares`; a Whittaker smoother of third order
+    (E. T. Whittaker, *On a new method of graduation*, 1923).
+
     Parameters
     ----------
     target : (n, d), evenly spaced at `rate` per second; weight : (n,), how much each target counts, 1 is usual
