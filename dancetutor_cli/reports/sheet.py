@@ -20,6 +20,7 @@ _LEFT = 12.0
 _FACTS, _FACT = 66.0, 14.0  # the first line of facts, and how far apart they are
 _GAP = 22.0
 _LONG_LIST = 24  # more findings than these are listed in two columns
+_POLICY = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
 _FONT = "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 
 
@@ -58,8 +59,10 @@ def html_page(sheets: Sequence[tuple[Sheet, Sequence[str]]]) -> str:
     body = "\n".join(_article(sheet, facts) for sheet, facts in sheets)
     return (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>{escape(name)}</title>\n'
-        f'<meta name="viewport" content="width=device-width">\n<style>\n{_page_css(style)}</style>\n</head>\n'
-        f"<body>\n{body}\n</body>\n</html>\n"
+        f'<meta name="viewport" content="width=device-width">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">\n'
+        f"<style>\n{_page_css(style)}</style>\n</head>\n"
+        f"<body>\n<main>\n<h1>{escape(name)}</h1>\n{body}\n</main>\n</body>\n</html>\n"
     )
 
 
@@ -180,6 +183,7 @@ def _page_css(style: SheetStyle) -> str:
     return (
         f"body {{ margin: 16px auto; padding: 0 16px; max-width: 1500px; background: {colours['paper']}; "
         f"color: {colours['ink']}; font-family: {_FONT}; }}\n"
+        "h1 { position: absolute; width: 1px; height: 1px; margin: 0; overflow: hidden; clip-path: inset(50%); }\n"
         "figure { margin: 0 0 6px; break-inside: avoid; }\nsvg { width: 100%; height: auto; display: block; }\n"
         "article + article { break-before: page; }\n"
         "h2 { font-size: 15px; margin: 14px 12px 4px; break-after: avoid; }\n"
