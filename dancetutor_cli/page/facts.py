@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
@@ -27,22 +27,29 @@ if TYPE_CHECKING:
 BEATS_AFTER = 16  # that the page knows after the last note
 
 
+_LONGEST = 300  # letters of a title, an artist, a credit
+
+
 def words_of(song: Song, chart: Chart, preset: str) -> dict[str, str]:
     """Everything of people's that the page shows, as plain text; preset : its name."""
     return {
-        "title": clean(" ".join(part for part in (song.title or song.path.stem, song.subtitle) if part)),
-        "artist": clean(song.artist),
+        "title": _cut(clean(" ".join(part for part in (song.title or song.path.stem, song.subtitle) if part))),
+        "artist": _cut(clean(song.artist)),
         "badge": clean(f"{chart.difficulty} {chart.meter}"),
         "difficulty": chart.difficulty,
         "steps": chart.steps_type,
         "bpm": bpm_text(song, chart),
-        "credit": clean(chart.tags.get("CREDIT", "") or song.tags.get("CREDIT", "")),
+        "credit": _cut(clean(chart.tags.get("CREDIT", "") or song.tags.get("CREDIT", ""))),
         "file": clean(song.path.name),
         "music": clean(song.music),
         "preset": preset,
         "index": str(chart.index),
         "meter": str(chart.meter),
     }
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
 
 
 def ticks_of(chart: Chart) -> list[int]:
@@ -144,8 +151,28 @@ def told(passage: Passage) -> dict[str, Any]:
         "start": round(passage.start, 6),
         "end": round(passage.end, 6),
         "rate": round(passage.rate, 2),
+        "plain": passage.rate < _PLAIN and "," not in sentence(passage, languages()["en"]) and not passage.stream,
         "sentence": {name: sentence(passage, {**languages()["en"], **labels}) for name, labels in languages().items()},
     }
+
+
+_PLAIN = 3.0  # steps a second below which steps alone make no passage
+
+
+def differing(passages: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Passages as the page lists them, the hardest first.
+
+    `number` is the place among the hardest, as in `render --section hardest:3`. Those that are told in the same words
+    are one, with the measures of the rest in `again`; a few slow steps and nothing else are none.
+    """
+    out: dict[str, dict[str, Any]] = {}
+    for number, one in enumerate(passages, 1):
+        if one["plain"]:
+            continue
+        kept = out.setdefault(one["sentence"]["en"], {**one, "number": number, "again": []})
+        if kept["number"] != number:
+            kept["again"].append([one["from"], one["to"]])
+    return list(out.values())
 
 
 def _filled(labels: Mapping[str, str], name: str, count: int) -> str:

@@ -222,16 +222,16 @@ def _findings(solved: tuple[Solved, ...]) -> Iterator[Finding]:
 def _passages(solved: tuple[Solved, ...]) -> list[dict[str, Any]]:
     """The hardest passages, the hardest first; of two parts told with whose they are."""
     from dancetutor_cli.lint.passages import hardest
-    from dancetutor_cli.page.facts import told
+    from dancetutor_cli.page.facts import differing, told
 
     pairs = [(found, one.chart) for one in solved if one.play for found in hardest(one.play, one.chart.timing)]
     if len(solved) == 1:
-        return [told(passage) for passage, _ in pairs]
+        return differing([told(passage) for passage, _ in pairs])
     out = []
     for passage, chart in sorted(pairs, key=lambda one: -one[0].score):
         data = told(passage)
         out.append({**data, "sentence": {name: f"P{chart.player}: {text}" for name, text in data["sentence"].items()}})
-    return out
+    return differing(out)
 
 
 def _music(song: Song, chart: Chart) -> tuple[tuple[str, bytes] | None, tuple[str, ...]]:

@@ -69,12 +69,12 @@ def test_it_plays_loops_and_seeks(browser: Browser) -> None:
     assert second(browser) == pytest.approx(start + 1, abs=0.01) and text(browser, ".play") == "▶"
     browser.key("Home")
     browser.key("ArrowRight")
-    assert text(browser, ".where").startswith("m1 · beat 1") and second(browser) == pytest.approx(2.0, abs=0.01)
+    assert text(browser, ".where").startswith("m1 · beat 4 ·") and second(browser) == pytest.approx(2.0, abs=0.01)
     browser.key("ArrowRight")
     assert second(browser) == pytest.approx(2.25, abs=0.01)  # the next row is an eighth later
     browser.run("location.hash = '#m1-1.5@2'")
     browser.wait(
-        "document.querySelector('.said').textContent.startsWith('loop measure 1, beat 1 to measure 1, beat 2')"
+        "document.querySelector('.said').textContent.startsWith('loop measure 1, beat 4 to measure 1, beat 5')"
     )
     browser.key("i", "KeyI")  # no count-in: the loop is a second of music, half a second at this speed
     browser.key(" ", "Space")
@@ -235,7 +235,7 @@ def test_the_author_gives_the_other_foot_and_takes_files_home(browser: Browser, 
     about = text(browser, "#panel-author .about")
     assert "left L" in about and "The other foot is " in about and text(browser, "#panel-author .saved") == ""
     browser.key("o", "KeyO")
-    assert "measure 1, beat 1: R" in text(browser, ".changes")
+    assert "measure 1, beat 4: R" in text(browser, ".changes")
     browser.run("for (const b of document.querySelectorAll('#panel-author .column button')) b.click()")
     assert "play.json is in your downloads" in text(browser, "#panel-author .saved")
     browser.wait("Object.keys(window.saved).length === 3")

@@ -37,7 +37,7 @@ def test_presses_are_timed_and_misses_counted(flat: Browser, page_file: Path) ->
     flat.open(page_file)
     flat.run(pad_script())
     flat.run("location.hash = '#m0.5-1.5@0.25'")
-    flat.wait("document.querySelector('.said').textContent.includes('measure 0, beat 3 to measure 1, beat 2')")
+    flat.wait("document.querySelector('.said').textContent.includes('measure 0, beat 2 to measure 1, beat 5')")
     flat.key("i", "KeyI")
     flat.key("p", "KeyP")
     flat.key(" ", "Space")
@@ -57,7 +57,7 @@ def test_arrows_are_panels_while_somebody_plays_along(flat: Browser, page_file: 
     flat.key("Home")
     flat.key("ArrowRight")  # nobody plays along: to the first row, and to one between two beats
     flat.key("ArrowRight")
-    assert text(flat, ".where").startswith("m1 · beat 1.5 ·")
+    assert text(flat, ".where").startswith("m1 · beat 4.5 ·")
     flat.key("Home")
     flat.key("p", "KeyP")
     flat.key(" ", "Space")

@@ -37,7 +37,7 @@ def test_a_phone_shows_all_of_it_without_scrolling(browser: Browser, page_file: 
     for _ in range(2):
         browser.key("ArrowRight")  # between two beats, the longest text of it
     where, more = boxes(browser, ".where", ".more")
-    assert text(browser, ".where").startswith("m1 · beat 1.5") and where[2] <= more[0]
+    assert text(browser, ".where").startswith("m1 · beat 4.5") and where[2] <= more[0]
     assert browser.run("(e => e.scrollWidth <= e.clientWidth)(document.querySelector('.place'))")
     buttons = "[...document.querySelectorAll('button, select')].filter(b => b.offsetParent)"
     assert browser.run(f"{buttons}.filter(b => b.getBoundingClientRect().height < 44).map(b => b.textContent)") == []

@@ -1,11 +1,10 @@
 // The panel of playing along: keys and pads, waiting, help that fades, calibration, and how it went.
 
 import { el, toggle } from "./dom.js";
-import { keyName } from "./input.js";
 import { GOOD, WINDOW, latencyOf } from "./judge.js";
-import { HELPS } from "./practice.js";
 import { panelName } from "./labels.js";
 import { meanText, scoreText } from "./said.js";
+import { HELPS } from "./settings.js";
 
 const TAPS = 12; // clicks of a calibration
 const BETWEEN = 0.6; // seconds between them
@@ -24,8 +23,7 @@ export function alongPanel(app) {
   const calibrate = el("button", { type: "button", onclick: () => calibrateDialog(app) }, t("calibrate"));
   const show = () => {
     keys.replaceChildren(...app.doc.pad.names.map((/** @type {string} */ name, /** @type {number} */ k) =>
-      el("span", {}, `${panelName(app.t, name)} `, el("kbd", {}, keyName(app.input.keys[k])),
-        ...(app.input.arrows[k] ? [" ", el("kbd", {}, keyName(app.input.arrows[k]))] : []))));
+      el("span", {}, `${panelName(app.t, name)} `, ...app.input.names()[k].flatMap((key) => [el("kbd", {}, key), " "]))));
   };
   const refresh = () => {
     along.setAttribute("aria-pressed", String(app.practice.along));

@@ -3,13 +3,13 @@
 import { Chart } from "./chart.js";
 import { Transport } from "./clock.js";
 import { scrollSpeed } from "./highway.js";
-import { Input, keyName } from "./input.js";
+import { Input } from "./input.js";
 import { writeLink } from "./link.js";
 import { Motion } from "./motion.js";
-import { CAMERAS } from "./picture.js";
-import { HELPS, Practice } from "./practice.js";
+import { Practice } from "./practice.js";
+import { stretch } from "./places.js";
 import { Redance } from "./redance.js";
-import { FIRST_VIEW, loadNotes, loadSettings, saveNotes, saveSettings } from "./settings.js";
+import { CAMERAS, FIRST_VIEW, HELPS, loadNotes, loadSettings, saveNotes, saveSettings } from "./settings.js";
 import { Sound, clicksOf } from "./sound.js";
 import { speak } from "./words.js";
 
@@ -40,7 +40,7 @@ export class App {
     this.sound.clicks = clicksOf(this.chart, () => ({
       claps: this.claps, metronome: this.settings.metronome,
     }));
-    this.input = new Input(doc.pad.names, this.settings);
+    this.input = new Input(doc.pad.names, this.settings, doc.pad.directions);
     this.input.onPress = (press) => {
       this.fresh = true;
       this.practice.press(press.column, press.ago);
@@ -49,6 +49,7 @@ export class App {
     this.redance = new Redance(doc, this.chart, this.notes.feet);
     this.both = false; // the second dancer is shown
     this.chosen = -1; // note that the author looks at
+    this.chosenAt = NaN; // the second that stood then
     this.passage = -1; // of the list, that is looped
     this.fresh = true; // something is to be drawn
     this.drawn = NaN; // the second that was drawn last
@@ -104,6 +105,7 @@ export class App {
     if (name === "countIn") this.transport.countIn = Boolean(value);
     if (name === "volume") this.sound.volume = Number(value);
     if (name === "ramp" && !value) this.practice.endRamp();
+    if (name === "ramp") this.notice = value && !this.transport.loop ? this.t("rampNeedsLoop") : "";
     this.save();
     this.tell("settings");
   }
@@ -136,9 +138,19 @@ export class App {
   /** @param {number} second */
   seek(second) {
     this.notice = "";
+    this.leaveLoop(second);
     if (this.practice.along) this.practice.restart(second);
     this.transport.seek(second);
     this.practice.updateHold();
+  }
+
+  /** Whoever goes out of a loop has done with it. @param {number} second */
+  leaveLoop(second) {
+    const { loop } = this.transport;
+    if (!loop || (second >= this.transport.lead(loop.a) - 1e-3 && second <= loop.b + 1e-3)) return;
+    const where = stretch(this.t, this.chart.beatAt(loop.a) / 4, this.chart.beatAt(loop.b) / 4);
+    this.setLoop(null, null);
+    this.notice = this.t("loopLeft", { where });
   }
 
   /** Hold the pose of the next row or the one before. @param {number} by */
@@ -149,7 +161,32 @@ export class App {
     const now = this.chart.rowAt(this.transport.at);
     const on = now >= 0 && Math.abs(rows[now] - this.transport.at) < 2e-3;
     const next = by > 0 ? now + 1 : on ? now - 1 : now;
-    this.seek(rows[Math.min(Math.max(next, 0), rows.length - 1)]);
+    const number = Math.min(Math.max(next, 0), rows.length - 1);
+    this.seek(rows[number]);
+    if (this.chosen >= 0) this.choose(this.chart.rows[number].steps[0].note); // who looks at feet goes on looking at them
+  }
+
+  /** A note is looked at; -1: none is. @param {number} note */
+  choose(note) {
+    this.chosen = note;
+    this.chosenAt = this.transport.second();
+    this.tell("feet");
+  }
+
+  /** The note that the author means: the one that was chosen, or of the row that has been gone to since. */
+  meant() {
+    const second = this.transport.second();
+    if (this.chosen >= 0 && Math.abs(second - this.chosenAt) < 1e-3) return this.chosen;
+    return this.chart.rows[this.chart.rowAt(second)]?.steps[0].note ?? this.chosen;
+  }
+
+  /** Stand at a note and look at it. @param {number} note */
+  goTo(note) {
+    const row = this.redance.rowOf.get(note);
+    if (!row) return;
+    this.transport.pause();
+    this.seek(row.second);
+    this.choose(note);
   }
 
   /** @param {number} by measures */
@@ -257,6 +294,7 @@ export class App {
     sound.pump(transport.hold);
     const second = this.second();
     this.practice.advance(second);
+    this.practice.fade();
     // While she waits, or nothing plays, the picture stays: nothing is drawn again.
     const shown = this.practice.feedback !== null; // and once more when it has to go
     if (!this.fresh && !shown && second === this.drawn && !timeline.grip && !this.input.changed) return;
@@ -277,7 +315,7 @@ export class App {
       second, speed: this.pace * this.settings.speed, mirror: this.mirrored,
       marked: (_, row) => practice.tells(row), verdicts: practice.along ? practice.judge.verdicts : new Map(),
       loop: this.transport.loop, feet: this.redance.limbs, chosen: this.chosen,
-      keys: practice.along ? this.input.keys.map(keyName) : [], held: practice.along ? this.input.held : [],
+      keys: practice.along ? this.input.names().map(([name]) => name) : [], held: practice.along ? this.input.held : [],
       feedback: practice.along ? practice.shown() : null,
     };
   }

@@ -37,7 +37,7 @@ export function authorPanel(app) {
     const changed = redance.changedRows();
     list.replaceChildren(...changed.map((one) => {
       const text = `${placeOf(t, one.beat)}: ${letters(app, one)}`;
-      return el("li", {}, el("button", { type: "button", class: "link", onclick: () => { app.chosen = one.steps[0].note; app.transport.pause(); app.seek(one.second); app.tell("feet"); } }, text),
+      return el("li", {}, el("button", { type: "button", class: "link", onclick: () => app.goTo(one.steps[0].note) }, text),
         ` ${costText(app, one, true)}`);
     }));
     for (const button of files) button.disabled = !changed.length && button !== files[2];
@@ -50,6 +50,16 @@ export function authorPanel(app) {
   show();
   return el("div", {}, el("p", { class: "hint" }, t("authorHint")), about, el("p", { class: "group" }, give), list,
     el("p", { class: "hint" }, t("approximate")), saved, el("p", { class: "group column" }, ...files));
+}
+
+/** A note in words: where it is, its panel and who steps it. @param {import("./app.js").App} app @param {number} note */
+export function noteText(app, note) {
+  const row = app.redance.rowOf.get(note);
+  const step = row?.steps.find((one) => one.note === note);
+  if (!row || !step) return "";
+  const who = `${panelName(app.t, app.doc.pad.names[step.column])} ${LETTERS[app.redance.limbOf(step)] ?? "?"}`;
+  const moves = moveNames(app.t, row.moves);
+  return `${placeOf(app.t, row.beat)}: ${who}${moves ? ` (${moves})` : ""}`;
 }
 
 /** @param {import("./app.js").App} app @param {import("./chart.js").Row} row */

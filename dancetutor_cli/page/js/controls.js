@@ -1,7 +1,7 @@
 // The row of buttons under the picture, and the keys: one table says what each does, for buttons, keys and help alike.
 
 import { el, toggle } from "./dom.js";
-import { CAMERAS } from "./picture.js";
+import { CAMERAS } from "./settings.js";
 
 /**
  * @typedef {object} Action
@@ -58,12 +58,14 @@ function turn(app, yaw, pitch) {
   app.save();
 }
 
-/** The note of the row that stands gets the other foot. @param {import("./app.js").App} app @param {{tab: (name: string) => void}} ui */
+/** The note that is chosen, or of the row that stands, gets the other foot. @param {import("./app.js").App} app @param {{tab: (name: string) => void}} ui */
 function otherFoot(app, ui) {
   app.transport.pause();
-  const row = app.chart.rows[app.chart.rowAt(app.transport.second())];
-  if (app.chosen < 0 && row) app.chosen = row.steps[0].note;
-  if (app.chosen >= 0) app.giveOther(app.chosen);
+  const note = app.meant();
+  if (note >= 0) {
+    app.choose(note);
+    app.giveOther(note);
+  }
   ui.tab("author");
 }
 
@@ -97,6 +99,7 @@ export function listenToKeys(app, actions) {
     if (event.detail > 0 && button && !button.closest("dialog")) button.blur();
   });
   document.addEventListener("keyup", (event) => app.input.keyUp(event));
+  window.addEventListener("blur", () => app.input.releaseAll()); // what is let go elsewhere is not told here
 }
 
 /**
@@ -147,7 +150,7 @@ export function makeBar(app, ui) {
       const second = app.second();
       const exact = Math.max(0, Math.round(100 * app.chart.beatAt(second)) / 100);
       const beat = transport.playing && !transport.waiting ? Math.floor(exact) : exact; // what stands has a place between the beats too
-      where.textContent = t("where", { measure: Math.floor(beat / 4), beat: Math.round(100 * ((beat % 4) + 1)) / 100, time: clock(second) });
+      where.textContent = t("where", { measure: Math.floor(beat / 4), beat: Math.round(100 * beat) / 100, time: clock(second) });
       play.textContent = transport.playing ? "❚❚" : "▶";
       return;
     }

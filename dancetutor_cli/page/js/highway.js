@@ -62,7 +62,7 @@ export class Highway {
     if (this.canvas.height !== height) this.canvas.height = height;
     const { columns, beats } = this.chart;
     const numbers = (8 + 7 * String(beats.length >> 2).length) * ratio; // room left of the lanes, for the last measure's number
-    const words = clamp((columns > 5 ? 0.12 : 0.2) * width, 36 * ratio, 66 * ratio); // and right of them
+    const words = clamp((columns > 5 ? 0.12 : 0.2) * width, 46 * ratio, 66 * ratio); // and right of them
     const lane = Math.min((width - numbers - words) / columns, 72 * ratio);
     const left = numbers + 0.28 * (width - numbers - words - lane * columns);
     return { ratio, width, height, lane, left, receptor: Math.max(0.11 * height, 0.62 * lane), size: 0.92 * lane };
@@ -95,6 +95,8 @@ export class Highway {
       const { level, limb } = lightOf(chart, column, scene.second, style.flash);
       this.drawReceptor(column, m, scene, level, limb);
     }
+    const held = JSON.stringify(scene.held.flatMap((is, column) => (is ? [column] : [])));
+    if (this.canvas.dataset.held !== held) this.canvas.dataset.held = held;
     const { feedback } = scene;
     if (feedback && feedback.column >= 0) drawPress(c, feedback.verdict, this.laneX(feedback.column, m, scene.mirror), m.receptor, m.size);
     for (let n = chart.second.length - 1; n >= 0; --n) {
@@ -118,7 +120,7 @@ export class Highway {
   drawBeats(m, y, from, until) {
     const c = this.context;
     const beats = this.chart.beats;
-    c.font = `${Math.round(11 * m.ratio)}px system-ui, sans-serif`;
+    c.font = `${Math.round(LEAST * m.ratio)}px system-ui, sans-serif`;
     c.textAlign = "right";
     c.textBaseline = "middle";
     for (let k = Math.max(0, Math.floor(this.chart.beatAt(from))); k < beats.length && beats[k] <= until; ++k) {
@@ -157,7 +159,7 @@ export class Highway {
     c.stroke();
     if (!scene.keys[column]) return;
     c.fillStyle = "#c9cfe8";
-    c.font = `700 ${Math.round(Math.max(11 * m.ratio, 0.22 * m.size))}px ui-monospace, monospace`;
+    c.font = `700 ${Math.round(Math.max(LEAST * m.ratio, 0.22 * m.size))}px ui-monospace, monospace`;
     c.textAlign = "center";
     c.textBaseline = "middle";
     c.fillText(scene.keys[column], x, m.receptor - 0.68 * m.size);
@@ -224,14 +226,14 @@ export class Highway {
     for (const { second, text, short, severity } of this.labels) {
       if (second < from || second > until) continue;
       c.fillStyle = this.style.callout[severity];
-      let shown = text;
-      for (const size of [11, 10, 9, -11, -10, -9, -8]) { // smaller, then shorter, before it is cut
-        shown = size > 0 ? text : short;
-        c.font = `600 ${Math.round(Math.abs(size) * m.ratio)}px system-ui, sans-serif`;
-        if (c.measureText(shown).width <= room) break;
-      }
-      while (shown.length > 3 && c.measureText(shown).width > room) shown = `${shown.slice(0, -2)}…`;
-      c.fillText(shown, x, y(second));
+      c.font = `600 ${Math.round(LEAST * m.ratio)}px system-ui, sans-serif`;
+      const fits = (/** @type {string} */ line) => c.measureText(line).width <= room;
+      const whole = linesOf(text, fits); // in two lines, or shorter, before it is cut; never smaller
+      if (whole.length > 2 || !whole.every(fits)) {
+        let shown = short;
+        while (shown.length > 3 && !fits(shown)) shown = `${shown.slice(0, -2)}…`;
+        c.fillText(shown, x, y(second));
+      } else whole.forEach((line, k) => c.fillText(line, x, y(second) + (k - (whole.length - 1) / 2) * 1.05 * LEAST * m.ratio));
     }
   }
 
@@ -261,6 +263,21 @@ export class Highway {
   }
 }
 
+/**
+ * A text's words in lines that fit. @param {string} text @param {(line: string) => boolean} fits
+ */
+export function linesOf(text, fits) {
+  /** @type {string[]} */
+  const lines = [];
+  for (const word of text.split(" ")) {
+    const last = lines[lines.length - 1];
+    if (last !== undefined && fits(`${last} ${word}`)) lines[lines.length - 1] = `${last} ${word}`;
+    else lines.push(word);
+  }
+  return lines;
+}
+
+const LEAST = 12; // pixels of the smallest words
 const SLOWEST = 0.42; // canvas heights a second
 const FASTEST = 1.2; // what comes quicker cannot be read
 const APART = 0.085; // heights between the rows of a chart's quick parts: about a note's

@@ -13,6 +13,8 @@ const KEYS = {
 const ARROWS = { 4: ["ArrowLeft", "ArrowDown", "ArrowUp", "ArrowRight"] };
 const CROSS = { left: 14, down: 13, up: 12, right: 15 }; // buttons of the standard mapping
 
+const SIGNS = ["↑", "↗", "→", "↘", "↓", "↙", "←", "↖"]; // clockwise
+
 const LONGEST = 0.5; // seconds that a press may be old; a browser that counts otherwise is not believed
 
 /** @typedef {{column: number, device: "keys" | "pad" | "touch", ago: number}} Press ago: seconds since it happened */
@@ -20,8 +22,12 @@ const LONGEST = 0.5; // seconds that a press may be old; a browser that counts o
 export class Input {
   /**
    * @param {string[]} panels their names @param {import("./settings.js").Settings} settings
+   * @param {(number | null)[]} [ways] where their arrows point, degrees
    */
-  constructor(panels, settings) {
+  constructor(panels, settings, ways = []) {
+    this.ways = ways;
+    /** whether there are no keys to speak of: a phone, until one is pressed */
+    this.touched = typeof matchMedia === "function" && matchMedia("(pointer: coarse)").matches;
     this.panels = panels;
     this.settings = settings;
     /** @type {Map<string, boolean[]>} buttons that are down, by pad */
@@ -45,6 +51,12 @@ export class Input {
   /** Keys that are panels besides. */
   get arrows() {
     return /** @type {Record<number, string[]>} */ (ARROWS)[this.panels.length] ?? [];
+  }
+
+  /** What each panel is called: by its keys; by its arrow where there are none. @returns {string[][]} */
+  names() {
+    if (this.touched && this.ways.length) return this.ways.map((way) => [way === null ? "■" : SIGNS[Math.round(way / 45) & 7]]);
+    return this.panels.map((_, k) => [this.keys, this.arrows].filter((one) => one[k]).map((one) => keyName(one[k])));
   }
 
   /** The panel of a key, -1 for none; shifted arrows still go from measure to measure. @param {string} code */
@@ -84,6 +96,7 @@ export class Input {
     }
     const column = this.columnOf(event.code);
     if (column < 0) return false;
+    this.touched = false;
     if (!event.repeat) this.press(column, "keys", event.timeStamp);
     return true;
   }
@@ -98,6 +111,11 @@ export class Input {
   release(column) {
     this.held[column] = false;
     this.changed = true;
+  }
+
+  /** Every panel is let go. */
+  releaseAll() {
+    this.held.forEach((is, column) => { if (is) this.release(column); });
   }
 
   /** Look at the pads; to be called for every picture. */

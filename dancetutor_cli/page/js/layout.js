@@ -1,12 +1,11 @@
 // The page's elements: header, tabs of the panels, camera buttons, help sheet. All that holds words is made here.
 
 import { alongPanel } from "./along.js";
-import { authorPanel } from "./author.js";
+import { authorPanel, noteText } from "./author.js";
 import { makeBar } from "./controls.js";
 import { el } from "./dom.js";
 import { findingsPanel, passagesPanel, settingsPanel } from "./panels.js";
-import { CAMERAS } from "./picture.js";
-import { FIRST_VIEW } from "./settings.js";
+import { CAMERAS, FIRST_VIEW } from "./settings.js";
 import { besideCaption, besideText, countOf, musicText, saidOf } from "./said.js";
 
 /**
@@ -34,7 +33,7 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   app.listeners.clear();
   document.documentElement.lang = app.language;
   for (const old of document.querySelectorAll("dialog")) old.remove();
-  for (const [element, name] of /** @type {[HTMLElement, string][]} */ ([[stage, "picture"], [lanes, "notes"], [strip, "timeline"]])) {
+  for (const [element, name] of /** @type {[HTMLElement, string][]} */ ([[stage, "picture"], [lanes, "notesKeys"], [strip, "timeline"]])) {
     element.setAttribute("aria-label", t(name));
   }
   const tabs = makeTabs(app, ui, [["passages", passagesPanel(app)], ["along", alongPanel(app)], ["findings", findingsPanel(app)],
@@ -54,8 +53,10 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   const count = el("p", { class: "count", "aria-hidden": "true" }); // it is heard too
   for (const old of stage.querySelectorAll(":scope > :not(canvas)")) old.remove();
   stage.append(cameraButtons(app), count, ...captions);
+  const note = el("p", { class: "unseen", role: "status" });
+  app.listeners.add((what) => { if (what === "feet") note.textContent = app.chosen >= 0 ? noteText(app, app.chosen) : ""; });
   const root = /** @type {HTMLElement} */ (document.getElementById("app"));
-  const main = el("main", { class: app.chart.columns > 5 ? "wide" : "" }, stage, el("section", { class: "notes", "aria-label": t("notes") }, lanes), tabs.side);
+  const main = el("main", { class: app.chart.columns > 5 ? "wide" : "" }, stage, el("section", { class: "notes", "aria-label": t("notes") }, lanes, note), tabs.side);
   root.replaceChildren(
     el("header", {}, el("h1", {}, words.title), badge, el("p", {}, about.filter(Boolean).join(" · ")), app.doc.pair ? players(style) : null),
     el("div", { class: "status" }, said, pick),

@@ -10,7 +10,7 @@ import { endOf, named, short } from "./places.js";
  * @property {boolean} backwards whether the end that it names comes before its beginning
  */
 
-const MEASURE = "(\\d+(?:\\.\\d+)?)";
+const MEASURE = "(\\d{1,6}(?:\\.\\d{1,6})?)"; // longer numbers name no place of a song
 const LINK = new RegExp(`^#?(?:m${MEASURE}(?:-${MEASURE})?)?(?:@${MEASURE})?$`);
 
 /** @param {string} hash @returns {Link | null} */
@@ -56,7 +56,9 @@ export function readLink(app, hash) {
     if (link.to !== null) app.setLoop(place(link.from), place(Math.min(link.to, last + 1)));
     app.seek(place(link.from));
   }
-  if (link.from !== null && link.from >= last + 1) app.notice = t("linkBeyond", { from: link.from, last });
+  const short = link.from !== null && link.from < last + 1 && link.to !== null && !app.transport.loop;
+  if (short) app.notice = t("linkShort");
+  else if (link.from !== null && link.from >= last + 1) app.notice = t("linkBeyond", { from: link.from, last });
   else if (link.to !== null && link.to > last + 1) app.notice = t("linkCut", { last });
   else if (link.backwards) app.notice = t("linkBackwards", { from: /** @type {number} */ (link.from) });
   app.tell("rate");

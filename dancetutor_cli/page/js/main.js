@@ -4,6 +4,7 @@ import { App } from "./app.js";
 import { fromBase64, unpack } from "./blob.js";
 import { actionsOf, listenToKeys } from "./controls.js";
 import { el } from "./dom.js";
+import { failed } from "./failed.js";
 import { meshData } from "./gl.js";
 import { Highway } from "./highway.js";
 import { layOut } from "./layout.js";
@@ -21,7 +22,7 @@ async function main() {
   await pause();
   const app = new App(doc, arrays);
   const stage = el("section", { class: "picture" });
-  const lanes = el("canvas", { class: "lanes", role: "img" });
+  const lanes = el("canvas", { class: "lanes", role: "application", tabindex: 0 });
   const strip = el("canvas", {
     class: "strip", role: "slider", tabindex: 0, "aria-valuemin": app.start.toFixed(1), "aria-valuemax": app.end.toFixed(1), "aria-valuenow": "0",
   });
@@ -89,26 +90,51 @@ async function main() {
 const pause = () => new Promise((done) => setTimeout(done));
 
 /**
- * A lane is a panel for whoever plays along by touch; else a click chooses the note.
+ * A lane is a panel for whoever plays along by touch; else a click chooses the note, and arrow keys go from note to note.
  * @param {App} app @param {HTMLCanvasElement} lanes @param {import("./layout.js").Ui} ui
  */
 function listenToLanes(app, lanes, ui) {
+  /** @type {Map<number, number>} the lane that each finger is on */
+  const fingers = new Map();
   lanes.addEventListener("pointerdown", (event) => {
     const column = app.highway?.columnAt(event.clientX - lanes.getBoundingClientRect().left, app.mirrored) ?? -1;
     if (!app.practice.along || column < 0) return;
     event.preventDefault();
+    fingers.set(event.pointerId, column);
+    lanes.setPointerCapture(event.pointerId); // wherever it is lifted, it is told here
     app.input.press(column, "touch", event.timeStamp);
-    lanes.addEventListener("pointerup", () => app.input.release(column), { once: true });
   });
+  for (const name of /** @type {const} */ (["pointerup", "pointercancel", "lostpointercapture"])) {
+    lanes.addEventListener(name, (event) => {
+      const column = fingers.get(event.pointerId);
+      if (column === undefined) return;
+      fingers.delete(event.pointerId);
+      if (![...fingers.values()].includes(column)) app.input.release(column);
+    });
+  }
   lanes.addEventListener("click", (event) => {
     if (app.practice.along) return;
     const box = lanes.getBoundingClientRect();
-    app.chosen = app.highway?.noteAt(event.clientX - box.left, event.clientY - box.top, app.highwayScene(app.second())) ?? -1;
-    if (app.chosen >= 0) {
+    const note = app.highway?.noteAt(event.clientX - box.left, event.clientY - box.top, app.highwayScene(app.second())) ?? -1;
+    if (note >= 0) {
       app.transport.pause();
       ui.tab("author");
     }
-    app.tell("feet");
+    app.choose(note);
+  });
+  const notes = app.chart.rows.flatMap((row) => row.steps.map((step) => step.note)).filter((note) => note >= 0);
+  lanes.addEventListener("keydown", (event) => {
+    if (app.practice.along || !notes.length || event.shiftKey || event.ctrlKey || event.metaKey || event.altKey) return;
+    const last = notes.length - 1;
+    const meant = app.meant();
+    const at = notes.indexOf(meant);
+    const stands = meant === app.chosen; // else the first arrow only chooses the note of the row that is seen
+    const to = /** @type {Record<string, number>} */ ({ ArrowRight: stands ? at + 1 : Math.max(at, 0), ArrowLeft: stands ? at - 1 : at, Home: 0, End: last })[event.key];
+    if (event.key === "Enter" && app.chosen >= 0) ui.tab("author");
+    else if (to !== undefined) app.goTo(notes[Math.min(Math.max(to, 0), last)]);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
   });
 }
 
@@ -122,4 +148,7 @@ function takeDrops(load) {
   });
 }
 
-void main();
+main().catch((error) => {
+  if (!document.documentElement.dataset.ready) failed(error);
+  console.error(error);
+});

@@ -11,9 +11,10 @@ export function passagesPanel(app) {
   const list = el("ol", { class: "cards" });
   const buttons = doc.passages.map((/** @type {any} */ passage, /** @type {number} */ k) => {
     const button = el("button", { type: "button", class: "card", "aria-pressed": "false", onclick: () => void app.loopPassage(k) },
-      el("strong", {}, `${k + 1}. ${stretch(t, passage.from, passage.to)}`),
+      el("strong", {}, `${passage.number}. ${stretch(t, passage.from, passage.to)}`),
       el("span", { class: "figure" }, t("rate", { rate: Math.round(10 * passage.rate) / 10 })),
       el("span", { class: "text" }, passage.sentence[language] ?? passage.sentence.en),
+      passage.again.length ? el("span", { class: "text" }, t("again", { where: passage.again.map((/** @type {[number, number]} */ one) => stretch(t, ...one)).join("; ") })) : null,
       el("span", { class: "hits" }));
     list.append(el("li", {}, button));
     return button;

@@ -5,7 +5,6 @@ import { lightsAt, marksOf } from "./feet.js";
 import { drawFromAbove } from "./topview.js";
 import { Viewer } from "./viewer.js";
 
-export const CAMERAS = ["back", "front", "mirror", "top", "free"];
 const SLOW = 24; // milliseconds between pictures beyond which the canvas gets fewer pixels
 const LEAST = 0.4; // of the pixels across that it keeps
 

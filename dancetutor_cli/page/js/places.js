@@ -31,7 +31,7 @@ export function stretch(t, from, to) {
   return t("fromTo", { from: placeOf(t, Math.round(4 * from)), to: placeOf(t, Math.round(4 * to) - 1) });
 }
 
-/** The place of a row. @param {import("./words.js").Translate} t @param {number} beat */
+/** The place of a row, as `analyze` tells it: measures and beats are both counted from 0, through the song. @param {import("./words.js").Translate} t @param {number} beat */
 export function placeOf(t, beat) {
-  return t("measureAt", { measure: Math.floor(beat / 4), beat: Math.round(1000 * ((beat % 4) + 1)) / 1000 });
+  return t("measureAt", { measure: Math.floor(beat / 4), beat: Math.round(1000 * beat) / 1000 });
 }

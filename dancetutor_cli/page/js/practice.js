@@ -1,8 +1,9 @@
 // Practising: who plays along, what was hit, rows that are waited for, passes of a loop, the ramp, help that fades.
 
 import { Judge, ramp } from "./judge.js";
+import { HELPS } from "./settings.js";
 
-export const HELPS = ["all", "tricky", "none", "auto"];
+const STRAY = 5000; // milliseconds that the keys are said
 const SHOWN = 700; // milliseconds that a verdict stands beside the receptors
 
 /** @typedef {{verdict: string, column: number, at: number}} Feedback of the last press, or of a miss (column -1); at: ms */
@@ -25,6 +26,7 @@ export class Practice {
     this.over = null;
     /** @type {"" | "now" | "said"} whether a key was pressed that is no panel: once, the keys are said then */
     this.stray = "";
+    this.strayAt = 0; // milliseconds
     /** @type {Feedback | null} */
     this.feedback = null;
   }
@@ -142,6 +144,14 @@ export class Practice {
   strayKey() {
     if (this.stray) return;
     this.stray = "now";
+    this.strayAt = performance.now();
+    this.app.tell("along");
+  }
+
+  /** The keys have been said for long enough. */
+  fade() {
+    if (this.stray !== "now" || performance.now() - this.strayAt < STRAY) return;
+    this.stray = "said";
     this.app.tell("along");
   }
 

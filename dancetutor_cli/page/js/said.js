@@ -23,7 +23,8 @@ export function musicText(app) {
 
 /** Which keys are the panels. @param {import("./app.js").App} app */
 export function keysText(app) {
-  const { keys, arrows } = app.input;
+  const { keys, arrows, touched } = app.input;
+  if (touched) return app.t("keysAre", { keys: app.input.names().map(([name]) => name).join(" ") });
   const names = [keys, arrows].filter((one) => one.length).map((one) => one.map(keyName).join(" "));
   return names.length > 1 ? app.t("keysOrArrows", { keys: names[0], arrows: names[1] }) : app.t("keysAre", { keys: names[0] });
 }
@@ -47,7 +48,8 @@ function loopText(app) {
   if (!loop) return "";
   const where = stretch(t, chart.beatAt(loop.a) / 4, chart.beatAt(loop.b) / 4);
   const percent = (/** @type {number} */ x) => Math.round(100 * x);
-  const ramped = rate === practice.chosenRate ? "" : t("ramped", { from: percent(practice.chosenRate), to: percent(rate) });
+  const full = app.settings.ramp && rate >= 1 && practice.chosenRate >= 1;
+  const ramped = full ? t("rampFull", { rate: percent(rate) }) : rate === practice.chosenRate ? "" : t("ramped", { from: percent(practice.chosenRate), to: percent(rate) });
   const before = practice.before ? t("passBefore", { counts: scoreText(app, practice.before) }) : "";
   return [t("loopFrom", { where, passes: practice.passes }), ramped, before].filter(Boolean).join(" · ");
 }

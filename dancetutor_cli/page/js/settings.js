@@ -7,6 +7,9 @@ const KEY = "dancetutor";
 /** The free camera's: degrees, degrees, times nearer. */
 export const FIRST_VIEW = { yaw: 30, pitch: 20, zoom: 0.9 };
 
+export const CAMERAS = ["back", "front", "mirror", "top", "free"];
+export const HELPS = ["all", "tricky", "none", "auto"];
+
 const DEFAULTS = {
   language: "", camera: "back", speed: 1, /** "auto": where there is no music */ claps: "auto", metronome: false, countIn: true, leadBeats: 4, ramp: false,
   help: "all", latency: 0, volume: 0.9, ...FIRST_VIEW,
@@ -18,17 +21,48 @@ const DEFAULTS = {
 const LIMITS = /** @type {["yaw" | "pitch" | "zoom" | "speed" | "volume" | "latency" | "leadBeats", number, number][]} */ (
   [["yaw", -360, 360], ["pitch", 2, 88], ["zoom", 0.5, 3], ["speed", 0.3, 4], ["volume", 0, 1], ["latency", -0.2, 0.4], ["leadBeats", 1, 16]]);
 
+/** What may be chosen among. */
+const CHOICES = /** @type {["claps" | "camera" | "help", string[]][]} */ ([["claps", ["auto", "on", "off"]], ["camera", CAMERAS], ["help", HELPS]]);
+
 /** @typedef {typeof DEFAULTS} Settings */
 
-/** @returns {Settings} */
+/** @returns {Settings} each that is stored as it may be; any other as at first, alone */
 export function loadSettings() {
   const stored = read(KEY);
   const out = structuredClone(DEFAULTS);
   for (const [name, value] of Object.entries(DEFAULTS)) {
-    if (typeof stored[name] === typeof value && stored[name] !== null) Object.assign(out, { [name]: stored[name] });
+    const own = Object.hasOwn(stored, name) ? stored[name] : undefined;
+    if (typeof own === typeof value && typeof own !== "object" && !(typeof own === "number" && !Number.isFinite(own))) Object.assign(out, { [name]: own });
   }
   for (const [name, low, high] of LIMITS) out[name] = clamp(out[name], low, high);
+  out.leadBeats = Math.round(out.leadBeats);
+  for (const [name, known] of CHOICES) if (!known.includes(out[name])) out[name] = DEFAULTS[name];
+  if (!/^[a-z]{0,8}$/.test(out.language)) out.language = DEFAULTS.language;
+  out.keys = valid(stored.keys, (panels, one) => Number(panels) === one.length && one.every(isKey) && new Set(one).size === one.length);
+  out.pads = valid(stored.pads, (_, one) => one.every((button) => button === null || (Number.isInteger(button) && button >= 0 && button < 1000)));
   return out;
+}
+
+/** @param {unknown} code */
+const isKey = (code) => typeof code === "string" && /^\w{1,40}$/.test(code);
+
+/**
+ * The lists of a table that are as they should be. @param {unknown} table @param {(name: string, list: any[]) => boolean} holds
+ * @returns {Record<string, any[]>}
+ */
+function valid(table, holds) {
+  if (!table || typeof table !== "object") return {};
+  return Object.fromEntries(Object.entries(table).filter(([name, list]) => Array.isArray(list) && list.length <= 32 && holds(name, list)));
+}
+
+/** Forget the settings. @param {boolean} all and what was ticked off and given in every chart */
+export function forget(all) {
+  try {
+    const names = Object.keys(localStorage).filter((name) => name === KEY || (all && name.startsWith(`${KEY}:`)));
+    for (const name of names) localStorage.removeItem(name);
+  } catch {
+    // A browser that stores nothing has nothing to forget.
+  }
 }
 
 /** @param {Settings} settings */
@@ -41,7 +75,7 @@ export function saveSettings(settings) {
 /** @param {string} chart @returns {Notes} */
 export function loadNotes(chart) {
   const stored = read(`${KEY}:${chart}`);
-  const feet = Array.isArray(stored.feet) ? stored.feet.filter((one) => Array.isArray(one) && one.length === 3) : [];
+  const feet = Array.isArray(stored.feet) ? stored.feet.filter((one) => Array.isArray(one) && one.length === 3 && one.every(Number.isInteger) && (one[2] === 0 || one[2] === 1)) : [];
   const ticked = Array.isArray(stored.ticked) ? stored.ticked.filter((one) => typeof one === "string") : [];
   return { ticked, feet: /** @type {[number, number, number][]} */ (feet) };
 }

@@ -126,10 +126,10 @@ export class Timeline {
     this.doc.passages.forEach((/** @type {any} */ passage, /** @type {number} */ k) => {
       c.fillStyle = chosen(k) ? "#fff" : "#ffb454";
       c.fillRect(x(passage.start), bars - 4 * ratio, x(passage.end) - x(passage.start), 3 * ratio);
-      c.font = `700 ${10 * ratio}px system-ui, sans-serif`;
+      c.font = `700 ${12 * ratio}px system-ui, sans-serif`;
       c.textBaseline = "top";
       c.textAlign = "left";
-      c.fillText(String(k + 1), x(passage.start) + ratio, 1.5 * ratio);
+      c.fillText(String(passage.number), x(passage.start) + ratio, 1.5 * ratio);
     });
     for (const one of this.doc.findings) {
       if (one.second === null) continue;
@@ -154,7 +154,7 @@ export class Timeline {
     c.fillStyle = "rgba(255,255,255,0.14)";
     c.fillRect(x(loop.a), 0, x(loop.b) - x(loop.a), height);
     c.fillStyle = "#fff";
-    c.font = `700 ${10 * ratio}px system-ui, sans-serif`;
+    c.font = `700 ${12 * ratio}px system-ui, sans-serif`;
     c.textBaseline = "bottom";
     for (const [edge, name, side] of /** @type {[number, string, CanvasTextAlign][]} */ ([[loop.a, "A", "left"], [loop.b, "B", "right"]])) {
       c.fillRect(x(edge) - (side === "right" ? 2 * ratio : 0), 0, 2 * ratio, height);

@@ -111,7 +111,7 @@ test("a stretch has one name everywhere: whole measures are part of it, a fracti
   const t = (name, values) => `${name} ${Object.values(values).join(" ")}`;
   assert.equal(stretch(t, 7, 11), "measures 7 10");
   assert.equal(stretch(t, 7, 8), "oneMeasure 7");
-  assert.equal(stretch(t, 7.5, 8.25), "fromTo measureAt 7 3 measureAt 8 1"); // the last beat is part of it as well
+  assert.equal(stretch(t, 7.5, 8.25), "fromTo measureAt 7 30 measureAt 8 32"); // the last beat is part of it as well
   assert.equal(stretch(t, 0.33, 1.2), "points 0.33 1.2");
   for (const [from, to] of [[7, 11], [7, 8], [7.5, 8], [0, 0.25]]) {
     const link = parseLink(makeLink(from, to, 1));
