@@ -167,13 +167,14 @@ export class Picture {
       motion.skin(pose, this.skins[k]);
       const root = pair ? pair.between(pose.at(0)) : pose.at(0);
       const marks = marksOf(this.doc, pose);
+      const ghost = k === 0 && !pair && this.viewer ? this.ghost(wanted.next) : null;
       const left = Math.round((k * width) / count);
       const wide = Math.round(((k + 1) * width) / count) - left;
       views.push({
         camera: this.camera(wanted.camera, wide, height, root), box: /** @type {[number, number, number, number]} */ ([left, 0, wide, height]),
         skin: this.skins[k], root, lights: this.lights, other: pair?.skin ?? null,
-        marks: pair ? [...marks.slice(0, 2), ...pair.marks.slice(0, 2)] : marks, // of two the feet, not the palms
-        ghost: k === 0 && !pair ? this.ghost(wanted.next) : null,
+        marks: ghost && !marks.slice(2).some((mark) => mark.near > 0) ? [...marks.slice(0, 2), ...ghost.marks] : pair ? [...marks.slice(0, 2), ...pair.marks.slice(0, 2)] : marks, // of two the feet, not the palms
+        ghost,
       });
     }
     if (this.viewer) return this.viewer.draw(views, hurried && this.simple);
@@ -202,7 +203,10 @@ export class Picture {
     motion.forward(this.ghostPose);
     this.amend(next.second, this.ghostPose);
     motion.skin(this.ghostPose, this.ghostSkin);
-    return { skin: this.ghostSkin, feet: [0, 1].map((limb) => next.steps.some((step) => step.limb === limb)) };
+    const feet = [0, 1].map((limb) => next.steps.some((step) => step.limb === limb));
+    // Its place on the floor is ringed as feet that stand are: the boot alone, cut off at the ankle, looks like a jar.
+    const marks = marksOf(this.doc, this.ghostPose).slice(0, 2).map((mark, limb) => ({ ...mark, near: feet[limb] ? Math.max(mark.near, 0) : -1, strength: feet[limb] ? 1 : 0 }));
+    return { skin: this.ghostSkin, feet, marks };
   }
 
   /** Fewer pixels where drawing is slow, as with WebGL in software. @param {boolean} playing */

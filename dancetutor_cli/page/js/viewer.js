@@ -212,7 +212,7 @@ export class Viewer {
     gl.bindVertexArray(this.mesh);
     const depth = Math.max(dot(minus(view.root, camera.position), axes(camera).forward), 0.05);
     const wide = (toon.outline_width * camera.focal * height) / depth;
-    for (const [outline, cull] of ghost ? [[0, gl.BACK]] : [[0, gl.BACK], [wide, gl.FRONT]]) {
+    for (const [outline, cull] of [[0, gl.BACK], [wide, gl.FRONT]]) {
       gl.uniform1f(at.outline, outline);
       gl.cullFace(cull);
       for (const part of this.doc.body.parts) {
