@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 def chart_result(subject: ChartSubject, task: AnalyzeTask) -> ChartResult:
     """What a task wants to know of a chart."""
+    from dancetutor_cli.chart.hash import chart_hash
     from dancetutor_cli.lint.figures import arrows, with_excerpts
 
     chart, play = subject.chart, subject.play
@@ -55,6 +56,7 @@ def chart_result(subject: ChartSubject, task: AnalyzeTask) -> ChartResult:
         ambiguous=tuple(_ambiguous(subject)) if task.want_rows else None,
         preset=None if play is None else play.preset,
         mismatch=None if play is None else mismatch(preset, chart.steps_type),
+        hash=chart_hash(subject.song, chart),
     )
 
 

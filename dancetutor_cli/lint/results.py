@@ -25,6 +25,7 @@ class ChartResult:
     arrows : a sign for each panel, to draw rows with; figures, alternatives, causes : None where nobody asked for them
     ambiguous : beat of each row with ties, and "resolved" or "open", see `feet.play.Ambiguity`; None likewise
     player : of a chart for several whose part this is, from 1, else 0
+    hash : by which leaderboards know the chart, see `chart.hash`; None where none does
     estimate : how hard it plays; None for a pad without a model of meters
     preset : name of the cost preset, None without a pad; mismatch : a line if it was made for other pads, else None
     """
@@ -49,6 +50,7 @@ class ChartResult:
     mismatch: str | None = None
     estimate: Estimate | None = None
     player: int = 0
+    hash: str | None = None
 
     @property
     def label(self) -> str:
@@ -97,7 +99,7 @@ def _no_infos(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
 # Nothing of what is read can run: of JSON come numbers and texts, and what is made of them are this module's own
 # classes. Values stand in lists, in the order of the fields, for there are thousands of findings in a pack.
 
-_HEAD = b"dancetutor result 2\n"  # another number whenever the form below changes
+_HEAD = b"dancetutor result 3\n"  # another number whenever the form below changes
 _DIGEST = 32  # bytes of SHA-256
 _CLASSES = (FileResult, ChartResult, Finding, Figures, AlternativeResult, DifferentRun, Cause, Estimate)
 _VALUES = {kind: attrgetter(*(field.name for field in fields(kind))) for kind in _CLASSES}

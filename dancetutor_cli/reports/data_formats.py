@@ -78,6 +78,7 @@ def _chart_texts(chart: ChartResult, before: str) -> Iterator[str]:
         "difficulty": chart.difficulty,
         "meter": chart.meter,
         "description": chart.description,
+        "hash": chart.hash,
         "cost": chart.cost,
     }
     tail = {
@@ -244,6 +245,7 @@ def _line(path: str, title: str, artist: str, chart: ChartResult | None) -> Mapp
         "preset": safe(chart.preset or "") if chart else "",
         **_estimated(chart),
         "player": (chart.player or "") if chart else "",
+        "hash": (chart.hash or "") if chart else "",
     }
 
 

@@ -165,7 +165,8 @@ class TextReport:
     def _chart(self, result: FileResult, chart: ChartResult) -> None:
         name = f"  {safe(chart.description)}" if safe(chart.description) else ""
         preset = f"  {safe(chart.mismatch or f'preset {chart.preset}')}" if chart.preset else ""
-        self._line("\n", self._paint(safe(chart.label), "bold"), name, self._paint(preset, "dim"))
+        known_by = f"  hash {chart.hash}" if chart.hash else ""
+        self._line("\n", self._paint(safe(chart.label), "bold"), name, self._paint(preset + known_by, "dim"))
         if chart.playable:
             self._stream.write(chart_table(chart, self._terminal))
             if chart.estimate is not None:

@@ -1,0 +1,105 @@
+"""The chart hash by which GrooveStats, ITL and other leaderboards know a chart, made of its file.
+
+    hash = first 16 hexadecimal digits of SHA-1(minimised rows + normalised BPMs)
+
+Only notes and BPMs enter: a chart that is mirrored, or plays at another tempo, is another one; titles, offset, stops,
+comments, blanks and line ends change nothing.
+
+Source: chart hash version 3, as themes for StepMania 5 and ITGmania have made it of the text of a file. Newer
+releases of ITGmania make it in the engine, of the notes and BPMs that it has parsed; whether that is the same for
+each file is not known.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import re
+from collections.abc import Iterator
+
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.chart.names import is_lights
+from dancetutor_cli.run.errors import DancetutorError
+
+DIGITS = 16  # of the hash, hexadecimal
+_COMMENT = re.compile(rb"//[^\n]*")
+_BLANKS = b" \t\r\f\v"
+_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+
+
+class HashError(DancetutorError):
+    """There is nothing to make a hash of."""
+
+
+def chart_hash(song: Song, chart: Chart) -> str | None:
+    """The hash of a chart of a song, in lower case; None for lights, and where its file tells no BPM.
+
+    Of a chart for several, each player's part has the hash of the whole.
+    """
+    whole = chart.written or chart
+    bpms = normalised_bpms(whole.tags.get("BPMS", "")) or normalised_bpms(song.tags.get("BPMS", ""))
+    if not bpms or not whole.columns or is_lights(whole.steps_type):
+        return None
+    return hash_of(song.data[slice(*whole.notes_span)], whole.columns, bpms)
+
+
+def hash_of(note_data: bytes, columns: int, bpms: str) -> str:
+    """The hash of note data as it stands in the file, between `:` and `;`. bpms : as `normalised_bpms` gives them"""
+    text = minimised(note_data, columns) + bpms.encode("ascii")
+    return hashlib.sha1(text, usedforsecurity=False).hexdigest()[:DIGITS]
+
+
+def minimised(note_data: bytes, columns: int) -> bytes:
+    """The rows, each measure in as few as hold its notes, and a `,` between measures; a line each.
+
+    Rows are cut to the columns of the pad; what is shorter is no row. Measures without notes stay, at the end too.
+    """
+    if columns < 1:
+        raise HashError(f"{columns} columns: a chart has at least one")
+    lines: list[bytes] = []
+    for number, measure in enumerate(_measures(note_data, columns)):
+        if number:
+            lines.append(b",")
+        lines += _fewest(measure, b"0" * columns)
+    return b"\n".join(lines)
+
+
+def _measures(note_data: bytes, columns: int) -> Iterator[list[bytes]]:
+    """The rows of each measure. A line that begins with `,` ends a measure, one with `;` the chart."""
+    text = note_data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    if b"//" in text:
+        text = _COMMENT.sub(b"", text)
+    measure: list[bytes] = []
+    for line in text.translate(None, _BLANKS).split(b"\n"):
+        if line.startswith(b","):
+            yield measure
+            measure = []
+        elif line.startswith(b";"):
+            break
+        elif len(line) >= columns and not line.startswith(b"/"):
+            measure.append(line[:columns])
+    yield measure
+
+
+def _fewest(rows: list[bytes], empty: bytes) -> list[bytes]:
+    """The rows without every second one, as long as their number is even and each of these is empty."""
+    while rows and len(rows) % 2 == 0 and set(rows[1::2]) == {empty}:
+        rows = rows[::2]
+    return rows
+
+
+def normalised_bpms(text: str) -> str:
+    """The pairs of a #BPMS, beat and BPM with three decimals: "0.000=120.000,4.000=60.500"; others are left out."""
+    pairs = (entry.partition("=") for entry in text.split(","))
+    numbers = ((_decimals(beat), _decimals(bpm)) for beat, _, bpm in pairs)
+    return ",".join(f"{beat}={bpm}" for beat, bpm in numbers if beat and bpm)
+
+
+def _decimals(text: str) -> str:
+    """A number with three decimals, halves up (where `%.3f` has them to even); "" if it is none."""
+    plain = "".join(c for c in text if c.isprintable()).strip()
+    thousandths = float(plain) * 1000 + 0.5 if _NUMBER.fullmatch(plain) else math.inf
+    if not math.isfinite(thousandths):
+        return ""
+    whole, rest = divmod(abs(floored := math.floor(thousandths)), 1000)
+    return f"{'-' if floored < 0 else ''}{whole}.{rest:03}"
