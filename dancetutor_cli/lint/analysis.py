@@ -93,12 +93,12 @@ def _alternatives(subject: ChartSubject, preset: Preset, count: int) -> tuple[Al
 
 def _figures(subject: ChartSubject, task: AnalyzeTask) -> Figures:
     from dancetutor_cli.chart.density import density
-    from dancetutor_cli.lint.figures import facing_counts, tech_counts
+    from dancetutor_cli.lint.figures import facing_counts, hand_rows, tech_counts
 
     dense = density(subject.chart, task.settings.stream_rows)
     return Figures(
         dense.mean, dense.peak, dense.breakdown, dense.stream_measures, tech_counts(subject),
-        subject.seconds_played(), facing_counts(subject),
+        subject.seconds_played(), facing_counts(subject), len(hand_rows(subject)),
     )  # fmt: skip
 
 

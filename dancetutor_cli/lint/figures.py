@@ -103,6 +103,11 @@ def tech_counts(subject: ChartSubject) -> dict[str, int]:
     return subject.shared.candidates.tech_counts[subject.shared.number]
 
 
+def hand_rows(subject: ChartSubject) -> list[int]:
+    """Rows with a step in which a hand helps or three panels are down, as the games and DT302 count hands."""
+    return [] if subject.feet is None else sorted({*subject.rows_with("hand"), *subject.feet.triples()})
+
+
 def tech_rows(subject: ChartSubject) -> dict[str, NDArray[np.int64]]:
     """The rows of the play that are counted as each of `TECH_COUNTS`, one for each time, in order."""
     if subject.play is None or subject.pad is None:

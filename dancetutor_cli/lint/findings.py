@@ -118,6 +118,7 @@ class Figures:
     tech : how often each of `TECH_COUNTS` happens
     seconds : from the first to the last row with a step
     facing : rows by how far she faces away from the screen: up to 22, 67, 112 and 157 degrees, and further
+    hands : rows with a step in which a hand helps or three panels are down
     """
 
     nps_mean: float
@@ -127,6 +128,7 @@ class Figures:
     tech: Mapping[str, int]
     seconds: float = 0.0
     facing: tuple[int, ...] = ()
+    hands: int = 0
 
 
 # The estimate of a chart's meter as it is kept and told. Imports no numpy, so that kept results are read quickly.

@@ -146,8 +146,8 @@ def _chart(values: list[Any]) -> ChartResult:
     given = dict(zip(_CHART_FIELDS, values, strict=True))
     given["findings"] = _findings(given["findings"])
     if given["figures"] is not None:
-        mean, peak, breakdown, stream, tech, seconds, facing = given["figures"]
-        given["figures"] = Figures(mean, peak, breakdown, stream, tech, seconds, tuple(facing))
+        mean, peak, breakdown, stream, tech, seconds, facing, hands = given["figures"]
+        given["figures"] = Figures(mean, peak, breakdown, stream, tech, seconds, tuple(facing), hands)
     if given["alternatives"] is not None:
         given["alternatives"] = tuple(map(_alternative, given["alternatives"]))
     if given["causes"] is not None:

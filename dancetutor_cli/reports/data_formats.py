@@ -176,7 +176,6 @@ OWN = {
     "Holdswitches": ("holdswitch",),
     "Candles": ("candle",),
     "Gallops": ("gallop",),
-    "Hands": ("hand",),
 }
 
 
@@ -241,6 +240,7 @@ def _line(path: str, title: str, artist: str, chart: ChartResult | None) -> Mapp
         "breakdown": figures.breakdown if figures else "",
         **{name: figures.tech.get(name, 0) if figures else 0 for name in TECH_COUNTS},
         **{name: sum(counts.get(move, 0) for move in moves) for name, moves in OWN.items()},
+        "Hands": figures.hands if figures else 0,
         "findings": len(chart.findings) if chart else 0,
         "preset": safe(chart.preset or "") if chart else "",
         **_estimated(chart),

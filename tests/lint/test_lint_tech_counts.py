@@ -216,3 +216,17 @@ def test_the_table_has_the_counts(tmp_path: Path) -> None:
     assert set(TECH_COUNTS) <= set(line)
     assert [line["Jacks"], line["Crossovers"], line["rows"]] == ["7", "0", "8"]
     assert float(line["nps_mean"]) == pytest.approx(1 / 0.15, abs=1e-3)
+
+
+def test_hands_are_those_of_dt302(tmp_path: Path) -> None:
+    """Three panels down, though the feet bracket two of them."""
+    path = tmp_path / "x.sm"
+    path.write_text("#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single::Easy:3::\n1000\n0100\n1101\n0000\n;\n")
+    task = AnalyzeTask(path, PresetChoice(), Selection(), load_configuration(None).settings, want_figures=True)
+    result = analyze_file(task)
+    assert [finding.rule for finding in result.charts[0].findings].count("DT302") == 1
+    stream = io.StringIO()
+    report = CsvReport(stream, io.StringIO())
+    report.begin()
+    report.add(result)
+    assert next(csv.DictReader(io.StringIO(stream.getvalue())))["Hands"] == "1"

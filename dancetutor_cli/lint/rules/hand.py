@@ -52,7 +52,9 @@ class Hand(MoveRule):
         """Rows with a step in which a third panel is down, and those in which the solver uses a hand."""
         if subject.feet is None or len(subject.step_rows) < _STUB:
             return []
-        found = sorted({*subject.rows_with(self.move), *subject.feet.triples()})
+        from dancetutor_cli.lint.figures import hand_rows
+
+        found = hand_rows(subject)
         return found if found and not self._expected(subject) else []
 
     def _expected(self, subject: ChartSubject) -> bool:
