@@ -51,7 +51,14 @@ def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...
     rules = rules_of(subject, settings)
     findings = [finding for rule in rules.values() for finding in _found(rule, subject)]
     told = _as_sure_as_they_are(findings, subject, settings, rules.get(_AMBIGUITY))
+    if subject.play is None and subject.chart.written_type.startswith(_FINGERS) and _NO_PAD in rules:
+        told = (one for one in told if one.rule == _NO_PAD or one.severity == "error")
     return _in_order(finding for finding in told if not _silenced(finding, subject))
+
+
+# Steps types that fingers play, of a chart of which one line says enough: what makes a dance is nothing to them.
+_FINGERS = ("kb", "bm-", "iidx-", "pnm-", "popn-", "gh-", "gddm-")
+_NO_PAD = "DT103"
 
 
 def rules_of(subject: ChartSubject, settings: Settings) -> Rules:
