@@ -131,3 +131,48 @@ def test_every_picture_of_the_docs_is_there_small_and_shown() -> None:
     assert all((docs / name).stat().st_size < 100_000 for name in pictures)
     features = ("meter.md", "guide.md", "theme.md", "pack.md", "films.md", "peers.md", "page.md")
     assert all(shown[name] for name in features)
+
+
+PACKAGE = ROOT / "dancetutor_cli"
+MODULES = {
+    ".".join(path.relative_to(PACKAGE).with_suffix("").parts).removesuffix(".__init__")
+    for path in PACKAGE.rglob("*.py")
+}
+CODE_PAGES = sorted(name for name in PAGES if name != "CHANGELOG.md")
+
+
+def exists(name: str) -> bool:
+    """Whether a dotted name, with the room it is in or from its module on, is a module or what one defines."""
+    parts = name.split(".")
+    for k in range(len(parts), 0, -1):
+        head = ".".join(parts[:k])
+        for module in sorted(m for m in MODULES if m == head or m.endswith(f".{head}")):
+            target: object = importlib.import_module(f"dancetutor_cli.{module}")
+            for part in parts[k:]:
+                target = getattr(target, part, None)
+            if target is not None:
+                return True
+    return False
+
+
+@pytest.mark.parametrize("name", CODE_PAGES)
+def test_modules_and_functions_that_the_pages_name_exist(name: str) -> None:
+    words = re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", PAGES[name], flags=re.S))
+    paths = [word for word in words if re.fullmatch(r"[\w/]+\.py", word)]
+    files = [path for folder in ("dancetutor_cli", "tests", "tools") for path in (ROOT / folder).rglob("*.py")]
+    there = {
+        path.relative_to(base).as_posix() for base in (ROOT, PACKAGE) for path in files if path.is_relative_to(base)
+    }
+    there |= {path.rpartition("/")[2] for path in there}
+    assert [path for path in paths if path not in there] == []
+    rooms = {module.partition(".")[0] for module in MODULES} | {module.rpartition(".")[2] for module in MODULES}
+    dotted = [word.removesuffix("()") for word in words if re.fullmatch(r"[a-z_]\w*(\.\w+)+(\(\))?", word)]
+    code = [
+        word
+        for word in dotted
+        if (word.count(".") > 1 or word.partition(".")[0] in rooms)
+        and word.rpartition(".")[2] not in ("py", "yaml", "json", "md")
+    ]
+    keys = (ROOT / "configs" / "motion.yaml").read_text(encoding="utf-8")  # `body.height_smooth` is a setting
+    settings = [word for word in code if re.search(rf"^ +{word.rpartition('.')[2]}:", keys, re.M)]
+    assert [word for word in code if word not in settings and not exists(word)] == []
