@@ -5,7 +5,7 @@ __version__ = "0.2.0.dev0"
 import sys
 
 
-def _tell(kind: type[BaseException], error: BaseException, trace: object) -> None:
+def _excepthook(kind: type[BaseException], error: BaseException, trace: object) -> None:
     """Of a Ctrl-C that comes before `__main__.main` can catch it: one line, as of any later one."""
     if issubclass(kind, KeyboardInterrupt):
         sys.stderr.write("dancetutor: interrupted\n")
@@ -16,4 +16,4 @@ def _tell(kind: type[BaseException], error: BaseException, trace: object) -> Non
 # Only as a program, "dancetutor" or "python -m dancetutor_cli", and before anything else is imported.
 _NAMES = ("dancetutor", __name__)
 if any(one.replace("\\", "/").rpartition("/")[2].partition(".")[0] in _NAMES for one in sys.orig_argv):
-    sys.excepthook = _tell
+    sys.excepthook = _excepthook

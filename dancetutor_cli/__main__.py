@@ -53,17 +53,17 @@ def _run(arguments: Sequence[str] | None) -> int:
             raise
         status = _reader_gone()  # click has seen it, put another stream here and made 1 of it, which means findings
     except BaseException as error:
-        status = _told(error)
+        status = _report_end(error)
     leave_garbage()
     return status if isinstance(status, int) else 0
 
 
-def _told(error: BaseException) -> int:
+def _report_end(error: BaseException) -> int:
     """Say in one line what ended the run; the exit status."""
     import click
 
     from dancetutor_cli.run.errors import DancetutorError
-    from dancetutor_cli.run.process import OUTPUT, is_interruption, leave_output, told
+    from dancetutor_cli.run.process import OUTPUT, is_interruption, leave_output, os_error_message
 
     if isinstance(error, click.exceptions.Exit):
         return error.exit_code
@@ -80,7 +80,7 @@ def _told(error: BaseException) -> int:
     elif isinstance(error, MemoryError):
         _say("out of memory")
     elif isinstance(error, OSError):
-        _say(told(error))
+        _say(os_error_message(error))
         if error.filename == OUTPUT:
             leave_output()
     elif os.environ.get("DANCETUTOR_TRACEBACK"):

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 from dancetutor_cli.lint.meter_model import Curve, Feature, MeterModel, Scale, model_of
-from dancetutor_cli.lint.meters import _TAGS, Sized, on_scale, scales_of, sized
+from dancetutor_cli.lint.meters import _TAGS, MeteredChart, on_scale, scales_of, sized
 from dancetutor_cli.run.reading import config_path
 
 Floats = NDArray[np.float64]
@@ -97,7 +97,7 @@ def shape_of(charts: Sequence[Labelled]) -> Shape:
         values = values[values > 0]
         quantiles = QUANTILES.get(feature.thing, (0.5, 0.9))
         found = np.quantile(values, quantiles) if len(values) >= 20 else np.array([1.0])
-        digits = 0 if feature.how == "count" else 3
+        digits = 0 if feature.kind == "count" else 3
         knots[feature] = tuple(sorted({0.0, *(round(float(x), digits) for x in found)} - {-0.0} | {0.0}))
     return Shape(knots)
 
@@ -199,7 +199,7 @@ def judged(charts: Sequence[Labelled], names: Sequence[str]) -> list[Judged]:
     folds, out = folds_of(charts), []
     for fold in range(FOLDS):
         model = Fit([one for one, of in zip(charts, folds, strict=True) if of != fold], names).model({}, (0.0, 0.0))
-        files: dict[str, list[tuple[Labelled, Sized]]] = defaultdict(list)
+        files: dict[str, list[tuple[Labelled, MeteredChart]]] = defaultdict(list)
         for one, of in zip(charts, folds, strict=True):
             if of == fold:
                 files[one.file].append((one, sized(model, one.values, (one.meter, one.difficulty))))
@@ -309,7 +309,7 @@ def yaml_of(pad: str, model: MeterModel) -> str:
             for curve in curves:
                 of = curve.feature
                 at, meters = (", ".join(f"{x:g}" for x in row) for row in (curve.at, curve.meters))
-                lines.append(f"        - {{of: {of.thing}, seconds: {of.seconds:g}, how: {of.how},\n")
+                lines.append(f"        - {{of: {of.thing}, seconds: {of.seconds:g}, how: {of.kind},\n")
                 lines.append(f"           at: [{at}],\n           meters: [{meters}]}}\n")
         rows = (("up_to", scale.up_to), ("below", scale.below), ("above", scale.above))
         said = ", ".join(f"{name}: [{', '.join(f'{x:g}' for x in row)}]" for name, row in rows)

@@ -15,7 +15,7 @@ from packaging.utils import canonicalize_name
 
 from dancetutor_cli.dance.physics import style
 from dancetutor_cli.film.scene.gl import available
-from dancetutor_cli.run.errors import PACKAGES, UnavailableError, how_to_add
+from dancetutor_cli.run.errors import PACKAGES, UnavailableError, install_command
 
 ROOT = Path(__file__).resolve().parent.parent
 PROJECT = ROOT / "pyproject.toml"
@@ -60,7 +60,7 @@ def test_without_an_extra_one_line_says_what_to_install(monkeypatch: pytest.Monk
     assert available.gpu_device() is None
     monkeypatch.setitem(sys.modules, "mujoco", None)
     assert not style.is_installed()
-    with pytest.raises(UnavailableError, match=f"{how_to_add('physics')}$"):
+    with pytest.raises(UnavailableError, match=f"{install_command('physics')}$"):
         style.engine()
 
 
@@ -91,7 +91,7 @@ def test_what_needs_an_extra_says_so(arguments: tuple[str, ...], extra: str, tmp
         tmp_path, name, song, "--index", "0", "--section", "8:9", *arguments[:-1], str(tmp_path / arguments[-1])
     )
     assert done.returncode == 2, done.stderr
-    assert how_to_add(extra) in done.stderr.strip().splitlines()[-1]  # type: ignore[arg-type]
+    assert install_command(extra) in done.stderr.strip().splitlines()[-1]  # type: ignore[arg-type]
     assert "internal error" not in done.stderr
 
 
@@ -100,7 +100,7 @@ def test_doctor_says_what_is_missing(tmp_path: Path) -> None:
     said = " ".join(done.stdout.split())
     assert done.returncode == 2, "no ffmpeg: no films"
     for extra in ("physics", "gl", "ffmpeg"):
-        assert how_to_add(extra) in said  # type: ignore[arg-type]
+        assert install_command(extra) in said  # type: ignore[arg-type]
 
 
 def needed(names: list[str]) -> set[str]:

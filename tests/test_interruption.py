@@ -128,7 +128,7 @@ def test_ctrl_c_within_a_kernel(fault: Exception, interrupted_by: Callable[[Exce
     workers = open_workers(1, lambda key, n: None)
     workers.submit(Task(1, _fail, (fault,)))
     with pytest.raises(KeyboardInterrupt):
-        list(workers.done())
+        list(workers.results())
 
 
 def test_another_fault_is_not(interrupted_by: Callable[[Exception], tuple[object, str]]) -> None:

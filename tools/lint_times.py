@@ -64,8 +64,8 @@ def quickest(rule: type[TimedRule], subject: ChartSubject, sure: float) -> float
         "least_meter": 10**9,
     }
     found = [float("inf")]
-    for row, seconds, _, _ in rule(options).happens(subject):
-        confidence = subject.sureness(float(subject.play.rows.tick[row]) / 48)[1]
+    for row, seconds, _, _ in rule(options).occurrences(subject):
+        confidence = subject.confidence(float(subject.play.rows.tick[row]) / 48)[1]
         if seconds > 0 and (confidence is None or 100 * confidence >= sure):
             found.append(1000 * seconds)
     return min(found)

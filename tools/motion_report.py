@@ -89,7 +89,7 @@ def main() -> None:
     try:
         for chart in wanted:
             workers.submit(Task(chart, measure, (chart, options.preset, options.bar, options.section)))
-        for done in workers.done():
+        for done in workers.results():
             chart = done.key
             results.append(done.result or Measured(chart.path, chart.index, chart.label, error=str(done.error)))
             _progress(len(results), len(wanted), started)

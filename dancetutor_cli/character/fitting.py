@@ -46,7 +46,7 @@ def fit_character(path: Path) -> Character:
     nodes = read_nodes(container)
     humanoid = find_humanoid(container, nodes)
     named = humanoid.joints()
-    held = _held(container, nodes, {n for n, joint in named.items() if joint.endswith("_radiocarpal")})
+    held = _hand_items(container, nodes, {n for n, joint in named.items() if joint.endswith("_radiocarpal")})
     character, joint_of = character_with_nodes(container, nodes, named, held)
     names = {joint_of[node]: joint for node, joint in named.items()}
     character = _rooted(character, names)
@@ -55,7 +55,7 @@ def fit_character(path: Path) -> Character:
     return drawable(character, rest_vertices(character))
 
 
-def _held(container: Container, nodes: Nodes, hands: set[int]) -> set[int]:
+def _hand_items(container: Container, nodes: Nodes, hands: set[int]) -> set[int]:
     """Nodes of unskinned meshes below a hand: weapons and tools, often several at once to choose from."""
     below = set(hands)
     for i in nodes.order:

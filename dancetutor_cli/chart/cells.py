@@ -20,7 +20,7 @@ from dancetutor_cli.chart.model import Kind, ReadWarning
 # the pad. One with steps of all three is for them and more, see `chart.cells`.
 
 PLAYERS = b"XYZxyz"
-SAID = {
+TEXTS = {
     "{": "notes in {...} are StepF2's: here each is one note, the other games read them letter by letter",
     "X": "X, Y and Z are steps of several players in StepF2, of whom the first or the second has none here: no notes",
 }
@@ -50,7 +50,7 @@ def player_of(letter: int) -> int:
 
 
 def note_at(text: bytes, at: int, columns: int) -> tuple[int, int, str] | None:
-    """The letter of StepF2's note at an offset of a row, where it ends, which of `SAID` it is; None if it is none."""
+    """The letter of StepF2's note at an offset of a row, where it ends, which of `TEXTS` it is; None if it is none."""
     if found := _NOTE.match(text, at):
         letter = _FAKED.get(found[1], "F") if found[2] == b"1" else found[1].decode("ascii")
         return ord(letter), found.end(), "{"

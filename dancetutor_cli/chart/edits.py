@@ -89,14 +89,14 @@ def _body(pairs: list[tuple[bytes | None, bytes | None]], encoding: str) -> Iter
         if a == b:
             yield from (*removed, *added)
             removed, added = [], []
-            yield " " + _shown(a, encoding)
+            yield " " + _display_line(a, encoding)
         else:
-            removed += [] if a is None else ["-" + _shown(a, encoding)]
-            added += [] if b is None else ["+" + _shown(b, encoding)]
+            removed += [] if a is None else ["-" + _display_line(a, encoding)]
+            added += [] if b is None else ["+" + _display_line(b, encoding)]
     yield from (*removed, *added)
 
 
-def _shown(line: bytes | None, encoding: str) -> str:
+def _display_line(line: bytes | None, encoding: str) -> str:
     return decode((line or b"").removesuffix(b"\r"), encoding).replace("\r", " ")
 
 

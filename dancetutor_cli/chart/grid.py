@@ -130,13 +130,13 @@ class Grid:
                 alone |= others
                 known = ~np.isin(self._of_row[rows], [*others])
                 rows, kinds = rows[known], kinds[known]
-            found.append(self._found(rows, kinds))
+            found.append(self._cells_of(rows, kinds))
         for part in sorted(alone):
             rows = np.arange(self._rows[part], self._rows[part + 1])
-            found.append(self._found(rows, self._odd_kinds(part)))
+            found.append(self._cells_of(rows, self._odd_kinds(part)))
         return found[0] if len(found) == 1 else Cells.joined(found)
 
-    def _found(self, rows: NDArray[np.int64], kinds: NDArray[np.uint8]) -> Cells:
+    def _cells_of(self, rows: NDArray[np.int64], kinds: NDArray[np.uint8]) -> Cells:
         """The cells of some rows that hold something."""
         cell = np.flatnonzero(kinds)
         row, column = np.divmod(cell, max(kinds.shape[1], 1))
@@ -179,7 +179,7 @@ class Grid:
         if part.letters is OF_PLAYERS:
             foreign.pop("X", None)
         for what, found_at in foreign.items():
-            message = f"{stepf2.SAID[what]}: {len(found_at)} row{'' if len(found_at) == 1 else 's'}"
+            message = f"{stepf2.TEXTS[what]}: {len(found_at)} row{'' if len(found_at) == 1 else 's'}"
             part.warnings.append(ReadWarning("stepf2-note", message, found_at[0]))
         for (code, text), found_at in findings.items():
             report(part.warnings, code, text, np.array(found_at))
@@ -233,7 +233,7 @@ def odd_row(
 ) -> tuple[list[int], list[tuple[str, str]], dict[int, tuple[int, str]]]:
     """The cells of one row, character by character, as the games go; and what is odd about it: code, message.
 
-    And by column what is StepF2's: the letter, and which of `cells.SAID` it is.
+    And by column what is StepF2's: the letter, and which of `cells.TEXTS` it is.
     """
     cells: list[int] = []
     found: dict[tuple[str, str], None] = {}

@@ -154,6 +154,6 @@ def one_line(text: str) -> str:
     return " ".join(text.split())
 
 
-def shown(text: str) -> str:
+def quote(text: str) -> str:
     """The start of a text on one line, safe to print, for messages; what cannot be seen by its number: "12<0x08>5"."""
     return "".join(c if c.isprintable() else f"<{ord(c):#04x}>" for c in one_line(text)[:60])

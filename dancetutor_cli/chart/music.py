@@ -7,7 +7,7 @@ import unicodedata
 from pathlib import Path
 
 from dancetutor_cli.chart.model import Chart, Song
-from dancetutor_cli.chart.msd import shown
+from dancetutor_cli.chart.msd import quote
 from dancetutor_cli.chart.reader import suspicious_music
 from dancetutor_cli.run.errors import FileError, MissingFileError
 
@@ -31,14 +31,14 @@ def music_file(song: Song, chart: Chart | None = None) -> Path:
         return _only_audio_file(song, folder)
     if suspicious_music(name):
         raise FileError(
-            song.path, f"music '{shown(name)}' is refused: it must be a plain file name in the song's folder"
+            song.path, f"music '{quote(name)}' is refused: it must be a plain file name in the song's folder"
         )
     current = folder
     for part in name.replace("\\", "/").split("/"):
         if part not in ("", "."):
             current = _entry(current, part)
     if not os.path.isfile(current):  # noqa: PTH113 (Path.is_file may raise)
-        raise MissingFileError(song.path, f"music '{shown(name)}' is not there; put it into the song's folder")
+        raise MissingFileError(song.path, f"music '{quote(name)}' is not there; put it into the song's folder")
     return _inside(song, current, folder)
 
 
@@ -80,7 +80,7 @@ def _names(folder: Path) -> list[str]:
 def _inside(song: Song, path: Path, folder: Path) -> Path:
     real = path.resolve()
     if not real.is_relative_to(folder):
-        raise FileError(song.path, f"music '{shown(path.name)}' is refused: it is a link that leaves the song's folder")
+        raise FileError(song.path, f"music '{quote(path.name)}' is refused: it is a link that leaves the song's folder")
     if real.suffix.lower() not in SUFFIXES:
-        raise FileError(song.path, f"music '{shown(path.name)}' is no audio file ({', '.join(SUFFIXES)})")
+        raise FileError(song.path, f"music '{quote(path.name)}' is no audio file ({', '.join(SUFFIXES)})")
     return real

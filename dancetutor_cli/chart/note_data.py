@@ -80,7 +80,7 @@ def read_notes(data: bytes, values: Iterable[Value], lines: LineIndex) -> Iterat
 
 def _read(text: NoteText, values: Sequence[Value]) -> Iterator[NoteData]:
     split = [_parts(text, value) for value in values]
-    found = _Found(text, [part for of_chart in split for part in of_chart])
+    found = _PartCells(text, [part for of_chart in split for part in of_chart])
     at = 0
     for value, parts in zip(values, split, strict=True):
         if value.form.routine or parts[0].letters is OF_PLAYERS:
@@ -90,7 +90,7 @@ def _read(text: NoteText, values: Sequence[Value]) -> Iterator[NoteData]:
         at += len(parts)
 
 
-class _Found:
+class _PartCells:
     """What stands in some parts."""
 
     def __init__(self, text: NoteText, parts: Sequence[NotePart]) -> None:

@@ -23,7 +23,7 @@ from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
 # What both formats share: the values of a song's tags, making charts of note data, and what is odd in a file.
 
 # Tags whose loss somebody sees or hears in a game.
-_SEEN = frozenset({
+_TEXT_TAGS = frozenset({
     "TITLE", "SUBTITLE", "ARTIST", "TITLETRANSLIT", "SUBTITLETRANSLIT", "ARTISTTRANSLIT", "GENRE", "CREDIT", "BANNER",
     "BACKGROUND", "JACKET", "CDTITLE", "LYRICSPATH", "PREVIEWVID", "MUSIC", "OFFSET", "SAMPLESTART", "SAMPLELENGTH",
     "DISPLAYBPM", "BPMS", "STOPS", "DELAYS", "WARPS", "BGCHANGES", "FGCHANGES",
@@ -112,7 +112,7 @@ class SongReader:
         if columns is None:
             columns = width_of_first_row(self.data, notes)
             message = (
-                f"steps type '{msd.shown(kind)}' is unknown; it is read with the {columns} columns of its first row"
+                f"steps type '{msd.quote(kind)}' is unknown; it is read with the {columns} columns of its first row"
             )
             warnings.append(ReadWarning("unknown-steps-type", message, line))
         meter = _meter(tags.get("METER", ""), line, warnings)
@@ -121,7 +121,7 @@ class SongReader:
         if self.path.suffix.lower() == EDIT_SUFFIX:
             difficulty = "Edit"
         elif not said:
-            message = f"difficulty '{msd.shown(tags.get('DIFFICULTY', ''))}' is unknown; the games show {difficulty}"
+            message = f"difficulty '{msd.quote(tags.get('DIFFICULTY', ''))}' is unknown; the games show {difficulty}"
             warnings.append(ReadWarning("odd-difficulty", message, line))
         form = NoteForm(columns, names.is_routine(kind), trimmed=self.format == "sm")
         self._values.append(Value(notes, form, timing))
@@ -161,8 +161,8 @@ class SongReader:
         for tag in song_tags:
             ended = tag.spans and self.data[tag.spans[-1][1] : tag.spans[-1][1] + 1] == b"#"
             if ended and not self.text(tag) and self._on_one_line(tag):
-                message = f"the value of {msd.shown(tag.name)} starts with '#': the games read that as the next tag"
-                code = "hash-in-value" if tag.name in _SEEN else "hash-in-unused-value"
+                message = f"the value of {msd.quote(tag.name)} starts with '#': the games read that as the next tag"
+                code = "hash-in-value" if tag.name in _TEXT_TAGS else "hash-in-unused-value"
                 self.warnings.append(ReadWarning(code, message, self.lines(tag.start)))
         if b"\r" in self.data and b"\n" not in self.data:
             message = "lines end at CR alone: the games read each measure as one row"
@@ -178,7 +178,7 @@ class SongReader:
             seen.add(key)
         if (name := values.get("MUSIC", "")) and suspicious_music(name):
             message = (
-                f"MUSIC '{msd.shown(name)}' is not a plain file name inside the song's folder; it will not be opened"
+                f"MUSIC '{msd.quote(name)}' is not a plain file name inside the song's folder; it will not be opened"
             )
             line = next((self.lines(tag.start) for tag in reversed(song_tags) if tag.name == "MUSIC"), None)
             self.warnings.append(ReadWarning("unsafe-music", message, line))
@@ -192,7 +192,7 @@ def _meter(value: str, line: int, warnings: list[ReadWarning]) -> int:
     meter, clean = number(value)
     if not clean or not 0 <= meter <= _LARGEST_METER:
         read = int(meter) if 0 < meter <= _LARGEST_METER else 1
-        message = f"meter '{msd.shown(value)}' is no usable number; read as {read}"
+        message = f"meter '{msd.quote(value)}' is no usable number; read as {read}"
         warnings.append(ReadWarning("odd-meter", message, line))
         return read
     return int(meter)

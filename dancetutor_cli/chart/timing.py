@@ -248,7 +248,7 @@ def _inside(segments: Segments, ticks: NDArray[np.int64]) -> NDArray[np.bool_]:
 _POINT = re.compile(
     r"\s*(?:(?P<unit>[bm])\s*(?P<after>[\d.]+)|(?P<number>[\d.]+)\s*(?P<suffix>[bms]?))\s*", re.IGNORECASE
 )
-_HOW = "write START:END in seconds (10:25), beats (b16:b48) or measures (m4:m12); either end may be left out"
+_SECTION_HELP = "write START:END in seconds (10:25), beats (b16:b48) or measures (m4:m12); either end may be left out"
 
 
 def check_section(text: str) -> None:
@@ -280,7 +280,7 @@ def _ends(text: str) -> tuple[tuple[float, str] | None, tuple[float, str] | None
     """Number and unit ("s", "b" or "m") of both ends; None for an end that is left out."""
     start, colon, end = text.partition(":")
     if not colon or ":" in end or not (start.strip() or end.strip()):
-        raise UsageError(f"section '{text}' cannot be read; {_HOW}")
+        raise UsageError(f"section '{text}' cannot be read; {_SECTION_HELP}")
     return _point(start, text), _point(end, text)
 
 
@@ -293,7 +293,7 @@ def _point(point: str, whole: str) -> tuple[float, str] | None:
     except ValueError:
         number = math.nan
     if match is None or not math.isfinite(number):
-        raise UsageError(f"section '{whole}': '{point.strip()}' cannot be read; {_HOW}")
+        raise UsageError(f"section '{whole}': '{point.strip()}' cannot be read; {_SECTION_HELP}")
     return number, (match["unit"] or match["suffix"] or "s").lower()
 
 

@@ -10,7 +10,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, ReadWarning
-from dancetutor_cli.chart.msd import shown
+from dancetutor_cli.chart.msd import quote
 from dancetutor_cli.chart.timing import Segments, Timing
 
 # Numbers as the games read them (C's strtof and atoi), but exact.
@@ -23,7 +23,7 @@ _DIGITS = 60  # more decimals than any use has; Python refuses to read thousands
 
 def number(text: str) -> tuple[Fraction, bool]:
     """The decimal at the start of a text, and whether the text is nothing else. Junk and the not finite are 0."""
-    return _known(text) if len(text) < _SHORT else _number(text)
+    return _cached_number(text) if len(text) < _SHORT else _number(text)
 
 
 def _number(text: str) -> tuple[Fraction, bool]:
@@ -51,7 +51,7 @@ def _number(text: str) -> tuple[Fraction, bool]:
     return value, clean
 
 
-_known = lru_cache(maxsize=8192)(_number)  # charts of a song mostly say the same again
+_cached_number = lru_cache(maxsize=8192)(_number)  # charts of a song mostly say the same again
 
 
 def beat(text: str) -> tuple[Fraction, bool]:
@@ -98,21 +98,21 @@ def pairs(text: str, tag: str, negative: bool, warn: Warn) -> Pairs:
     out: Pairs = []
     for entry, parts in entries(text):
         if len(parts) != 2:
-            warn("odd-timing", f"{tag} entry '{shown(entry)}' has not exactly one '=' and is ignored")
+            warn("odd-timing", f"{tag} entry '{quote(entry)}' has not exactly one '=' and is ignored")
             continue
         (at, clean), (value, clean_value) = beat(parts[0]), number(parts[1])
         below = value.numerator < 0  # ten times as quick as to compare fractions
         if abs(at.numerator) > MAX_BEAT * at.denominator:
-            warn("odd-timing", f"{tag} entry '{shown(entry)}' is beyond every song and is ignored")
+            warn("odd-timing", f"{tag} entry '{quote(entry)}' is beyond every song and is ignored")
         elif (below or (at.numerator < 0 and tag in ("BPMS", "STOPS"))) and not negative:
-            warn("odd-timing", f"{tag} entry '{shown(entry)}' is negative and is ignored")
+            warn("odd-timing", f"{tag} entry '{quote(entry)}' is negative and is ignored")
         elif not value.numerator:
             if not clean_value or tag != "STOPS":
-                warn("odd-timing", f"{tag} entry '{shown(entry)}' has no usable value and is ignored")
+                warn("odd-timing", f"{tag} entry '{quote(entry)}' has no usable value and is ignored")
         else:
             if not clean or not clean_value:
                 read = f"{float(at):g}={float(value):g}"
-                warn("odd-timing", f"{tag} entry '{shown(entry)}' is no pair of numbers; read as {read}")
+                warn("odd-timing", f"{tag} entry '{quote(entry)}' is no pair of numbers; read as {read}")
             out.append((at, value))
     return out
 
@@ -154,7 +154,7 @@ def odd_signatures(text: str) -> list[str]:
     for entry, parts in entries(text):
         numbers = [math.trunc(number(p)[0]) for p in parts[:3]]
         if len(numbers) < 3 or numbers[0] < 0 or numbers[1] < 1 or numbers[2] < 1:
-            out.append(shown(entry))
+            out.append(quote(entry))
     return out
 
 
@@ -353,7 +353,7 @@ def is_own(tags: Mapping[str, Text], source: Source) -> bool:
 def _offset(tag: Text, warnings: list[ReadWarning]) -> Fraction:
     value, clean = number(tag.value)
     if not clean and tag.value.strip():
-        text = f"OFFSET '{shown(tag.value)}' is no decimal number; read as {float(value):g}"
+        text = f"OFFSET '{quote(tag.value)}' is no decimal number; read as {float(value):g}"
         warnings.append(ReadWarning("odd-offset", text, tag.line))
     return value
 

@@ -13,7 +13,7 @@ import click
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.arguments import GivenPath, Source, fixes, folder, named, rules, sources
 from dancetutor_cli.commands.chart_options import preset_option, selection_options
-from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.pack import pack_options
 from dancetutor_cli.reports.formats import FORMATS
 from dancetutor_cli.run.errors import DancetutorError, UsageError
@@ -217,9 +217,9 @@ def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
     from dancetutor_cli.commands.pack import PackReport
 
     if options["beside"] is not None:
-        from dancetutor_cli.commands.pack import tell_beside
+        from dancetutor_cli.commands.pack import report_comparison
 
-        return tell_beside([run.task(path, data) for path, data in files], options)
+        return report_comparison([run.task(path, data) for path, data in files], options)
     tally = Tally(run.fail_on(first), options["exit_zero"])
     run.open_baseline(first)
     pack = PackReport(options, run.has_baseline, len(files), brief=_is_brief(options))
@@ -234,7 +234,7 @@ def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
     if not options["no_cache"] and not options["quiet"] and (fault := results_folder()[1]):
         click.echo(f"note: {fault}: results are not kept", err=True)
     for raw in analyze_all(tasks, options["jobs"], cache, _before_work):
-        result = run.without_known(raw)
+        result = run.without_baseline(raw)
         tally.add(result)
         pack.add(raw)
         if options["quiet"]:
@@ -245,7 +245,7 @@ def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
     if options["statistics"] and options["format_name"] == "text":
         tally.page += tally.statistics()
     report.end(tally)
-    for line in pack.said():
+    for line in pack.summary_lines():
         click.echo(line, err=True)
     if options["sheet"] is not None and not tally.unreadable:
         from dancetutor_cli.commands.pack import write_sheet
@@ -273,7 +273,7 @@ def _before_work(tasks: Sequence[AnalyzeTask]) -> None:
 
         return sum(note_bytes(task.path, task.selection, task.data) for task in tasks)
 
-    tell_of_compiling(tasks[0].presets, None if solves_often else size)
+    announce_compiling(tasks[0].presets, None if solves_often else size)
 
 
 def _finish(run: LintRun, tally: Tally, options: dict[str, Any]) -> None:

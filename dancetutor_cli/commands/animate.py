@@ -27,7 +27,7 @@ from dancetutor_cli.commands.chart_options import (
     selection_options,
     style_option,
 )
-from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.formats.writers import FORMATS
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import check_file, one_of
@@ -140,7 +140,7 @@ def command(file: Path, selection: Selection, dance: DanceOptions, result: Resul
     if result.physics and request.style is None:
         request = replace(request, style="neutral")
     request = with_style(request)
-    tell_of_compiling(choice_for(request.path, request.preset), lambda: note_bytes(request.path, selection))
+    announce_compiling(choice_for(request.path, request.preset), lambda: note_bytes(request.path, selection))
     check_request(request)
     choice = read_chart(request, result.section)
     performance = perform(solve(request, choice), request, result.rate)

@@ -13,7 +13,7 @@ import click
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.arguments import GivenPath, into, within_folders
 from dancetutor_cli.commands.chart_options import preset_option, selection_options, verbose_option
-from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.reports.terminal import JoinedWarnings, coloured
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.files import check_folder
@@ -117,7 +117,7 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
     if not wish.strip:
         from dancetutor_cli.chart.selection import note_bytes
 
-        tell_of_compiling(
+        announce_compiling(
             choice_of(wish.preset), lambda: sum(note_bytes(item.source, Selection()) for song in songs for item in song)
         )
     try:
@@ -172,7 +172,7 @@ def _outcomes(songs: Sequence[tuple[Item, ...]], order: Order, jobs: int | None)
             workers.submit(Task(number, annotate_task, (song, order)))
         waiting: dict[int, list[AnnotateOutcome]] = {}
         turn = 0
-        for done in workers.done():
+        for done in workers.results():
             if done.error is not None:
                 raise done.error
             waiting[done.key] = done.result
@@ -226,9 +226,9 @@ class _Talk:
             for line in coloured(outcome.diff):
                 click.echo(line)
         elif not self.check:
-            details = _kept(outcome) if self.order.strip else _details(outcome)
+            details = _leftover_message(outcome) if self.order.strip else _details(outcome)
             click.echo(f"{self._verb(outcome)} {_safe(str(outcome.source))}{details}")
-            for path in outcome.beside:
+            for path in outcome.companions:
                 click.echo(f"  {_safe(path.name)}")
 
     def _verb(self, outcome: AnnotateOutcome) -> str:
@@ -254,7 +254,7 @@ class _Talk:
         return 1 if self.check and self.lacking else 0
 
 
-def _kept(outcome: AnnotateOutcome) -> str:
+def _leftover_message(outcome: AnnotateOutcome) -> str:
     """What taking the markers out has left in the file."""
     pinned = dict(outcome.counts).get("pinned", 0)
     if not pinned:

@@ -82,10 +82,10 @@ def _gl() -> Check:
 
 def _physics() -> Check:
     from dancetutor_cli.dance.physics.style import engine, is_installed
-    from dancetutor_cli.run.errors import how_to_add
+    from dancetutor_cli.run.errors import install_command
 
     if not is_installed():
-        return Check("physics", "without", "no engine for styles and retarget", how_to_add("physics"))
+        return Check("physics", "without", "no engine for styles and retarget", install_command("physics"))
     return Check("physics", "ok", f"MuJoCo {engine().__version__}")
 
 
@@ -142,13 +142,13 @@ def _cache() -> Check:
     found = [f"{_kernels(used)} came compiled"] if used else []
     found += [f"{_kernels(len(paths))} compiled here, in {place}" for place, paths in here.items() if paths]
     found = found or [_NOTHING]
-    if not folder.kept:
+    if not folder.is_writable:
         found.append("and none can be kept")
     elif not here[kept_in]:
         found.append(f"new ones go into {kept_in}")
     message = ", ".join(found)
     if shipped and not used:
-        message = f"those of the package are for {_made_by(came)}: not used; {message}"
+        message = f"those of the package are for {_compiler_description(came)}: not used; {message}"
     if folder.fault:
         mend = f"set {VARIABLE} to a folder that can be written, then dancetutor warmup"
         return Check("numba cache", "without", f"{folder.fault}; {message}", mend)
@@ -160,7 +160,7 @@ def _kernels(count: int) -> str:
     return f"{count} kernel{'' if count == 1 else 's'}"
 
 
-def _made_by(shipped: Path) -> str:
+def _compiler_description(shipped: Path) -> str:
     """What compiled the kernels of the package, in words."""
     from dancetutor_cli.run.kernels.store import MADE_BY
 
@@ -216,14 +216,14 @@ def command(as_json: bool) -> None:
     else:
         width = max(len(c.name) for c in checks)
         for check in checks:
-            _tell(f"{check.state:<7} {check.name:<{width}}  ", check.message.rstrip("."))
+            _print_entry(f"{check.state:<7} {check.name:<{width}}  ", check.message.rstrip("."))
             if check.mend:
-                _tell(" " * (width + 10), f"mend: {check.mend}")
+                _print_entry(" " * (width + 10), f"mend: {check.mend}")
     if any(check.state == "broken" for check in checks):
         sys.exit(2)
 
 
-def _tell(head: str, text: str) -> None:
+def _print_entry(head: str, text: str) -> None:
     """One line, and more below its text where it is long; paths are never broken."""
     lines = textwrap.wrap(text, WIDTH - len(head), break_long_words=False, break_on_hyphens=False)
     for number, line in enumerate(lines):

@@ -23,10 +23,12 @@ if TYPE_CHECKING:
 
 # A word before work: where kernels are kept if not in the usual place, and that a first run compiles for a minute.
 
-_NOT_KEPT = "nothing compiled is kept, each run compiles again; set NUMBA_CACHE_DIR to a folder that only you can write"
+_NO_STORE_MESSAGE = (
+    "nothing compiled is kept, each run compiles again; set NUMBA_CACHE_DIR to a folder that only you can write"
+)
 
 
-def tell_of_compiling(choice: PresetChoice, size: Callable[[], int] | None = None, *, quiet: bool = False) -> None:
+def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = None, *, quiet: bool = False) -> None:
     """Say that kernels of these presets are compiled, if they are; only to a terminal, where somebody wonders.
 
     size : tells the bytes of the note data to be solved; little is solved without compiling. None: compile in any case
@@ -43,7 +45,11 @@ def tell_of_compiling(choice: PresetChoice, size: Callable[[], int] | None = Non
         return
     folder = kernel_folder()
     if folder.fault and not quiet and not came_compiled():
-        where = f"compiled kernels are kept in {folder.root or 'the installation'}" if folder.kept else _NOT_KEPT
+        where = (
+            f"compiled kernels are kept in {folder.root or 'the installation'}"
+            if folder.is_writable
+            else _NO_STORE_MESSAGE
+        )
         click.echo(f"note: {folder.fault}: {where}", err=True)
     if quiet or not sys.stderr.isatty():
         return

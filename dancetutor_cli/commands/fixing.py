@@ -35,12 +35,12 @@ class FixRequest:
     number: int | None = None
 
 
-def asked(texts: Sequence[str]) -> tuple[FixRequest, ...]:
+def parse_fix_requests(texts: Sequence[str]) -> tuple[FixRequest, ...]:
     """What the options mean; UsageError for a rule that has no fix."""
-    return tuple(_asked(text) for text in texts)
+    return tuple(_parse_fix_request(text) for text in texts)
 
 
-def _asked(text: str) -> FixRequest:
+def _parse_fix_request(text: str) -> FixRequest:
     from dancetutor_cli.lint.mend import FIXABLE
     from dancetutor_cli.lint.rule import rule_named
 
@@ -57,7 +57,7 @@ def _asked(text: str) -> FixRequest:
 
 def fix_all(run: LintRun, tasks: Sequence[AnalyzeTask], options: dict[str, Any]) -> int:
     """Mend every file, tell what was done; the exit status: 1 if a finding that was asked for is left."""
-    wanted = asked(options["fix"])
+    wanted = parse_fix_requests(options["fix"])
     _check(tasks, options)
     talk = _Talk(diff=options["diff"])
     files = within_folders(options["paths"], [task.path for task in tasks])
@@ -67,7 +67,7 @@ def fix_all(run: LintRun, tasks: Sequence[AnalyzeTask], options: dict[str, Any])
         outcome = _fix(run, task, wanted, options)
         talk.tell(task.path, outcome)
         other = twin(task.path)
-        if outcome.done and other is not None and other.absolute() not in meant:
+        if outcome.fixed and other is not None and other.absolute() not in meant:
             talk.warn(f"{other}: the same song, but it was not named, so its notes are as before; mend it likewise")
     return talk.end()
 
@@ -87,7 +87,7 @@ def _fix(run: LintRun, task: AnalyzeTask, wanted: Sequence[FixRequest], options:
     from dancetutor_cli.lint.analysis import analyze_file
     from dancetutor_cli.lint.fix import FixOrder, FixOutcome, fix_file
 
-    result = run.without_known(analyze_file(task))
+    result = run.without_baseline(analyze_file(task))
     if result.error is not None:
         return FixOutcome(error=result.error)
     findings = tuple(finding for one in wanted if one.rule != SAFE for finding in _of_file(result, one))
@@ -120,8 +120,8 @@ class _Talk:
     diff: bool
     files: int = 0
     changed: int = 0
-    done: int = 0
-    left: int = 0
+    fixed: int = 0
+    unfixed: int = 0
     failed: int = 0
 
     def tell(self, path: Path, outcome: FixOutcome) -> None:
@@ -132,17 +132,17 @@ class _Talk:
             return
         for line in coloured(outcome.diff) if self.diff else ():
             click.echo(line)
-        self.done += len(outcome.done)
-        self.left += sum(not one.is_gone for one in outcome.left)
-        self.changed += bool(outcome.done)
-        for done in outcome.done:
+        self.fixed += len(outcome.fixed)
+        self.unfixed += sum(not one.is_gone for one in outcome.unfixed)
+        self.changed += bool(outcome.fixed)
+        for done in outcome.fixed:
             what = f"{done.fix.rule} " if done.finding is None else f"{done.finding.rule} {done.finding.name} "
             line_number = min(done.fix.lines)
             self._say(f"{path}:{line_number}: {what}[{done.chart}] {'would ' if self.diff else ''}{done.fix.words}")
-        for left in outcome.left:
+        for left in outcome.unfixed:
             one = left.finding
             what = "gone" if left.is_gone else "left alone"
-            self._say(f"{path}:{one.line}: {one.rule} {one.name} [{left.chart}] {what}: {left.why}")
+            self._say(f"{path}:{one.line}: {one.rule} {one.name} [{left.chart}] {what}: {left.reason}")
         for note in outcome.notes:
             self.warn(note)
 
@@ -155,11 +155,11 @@ class _Talk:
 
     def end(self) -> int:
         would = "would change" if self.diff else "changed"
-        edits = f"{self.changed} {would} by {self.done} edit{'' if self.done == 1 else 's'}"
-        text = f"{self.files} file{'' if self.files == 1 else 's'}: {edits if self.done else 'nothing to change'}"
-        text += f", {self.left} finding{'' if self.left == 1 else 's'} left alone" if self.left else ""
+        edits = f"{self.changed} {would} by {self.fixed} edit{'' if self.fixed == 1 else 's'}"
+        text = f"{self.files} file{'' if self.files == 1 else 's'}: {edits if self.fixed else 'nothing to change'}"
+        text += f", {self.unfixed} finding{'' if self.unfixed == 1 else 's'} left alone" if self.unfixed else ""
         click.echo(text + (f", {self.failed} failed" if self.failed else ""), err=self.diff)
-        return 2 if self.failed else int(bool(self.left))
+        return 2 if self.failed else int(bool(self.unfixed))
 
 
 def _safe(text: str) -> str:

@@ -130,7 +130,7 @@ class PackReport:
         )
         return [*lines, *shown, *more]
 
-    def said(self) -> Iterator[str]:
+    def summary_lines(self) -> Iterator[str]:
         """What is said to standard error: the file that was written."""
         if self._html is not None and self._pack is not None:
             yield f"{self._html}: {self._pack.songs} song{'' if self._pack.songs == 1 else 's'}"
@@ -153,14 +153,14 @@ def _plural(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def tell_beside(tasks: Sequence[AnalyzeTask], options: Mapping[str, Any]) -> int:
+def report_comparison(tasks: Sequence[AnalyzeTask], options: Mapping[str, Any]) -> int:
     """`--beside`: print the table, with --full every chart that differs below it; the exit status."""
-    from dancetutor_cli.lint.versions import beside, read_theirs
+    from dancetutor_cli.lint.versions import compare_techniques, read_theirs
     from dancetutor_cli.reports.pack import chart_lines, table_lines
 
     if options["format_name"] != "text":
         raise UsageError("--beside prints a table of Markdown, in --format text")
-    found = beside(tasks, read_theirs(options["beside"]))
+    found = compare_techniques(tasks, read_theirs(options["beside"]))
     if not found.charts:
         raise UsageError(
             f"{options['beside']}: no chart in it is one of PATH's: they are matched by folder, file and chart"

@@ -21,7 +21,7 @@ from dancetutor_cli.commands.chart_options import (
     selection_options,
     verbose_option,
 )
-from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import check_file, check_folder, make_folder
 
@@ -102,7 +102,7 @@ def command(path: Path, selection: Selection, wish: PageWish) -> None:
         file, selection, wish.preset, wish.play_file, bar=wish.bar, gait=wish.gait, form=wish.form, motion=wish.motion
     )
     request = PageRequest(dance, wish.character, wish.music, wish.beside, wish.jobs)
-    tell_of_compiling(choice_for(file, wish.preset), quiet=wish.quiet)
+    announce_compiling(choice_for(file, wish.preset), quiet=wish.quiet)
     if file.is_dir():
         _pages(request, output or Path("pages"), wish)
         return

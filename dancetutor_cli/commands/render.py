@@ -14,7 +14,7 @@ import click
 from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long
 from dancetutor_cli.commands.chart_options import preset_option, selection_options, verbose_option
 from dancetutor_cli.commands.film_options import film_options, film_request
-from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.film.media.ffmpeg import FILES
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import check_file, check_folder, make_folder, one_of
@@ -176,7 +176,7 @@ def _render_one(
     request = film_request(path, options, FORMATS[kind])
     subject = look_up(request)
     start, end = subject.chart.notes_span
-    tell_of_compiling(choice_for(path, request.dance.preset), lambda: end - start, quiet=quiet)
+    announce_compiling(choice_for(path, request.dance.preset), lambda: end - start, quiet=quiet)
     target = folder or output or Path(default_name(subject.song, subject.chart))
     if folder is None:
         check_file(target)
@@ -203,11 +203,11 @@ def default_name(song: Song, chart: Chart) -> str:
 def _allow_long(subject: FilmSubject, file: Path, yes: bool) -> None:
     """Ask before hours of work; without a terminal nobody can answer, so refuse."""
     clock = subject.clock
-    if yes or max(clock.seconds, subject.written) <= LONG:
+    if yes or max(clock.seconds, subject.chart_seconds) <= LONG:
         return
     what = f"{file}: the film would last {clock.seconds / 60:.0f} minutes ({clock.frames:,} frames)"
     if clock.seconds <= LONG:
-        what = f"{file}: the chart is {subject.written / 3600:.1f} hours long, though its last note is early"
+        what = f"{file}: the chart is {subject.chart_seconds / 3600:.1f} hours long, though its last note is early"
     confirm_long(what, "Render")
 
 
@@ -217,12 +217,12 @@ def _make(
     from dancetutor_cli.film import film as extras
     from dancetutor_cli.film.media.encoder import Encoding, choose
     from dancetutor_cli.film.media.ffmpeg import PICTURES
-    from dancetutor_cli.film.work.planning import Prepared, prepare
+    from dancetutor_cli.film.work.planning import PreparedFilm, prepare
     from dancetutor_cli.film.work.render import make_film
     from dancetutor_cli.reports.terminal import FilmProgress
     from dancetutor_cli.run.pool import default_jobs
 
-    def prepared() -> Prepared:
+    def prepared() -> PreparedFilm:
         film = prepare(request, subject)
         return replace(film, plan=extras.poses(film.plan, subject.chart.label)) if options["poses"] else film
 

@@ -78,7 +78,7 @@ def command(file: Path, wanted: RetargetOptions) -> None:
     task = RetargetTask(file, wanted.character, wanted.animation, wanted.style or "neutral", wishes)
     work = Retargeting(task)
     words = _written(work, wanted.output)
-    for note in work.passed.motion.notes:
+    for note in work.ragdoll_result.motion.notes:
         click.echo(f"warning: {note}", err=True)
     click.echo(f"{wanted.output}: {words}")
     if wanted.report_to is not None or wanted.plot is not None:

@@ -18,7 +18,7 @@ from dancetutor_cli.film.work.request import FilmRequest, look_up
 from dancetutor_cli.run.reading import charts_path
 
 if TYPE_CHECKING:
-    from dancetutor_cli.film.work.planning import Prepared
+    from dancetutor_cli.film.work.planning import PreparedFilm
 
 
 # Doing a little of everything, so that numba's cache is full.
@@ -29,7 +29,7 @@ _TYPES = ("dance-single", "dance-double")
 
 def steps() -> Iterator[tuple[str, Callable[[], None]]]:
     """What to do, by name."""
-    prepared: dict[str, Prepared] = {}
+    prepared: dict[str, PreparedFilm] = {}
     for steps_type in _TYPES:
         yield f"solve and bake {steps_type}", lambda kind=steps_type: _prepare(prepared, kind)  # type: ignore[misc]
     yield "solve with the other model of moves", _solve
@@ -56,7 +56,7 @@ def _solve() -> None:
         grown(tables, full, 1)
 
 
-def _prepare(prepared: dict[str, Prepared], steps_type: str) -> None:
+def _prepare(prepared: dict[str, PreparedFilm], steps_type: str) -> None:
     from dancetutor_cli.feet import DEFAULT_PRESET
     from dancetutor_cli.film.work.planning import prepare
 
@@ -68,7 +68,7 @@ def _prepare(prepared: dict[str, Prepared], steps_type: str) -> None:
     prepared[steps_type] = prepare(request, look_up(request))
 
 
-def _draw(prepared: Prepared, quality: Quality) -> None:
+def _draw(prepared: PreparedFilm, quality: Quality) -> None:
     from dataclasses import replace
 
     from dancetutor_cli.film.film import Film

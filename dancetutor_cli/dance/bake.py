@@ -15,8 +15,8 @@ from dancetutor_cli.dance.footwork.planner import plan_footwork
 from dancetutor_cli.dance.grips import grips_of
 from dancetutor_cli.dance.ik.ankles import ease_ankles, rolled_soles
 from dancetutor_cli.dance.ik.full_body import Poses, solve
-from dancetutor_cli.dance.ik.targets import free_hands, moved
-from dancetutor_cli.dance.layers import Doing, add_fingers, add_layers, curls, glances_at, hand_use, look
+from dancetutor_cli.dance.ik.targets import free_hands, translated
+from dancetutor_cli.dance.layers import Activity, add_fingers, add_layers, curls, glances_at, hand_use, look
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.hair import add_hair
 from dancetutor_cli.dance.pieces import (
@@ -41,7 +41,7 @@ from dancetutor_cli.dance.settle import heels_may_rise, mass_of, settle, targets
 from dancetutor_cli.dance.smoothing import sample_path
 from dancetutor_cli.dance.trajectory.posture import Trajectory, stepping
 from dancetutor_cli.dance.waits import waiting_at
-from dancetutor_cli.feet.play import LetGo, without_unplayable
+from dancetutor_cli.feet.play import DroppedNote, without_unplayable
 from dancetutor_cli.run.errors import DancetutorError
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ class Manner(TypedDict, total=False):
     bar: bool
     gait: str
     sides: tuple[int, int] | None
-    let_go: tuple[LetGo, ...]
+    let_go: tuple[DroppedNote, ...]
 
 
 def bake(
@@ -141,7 +141,7 @@ def bake_plan(plan: Plan, context: Context, fps: float, section: Span | None = N
     each : does the pieces of a long song, in turn or in several processes; the result is the same
     """
     pieces = pieces_of(plan, context, fps)
-    return cut(pieces, section or (pieces[0].kept[0], pieces[-1].kept[1]), each).motion
+    return cut(pieces, section or (pieces[0].kept_span[0], pieces[-1].kept_span[1]), each).motion
 
 
 def cut(pieces: list[Piece], section: Span, each: Each = in_turn) -> BakedPiece:
@@ -193,7 +193,7 @@ def _followed(motion: Motion, piece: Piece, ragdoll: RagdollStyle) -> BakedPiece
     """
     from dancetutor_cli.dance.physics.pipeline import through_ragdoll
 
-    wishes, (first, last) = ragdoll.wishes.within(motion.times[0], motion.times[-1]), piece.kept
+    wishes, (first, last) = ragdoll.wishes.within(motion.times[0], motion.times[-1]), piece.kept_span
     passed = through_ragdoll(motion, ragdoll.style, wishes)
     add_hair(motion.skeleton, motion.times, passed.motion.rotations, passed.motion.root, piece.context.settings.hair)
     seconds = [*(trip.second for trip in wishes.trips), *(push.second for push in wishes.pushes)]
@@ -213,7 +213,7 @@ def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
     hands = hand_use(plan, body, at, waiting, context)
     glances = glances_at(plan, body, at, context)
     free = (1.0 - hands.floor.max(axis=1)) * (1.0 - hands.bar.max(axis=1))
-    doing = Doing(
+    doing = Activity(
         stepping(feet, context.settings), free, plan.lead, plan.last, sample_path(body.beat, body.times, at), waiting,
         glances,
     )  # fmt: skip
@@ -223,7 +223,7 @@ def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
     mass = mass_of(skeleton, poses)
     head = mass_of(skeleton, dressed) - mass  # hardly changes as the body is moved
     for k in range(CORRECTIONS):
-        targets = moved(targets, goal - head - (mass if k == 0 else mass_of(skeleton, poses)))
+        targets = translated(targets, goal - head - (mass if k == 0 else mass_of(skeleton, poses)))
         poses = solve(skeleton, targets, reach, 0.0)
     rises = heels_may_rise(plan, at, settings.step.press_time)
     rolled = rolled_soles(skeleton, plan, (at, feet, targets, poses), rises)

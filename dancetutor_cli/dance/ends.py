@@ -103,31 +103,31 @@ def exit_piece(plan: Plan, context: Context, fps: float, span: Span, ragdoll: Ra
     return piece_of(plan, replace(context, stays=True), fps, (baked, baked, MARGIN), ragdoll)
 
 
-def entered(dance: Motion, entrance: Motion, cut: Cut) -> Motion:
+def with_entrance(dance: Motion, entrance: Motion, cut: Cut) -> Motion:
     """The dance with an entrance before its first step."""
     begin, end = cut.steps_from, min(cut.steps_from + CROSSING, cut.end)
     after, before = dance.times >= begin, (entrance.times >= cut.start - NOW) & (entrance.times < begin)
     share = smooth((dance.times[after] - begin) / max(end - begin, NOW))
     contacts = tuple(one for one in dance.contacts if one.start >= begin - NOW)
-    return _together(
+    return _merge_keys(
         _keys(entrance, before), _crossing(dance, after, entrance, share), replace(dance, contacts=contacts)
     )
 
 
-def left(dance: Motion, rest: Motion, until: float, cut: Cut) -> Motion:
+def with_exit(dance: Motion, rest: Motion, until: float, cut: Cut) -> Motion:
     """The dance with an exit from second `until` on, before which its last step is."""
     begin = max(until - CROSSING, cut.start)
     before, after = dance.times < until, (rest.times >= until) & (rest.times <= cut.end + NOW)
     share = 1.0 - smooth((dance.times[before] - begin) / max(until - begin, NOW))
     contacts = tuple(one for one in dance.contacts if one.start < until - NOW)
-    return _together(_crossing(dance, before, rest, share), _keys(rest, after), replace(dance, contacts=contacts))
+    return _merge_keys(_crossing(dance, before, rest, share), _keys(rest, after), replace(dance, contacts=contacts))
 
 
 def _keys(motion: Motion, which: Flags) -> Keys:
     return motion.times[which], motion.rotations[which], motion.root[which]
 
 
-def _together(first: Keys, second: Keys, motion: Motion) -> Motion:
+def _merge_keys(first: Keys, second: Keys, motion: Motion) -> Motion:
     times, rotations, root = (np.concatenate(arrays) for arrays in zip(first, second, strict=True))
     return replace(motion, times=times, rotations=quat.continuous(rotations), root=root)
 

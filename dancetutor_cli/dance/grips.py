@@ -22,7 +22,7 @@ from dancetutor_cli.dance.rig.skeleton import beyond
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_arms import BarSettings
 from dancetutor_cli.dance.trajectory.facing import wrapped
-from dancetutor_cli.dance.trajectory.posture import Known, body_trajectory
+from dancetutor_cli.dance.trajectory.posture import RoughBake, body_trajectory
 
 # An arm beside the bar behind the dancer: where on the rail its hand may rest, at which times, by a rough bake.
 
@@ -72,7 +72,7 @@ def _part(plan: Plan, at: Array, context: Context) -> BarTrunk:
     places, world = world_transforms(skeleton, *poses)
     above = centre_of_mass(skeleton, places, world) - poses.root
     above[:, 2] -= ARMS_BACK
-    body = body_trajectory(plan, grid, feet, context, Known(body, above))
+    body = body_trajectory(plan, grid, feet, context, RoughBake(body, above))
     now = np.round((at - grid[0]) * BODY_RATE).astype(np.int64)
     pelvis = np.column_stack((body.ground[now, 0], body.height[now], body.ground[now, 1]))
     shoulders = [places[now, skeleton.index(f"{s}_shoulder")] - poses.root[now] + pelvis for s in SIDES]
@@ -167,7 +167,7 @@ def runs(flags: Flags) -> list[tuple[int, int]]:
 
 SEED = 20011109
 JUMP = 0.08  # seconds; what is shorter is a quick step
-APART = 0.8  # of the way of a hand that crosses over, in which the other one is not where it comes to
+CROSSING_SHARE = 0.8  # of the way of a hand that crosses over, in which the other one is not where it comes to
 FARTHER_AHEAD = (0.0, -0.03, 0.03, -0.06)  # metres farther ahead where it may be better, as a hand stays there longer
 
 
@@ -234,7 +234,7 @@ def around_crossings(
         near, far = 1 - grip.side, grip.side
         away = reach + way_time(grip, reach)
         holds[_between(times, grip.start - away, grip.end + away), far] = False
-        gone = APART * way_time(grip, reach)
+        gone = CROSSING_SHARE * way_time(grip, reach)
         holds[_between(times, grip.start - gone, grip.end + gone), near] = False
         if _chance(plan, grip.start)[1] < numbers.both:  # it takes the rail anew
             holds[_between(times, grip.start, grip.end), near] = True
@@ -255,7 +255,7 @@ def _chance(plan: Plan, second: float) -> tuple[float, float]:
 
 # When each hand rests on the bar behind the dancer: as long as its arm gets there in comfort.
 
-BESIDE = (0.0, 0.05, -0.05, 0.1, -0.1)  # metres beside it where it may be better, as a hand stays there longer
+GRIP_OFFSETS = (0.0, 0.05, -0.05, 0.1, -0.1)  # metres beside it where it may be better, as a hand stays there longer
 ROUNDS = 2  # of finding out how long a hand that crosses over may stay
 LOOK = 10.0  # seconds that are looked at together for how long a hand may stay
 
@@ -322,7 +322,7 @@ def _longest(arm: Arm, start: int, end: int) -> tuple[float, int]:
     """Where a hand that takes the rail at look `start` may stay longest, and the look at which it must have gone."""
     soon = arm.place[start : min(start + round(arm.settings.bar.place_time * RATE), end)].mean()
     best, stop = float(soon), start
-    for aside in BESIDE:
+    for aside in GRIP_OFFSETS:
         x = float(on_rail(np.array([soon + (1.0, -1.0)[arm.side] * aside]), arm.bar, arm.settings.bar.from_end)[0])
         k = start
         while k < end:

@@ -22,7 +22,7 @@ from dancetutor_cli.dance.smoothing import sample_path, smooth
 from dancetutor_cli.dance.trajectory.facing import screen_yaw
 from dancetutor_cli.dance.trajectory.height import tempo_factor
 from dancetutor_cli.dance.trajectory.posture import Trajectory
-from dancetutor_cli.dance.waits import Waiting
+from dancetutor_cli.dance.waits import WaitMotion
 
 # Head and eyes: after everything else they turn to the screen, as far as a neck can (thesis 5.7).
 
@@ -153,7 +153,7 @@ SEED = 20140513
 
 
 @dataclass(frozen=True, slots=True)
-class Doing:
+class Activity:
     """What she does at f times, as far as layers go by it.
 
     stepping : (f,) -1 to 1, the left foot (positive) or the right one is in the air
@@ -166,11 +166,11 @@ class Doing:
     lead: int
     last: float
     beat: Array
-    waiting: Waiting
+    waiting: WaitMotion
     glances: Glances
 
 
-def add_layers(poses: Poses, times: Array, doing: Doing, context: Context) -> None:
+def add_layers(poses: Poses, times: Array, doing: Activity, context: Context) -> None:
     """Add all layers to the poses at `times` (f,), seconds, in place."""
     skeleton, settings, rotations = context.skeleton, context.settings.layers, poses.rotations
     groove, beat = context.settings.groove, doing.beat
@@ -257,7 +257,7 @@ class HandUse:
     lead: int
 
 
-def hand_use(plan: Plan, body: Trajectory, at: Array, waiting: Waiting, context: Context) -> HandUse:
+def hand_use(plan: Plan, body: Trajectory, at: Array, waiting: WaitMotion, context: Context) -> HandUse:
     """What hands do at times `at` (f,); waiting : at the same times."""
     settings, rate = context.settings, 1.0 / float(body.times[1] - body.times[0])
     effort = lately(tempo_factor(plan, body.times, settings), rate, settings.arms.effort)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.feet.play import LetGo
+from dancetutor_cli.feet.play import DroppedNote
 
 # The baked motion: joint rotations per frame, and the contacts they must keep.
 
@@ -103,7 +103,7 @@ class Motion:
     grips: tuple[Grip, ...] = ()
     ground: Ground | None = None
     notes: tuple[str, ...] = ()
-    let_go: tuple[LetGo, ...] = ()
+    let_go: tuple[DroppedNote, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +134,7 @@ def shifted(motion: Motion, x: float, z: float) -> Motion:
     )
 
 
-def held_from(motion: Motion, second: float) -> Motion:
+def padded_from(motion: Motion, second: float) -> Motion:
     """A motion that begins at a second of the music, if it begins later: until then she stands as she will begin."""
     if second >= motion.times[0]:
         return motion

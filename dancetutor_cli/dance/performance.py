@@ -8,12 +8,20 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.dance.bake import bake_piece, cut, planned
-from dancetutor_cli.dance.ends import entered, entrance_of, entrance_piece, exit_of, exit_piece, left, rest_from
+from dancetutor_cli.dance.ends import (
+    entrance_of,
+    entrance_piece,
+    exit_of,
+    exit_piece,
+    rest_from,
+    with_entrance,
+    with_exit,
+)
 from dancetutor_cli.dance.motion import Cut, Motion
 from dancetutor_cli.dance.pieces import BakedPiece, Each, Piece, RagdollStyle, in_turn, pieces_of, whole_span
 from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_request, no_pad, read_chart
 from dancetutor_cli.dance.settings import load_settings
-from dancetutor_cli.dance.two import pad_of_both, place_on, sides_of, together
+from dancetutor_cli.dance.two import merge_plays, pad_of_both, place_on, sides_of
 from dancetutor_cli.feet.play import without_unplayable
 from dancetutor_cli.feet.solved import Solved, solve_song
 from dancetutor_cli.run.errors import DancetutorError, UsageError
@@ -81,10 +89,10 @@ class Performance:
         motion = done.motion
         if (entrance := entrance_of(plan, wanted)) is not None:
             piece = entrance_piece(entrance, context, fps, wanted, style)
-            motion = entered(motion, _one(each, piece), wanted)
+            motion = with_entrance(motion, _one(each, piece), wanted)
         if (until := rest_from(plan, wanted, walks_off)) is not None:
             piece = exit_piece(exit_of(plan, until), context, fps, (until, wanted.end), style)
-            motion = left(motion, _one(each, piece), until, wanted)
+            motion = with_exit(motion, _one(each, piece), until, wanted)
         return replace(done, motion=motion)
 
     def _ragdoll(self, wanted: Cut) -> RagdollStyle | None:
@@ -163,7 +171,7 @@ def play_of_all(solved: Sequence[Solved], plays: Sequence[Play]) -> Play:
     """What all step as one play, on the pad under all. plays : of each"""
     if len(solved) == 1:
         return plays[0]
-    return together(solved[0].song.charts[solved[0].chart.index], plays, pad_of(solved))
+    return merge_plays(solved[0].song.charts[solved[0].chart.index], plays, pad_of(solved))
 
 
 def playable(one: Solved, rates: Iterable[float]) -> Play:
@@ -180,9 +188,9 @@ def as_heard(play: Play, timing: Timing) -> Play:
 
 def pooled(jobs: int = 1) -> Each:
     """Does pieces of work in up to so many processes, but those that are kept; results come in the pieces' order."""
-    from dancetutor_cli.dance.store import kept
+    from dancetutor_cli.dance.store import with_store
 
-    return kept(in_turn if jobs <= 1 else partial(_pooled, jobs))
+    return with_store(in_turn if jobs <= 1 else partial(_pooled, jobs))
 
 
 def _pooled(jobs: int, function: Callable[[Piece], BakedPiece], pieces: Sequence[Piece]) -> Iterator[BakedPiece]:
@@ -196,7 +204,7 @@ def _pooled(jobs: int, function: Callable[[Piece], BakedPiece], pieces: Sequence
         for k, piece in enumerate(pieces):
             workers.submit(Task(k, _work, (function, piece)))
         results: dict[int, BakedPiece] = {}
-        for done in workers.done():
+        for done in workers.results():
             if done.error is not None:
                 raise done.error
             results[done.key] = done.result

@@ -18,7 +18,7 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import BodyPoint, palm_points, place, sole_points, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import smooth
-from dancetutor_cli.feet.play import told
+from dancetutor_cli.feet.play import dropped_notes_message
 
 if TYPE_CHECKING:
     from dancetutor_cli.dance.physics.pipeline import Wishes
@@ -147,7 +147,7 @@ class Piece:
     """One piece of work; pickles.
 
     plan : what matters of the plan; contacts : those that begin while it is baked; ground : as in `Motion`
-    baked : gets keys; kept : the part of them that goes into the song; span : the body's path is planned over it
+    baked : gets keys; kept_span : the part of them that goes into the song; span : the body's path is planned over it
     ragdoll : None for the dancer as she is
     """
 
@@ -157,7 +157,7 @@ class Piece:
     contacts: tuple[Contact, ...]
     ground: Ground | None
     baked: Span
-    kept: Span
+    kept_span: Span
     span: Span
     ragdoll: RagdollStyle | None = None
 
@@ -267,7 +267,7 @@ def needed(pieces: Sequence[Piece], start: float, end: float) -> slice:
     touched = [
         k
         for k, piece in enumerate(pieces)
-        if (k == last or start < piece.kept[1]) and (k == 0 or end > pieces[k - 1].kept[1] - BLEND)
+        if (k == last or start < piece.kept_span[1]) and (k == 0 or end > pieces[k - 1].kept_span[1] - BLEND)
     ]
     return slice(touched[0], touched[-1] + 1)
 
@@ -277,13 +277,13 @@ def joined(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, en
     parts: list[tuple[Array, Array, Array]] = []
     for k, (piece, one) in enumerate(zip(pieces, done, strict=True)):
         times, last = one.motion.times, k + 1 == len(pieces)
-        first = piece.kept[0] if k else -np.inf
-        keep = (times >= max(first, start - 1e-9)) & (times <= end + 1e-9) & ((times < piece.kept[1]) | last)
+        first = piece.kept_span[0] if k else -np.inf
+        keep = (times >= max(first, start - 1e-9)) & (times <= end + 1e-9) & ((times < piece.kept_span[1]) | last)
         if not keep.any():
             continue
         at, rotations, root = times[keep], quat.continuous(one.motion.rotations[keep]), one.motion.root[keep]
         if not last:
-            share = smooth((at - piece.kept[1]) / BLEND + 1.0)
+            share = smooth((at - piece.kept_span[1]) / BLEND + 1.0)
             later, later_root = sample(done[k + 1].motion, at)
             rotations = np.where((share > 0.0)[:, None, None], quat.slerp(rotations, later, share[:, None]), rotations)
             root = root + share[:, None] * (later_root - root)
@@ -310,15 +310,15 @@ def _between(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, 
         done[0].motion,
         contacts=tuple(_contacts(pieces, done, start, end)),
         grips=tuple(grips),
-        notes=(*((told(gone),) if gone else ()), *notes),
+        notes=(*((dropped_notes_message(gone),) if gone else ()), *notes),
         let_go=gone,
     )
 
 
 def _contacts(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, end: float) -> Iterator[Contact]:
     for k, (piece, one) in enumerate(zip(pieces, done, strict=True)):
-        first = piece.kept[0] if k else -np.inf
-        until = piece.kept[1] if k + 1 < len(pieces) else np.inf
+        first = piece.kept_span[0] if k else -np.inf
+        until = piece.kept_span[1] if k + 1 < len(pieces) else np.inf
         yield from (c for c in one.motion.contacts if start <= c.start <= end and first <= c.start < until)
 
 

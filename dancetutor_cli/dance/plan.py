@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.motion import Contact, Grip
-from dancetutor_cli.feet.play import LetGo
+from dancetutor_cli.feet.play import DroppedNote
 
 # What a foot does, one type for each kind of move; each carries only what it needs.
 
@@ -199,7 +199,7 @@ class Plan:
     grips: tuple[Grip, ...] = ()
     walks: tuple[Route, ...] = ()
     lead: int = 0
-    let_go: tuple[LetGo, ...] = ()
+    let_go: tuple[DroppedNote, ...] = ()
 
     @property
     def hand(self) -> float:

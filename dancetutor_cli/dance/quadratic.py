@@ -142,13 +142,13 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """x : (n,); found : the hard limits hold and x is the minimum, to the tolerance; rounds : steps taken.
+    """x : (n,); is_feasible : the hard limits hold and x is the minimum, to the tolerance; rounds : steps taken.
 
     softened : whether the limits had to give way more than was asked for, for there was no convergence without
     """
 
     x: Array
-    found: bool
+    is_feasible: bool
     rounds: int
     softened: bool = False
 
@@ -163,11 +163,11 @@ def solve_surely(problem: BandedLeastSquares, limits: list[Limits], what: str) -
     what : for people, the path that is looked for. ConvergenceError if the second try did not converge either
     """
     found = solve(problem, limits)
-    if found.found:
+    if found.is_feasible:
         return found
     softer = [replace(part, give=max(SOFTER * part.give, SOFT)) for part in limits]
     found = solve(problem, softer, MORE_ROUNDS)
-    if not (found.found and np.isfinite(found.x).all()):
+    if not (found.is_feasible and np.isfinite(found.x).all()):
         raise ConvergenceError(f"{what} was not found in {found.rounds} rounds; choose another part with --section")
     return replace(found, softened=True)
 

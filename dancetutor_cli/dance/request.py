@@ -64,7 +64,7 @@ class ChartChoice:
     warnings: tuple[str, ...]
 
     @property
-    def shown(self) -> Chart:
+    def dancer_chart(self) -> Chart:
         """The part of the one dancer; of two who dance the chart as it is written."""
         return self.parts[0] if len(self.parts) == 1 else self.chart
 

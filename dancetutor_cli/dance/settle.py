@@ -23,9 +23,9 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import SIDES, centre_of_mass, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import cubic, sample_path, smooth, smooth_path, upper_envelope
-from dancetutor_cli.dance.trajectory.balance import moved_by_turning
+from dancetutor_cli.dance.trajectory.balance import rotation_zmp_offset
 from dancetutor_cli.dance.trajectory.legs import push_off, raised
-from dancetutor_cli.dance.trajectory.posture import Known, Trajectory, body_trajectory
+from dancetutor_cli.dance.trajectory.posture import RoughBake, Trajectory, body_trajectory
 from dancetutor_cli.dance.waits import waiting_at
 from dancetutor_cli.feet.limbs import Limb, Part
 
@@ -39,7 +39,7 @@ AROUND_PRESS = 0.05  # seconds around a press in which its palm may draw the roo
 
 
 @dataclass(frozen=True, slots=True)
-class Settled:
+class SettledTrajectory:
     """The trajectory that is final, after `rounds` of rough baking.
 
     residuals : metres, for each round how far the centre of mass was at most from where its path took it to be
@@ -54,7 +54,7 @@ class Settled:
         return len(self.residuals)
 
 
-def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> Settled:
+def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> SettledTrajectory:
     """Bake roughly, see what the path did not know, and plan it again; times (n,) even, feet sampled there."""
     settings, rate = context.settings, context.settings.sampling.work_rate
     body = body_trajectory(plan, times, feet, context)
@@ -81,13 +81,13 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> Settled:
         root = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
         push = push_off(plan, times, raised(feet, heels), root[:, None] + hips, context) * may_rise
         last = number == rounds - 1
-        turning = moved_by_turning(context.skeleton, *placed, rate / COARSE)
-        known = Known(
+        turning = rotation_zmp_offset(context.skeleton, *placed, rate / COARSE)
+        known = RoughBake(
             body, above, cubic(coarse, turning, times), hips, push, deeper, keep=number > 0 and not last,
             tightened=TIGHTENED if last else 0,
         )  # fmt: skip
         body = replace(body_trajectory(plan, times, feet, context, known), heels=heels + push, knees=knees)
-    return Settled(body, tuple(residuals))
+    return SettledTrajectory(body, tuple(residuals))
 
 
 def _around(coarse: Array, gives: Array, times: Array) -> Array:

@@ -28,13 +28,13 @@ _ARRAYS = ("times", "rotations", "root")
 Function = Callable[[Piece], BakedPiece]
 
 
-def kept(each: Each) -> Each:
+def with_store(each: Each) -> Each:
     """Does pieces of work as `each` does, but those that are kept already; keeps the others."""
     folder = kept_folder("dances")
-    return each if folder is None else partial(_kept, folder, each)
+    return each if folder is None else partial(_each_with_store, folder, each)
 
 
-def _kept(folder: Path, each: Each, function: Function, pieces: Sequence[Piece]) -> Iterator[BakedPiece]:
+def _each_with_store(folder: Path, each: Each, function: Function, pieces: Sequence[Piece]) -> Iterator[BakedPiece]:
     paths = [folder / f"{fingerprint(piece, program_stamp())}.npz" for piece in pieces]
     found = [_read(path, piece) for path, piece in zip(paths, pieces, strict=True)]
     missing = [piece for piece, one in zip(pieces, found, strict=True) if one is None]

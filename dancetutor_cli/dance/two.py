@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.request import DanceRequest
     from dancetutor_cli.feet import Pad
 
-SEEN = 8  # notes at either end that say where somebody stands
+SIDE_NOTES = 8  # notes at either end that say where somebody stands
 # Steps type as it is written -> the pad on which both stand: of a couple each has half of it. Else it is its own.
 _WHOLE = {**ONE_PAD, **{kind: f"{kind.partition('-')[0]}-double" for kind in OWN_PADS}}
 
@@ -62,7 +62,9 @@ def sides_of(parts: Sequence[Chart]) -> tuple[tuple[int, int], ...]:
     parts : the players' parts of a chart, in their order
     """
     whole = pad_of_both(parts[0].written_type)
-    return tuple(zip(*(_on_the_right(parts, whole, ends) for ends in (slice(SEEN), slice(-SEEN, None))), strict=True))
+    return tuple(
+        zip(*(_on_the_right(parts, whole, ends) for ends in (slice(SIDE_NOTES), slice(-SIDE_NOTES, None))), strict=True)
+    )
 
 
 def _on_the_right(parts: Sequence[Chart], whole: Pad, ends: slice) -> list[int]:
@@ -73,7 +75,7 @@ def _on_the_right(parts: Sequence[Chart], whole: Pad, ends: slice) -> list[int]:
     return [int(2 * rank >= len(parts)) for rank in ranks]
 
 
-def together(chart: Chart, plays: Sequence[Play], whole: Pad) -> Play:
+def merge_plays(chart: Chart, plays: Sequence[Play], whole: Pad) -> Play:
     """What both step as one play of the chart as it is written: who steps what, and what happens; no costs."""
     rows = prepare(chart, whole)
     limb = np.full(rows.steps.shape, int(Limb.NONE), dtype=np.int8)

@@ -23,7 +23,7 @@ ENDS = 30.0  # seconds of beats that she still has in mind before the first and 
 
 
 @dataclass(frozen=True, slots=True)
-class Waiting:
+class WaitMotion:
     """What a wait adds at n times; nothing where she does not wait.
 
     share : (n,) 0 to 1, how much she waits; shift : (n,) metres that her hips shall be on the left of the middle
@@ -46,15 +46,15 @@ class Waiting:
     heels: Array
 
     @classmethod
-    def none(cls, count: int) -> Waiting:
+    def none(cls, count: int) -> WaitMotion:
         """Nothing, for so many times."""
         one, two = partial(np.zeros, count), partial(np.zeros, (count, 2))
         return cls(one(), one(), one(), np.zeros((count, 2, 3)), two(), two(), two(), one(), two())
 
 
-def waiting_at(plan: Plan, times: Array, context: Context) -> Waiting:
+def waiting_at(plan: Plan, times: Array, context: Context) -> WaitMotion:
     """What she does at `times` (n,) seconds besides standing. Mirror images of a plan wait as mirror images."""
-    numbers, out = context.settings.wait, Waiting.none(len(times))
+    numbers, out = context.settings.wait, WaitMotion.none(len(times))
     spans = list(_waits(plan, context))
     for start, end in spans:
         near = slice(*np.searchsorted(times, (start, end)).tolist())
@@ -72,7 +72,7 @@ def waiting_at(plan: Plan, times: Array, context: Context) -> Waiting:
         up = out.share * smooth((slow[1 + (hand ^ plan.lead)] - numbers.held_from) / (1.0 - numbers.held_from))
         out.hands[:, hand] += up[:, None] * [0.0, numbers.held_up, numbers.held_ahead]
     for number in range(int(np.floor(first / numbers.every)) - 1, int(np.floor(last / numbers.every)) + 1):
-        act = _drawn(song, number)
+        act = _draw(song, number)
         start = numbers.every * (number + act.late)
         end = start + numbers.lasts * act.long
         if any(a <= start and end <= b for a, b in spans):
@@ -94,7 +94,7 @@ def _chance(song: tuple[int, int], *numbers: int) -> np.random.Generator:
     return np.random.default_rng([SEED, *(number & 0xFFFFFFFF for number in (*song, *numbers))])
 
 
-class _Drawn(NamedTuple):
+class _Draw(NamedTuple):
     """What chance says of one thing: when it begins and how long it lasts, as parts of their times; side; kind."""
 
     late: float
@@ -104,12 +104,12 @@ class _Drawn(NamedTuple):
 
 
 @lru_cache(maxsize=1024)
-def _drawn(song: tuple[int, int], number: int) -> _Drawn:
+def _draw(song: tuple[int, int], number: int) -> _Draw:
     """The thing of this number, for which each round of a bake asks; all kinds come by turns, in ever other orders."""
     chance = _chance(song, number)
     turn, place = divmod(number, len(_KINDS))
     kind = int(_chance(song, turn, 1).permutation(len(_KINDS))[place])
-    return _Drawn(chance.uniform(0.0, EARLIEST), chance.uniform(0.8, 1.2), int(chance.integers(2)), kind)
+    return _Draw(chance.uniform(0.0, EARLIEST), chance.uniform(0.8, 1.2), int(chance.integers(2)), kind)
 
 
 def _waits(plan: Plan, context: Context) -> Iterator[tuple[float, float]]:
@@ -179,7 +179,7 @@ class _Act:
         return np.asarray(smooth(self.times / quarter) * smooth((self.long - self.times) / quarter))
 
 
-def _shake(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
+def _shake(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
     """Both arms hang and hands are shaken, one a little after the other."""
     for hand, sign in ((0, 1.0), (1, -1.0)):
         turn = 2 * np.pi * numbers.shakes * act.times - 0.9 * (hand != act.side)
@@ -189,7 +189,7 @@ def _shake(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
         out.hands[near, hand, 0] += sign * numbers.trembling * np.sin(turn - 0.5) * act.fade
 
 
-def _swing(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
+def _swing(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
     """Arms swing, one ahead and the other back."""
     way = np.sin(2 * np.pi * act.times / numbers.swing_time) * act.fade
     for hand in (0, 1):
@@ -198,27 +198,27 @@ def _swing(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
         out.hands[near, hand, 1] += 0.3 * numbers.swing * way**2
 
 
-def _shrug(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
+def _shrug(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
     """Shoulders are raised and let fall, one more than the other."""
     up = np.sin(np.pi * act.times / act.long) ** 2
     for hand in (0, 1):
         out.shrug[near, hand] += np.radians(numbers.shrug) * (1.0 if hand == act.side else 0.6) * up
 
 
-def _loosen(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
+def _loosen(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
     """The head leans to one side and then to the other."""
     way = np.sin(2 * np.pi * act.times / act.long) * act.fade
     out.tilt[near] += np.radians(numbers.neck) * way
 
 
-def _tap(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
+def _tap(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
     """The heel that does not bear her comes up."""
     for side, sign in ((0, -1.0), (1, 1.0)):
         light = smooth(sign * out.shift[near] / numbers.shift - 0.2)
         out.heels[near, side] += np.radians(numbers.heel) * light * act.fade
 
 
-def _stretch(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
+def _stretch(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
     """Arms go up aside, one over her head and the other not as far, and come down again."""
     up = np.sin(np.pi * act.times / act.long) ** 2
     for hand, sign in ((0, 1.0), (1, -1.0)):
@@ -228,7 +228,7 @@ def _stretch(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> Non
         out.loose[near, hand] = np.maximum(out.loose[near, hand], 0.5 * up)
 
 
-def _pump(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
+def _pump(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
     """Forearms are raised before her and dance, one up as the other goes down."""
     way = np.sin(2 * np.pi * act.times / numbers.pump_time)
     for hand, sign in ((0, 1.0), (1, -1.0)):
@@ -238,6 +238,6 @@ def _pump(out: Waiting, near: slice, act: _Act, numbers: WaitSettings) -> None:
         out.hands[near, hand, 0] += act.fade * sign * numbers.aside
 
 
-_KINDS: tuple[Callable[[Waiting, slice, _Act, WaitSettings], None], ...] = (
+_KINDS: tuple[Callable[[WaitMotion, slice, _Act, WaitSettings], None], ...] = (
     _shake, _swing, _shrug, _loosen, _tap, _stretch, _pump,
 )  # fmt: skip

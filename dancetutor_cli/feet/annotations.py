@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.cells import PLAYERS
 from dancetutor_cli.chart.model import Chart, Kind, Song
 from dancetutor_cli.feet.limbs import MARKER, MEANING, Limb, NotationError, Part, Token, parse
-from dancetutor_cli.feet.overrides import FeetProblem, Overrides, Said, contradictions
+from dancetutor_cli.feet.overrides import CellOverride, FeetProblem, Overrides, contradictions
 
 # Where feet stand in note data: the steps of each row, and the comments on the lines that open measures.
 
@@ -134,7 +134,7 @@ def read_pins(song: Song, chart: Chart) -> tuple[Overrides, tuple[FeetProblem, .
     return Overrides.of(cells), (*problems, *contradictory)
 
 
-def pinned(song: Song, chart: Chart) -> tuple[list[Said], list[FeetProblem]]:
+def pinned(song: Song, chart: Chart) -> tuple[list[CellOverride], list[FeetProblem]]:
     """Every pinned cell as it stands, and the measures that could not be read."""
     pins = list(_pins(song.data, chart))
     if not pins:
@@ -143,7 +143,7 @@ def pinned(song: Song, chart: Chart) -> tuple[list[Said], list[FeetProblem]]:
     by_measure: dict[int, list[int]] = {}
     for i, measure in enumerate(chart.rows.measure[rows.row].tolist()):
         by_measure.setdefault(measure, []).append(i)
-    said: list[Said] = []
+    said: list[CellOverride] = []
     problems: list[FeetProblem] = []
     for pin in pins:
         line_start = song.data.rfind(b"\n", 0, pin.offset) + 1
@@ -159,7 +159,7 @@ def pinned(song: Song, chart: Chart) -> tuple[list[Said], list[FeetProblem]]:
             continue
         ticks = chart.rows.tick[rows.row[mine]].tolist()
         for tick, token, cells in zip(ticks, tokens, columns, strict=True):
-            said += _said(tick, token, cells, pin.line, column)
+            said += _parse_token(tick, token, cells, pin.line, column)
     return said, problems
 
 
@@ -189,14 +189,14 @@ def _check_shape(tokens: list[Token], columns: list[list[int]]) -> None:
             raise NotationError(text, token.at)
 
 
-def _said(tick: int, token: Token, columns: list[int], line: int, start: int) -> Iterator[Said]:
+def _parse_token(tick: int, token: Token, columns: list[int], line: int, start: int) -> Iterator[CellOverride]:
     """What one token says. start : column of the marker's text in its line"""
     for letter, place, column in zip(token.letters, token.places, columns, strict=True):
         if letter in MEANING:
             limb, part = MEANING[letter]
             if part is Part.WHOLE and limb in _TOE and _TOE[limb] in token.letters:
                 part = Part.HEEL
-            yield Said(tick, column, limb, part, "pinned", line, start + place)
+            yield CellOverride(tick, column, limb, part, "pinned", line, start + place)
 
 
 _TOE = {Limb.LEFT_FOOT: "l", Limb.RIGHT_FOOT: "r"}

@@ -106,7 +106,7 @@ _Near = NDArray[np.bool_] | None  # (c, c): which panels one foot can press toge
 
 
 @dataclass(frozen=True, slots=True)
-class Said:
+class CellOverride:
     """One cell that a person has given a limb. source : for messages; line, place : where, 1-based, None if unknown."""
 
     tick: int
@@ -118,7 +118,7 @@ class Said:
     place: int | None = None
 
 
-def contradictions(chart: Chart, said: Iterable[Said]) -> tuple[list[Said], list[FeetProblem]]:
+def contradictions(chart: Chart, said: Iterable[CellOverride]) -> tuple[list[CellOverride], list[FeetProblem]]:
     """Split what was said into what can be danced and what contradicts itself.
 
     A row that contradicts itself is dropped as a whole; a step that contradicts a hold which its foot is said to keep
@@ -132,8 +132,8 @@ def contradictions(chart: Chart, said: Iterable[Said]) -> tuple[list[Said], list
     pad = load_pad(chart.steps_type)
     near = None if pad is None else pad.neighbours
     ends = _hold_ends(chart)
-    held: dict[int, tuple[Said, int]] = {}
-    good: list[Said] = []
+    held: dict[int, tuple[CellOverride, int]] = {}
+    good: list[CellOverride] = []
     problems: list[FeetProblem] = []
     for tick, group in groupby(ordered, key=lambda s: s.tick):
         row = list(group)
@@ -158,7 +158,7 @@ def _hold_ends(chart: Chart) -> dict[tuple[int, int], int]:
     return dict(zip(places, notes.end[at].tolist(), strict=True))
 
 
-def _row_problem(row: Sequence[Said], near: _Near) -> FeetProblem | None:
+def _row_problem(row: Sequence[CellOverride], near: _Near) -> FeetProblem | None:
     for a, b in combinations(row, 2):
         if a.limb != b.limb:
             continue
@@ -170,7 +170,7 @@ def _row_problem(row: Sequence[Said], near: _Near) -> FeetProblem | None:
     return None
 
 
-def _hold_problem(step: Said, hold: Said, near: _Near) -> FeetProblem | None:
+def _hold_problem(step: CellOverride, hold: CellOverride, near: _Near) -> FeetProblem | None:
     """A step by a limb that holds another panel; a foot may reach a panel that is near with its other part."""
     name = _NAMES[Limb(step.limb)]
     if step.limb in (Limb.LEFT_HAND, Limb.RIGHT_HAND) or _far(step.column, hold.column, near):
@@ -182,6 +182,6 @@ def _far(a: int, b: int, near: _Near) -> bool:
     return near is not None and max(a, b) < len(near) and not near[a, b]
 
 
-def _problem(code: str, what: str, at: Said) -> FeetProblem:
+def _problem(code: str, what: str, at: CellOverride) -> FeetProblem:
     beat = at.tick / TICKS_PER_BEAT
     return FeetProblem(code, f"beat {beat:g}: {what} ({at.source}); not used", at.line, at.place)

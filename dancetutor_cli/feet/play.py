@@ -15,7 +15,7 @@ from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind, NoteTable
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.pads import Pad
-from dancetutor_cli.feet.preset import HAND, LEAP, Why
+from dancetutor_cli.feet.preset import HAND, LEAP, DropReason
 
 # The result of the solver: who steps what, and what it costs. Arrays with one entry per row.
 
@@ -232,23 +232,25 @@ _NOT_WITHOUT = ("hand", "jump", "bracket")  # moves that a row has no more if wh
 
 
 WORDS = {
-    Why.LIMBS: "more panels at once than limbs",
-    Why.LEAP: "a foot would have to leap at once",
-    Why.HAND: "a hand would have to be down again at once",
+    DropReason.LIMBS: "more panels at once than limbs",
+    DropReason.LEAP: "a foot would have to leap at once",
+    DropReason.HAND: "a hand would have to be down again at once",
 }
 
 
 @dataclass(frozen=True, slots=True)
-class LetGo:
+class DroppedNote:
     """A note that she does not play. second : of the music; row, column : of the play"""
 
     second: float
     row: int
     column: int
-    why: Why
+    reason: DropReason
 
 
-def without_unplayable(play: Play, pad: Pad, before: Sequence[LetGo] = ()) -> tuple[Play, tuple[LetGo, ...]]:
+def without_unplayable(
+    play: Play, pad: Pad, before: Sequence[DroppedNote] = ()
+) -> tuple[Play, tuple[DroppedNote, ...]]:
     """The play in which no limb has those notes that no person plays, and these notes in order of time.
 
     What is left over by the solver stays `Limb.UNPLAYED`, and what `too_quick` finds becomes so: the foot stays where
@@ -262,15 +264,15 @@ def without_unplayable(play: Play, pad: Pad, before: Sequence[LetGo] = ()) -> tu
     if found:
         play = _without(play, pad, found)
     rows, columns = np.nonzero(play.limb == Limb.UNPLAYED)
-    why = {(one.row, one.column): one.why for one in before}
+    why = {(one.row, one.column): one.reason for one in before}
     why |= {(row, column): reason for row, column, reason in found}
     return play, tuple(
-        LetGo(float(play.rows.second[row]), row, column, why.get((row, column), Why.LIMBS))
+        DroppedNote(float(play.rows.second[row]), row, column, why.get((row, column), DropReason.LIMBS))
         for row, column in zip(rows.tolist(), columns.tolist(), strict=True)
     )
 
 
-def too_quick(play: Play, pad: Pad) -> Iterator[tuple[int, int, Why]]:
+def too_quick(play: Play, pad: Pad) -> Iterator[tuple[int, int, DropReason]]:
     """Row and column of each note that has a limb, but one which cannot be there in time, and why.
 
     A foot leaps if it steps within `LEAP` seconds of its last step, to no panel that touches one of that. A hand is let
@@ -281,16 +283,16 @@ def too_quick(play: Play, pad: Pad) -> Iterator[tuple[int, int, Why]]:
     yield from _hands(play)
 
 
-def told(gone: Sequence[LetGo]) -> str:
+def dropped_notes_message(gone: Sequence[DroppedNote]) -> str:
     """How many notes are let go and why, in one line for people; nothing if none is."""
     if not gone:
         return ""
-    counts = Counter(one.why for one in gone)
-    reasons = ", ".join(f"{counts[why]} {WORDS[why]}" for why in Why if counts[why])
+    counts = Counter(one.reason for one in gone)
+    reasons = ", ".join(f"{counts[why]} {WORDS[why]}" for why in DropReason if counts[why])
     return f"{len(gone)} note{'s' if len(gone) > 1 else ''} let go, for nobody plays them: {reasons}"
 
 
-def _leaps(play: Play, pad: Pad) -> Iterator[tuple[int, int, Why]]:
+def _leaps(play: Play, pad: Pad) -> Iterator[tuple[int, int, DropReason]]:
     """Row and column of each note that its foot would have to leap to."""
     touching = pad.neighbours | np.eye(len(pad), dtype=bool)
     for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
@@ -299,12 +301,12 @@ def _leaps(play: Play, pad: Pad) -> Iterator[tuple[int, int, Why]]:
         last, on = -np.inf, 0
         for row, second in zip(rows.tolist(), play.rows.second[rows].tolist(), strict=True):
             if second - last <= LEAP + SAME_TIME and not touching[np.ix_(mine[on], mine[row])].any():
-                yield from ((row, column, Why.LEAP) for column in np.flatnonzero(mine[row]).tolist())
+                yield from ((row, column, DropReason.LEAP) for column in np.flatnonzero(mine[row]).tolist())
             else:
                 last, on = second, row
 
 
-def _hands(play: Play) -> Iterator[tuple[int, int, Why]]:
+def _hands(play: Play) -> Iterator[tuple[int, int, DropReason]]:
     """Row and column of each note for which a hand would have to hop."""
     both = (play.limb == Limb.LEFT_FOOT).any(axis=1) & (play.limb == Limb.RIGHT_FOOT).any(axis=1)
     fresh = (play.rows.steps != StepKind.ROLL_TAP) | both[:, None]
@@ -314,11 +316,11 @@ def _hands(play: Play) -> Iterator[tuple[int, int, Why]]:
         for row in np.flatnonzero(mine.any(axis=1)).tolist():
             second = float(play.rows.second[row])
             if second - last <= HAND + SAME_TIME:
-                yield from ((row, column, Why.HAND) for column in np.flatnonzero(mine[row]).tolist())
+                yield from ((row, column, DropReason.HAND) for column in np.flatnonzero(mine[row]).tolist())
             last = second
 
 
-def _without(play: Play, pad: Pad, found: Sequence[tuple[int, int, Why]]) -> Play:
+def _without(play: Play, pad: Pad, found: Sequence[tuple[int, int, DropReason]]) -> Play:
     """The play in which no limb has these notes; feet, facing and the names of moves are what is left then."""
     limb, part, moves = play.limb.copy(), play.part.copy(), list(play.moves)
     for row, column, _ in found:

@@ -29,7 +29,7 @@ _PARTS = {int(Part.HEEL): "heel", int(Part.TOE): "toe"}
 _SMALL, _LARGE = 0.001, 1e9  # numbers beyond are written with an exponent, or with more digits than a float has
 _UNASKED, _UNKNOWN = -1.0, -2.0  # for confidence that nobody has measured, and in rows without a step
 _BETWEEN = ", "
-_MOST_KNOWN = 100_000  # texts kept, so that a long run does not fill the memory
+_MAX_CACHED = 100_000  # texts kept, so that a long run does not fill the memory
 
 
 def json_rows(play: Play, file_lines: NDArray[np.int32]) -> str:
@@ -70,18 +70,18 @@ def _second(second: float) -> str:
     return f"{decimals}0" if decimals[-1] == "." else decimals
 
 
-@lru_cache(maxsize=_MOST_KNOWN)
+@lru_cache(maxsize=_MAX_CACHED)
 def _beat(tick: int) -> str:
     """The start of a row, up to its second."""
     return f'{{"beat": {round(tick / TICKS_PER_BEAT, 6)!r}, "measure": {tick // TICKS_PER_MEASURE}, "second": '
 
 
-@lru_cache(maxsize=_MOST_KNOWN)
+@lru_cache(maxsize=_MAX_CACHED)
 def _line(line: int) -> str:
     return f', "line": {line}, '
 
 
-@lru_cache(maxsize=_MOST_KNOWN)
+@lru_cache(maxsize=_MAX_CACHED)
 def _end(margin: int, sure: float) -> str:
     """The end of a row, and what stands between it and the next. sure : `Play.confidence`, `_UNASKED` or `_UNKNOWN`"""
     text = "null" if margin < 0 else str(margin)
@@ -93,20 +93,22 @@ def _end(margin: int, sure: float) -> str:
 def _looks(play: Play, shown: NDArray[np.intp]) -> list[str]:
     """What each of some rows says of its steps, feet and moves."""
     moves = np.fromiter(map(id, play.moves), np.int64, len(play.moves)) if play.events is None else play.events
-    known: dict[bytes, str] = {} if play.events is None else _looks_known(play.limb.shape[1])
+    known: dict[bytes, str] = {} if play.events is None else _row_text_cache(play.limb.shape[1])
     rows = play.rows
     keys = _bytes(shown, rows.steps, play.limb, play.part, play.feet, play.facing[:, None], moves[:, None])
-    return _said(keys, known, lambda at: _pose(play, int(shown[at])))
+    return _cached_texts(keys, known, lambda at: _pose(play, int(shown[at])))
 
 
 def _costs(play: Play, shown: NDArray[np.intp]) -> list[str]:
     """What each of some rows says of its cost."""
-    return _said(_bytes(shown, play.cost), _costs_known(play.terms), lambda at: _terms(play, int(shown[at])))
+    return _cached_texts(
+        _bytes(shown, play.cost), _cost_text_cache(play.terms), lambda at: _terms(play, int(shown[at]))
+    )
 
 
-def _said(keys: list[bytes], known: dict[bytes, str], say: Callable[[int], str]) -> list[str]:
+def _cached_texts(keys: list[bytes], known: dict[bytes, str], say: Callable[[int], str]) -> list[str]:
     """What is known of each key; of a new one what `say` tells of its place."""
-    if len(known) > _MOST_KNOWN:
+    if len(known) > _MAX_CACHED:
         known.clear()
     said = [*map(known.get, keys)]
     for place, (key, text) in enumerate(zip(keys, said, strict=True)):
@@ -116,13 +118,13 @@ def _said(keys: list[bytes], known: dict[bytes, str], say: Callable[[int], str])
 
 
 @lru_cache(maxsize=32)
-def _looks_known(columns: int) -> dict[bytes, str]:
+def _row_text_cache(columns: int) -> dict[bytes, str]:
     """What is known of rows of so many columns: the text of steps, feet, facing and moves by their bytes."""
     return {}
 
 
 @lru_cache(maxsize=32)
-def _costs_known(terms: tuple[str, ...]) -> dict[bytes, str]:
+def _cost_text_cache(terms: tuple[str, ...]) -> dict[bytes, str]:
     """The text of costs by their bytes."""
     return {}
 

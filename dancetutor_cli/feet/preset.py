@@ -21,7 +21,7 @@ LEAP = 0.08  # seconds: a foot that stepped so shortly before goes to no panel a
 HAND = 0.40  # and a hand that came down so shortly before does not come down again
 
 
-class Why(IntEnum):
+class DropReason(IntEnum):
     """Why a note is let go."""
 
     LIMBS = 0  # more panels at once than limbs

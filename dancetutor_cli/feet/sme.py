@@ -11,7 +11,7 @@ from typing import Any
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
 from dancetutor_cli.chart.pack_files import EDITOR_FILE, song_stems
 from dancetutor_cli.feet.limbs import Limb, Part
-from dancetutor_cli.feet.overrides import FeetProblem, Said
+from dancetutor_cli.feet.overrides import CellOverride, FeetProblem
 from dancetutor_cli.run.errors import FileError, MissingFileError
 from dancetutor_cli.run.reading import CHART_LIMIT, parse_json, read_bytes
 
@@ -35,7 +35,7 @@ _CODES = {
 class ChartData:
     """What `data.sme` says about one chart. ignores : {tick: codes}"""
 
-    said: tuple[Said, ...] = ()
+    cells: tuple[CellOverride, ...] = ()
     ignores: dict[int, frozenset[str]] = field(default_factory=dict)
     problems: tuple[FeetProblem, ...] = ()
 
@@ -105,7 +105,7 @@ def tick_of(beat: float) -> int:
 def _chart_data(entry: Any, chart: Chart, ours: set[tuple[float, int, object]]) -> ChartData:
     notes = set(zip(chart.notes.tick.tolist(), chart.notes.column.tolist(), strict=True))
     lines = dict(zip(chart.notes.tick.tolist(), chart.notes.line.tolist(), strict=True))
-    said: list[Said] = []
+    said: list[CellOverride] = []
     problems: list[FeetProblem] = []
     for beat, column, value in overrides_of(entry):
         if (beat, column, value) in ours:
@@ -116,11 +116,11 @@ def _chart_data(entry: Any, chart: Chart, ours: set[tuple[float, int, object]]) 
             problems.append(FeetProblem("sme-no-note", text))
             continue
         limb, part = FEET[value]
-        said.append(Said(tick, column, limb, part, FILE_NAME, lines[tick], 1))
+        said.append(CellOverride(tick, column, limb, part, FILE_NAME, lines[tick], 1))
     return ChartData(tuple(_with_parts(said)), dict(_ignores(entry)), tuple(problems))
 
 
-def _with_parts(said: list[Said]) -> Iterator[Said]:
+def _with_parts(said: list[CellOverride]) -> Iterator[CellOverride]:
     """SMEditor calls a foot that is on one panel its heel; here heel and toe are only told apart in brackets."""
     toes = {(s.tick, s.limb) for s in said if s.part == Part.TOE}
     heels = {(s.tick, s.limb) for s in said if s.part != Part.TOE}
@@ -130,7 +130,7 @@ def _with_parts(said: list[Said]) -> Iterator[Said]:
             part = Part.HEEL if (s.tick, s.limb) in toes else Part.WHOLE
         elif (s.tick, s.limb) not in heels:
             part = Part.WHOLE
-        yield Said(s.tick, s.column, s.limb, part, s.source, s.line, s.place)
+        yield CellOverride(s.tick, s.column, s.limb, part, s.source, s.line, s.place)
 
 
 def _ignores(entry: Any) -> Iterator[tuple[int, frozenset[str]]]:

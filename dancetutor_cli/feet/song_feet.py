@@ -19,7 +19,7 @@ from dancetutor_cli.chart.pack_files import (
     texts_of,
 )
 from dancetutor_cli.feet.limbs import LETTERS, MEANING, UNKNOWN, Limb, Part
-from dancetutor_cli.feet.overrides import FeetProblem, Ignores, Overrides, Said
+from dancetutor_cli.feet.overrides import CellOverride, FeetProblem, Ignores, Overrides
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.yaml_files import read
 
@@ -49,7 +49,7 @@ class FeetEntry:
 class SettingsFeet:
     """What dancetutor.yaml says about one chart."""
 
-    said: tuple[Said, ...] = ()
+    cells: tuple[CellOverride, ...] = ()
     ignores: Mapping[int, frozenset[str]] | None = None
     problems: tuple[FeetProblem, ...] = ()
 
@@ -59,7 +59,7 @@ def read_settings(song: Song, chart: Chart, path: Path | None) -> SettingsFeet:
     if path is None:
         return SettingsFeet()
     status = path.stat()
-    said: list[Said] = []
+    said: list[CellOverride] = []
     problems: list[FeetProblem] = []
     ignores: dict[int, frozenset[str]] = {}
     for entry in _entries(path, status.st_mtime_ns, status.st_size):
@@ -69,8 +69,8 @@ def read_settings(song: Song, chart: Chart, path: Path | None) -> SettingsFeet:
         ):
             continue
         for tick, letters in entry.steps.items():
-            found = list(_said(chart, tick, letters))
-            said += [one for one in found if isinstance(one, Said)]
+            found = list(_parse_letters(chart, tick, letters))
+            said += [one for one in found if isinstance(one, CellOverride)]
             problems += [one for one in found if isinstance(one, FeetProblem)]
         for tick, rules in entry.ignore.items():
             ignores[tick] = ignores.get(tick, frozenset()) | rules
@@ -126,7 +126,7 @@ def _letters(value: Any, place: Place) -> str:
     return letters
 
 
-def _said(chart: Chart, tick: int, letters: str) -> Iterator[Said | FeetProblem]:
+def _parse_letters(chart: Chart, tick: int, letters: str) -> Iterator[CellOverride | FeetProblem]:
     """Who steps the notes of a row; one problem in place of them if the letters do not fit."""
     here = [n for n in (chart.notes.tick == tick).nonzero()[0].tolist() if chart.notes.kind[n] in _STEPS]
     beat = f"{FILE_NAME} gives beat {tick / TICKS_PER_BEAT:g}"
@@ -139,17 +139,17 @@ def _said(chart: Chart, tick: int, letters: str) -> Iterator[Said | FeetProblem]
             limb, part = MEANING[letter]
             if part is Part.WHOLE and _TOES.get(limb, " ") in letters:
                 part = Part.HEEL
-            yield Said(tick, int(chart.notes.column[n]), limb, part, FILE_NAME, int(chart.notes.line[n]), 1)
+            yield CellOverride(tick, int(chart.notes.column[n]), limb, part, FILE_NAME, int(chart.notes.line[n]), 1)
 
 
 # Limbs, and what people said about them: overrides and ignores read from annotations and from data.sme.
 
-Told = tuple[Overrides, Ignores, tuple[FeetProblem, ...]]
+AuthorFeet = tuple[Overrides, Ignores, tuple[FeetProblem, ...]]
 
 
-def overrides_for(song: Song, chart: Chart) -> Told:
-    """Everything people said about the feet of a chart, see `SongFeet.told`."""
-    return SongFeet(song).told(chart)
+def overrides_for(song: Song, chart: Chart) -> AuthorFeet:
+    """Everything people said about the feet of a chart, see `SongFeet.author_feet`."""
+    return SongFeet(song).author_feet(chart)
 
 
 class SongFeet:
@@ -163,7 +163,7 @@ class SongFeet:
         self._editor = editor_file(song.path)
         self._settings = find_settings_file(song.path.parent)
 
-    def told(self, chart: Chart) -> Told:
+    def author_feet(self, chart: Chart) -> AuthorFeet:
         """What was said about a chart; to be asked before the chart is solved.
 
         Pinned measures in the file, overrides in `data.sme` beside it, `feet` in the dancetutor.yaml up the tree; where
@@ -185,7 +185,7 @@ class SongFeet:
         pins, problems = pinned(song, in_file)
         editor = ChartData() if self._editor is None else read_sme(song, whole)
         settings = read_settings(song, whole, self._settings)
-        told = (*settings.said, *editor.said, *pins)
+        told = (*settings.cells, *editor.cells, *pins)
         said = {
             (s.tick, s.column): s for s in (told if chart.written is None else _of_player(chart, told))
         }  # later win
@@ -198,7 +198,7 @@ class SongFeet:
         return Overrides.of(cells), ignores, (*problems, *editor.problems, *settings.problems, *contradictory)
 
 
-def _of_player(chart: Chart, said: Iterable[Said]) -> Iterator[Said]:
+def _of_player(chart: Chart, said: Iterable[CellOverride]) -> Iterator[CellOverride]:
     """What is about the notes of one of two players, in this player's columns."""
     mine = set(zip(chart.notes.tick.tolist(), chart.notes.column.tolist(), strict=True))
     for one in said:

@@ -45,9 +45,9 @@ class Pass:
     @property
     def seconds(self) -> float:
         """How long it lasts in the film."""
-        return self.shown(self.end)
+        return self.film_seconds(self.end)
 
-    def shown(self, second: float) -> float:
+    def film_seconds(self, second: float) -> float:
         """Seconds of the film from the pass's beginning to a second of the music."""
         return heard(second - self.start, self.rate)
 
@@ -175,7 +175,7 @@ def passes_of(chart: Chart, practice: Practice, rates: tuple[float, ...], start:
     if practice.count_in:
         start = _first_measure(chart, start, end)
         beat = 60 / chart.timing.bpm_at(round(float(chart.timing.beats(np.array([start]))[0]) * TICKS_PER_BEAT))
-        lead = practice.count_in * _counted(beat, min(rates))
+        lead = practice.count_in * _count_in_interval(beat, min(rates))
     count = practice.loop or len(rates)
     runs = [
         Pass(start - lead, end, rates[i % len(rates)], start if lead else -math.inf, practice.count_in)
@@ -185,7 +185,7 @@ def passes_of(chart: Chart, practice: Practice, rates: tuple[float, ...], start:
     return (*runs[:-1], replace(runs[-1], end=end + rest, rest=rest))
 
 
-def _counted(beat: float, rate: float) -> float:
+def _count_in_interval(beat: float, rate: float) -> float:
     """Seconds of the music from one number to the next: a beat, halved or doubled until it can be counted at `rate`."""
     least, most = (second * rate for second in COUNTABLE)
     while beat > most:

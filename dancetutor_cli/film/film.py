@@ -23,7 +23,7 @@ from dancetutor_cli.film.overlay.blit import Box
 from dancetutor_cli.film.overlay.diagram import FeetDiagram, NextRows, PadMap, PadView, below, name_sprite
 from dancetutor_cli.film.overlay.header import Header, Lines, WordsRoom
 from dancetutor_cli.film.overlay.highway import Highway, Score
-from dancetutor_cli.film.overlay.marks import HighwayGeometry, lane_beside
+from dancetutor_cli.film.overlay.marks import HighwayGeometry, lane_width_for_words
 from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import Frame, darkened
@@ -82,11 +82,11 @@ class Film:
         down = part.down or plan.look.down
         share = 1 - part.receptor if down else part.receptor
         receptor = box[1] + share * (box[3] - box[1])
-        tags = part.tags and beside.seen(plan.callouts, plan.clock.passes)
+        tags = part.tags and beside.has_visible_callout(plan.callouts, plan.clock.passes)
         letters = beside.letters(scale)
         if tags:
-            told = beside.told(plan.callouts, callout_words().values())
-            lane = lane_beside(beside.room_for(told, letters, self.face), lane, box, self.columns)
+            told = beside.callout_texts(plan.callouts, callout_words().values())
+            lane = lane_width_for_words(beside.room_for(told, letters, self.face), lane, box, self.columns)
         geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned, tags, letters)
         scroll = plan.look.scroll or parse_scroll(part.scroll)
         score = Score(plan.notes, plan.presses, plan.lines, plan.callouts)
@@ -124,7 +124,7 @@ class Film:
     def _legend(self) -> captions.Legend | None:
         if (part := self.layout.legend) is None:
             return None
-        limbs = beside.limbs_seen(self.plan.notes, self.plan.clock.passes)
+        limbs = beside.visible_limbs(self.plan.notes, self.plan.clock.passes)
         box = self._below(self._box("legend"), LEGEND_OFF * self.scale * part.text)
         if (pads := self._feet_box) is not None and overlap(pads, box):
             under = lowered(box, pads[3] + LEGEND_OFF * self.scale)
@@ -189,15 +189,15 @@ class Film:
         """Where these are in the picture while moves are called out, (n, 4), a little larger."""
         if not self.plan.motions:
             return np.zeros((0, 4))
-        return self._beside(self._dancer.heads_and_feet(moments(self.plan.callouts, self.plan.clock.passes)))
+        return self._dancer_box(self._dancer.heads_and_feet(moments(self.plan.callouts, self.plan.clock.passes)))
 
     def _heads(self) -> NDArray[np.float64]:
         """The same all the time that she dances; feet are below what stands there."""
         if not (self.layout.dancer and self.plan.motions):
             return np.zeros((0, 4))
-        return self._beside(self._dancer.heads_and_feet(dancing(self.plan.presses, self.plan.clock.passes)))
+        return self._dancer_box(self._dancer.heads_and_feet(dancing(self.plan.presses, self.plan.clock.passes)))
 
-    def _beside(self, seen: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _dancer_box(self, seen: NDArray[np.float64]) -> NDArray[np.float64]:
         """Places of the dancer's box in the picture, with an edge around them."""
         left, top, _, _ = self._box("dancer")
         edge = CALLS_OFF * self.scale
@@ -272,10 +272,10 @@ class Film:
     def _stay(self, words: Lines | captions.Legend | Runs | FeetDiagram, run: int) -> Stay:
         """When these words are in the picture: not while she walks through them."""
         if (key := (id(words), run)) not in self._stays:
-            self._stays[key] = self._passed(words.boxes, run)
+            self._stays[key] = self._stay_of_run(words.boxes, run)
         return self._stays[key]
 
-    def _passed(self, boxes: list[Box], run: int) -> Stay:
+    def _stay_of_run(self, boxes: list[Box], run: int) -> Stay:
         if not (self.layout.dancer and self.plan.motions and boxes):
             return Stay()
         left, top, right, bottom = self._box("dancer")
@@ -359,7 +359,7 @@ def write_poster(path: Path, plan: FilmPlan) -> None:
     aim = one.start + (one.end - one.start) / 3
     moment = calls[0] if calls else float(steps[np.argmin(np.abs(steps - aim))]) if len(steps) else aim
     before = sum(other.seconds for other in plan.clock.passes[:-1])
-    number = round((before + one.shown(moment)) * plan.clock.fps + 0.5)
+    number = round((before + one.film_seconds(moment)) * plan.clock.fps + 0.5)
     picture = Film(plan).frame(min(number, plan.clock.frames - 1))
     write_atomic(path, picture_bytes(picture))
 

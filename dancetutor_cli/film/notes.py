@@ -147,8 +147,8 @@ def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments, on_mine
     track = NoteTrack(
         second=second,
         end_second=chart.timing.seconds(end),
-        beat=scrolls.shown(tick / TICKS_PER_BEAT),
-        end_beat=scrolls.shown(end / TICKS_PER_BEAT),
+        beat=scrolls.drawn_beats(tick / TICKS_PER_BEAT),
+        end_beat=scrolls.drawn_beats(end / TICKS_PER_BEAT),
         column=table.column[keep],
         kind=table.kind[keep],
         limb=limb[keep],
@@ -156,7 +156,7 @@ def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments, on_mine
         judged=table.judged[keep],
         player=_players(chart)[keep],
         gone_second=np.where(is_gone, chart.timing.seconds(gone), np.inf),
-        gone_beat=np.where(is_gone, scrolls.shown(gone / TICKS_PER_BEAT), np.inf),
+        gone_beat=np.where(is_gone, scrolls.drawn_beats(gone / TICKS_PER_BEAT), np.inf),
     )
     return NoteTrack(*(getattr(track, field.name)[order] for field in fields(NoteTrack)))
 
@@ -205,14 +205,14 @@ def beat_lines(chart: Chart, scrolls: ScrollSegments, end: float) -> BeatLines:
     beats = np.arange(min(last // TICKS_PER_BEAT + 64, 2_000_000), dtype=np.int64)
     second = chart.timing.seconds(beats * TICKS_PER_BEAT)
     keep = second <= end + 60
-    return BeatLines(second[keep], scrolls.shown(beats.astype(np.float64))[keep])
+    return BeatLines(second[keep], scrolls.drawn_beats(beats.astype(np.float64))[keep])
 
 
 # How brightly a panel or receptor is lit: at once at its note, fading after a tap, steady while it is held.
 #
 # A note that nobody plays lights nothing.
 
-HELD = 0.62  # brightness while held, after the flash of the start
+HOLD_BRIGHTNESS = 0.62  # brightness while held, after the flash of the start
 EPSILON = 1e-6  # seconds; a frame that falls on a note shows it
 
 
@@ -243,14 +243,14 @@ class PanelLights:
             return 0.0, -1
         press = self._columns[column][last]
         start, end = float(self.presses.start[press]), float(self.presses.end[press])
-        fresh = _left((second - start) / self.fade)
+        fresh = _fade((second - start) / self.fade)
         if second < end:
-            level = max(HELD, fresh)
+            level = max(HOLD_BRIGHTNESS, fresh)
         else:
-            level = _left((second - end) / self.fade) * (1.0 if end == start else HELD)
+            level = _fade((second - end) / self.fade) * (1.0 if end == start else HOLD_BRIGHTNESS)
         return min(1.0, level), int(self.presses.limb[press])
 
 
-def _left(share: float) -> float:
+def _fade(share: float) -> float:
     """What is left of a light when so much of its time is over: it is bright and goes out, and does not linger."""
     return max(0.0, 1.0 - share * share)

@@ -15,7 +15,7 @@ from dancetutor_cli.film.notes import BeatLines, Callout, Cue, NoteTrack, Presse
 from dancetutor_cli.film.overlay.captions import SongShape
 from dancetutor_cli.film.overlay.diagram import DiagramRows
 from dancetutor_cli.film.overlay.header import Words
-from dancetutor_cli.film.scene.camera import seen_from_front
+from dancetutor_cli.film.scene.camera import is_front_view
 from dancetutor_cli.film.scene.look import default_look
 
 if TYPE_CHECKING:
@@ -74,4 +74,4 @@ def turned(look: FilmLook) -> bool:
     part = look.layout.dancer
     if part is None or look.layout.screen is not None:
         return False
-    return seen_from_front(look.camera or part.camera, default_look())
+    return is_front_view(look.camera or part.camera, default_look())

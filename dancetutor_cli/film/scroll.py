@@ -81,7 +81,7 @@ class ScrollSegments:
     beats: Beats
     ratios: NDArray[np.float64]
 
-    def shown(self, beat: NDArray[np.float64]) -> NDArray[np.float64]:
+    def drawn_beats(self, beat: NDArray[np.float64]) -> NDArray[np.float64]:
         """The beats as far as they are drawn: the integral of the ratios."""
         if len(self.beats) == 0:
             return beat

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 HOLD, MINE = "hold", "mine"  # a note held, a mine that a foot is on: no `EVENTS`, as half turns are none
 WHO = ("left foot", "right foot", "left hand", "right hand")  # by `feet.play.Limb`
-SAID_BY_A_BRACKET = {"doublestep", "forced-doublestep"}  # which foot it is, it says itself
+IMPLIED_BY_BRACKET = {"doublestep", "forced-doublestep"}  # which foot it is, it says itself
 _OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up"}
 
 

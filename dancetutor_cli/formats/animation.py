@@ -77,9 +77,9 @@ class AnimatedDancer:
     def motion(self) -> Motion:
         """The motion for the character's skeleton, beginning with those of the others."""
         from dancetutor_cli.character.retarget import retarget
-        from dancetutor_cli.dance.motion import held_from, shifted
+        from dancetutor_cli.dance.motion import padded_from, shifted
 
-        return shifted(held_from(retarget(self.baked.motion, self.character), self.animation.begin), *self.place)
+        return shifted(padded_from(retarget(self.baked.motion, self.character), self.animation.begin), *self.place)
 
     @property
     def moves(self) -> tuple[Plan, Bar | None]:
@@ -90,10 +90,10 @@ class AnimatedDancer:
         """What there is to say, for people: of the whole motion, or only of the moves."""
         if of_motion:
             return self.baked.motion.notes
-        from dancetutor_cli.feet.play import told
+        from dancetutor_cli.feet.play import dropped_notes_message
 
         start, end = self.section
-        line = told([one for one in self._dancer.plan.let_go if start <= one.second <= end])
+        line = dropped_notes_message([one for one in self._dancer.plan.let_go if start <= one.second <= end])
         return (line,) if line else ()
 
     @property

@@ -101,7 +101,7 @@ def write_bvh(path: Path, motion: Motion, fps: float | None = None, units_per_me
     fps = motion.fps if fps is None else fps
     count = frame_count(motion, fps)
     order = _depth_first(motion.skeleton)
-    text = ["HIERARCHY", *_written(motion.skeleton, order[0], 0, units_per_metre), "MOTION"]
+    text = ["HIERARCHY", *_hierarchy_lines(motion.skeleton, order[0], 0, units_per_metre), "MOTION"]
     text += [f"Frames: {count}", f"Frame Time: {1 / fps:.9f}"]
 
     def write(file: BinaryIO) -> None:
@@ -256,7 +256,7 @@ def _depth_first(skeleton: Skeleton) -> list[int]:
     return order
 
 
-def _written(skeleton: Skeleton, joint: int, depth: int, units: float) -> list[str]:
+def _hierarchy_lines(skeleton: Skeleton, joint: int, depth: int, units: float) -> list[str]:
     tab, inner = "\t" * depth, "\t" * (depth + 1)
     offset = np.zeros(3) if depth == 0 else skeleton.offsets[joint] * units
     turns = "Zrotation Xrotation Yrotation"
@@ -266,7 +266,7 @@ def _written(skeleton: Skeleton, joint: int, depth: int, units: float) -> list[s
     out.append(f"{inner}CHANNELS {place}")
     children = np.flatnonzero(skeleton.parents == joint)
     for child in children.tolist():
-        out += _written(skeleton, child, depth + 1, units)
+        out += _hierarchy_lines(skeleton, child, depth + 1, units)
     if not len(children):
         way = skeleton.offsets[joint] / max(float(np.linalg.norm(skeleton.offsets[joint])), 1e-9)
         out += [f"{inner}End Site", f"{inner}{{", f"{inner}\tOFFSET {_numbers(way * _LEAF * units)}", f"{inner}}}"]

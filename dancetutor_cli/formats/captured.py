@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.character.container import Container, Nodes, as_dict, read_container, read_nodes
 from dancetutor_cli.dance.motion import Motion
-from dancetutor_cli.dance.physics.captured import Captured
+from dancetutor_cli.dance.physics.captured import CapturedMotion
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.formats.bvh import read_bvh
@@ -25,7 +25,7 @@ LONGEST = 3600.0  # seconds of an animation
 _IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 
 
-def read_captured(path: Path, animation: str | None = None) -> Captured:
+def read_captured(path: Path, animation: str | None = None) -> CapturedMotion:
     """The motion in a file, by its suffix.
 
     Parameters
@@ -44,7 +44,7 @@ def read_captured(path: Path, animation: str | None = None) -> Captured:
     return of_motion(path, read_bvh(path) if suffix == ".bvh" else read_npz(path))
 
 
-def of_motion(path: Path, motion: Motion) -> Captured:
+def of_motion(path: Path, motion: Motion) -> CapturedMotion:
     """A motion as captured: its skeleton's rest pose has no turns."""
     skeleton = motion.skeleton
     for name, values in (("times", motion.times), ("rotations", motion.rotations), ("root", motion.root)):
@@ -54,14 +54,14 @@ def of_motion(path: Path, motion: Motion) -> Captured:
         raise FileError(path, "has one frame; a motion needs at least two")
     places, turns = world_transforms(skeleton, motion.rotations, motion.root)
     rest_turns = np.tile(_IDENTITY, (len(skeleton.names), 1))
-    return Captured(
+    return CapturedMotion(
         path, skeleton.names, skeleton.parents, skeleton.rest, rest_turns, motion.fps, motion.times, places, turns
     )
 
 
-def _of_container(container: Container, wanted: str | None) -> Captured:
+def _of_container(container: Container, wanted: str | None) -> CapturedMotion:
     nodes = read_nodes(container)
-    channels = _channels(container, _chosen(container, wanted))
+    channels = _channels(container, _find_animation(container, wanted))
     times = _times(container, channels)
     local = _local(container, nodes, channels, times)
     places, turns = _world(nodes, *local)
@@ -72,10 +72,10 @@ def _of_container(container: Container, wanted: str | None) -> Captured:
     rate = (len(times) - 1) / float(times[-1] - times[0])
     names = tuple(nodes.names[n] for n in order)
     rest = (rest_places[0, order], rest_turns[0, order])
-    return Captured(container.path, names, parents, *rest, rate, times, places[:, order], turns[:, order])
+    return CapturedMotion(container.path, names, parents, *rest, rate, times, places[:, order], turns[:, order])
 
 
-def _chosen(container: Container, wanted: str | None) -> dict[str, Any]:
+def _find_animation(container: Container, wanted: str | None) -> dict[str, Any]:
     animations = container.items("animations")
     if not animations:
         raise container.fail("holds no animation; export the character with one")

@@ -101,7 +101,7 @@ def moves_data(
             if start <= c.start <= end
         ],
         "let_go": [
-            {"second": _round(one.second), "column": one.column, "why": one.why.name.lower()}
+            {"second": _round(one.second), "column": one.column, "why": one.reason.name.lower()}
             for one in plan.let_go
             if start <= one.second <= end
         ],

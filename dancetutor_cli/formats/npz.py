@@ -40,8 +40,8 @@ import numpy as np
 
 from dancetutor_cli.dance.motion import Bar, Contact, Grip, Ground, Motion
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.feet.play import LetGo
-from dancetutor_cli.feet.preset import Why
+from dancetutor_cli.feet.play import DroppedNote
+from dancetutor_cli.feet.preset import DropReason
 from dancetutor_cli.formats.npz_arrays import Field, read_arrays
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.files import write_atomic
@@ -72,7 +72,7 @@ _LET_GO = {
     "second": Field("float", ("k",), -_FAR, _FAR, required=False),
     "row": Field("integer", ("k",), -1, _INDEX, required=False),
     "column": Field("integer", ("k",), 0, 1000, required=False),
-    "why": Field("integer", ("k",), min(Why), max(Why), required=False),
+    "why": Field("integer", ("k",), min(DropReason), max(DropReason), required=False),
 }
 FIELDS: Mapping[str, Field] = {
     "schema": Field("integer", (), 0, _INDEX),
@@ -191,10 +191,10 @@ def _check_motion(path: Path, arrays: dict[str, Any]) -> None:
         raise FileError(path, "array 'rotations' must hold unit quaternions (w, x, y, z)")
 
 
-def _let_go(arrays: dict[str, Any]) -> tuple[LetGo, ...]:
+def _let_go(arrays: dict[str, Any]) -> tuple[DroppedNote, ...]:
     none = np.zeros(len(arrays.get("let_go_second", ())))
     columns = [arrays.get(f"let_go_{name}", none) for name in _LET_GO]
-    return tuple(LetGo(float(s), int(r), int(c), Why(int(w))) for s, r, c, w in zip(*columns, strict=True))
+    return tuple(DroppedNote(float(s), int(r), int(c), DropReason(int(w))) for s, r, c, w in zip(*columns, strict=True))
 
 
 def _zipped(arrays: dict[str, Any]) -> bytes:

@@ -144,17 +144,17 @@ def _check_shapes(path: Path, headers: Mapping[str, _Header], fields: Mapping[st
         for size, rule in zip(header.shape, wanted, strict=False):
             fits &= size == (sizes.setdefault(rule, size) if isinstance(rule, str) else rule)
         if not fits:
-            shape = _shown(header.shape)
+            shape = _shape_text(header.shape)
             raise FileError(path, f"array '{name}' has the shape {shape}; it must be {_rule(wanted, sizes)}")
     total = sum(header.size for header in headers.values())
     if total > LIMIT:
         raise FileError(path, f"declares arrays of {total / MEGABYTE:,.0f} MB; at most {LIMIT / MEGABYTE:.0f} are read")
     for name, header in headers.items():
         if header.entry.file_size != header.at + header.size:
-            raise FileError(path, f"array '{name}' is not as long as its shape {_shown(header.shape)} says")
+            raise FileError(path, f"array '{name}' is not as long as its shape {_shape_text(header.shape)} says")
 
 
-def _shown(shape: tuple[int, ...]) -> str:
+def _shape_text(shape: tuple[int, ...]) -> str:
     return f"({', '.join(f'{size:,}'.replace(',', ' ') for size in shape[:6])}{', ...' if len(shape) > 6 else ''})"
 
 

@@ -15,7 +15,7 @@ from dancetutor_cli.run.errors import DancetutorError, FileError
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.dance.motion import Motion
-    from dancetutor_cli.dance.physics.pipeline import Passed, Tuning, Wishes
+    from dancetutor_cli.dance.physics.pipeline import RagdollResult, Tuning, Wishes
     from dancetutor_cli.dance.physics.style import Style
     from dancetutor_cli.dance.quality.figures import MotionReport
     from dancetutor_cli.dance.rig.skeleton import Skeleton
@@ -58,7 +58,7 @@ class Retargeting:
         return body_of(self.character.skeleton)
 
     @cached_property
-    def given(self) -> Motion:
+    def source_motion(self) -> Motion:
         """The file's motion on the body, before any physics."""
         from dancetutor_cli.character.humanoid import humanoid_of
         from dancetutor_cli.character.retarget import onto
@@ -90,14 +90,14 @@ class Retargeting:
         return style if same else tuning_of(self.body).of(style)
 
     @cached_property
-    def passed(self) -> Passed:
+    def ragdoll_result(self) -> RagdollResult:
         """Behind the ragdoll, on the body."""
         from dancetutor_cli.dance.physics.hair import add_hair
         from dancetutor_cli.dance.physics.pipeline import through_ragdoll
         from dancetutor_cli.dance.settings import default_settings
 
         try:
-            passed = through_ragdoll(self.given, self.style, self.task.wishes)
+            passed = through_ragdoll(self.source_motion, self.style, self.task.wishes)
         except FileError:
             raise
         except DancetutorError as error:
@@ -111,7 +111,7 @@ class Retargeting:
         """For the character's skeleton."""
         from dancetutor_cli.character.retarget import retarget
 
-        return retarget(self.passed.motion, self.character)
+        return retarget(self.ragdoll_result.motion, self.character)
 
     @property
     def title(self) -> str:
@@ -124,9 +124,9 @@ class Retargeting:
 
         from dancetutor_cli.dance.quality.report import fault_figures, report, with_distances
 
-        passed = self.passed
+        passed = self.ragdoll_result
         whole = report(passed.motion)
-        faults = fault_figures(self.given, passed.motion, passed.plants)
+        faults = fault_figures(self.source_motion, passed.motion, passed.plants)
         curves = {name: (t, v) for name, (t, v) in whole.curves.items() if len(v) and np.isfinite(v).any()}
         whole = replace(whole, figures=(*whole.figures, *faults), curves=curves)
         plain = not set(self.task.wishes.corrections) - {"limits"}

@@ -208,10 +208,10 @@ class _Window:
             yield file.result()
 
     def _look(self) -> None:
-        from dancetutor_cli.lint.subject import look_at_together
+        from dancetutor_cli.lint.subject import share_plays
 
         waiting, self._waiting, self._rows = self._waiting, [], 0
-        look_at_together(subject for _, subject in waiting)
+        share_plays(subject for _, subject in waiting)
         for file, subject in waiting:
             try:
                 file.add(subject)
@@ -273,7 +273,7 @@ class _File:
         task = self._task
         for subject in _others(self._song, self._selected, task, self._meters):
             self._meters.add(subject, task.rate)
-        told = self._meters.told(task.meter_scale)
+        told = self._meters.reports(task.meter_scale)
         return tuple(
             replace(chart, estimate=told[chart.index].estimate, findings=told[chart.index].among(chart.findings))
             if chart.index in told

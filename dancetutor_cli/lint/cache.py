@@ -46,7 +46,7 @@ class ResultCache:
             task.meter_scale, task.rate,
         )  # fmt: skip
         asked = f"{task.path}|{task.path.absolute()}|{wanted}"
-        for part in (program_stamp(), asked, task.settings.fingerprint(), *self._beside(task.path)):
+        for part in (program_stamp(), asked, task.settings.fingerprint(), *self._dependencies(task.path)):
             digest.update(b"\0" + part.encode("utf-8", "surrogateescape"))
         return digest.hexdigest()
 
@@ -83,7 +83,7 @@ class ResultCache:
                 if time.time() - path.stat().st_mtime > _KEEP_SECONDS:
                     path.unlink(missing_ok=True)
 
-    def _beside(self, path: Path) -> Iterator[str]:
+    def _dependencies(self, path: Path) -> Iterator[str]:
         """What else beside it a result depends on: music and pictures by size and time, feet, the other format."""
         if path.parent not in self._listings:
             self._listings[path.parent] = _listing(path.parent)

@@ -16,7 +16,7 @@ from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.solver.techniques import half_turned
 from dancetutor_cli.lint.findings import TECH_COUNTS
 from dancetutor_cli.lint.meter_model import Feature, features_of
-from dancetutor_cli.lint.plays import WRITTEN, Plays
+from dancetutor_cli.lint.plays import ALL_KINDS, Plays
 
 # Technical steps of plays, counted as ITGmania counts them, so that the numbers can be laid beside the game's.
 #
@@ -29,7 +29,7 @@ from dancetutor_cli.lint.plays import WRITTEN, Plays
 _JACK, _DOUBLESTEP, _FOOTSWITCH = 176_000, 235_000, 300_000  # microseconds between two rows, the game's own limits
 _NEVER = 10**15
 _TOE = int(Part.TOE)
-Found = dict[str, NDArray[np.int64]]
+CandidateRows = dict[str, NDArray[np.int64]]
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class _Steps:
     foot: NDArray[np.int8]
 
 
-def techniques(plays: Plays) -> Found:
+def techniques(plays: Plays) -> CandidateRows:
     """The rows of the plays that are counted as each of `TECH_COUNTS`, one for each time, not in order."""
     steps = _steps_of(plays)
     inner = np.flatnonzero(steps.place > 0)
@@ -69,7 +69,7 @@ def techniques(plays: Plays) -> Found:
 
 
 def _steps_of(plays: Plays) -> _Steps:
-    cell = np.flatnonzero(WRITTEN[plays.steps.ravel()])
+    cell = np.flatnonzero(ALL_KINDS[plays.steps.ravel()])
     at, column = np.divmod(cell, len(plays.pad))
     first = np.ones(len(at), dtype=bool)
     first[1:] = at[1:] != at[:-1]
@@ -109,7 +109,7 @@ def _first(
     return found
 
 
-def _switches(steps: _Steps, plays: Plays) -> Found:
+def _switches(steps: _Steps, plays: Plays) -> CandidateRows:
     """Panels taken over, by where their arrows point."""
     c, pad = len(plays.pad), plays.pad
     before = np.full((len(steps.row) + 1) * c, -1, dtype=np.int8)
@@ -129,7 +129,7 @@ def _switches(steps: _Steps, plays: Plays) -> Found:
     }  # fmt: skip
 
 
-def _repeats(steps: _Steps, plays: Plays) -> Found:
+def _repeats(steps: _Steps, plays: Plays) -> CandidateRows:
     """The same foot in two single rows one after the other: on its panel, or on another."""
     single = steps.count == 1
     near = single[1:] & single[:-1] & (steps.gap < _DOUBLESTEP)
@@ -150,7 +150,7 @@ def _repeats(steps: _Steps, plays: Plays) -> Found:
     }
 
 
-def _crossovers(steps: _Steps) -> Found:
+def _crossovers(steps: _Steps) -> CandidateRows:
     """Steps of one foot to the wrong side of the other, which stepped in the row before; half or full."""
     half, full = [], []
     for foot, outward in ((0, -1.0), (1, 1.0)):
@@ -258,14 +258,14 @@ class Candidates:
         return Repeats(place, row[place], plays.second[row[place]] - plays.second[row[place - 1]])
 
     @cached_property
-    def soonest_triples(self) -> list[float]:
+    def least_triple_seconds(self) -> list[float]:
         """For each play the least time (s) between three steps of one foot in a row, endless where there are none."""
         place, row, seconds = self.repeats
         twice = place[1:] - place[:-1] == 1
         return self.plays.least(row[1:][twice], np.maximum(seconds[1:], seconds[:-1])[twice])
 
     @cached_property
-    def soonest_switches(self) -> list[float]:
+    def least_switch_seconds(self) -> list[float]:
         """For each play the least time (s) between single steps on one panel by different limbs."""
         plays = self.plays
         lone = np.flatnonzero(plays.lone)
@@ -275,14 +275,14 @@ class Candidates:
         return plays.least(lone[at], plays.second[lone[at]] - plays.second[lone[at - 1]])
 
     @cached_property
-    def quickest_travels(self) -> list[float]:
+    def least_travel_seconds(self) -> list[float]:
         """For each play the least time (s) that a foot takes for a panel width of its way."""
         left, right = self.plays.travels
         pairs = [self.plays.least(one.row, one.seconds / one.way) for one in (left, right)]
         return [min(both) for both in zip(*pairs, strict=True)]
 
     @cached_property
-    def quickest_feet(self) -> list[float]:
+    def least_foot_seconds(self) -> list[float]:
         """For each play the least time (s) from one row that a foot presses to the next, taps of rolls too."""
         plays, found = self.plays, [np.inf] * len(self.plays.plays)
         for limb in (_LEFT, _RIGHT):
@@ -300,7 +300,7 @@ class Candidates:
     @cached_property
     def tech_counts(self) -> list[dict[str, int]]:
         """For each play how often each of `TECH_COUNTS` happens."""
-        counts = [self.plays.how_often(self.techniques[name]) for name in TECH_COUNTS]
+        counts = [self.plays.count_rows(self.techniques[name]) for name in TECH_COUNTS]
         return [dict(zip(TECH_COUNTS, of_play, strict=True)) for of_play in zip(*counts, strict=True)]
 
     @cached_property

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 # Run the rules over a file or a chart.
 
 _AMBIGUITY = "DT207"
-_MOST_KNOWN = 256
+_MAX_CACHED = 256
 Rules = Mapping[str, ChartRule | ReaderRule]
 # Rule -> what SMEditor calls such findings in the `ignores` of data.sme.
 _EDITOR_CODES = {
@@ -49,7 +49,7 @@ def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...
     if is_lights(subject.chart.steps_type):
         return ()
     rules = rules_of(subject, settings)
-    findings = [finding for rule in rules.values() for finding in _found(rule, subject)]
+    findings = [finding for rule in rules.values() for finding in _run_rule(rule, subject)]
     told = _as_sure_as_they_are(findings, subject, settings, rules.get(_AMBIGUITY))
     if subject.play is None and subject.chart.written_type.startswith(_FINGERS) and _NO_PAD in rules:
         told = (one for one in told if one.rule == _NO_PAD or one.severity == "error")
@@ -65,26 +65,26 @@ def rules_of(subject: ChartSubject, settings: Settings) -> Rules:
     """The rules that run on a chart, by their codes; the same again for the same options, as from chart to chart."""
     chart = subject.chart
     options = settings.for_chart(subject.song.path, chart.written_type, chart.difficulty, chart.meter)
-    known = _known.get(id(options))
+    known = _rules_cache.get(id(options))
     if known is None:
-        if len(_known) >= _MOST_KNOWN:
-            _known.clear()
+        if len(_rules_cache) >= _MAX_CACHED:
+            _rules_cache.clear()
         rules = {code: rule(options[code]) for code, rule in _rules_of_charts().items() if code in options}
-        known = _known[id(options)] = options, {code: rules[code] for code in options if code in rules}
+        known = _rules_cache[id(options)] = options, {code: rules[code] for code in options if code in rules}
     return known[1]
 
 
 # By the object that the options are, which is kept here so that no other takes its place.
-_known: dict[int, tuple[Mapping[str, Options], Rules]] = {}
+_rules_cache: dict[int, tuple[Mapping[str, Options], Rules]] = {}
 
 
 def check_rule(code: str, rules: Rules, subject: ChartSubject, settings: Settings) -> tuple[Finding, ...]:
     """What one of the rules of a chart adds to `check_chart`; an ambiguity of other rules is told again."""
-    told = _as_sure_as_they_are(_found(rules[code], subject), subject, settings, rules.get(_AMBIGUITY))
+    told = _as_sure_as_they_are(_run_rule(rules[code], subject), subject, settings, rules.get(_AMBIGUITY))
     return tuple(finding for finding in told if not _silenced(finding, subject))
 
 
-def _found(rule: ChartRule | ReaderRule, subject: ChartSubject) -> list[Finding]:
+def _run_rule(rule: ChartRule | ReaderRule, subject: ChartSubject) -> list[Finding]:
     """What a rule finds; of a chart for two what is true of it as a whole is told with the first player's."""
     if rule.is_silent(subject):
         return []
@@ -124,7 +124,7 @@ def _as_sure_as_they_are(
         if finding.beat is None or not _rules_of_charts()[finding.rule].about_feet:
             yield finding
             continue
-        margin, confidence = subject.sureness(finding.beat)
+        margin, confidence = subject.confidence(finding.beat)
         if margin is not None and margin <= settings.coin_toss:
             said = f"other feet are as good here; with these: {finding.message}"
             if ambiguity is None:
@@ -165,13 +165,13 @@ class Baseline:
     """Known findings with how often each may occur; counts down as findings are matched."""
 
     path: Path
-    known: Counter[Key] = field(default_factory=Counter)
-    _left: Counter[Key] = field(default_factory=Counter)
+    allowed: Counter[Key] = field(default_factory=Counter)
+    _remaining: Counter[Key] = field(default_factory=Counter)
     _ran: dict[tuple[str, str], set[str]] = field(default_factory=dict)
     _whole: dict[str, set[str]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self._left = Counter(self.known)
+        self._remaining = Counter(self.allowed)
 
     def key(self, file: str, chart: str, finding: Finding) -> Key:
         """What identifies a finding: file, chart, rule and beat."""
@@ -180,9 +180,9 @@ class Baseline:
 
     def absorbs(self, key: Key) -> bool:
         """Whether a finding is known; each entry absorbs one finding."""
-        if self._left[key] <= 0:
+        if self._remaining[key] <= 0:
             return False
-        self._left[key] -= 1
+        self._remaining[key] -= 1
         return True
 
     def saw(self, file: str, chart: str, rules: Iterable[str]) -> None:
@@ -196,11 +196,11 @@ class Baseline:
 
     def unused(self) -> list[Key]:
         """Entries that no finding matched though their rule ran: the finding is gone, the entry can go too."""
-        return sorted(key for key, count in self._left.items() if count > 0 and self._could_match(key))
+        return sorted(key for key, count in self._remaining.items() if count > 0 and self._could_match(key))
 
     def replaced(self, keys: Iterable[Key]) -> Baseline:
         """A baseline with these findings, and the old entries of all charts and rules that were not looked at."""
-        kept = Counter({key: count for key, count in self.known.items() if not self._could_match(key)})
+        kept = Counter({key: count for key, count in self.allowed.items() if not self._could_match(key)})
         return Baseline(self.path, kept + Counter(keys))
 
     def _could_match(self, key: Key) -> bool:
@@ -210,7 +210,7 @@ class Baseline:
 
     def write(self) -> None:
         """Write the file, sorted, one entry a line."""
-        entries = [json.dumps(_entry(key, count), ensure_ascii=False) for key, count in sorted(self.known.items())]
+        entries = [json.dumps(_entry(key, count), ensure_ascii=False) for key, count in sorted(self.allowed.items())]
         body = ",\n  ".join(entries)
         text = f'{{"schema": {SCHEMA}, "entries": [\n  {body}\n]}}\n'
         write_atomic(self.path, encoded(text))

@@ -19,7 +19,7 @@ from dancetutor_cli.chart.pack_files import (
 )
 from dancetutor_cli.feet.preset import DEFAULT_PRESET, Preset, default_preset, load_preset
 from dancetutor_cli.lint.rule import matching, named_singly
-from dancetutor_cli.lint.rule_settings import Layer, Settings, known, layer_of
+from dancetutor_cli.lint.rule_settings import Layer, Settings, layer_of, resolve_name
 from dancetutor_cli.run.errors import FileError, UsageError, did_you_mean
 from dancetutor_cli.run.reading import config_path, is_regular, leads_out, shown_key
 from dancetutor_cli.run.yaml_files import MarkedYaml, parse_value, read
@@ -222,7 +222,7 @@ def _check_feet(data: Mapping[str, Any], folder: Path) -> None:
 
     for number, entry in enumerate(entries_of(data, folder)):
         for rule in {rule for rules in entry.ignore.values() for rule in rules}:
-            known(matching, rule, ("feet", number, "ignore"))
+            resolve_name(matching, rule, ("feet", number, "ignore"))
 
 
 def _number(data: Mapping[str, Any], key: str, before: float, most: float) -> float:
@@ -248,17 +248,17 @@ def _list(data: Mapping[str, Any], key: str) -> list[Any]:
 class PresetChoice:
     """What was said about presets. Pickles; its `repr` tells all that a play depends on but the program itself.
 
-    given : what --preset names: it holds for every chart
+    override : what --preset names: it holds for every chart
     ruled : (condition, preset) of the configuration: of those that hold for a chart the last one counts
     """
 
-    given: Preset | None = None
+    override: Preset | None = None
     ruled: tuple[tuple[Condition, Preset], ...] = ()
 
     def candidates(self) -> Iterator[Preset]:
         """Every preset that a chart may get, but those for other pads that nobody has named."""
-        if self.given is not None:
-            yield self.given
+        if self.override is not None:
+            yield self.override
             return
         yield from (preset for _, preset in self.ruled)
         if not any(condition == Condition() for condition, _ in self.ruled):
@@ -270,8 +270,8 @@ def preset_for(chart: Chart, path: Path, choice: PresetChoice) -> Preset:
 
     path : the chart file, which conditions may be about
     """
-    if choice.given is not None:
-        return choice.given
+    if choice.override is not None:
+        return choice.override
     for when, preset in reversed(choice.ruled):
         if when.holds_for_path(path) and when.holds_for_chart(chart.steps_type, chart.difficulty, chart.meter):
             return preset

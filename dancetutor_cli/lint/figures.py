@@ -145,7 +145,7 @@ def with_excerpts(findings: Sequence[Finding], play: Play) -> tuple[Finding, ...
     here = np.where(play.rows.tick[np.minimum(at, len(play.rows) - 1)] == ticks, at, -1).tolist()
     count = min(ROWS, len(play.rows))
     shown = np.array(sorted({row + more for row in first for more in range(count)}), dtype=np.int64)
-    drawn = dict(zip(shown.tolist(), _drawn(play, shown), strict=True))
+    drawn = dict(zip(shown.tolist(), _excerpt_rows(play, shown), strict=True))
     excerpts = (
         tuple([drawn[row]._replace(here=True) if row == this else drawn[row] for row in range(start, start + count)])
         for start, this in zip(first, here, strict=True)
@@ -153,11 +153,11 @@ def with_excerpts(findings: Sequence[Finding], play: Play) -> tuple[Finding, ...
     return tuple([f if f.beat is None else f.with_excerpt(next(excerpts)) for f in findings])
 
 
-def _drawn(play: Play, shown: NDArray[np.int64]) -> Iterator[ExcerptRow]:
+def _excerpt_rows(play: Play, shown: NDArray[np.int64]) -> Iterator[ExcerptRow]:
     """Some rows, as if the finding were about none of them."""
     rows, c = play.rows, play.limb.shape[1]
     kinds = rows.steps[shown]
-    notes = np.where(kinds > 0, _NOTES[kinds], np.where(rows.mines[shown], _MINE, _held(play, shown)))
+    notes = np.where(kinds > 0, _NOTES[kinds], np.where(rows.mines[shown], _MINE, _hold_characters(play, shown)))
     toes = 5 * (play.part[shown] == _TOE)
     letters = np.where(kinds > 0, _LETTERS[play.limb[shown] + 2 + toes], ord(" "))
     note_text, limb_text = (array.astype(np.uint8).tobytes().decode("ascii") for array in (notes, letters))
@@ -166,7 +166,7 @@ def _drawn(play: Play, shown: NDArray[np.int64]) -> Iterator[ExcerptRow]:
         yield ExcerptRow(round(tick / TICKS_PER_BEAT, 6), note_text[cells], limb_text[cells], here=False)
 
 
-def _held(play: Play, shown: NDArray[np.int64]) -> NDArray[np.int64]:
+def _hold_characters(play: Play, shown: NDArray[np.int64]) -> NDArray[np.int64]:
     """For each cell of some rows the character of a hold that began in a row before and is still down, or a blank."""
     rows = play.rows
     out = np.full((len(shown), play.limb.shape[1]), ord(" "))

@@ -142,7 +142,7 @@ class Estimate:
     """How hard a chart plays.
 
     meter : the estimate; low, high : 80 of 100 labels lie between; scale : name of the scale
-    known : whether something says that it is this scale: a tag, two other charts of the song, or the user
+    is_scale_known : whether something says that it is this scale: a tag, two other charts of the song, or the user
     terms : (name, meters) of what adds to it, the largest first, then "rest", small ones together; their sum is `meter`
     rate : that it was estimated for
     """
@@ -151,25 +151,25 @@ class Estimate:
     low: float
     high: float
     scale: str
-    known: bool
+    is_scale_known: bool
     terms: tuple[tuple[str, float], ...]
     rate: float = 1.0
 
     @property
     def bill(self) -> str:
         """For people: "11.4: streams +3.1, crossovers +0.6, rest +0.2"."""
-        return f"{self.meter:.1f}: {', '.join(self._told())}"
+        return f"{self.meter:.1f}: {', '.join(self._descriptions())}"
 
     def most(self, count: int) -> str:
         """The same with so many terms at most."""
-        return f"{self.meter:.1f}: {', '.join(self._told()[:count])}"
+        return f"{self.meter:.1f}: {', '.join(self._descriptions()[:count])}"
 
-    def _told(self) -> list[str]:
+    def _descriptions(self) -> list[str]:
         return [f"{name} {meters:+.1f}" for name, meters in self.terms if round(abs(meters), 1) > 0]
 
     @property
     def span(self) -> str:
         """For people: "10.2 to 12.6 on the scale itg"; what is not known is said."""
         rate = "" if self.rate == 1.0 else f" at rate {self.rate:g}"
-        guess = "" if self.known else ", a guess: nothing tells the scale"
+        guess = "" if self.is_scale_known else ", a guess: nothing tells the scale"
         return f"{self.low:.1f} to {self.high:.1f} on the scale {self.scale}{rate}{guess}"

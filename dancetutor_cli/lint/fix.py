@@ -15,7 +15,7 @@ from dancetutor_cli.run.files import ChangedError, back_up, remove_leftovers, wr
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
     from dancetutor_cli.feet.preset import Preset
-    from dancetutor_cli.lint.mend import Done, Left, Mending
+    from dancetutor_cli.lint.mend import AppliedFix, FixSession, SkippedFinding
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,12 +38,12 @@ class FixOrder:
 class FixOutcome:
     """What became of a file.
 
-    done : what was, or would be, changed; left : findings that were asked for and are as they were; error : or None
+    fixed : what was, or would be, changed; unfixed : findings that were asked for and are as they were; error : or None
     diff : the lines of the change; notes : what to know besides
     """
 
-    done: tuple[Done, ...] = ()
-    left: tuple[Left, ...] = ()
+    fixed: tuple[AppliedFix, ...] = ()
+    unfixed: tuple[SkippedFinding, ...] = ()
     error: str | None = None
     diff: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
@@ -63,7 +63,7 @@ def fix_file(order: FixOrder) -> FixOutcome:
 
 def _fix(order: FixOrder) -> FixOutcome:
     from dancetutor_cli.chart.edits import unified
-    from dancetutor_cli.lint.mend import Mending
+    from dancetutor_cli.lint.mend import FixSession
 
     task = order.task
     if order.write:
@@ -73,7 +73,7 @@ def _fix(order: FixOrder) -> FixOutcome:
     def preset_of(chart: Chart) -> Preset:
         return preset_for(chart, task.path, task.presets)
 
-    mending = Mending(song, task.settings, preset_of)
+    mending = FixSession(song, task.settings, preset_of)
     if order.safe:
         for chart in task.selection.charts(song):
             mending.safe(chart.index)
@@ -83,7 +83,7 @@ def _fix(order: FixOrder) -> FixOutcome:
     if order.write and new != song.data:
         _write(order, song.data, new)
     diff = tuple(unified(str(task.path), song.data, new))
-    return FixOutcome(tuple(mending.done), tuple(mending.left), None, diff, tuple(_notes(order, mending)))
+    return FixOutcome(tuple(mending.fixed), tuple(mending.unfixed), None, diff, tuple(_notes(order, mending)))
 
 
 def _write(order: FixOrder, old: bytes, new: bytes) -> None:
@@ -97,9 +97,9 @@ def _write(order: FixOrder, old: bytes, new: bytes) -> None:
             raise
 
 
-def _notes(order: FixOrder, mending: Mending) -> Iterator[str]:
+def _notes(order: FixOrder, mending: FixSession) -> Iterator[str]:
     """What else the author has to do, as far as something was changed that is played."""
-    if all(one.fix.is_silent for one in mending.done):
+    if all(one.fix.is_silent for one in mending.fixed):
         return
     path = order.task.path
     if b"{dt1 " in mending.song.data:

@@ -102,7 +102,7 @@ def notes_of(table: NoteTable) -> frozenset[Note]:
 _TAPS = (b"1", b"L", b"l", b"X", b"Y")
 
 
-def moved(data: bytes, chart: Chart, finding: Finding, move: MovedNote) -> Fix | None:
+def move_note(data: bytes, chart: Chart, finding: Finding, move: MovedNote) -> Fix | None:
     """The fix; None where the row is not one plain row of characters with the note and an empty place for it."""
     cells = cells_at(data, chart, move.tick)
     away, there = cells.get(move.column), cells.get(move.to)
@@ -205,7 +205,7 @@ def _off_grid(data: bytes, chart: Chart, grid: Sequence[int]) -> Iterator[Fix]:
         start = int(steps.searchsorted(first))
         ticks = [tick for tick in steps[start:].tolist() if not _is_on(tick, grid)][:count]
         moves = {tick: to for tick in ticks if (to := _nearest(chart, tick, steps, grid)) is not None}
-        cells = [pair for tick, to in moves.items() for pair in _moved(data, chart, tick, to)]
+        cells = [pair for tick, to in moves.items() for pair in _move_cells(data, chart, tick, to)]
         if len(moves) < count or len({cell.tick for cell, _ in cells}) < 2 * count:
             continue
         changed = {note: _shifted(note, moves) for note in known}
@@ -238,7 +238,7 @@ def _nearest(chart: Chart, tick: int, steps: NDArray[np.int64], grid: Sequence[i
     return None if crowd.any() else nearest
 
 
-def _moved(data: bytes, chart: Chart, tick: int, to: int) -> list[tuple[Cell, bytes]]:
+def _move_cells(data: bytes, chart: Chart, tick: int, to: int) -> list[tuple[Cell, bytes]]:
     """Everything of one row in another that is free there; nothing if that cannot be."""
     away, there = cells_at(data, chart, tick), cells_at(data, chart, to)
     full = [cell for cell in away.values() if cell.text != EMPTY]

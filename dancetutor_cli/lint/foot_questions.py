@@ -93,7 +93,7 @@ class Feet:
         """Whether the feet are crossed after a row."""
         return bool(abs(self._play.facing[row]) > CROSSED)
 
-    def follows_freely(self, row: int) -> bool:
+    def is_unconstrained(self, row: int) -> bool:
         """Whether one panel is stepped on in a row and one in that before it, and neither a mine nor a hold has a say.
 
         A foot whose hold ended after the row before these two has just been let go.
@@ -112,7 +112,7 @@ class Feet:
 
         Each comes at most `max_seconds` after the one before. Only of plays in which the feet change so quickly.
         """
-        if self._candidates.soonest_switches[self._number] > max_seconds + EPSILON:
+        if self._candidates.least_switch_seconds[self._number] > max_seconds + EPSILON:
             return
         rows, here = self._play.rows, slice(self._first, self._after)
         lone = np.flatnonzero(self._plays.lone[here])
@@ -161,7 +161,7 @@ class Feet:
         choice; nor do taps of rolls, steps around a mine, and steps less than `min_seconds` or more than `max_seconds`
         apart.
         """
-        if self._candidates.soonest_triples[self._number] > max_seconds + EPSILON:
+        if self._candidates.least_triple_seconds[self._number] > max_seconds + EPSILON:
             return
         repeats, (low, high) = self._candidates.repeats, self._bounds(self._candidates.repeats.row)
         count, last = 1, -1
@@ -185,7 +185,7 @@ class Feet:
 
         max_speed : panel widths per second; min_seconds : steps that come sooner after the foot's last do not count
         """
-        if self._candidates.quickest_travels[self._number] * max_speed >= 1.0 + EPSILON:
+        if self._candidates.least_travel_seconds[self._number] * max_speed >= 1.0 + EPSILON:
             return
         for one in self._plays.travels:
             low, high = self._bounds(one.row)
@@ -210,7 +210,7 @@ class Feet:
             moved, late = moved[soon], late[soon]
             yield from zip(steps.row[moved + 1].tolist(), steps.column[moved + 1].tolist(), late.tolist(), strict=True)
 
-    def mines_under_held(self) -> Iterator[tuple[int, int, int, float]]:
+    def mines_under_pinned_feet(self) -> Iterator[tuple[int, int, int, float]]:
         """Row, column, foot and time (s) since its step of every mine under a foot that can hardly step aside.
 
         The other foot holds a panel, or the foot itself holds the panel beside it. A foot that steps elsewhere in the

@@ -13,7 +13,7 @@ from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.lint import fixes as safe_fixes
 from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.findings import Finding
-from dancetutor_cli.lint.fixes import Fix, moved, notes_of
+from dancetutor_cli.lint.fixes import Fix, move_note, notes_of
 from dancetutor_cli.lint.rule import ReaderRule, all_rules
 from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.lint.subject import ChartSubject, solved_chart
@@ -26,13 +26,13 @@ NO_FIX = {
     safe_fixes.BROKEN_HOLD: "its chart holds more than plain notes, or mending it would bring another finding",
     safe_fixes.OFF_GRID: "it is 3 ms or more off the grid, or there is no free row for it in the file",
 }
-GONE = "an edit before it has removed it, too"
+ALREADY_REMOVED = "an edit before it has removed it, too"
 
 PresetOf = Callable[[Chart], Preset]
 
 
 @dataclass(frozen=True, slots=True)
-class Done:
+class AppliedFix:
     """One thing done. place : the finding it was asked for, None: one of the safe fixes; fix : what was written"""
 
     chart: str
@@ -41,21 +41,21 @@ class Done:
 
 
 @dataclass(frozen=True, slots=True)
-class Left:
+class SkippedFinding:
     """A finding that stays as it is, or has gone without an edit of its own, and why."""
 
     chart: str
     finding: Finding
-    why: str
+    reason: str
 
     @property
     def is_gone(self) -> bool:
         """Whether an edit made for another one has removed it too."""
-        return self.why == GONE
+        return self.reason == ALREADY_REMOVED
 
 
 @dataclass
-class Mending:
+class FixSession:
     """A song on its way: `song` is as far as it has come, with its bytes in `song.data`.
 
     settings : of the rules; preset_of : the costs of each chart
@@ -64,8 +64,8 @@ class Mending:
     song: Song
     settings: Settings
     preset_of: PresetOf
-    done: list[Done] = field(default_factory=list)
-    left: list[Left] = field(default_factory=list)
+    fixed: list[AppliedFix] = field(default_factory=list)
+    unfixed: list[SkippedFinding] = field(default_factory=list)
     _latest: _State | None = None
 
     def safe(self, chart: int) -> None:
@@ -84,19 +84,19 @@ class Mending:
         """
         state = self._state(chart, player)
         if not _count(state, finding):
-            self.left.append(Left(state.chart.label, finding, GONE))
+            self.unfixed.append(SkippedFinding(state.chart.label, finding, ALREADY_REMOVED))
             return
         for fix in self._fixes(state, finding):
             if self._try(state, [fix], finding):
                 return
         why = NO_FIX.get(finding.rule, NO_MOVE)
-        self.left.append(Left(state.chart.label, finding, why))
+        self.unfixed.append(SkippedFinding(state.chart.label, finding, why))
 
     def _fixes(self, state: _State, finding: Finding) -> Iterator[Fix]:
         if finding.rule in MENDABLE:
             preset = self.preset_of(state.chart)
             for move in mending_moves(finding, state.findings, state.subject, self.settings, preset):
-                if fix := moved(self.song.data, state.chart, finding, move):
+                if fix := move_note(self.song.data, state.chart, finding, move):
                     yield fix
             return
         for fix in self._safe_fixes(state.chart):
@@ -129,7 +129,7 @@ class Mending:
             return False
         after = unchanged(self.song, apply(self.song.data, splices), lambda one: one.index == state.chart.index)
         chart = _part(after, state.chart.index, state.chart.player)
-        if not _as_meant(state.chart, chart, fixes) or not _apart(state.chart, after, fixes):
+        if not _as_meant(state.chart, chart, fixes) or not _is_other_player_unchanged(state.chart, after, fixes):
             return False
         if finding is not None or not all(fix.is_silent for fix in fixes):
             new = _State.of(after, chart, self.settings, self.preset_of(chart))
@@ -137,7 +137,7 @@ class Mending:
                 return False
             self._latest = new
         self.song = after
-        self.done += (Done(state.chart.label, fix, finding) for fix in fixes)
+        self.fixed += (AppliedFix(state.chart.label, fix, finding) for fix in fixes)
         return True
 
 
@@ -159,7 +159,7 @@ class _State:
 
         Of what the reader warns of only the first few are told, so there it is the number that counts.
         """
-        return not _told(self.findings) - _told(before.findings)
+        return not _finding_counts(self.findings) - _finding_counts(before.findings)
 
 
 def _part(song: Song, index: int, player: int) -> Chart:
@@ -167,7 +167,7 @@ def _part(song: Song, index: int, player: int) -> Chart:
     return chart.players[player - 1] if chart.players and player else chart
 
 
-def _told(findings: Iterable[Finding]) -> Counter[tuple[str, float | None]]:
+def _finding_counts(findings: Iterable[Finding]) -> Counter[tuple[str, float | None]]:
     return Counter(
         (one.rule, None if issubclass(all_rules()[one.rule], ReaderRule) else one.beat)
         for one in findings
@@ -181,7 +181,7 @@ def _count(state: _State, finding: Finding) -> int:
     return sum((one.rule, one.line, one.beat) == place for one in state.findings)
 
 
-def _apart(before: Chart, after: Song, fixes: Sequence[Fix]) -> bool:
+def _is_other_player_unchanged(before: Chart, after: Song, fixes: Sequence[Fix]) -> bool:
     """Whether the other player of a chart for two has the same notes as before, and none where one came to."""
     if before.written is None:
         return True

@@ -49,13 +49,13 @@ class Feature(NamedTuple):
 
     thing : one of `THINGS`. "turns": quarter turns of the body; "held": steps while the other foot holds; "crossovers"
         counts the step that crosses, not those that stay crossed
-    seconds : how far back each row looks; how : "mean" of all rows with a step, and of steps alone "peak": what 98 in
+    seconds : how far back each row looks; kind : "mean" of all rows with a step, and of steps alone "peak": what 98 in
         100 rows do not exceed, "count": of the whole chart, whatever its time
     """
 
     thing: str
     seconds: float
-    how: str
+    kind: str
 
 
 def features(play: Play, wanted: Sequence[Feature], rate: float = 1.0) -> list[float]:
@@ -214,7 +214,7 @@ class Scale:
 class _Pieces(NamedTuple):
     """All straight pieces of all curves of all scales, side by side: what is worked out at once.
 
-    feature : its place in `MeterModel.wanted`; low, width : where it begins, and how long it is (the last: endless)
+    feature : its place in `MeterModel.features`; low, width : where it begins, and how long it is (the last: endless)
     slope : meters for each unit; starts : the piece that each term of each scale begins with
     """
 
@@ -229,12 +229,12 @@ class _Pieces(NamedTuple):
 class MeterModel:
     """All scales of a pad, the usual one first. alone : the same as below and above where nothing tells the scale.
 
-    wanted : every feature that a curve asks for, once
+    features : every feature that a curve asks for, once
     """
 
     scales: tuple[Scale, ...]
     alone: tuple[float, float]
-    wanted: tuple[Feature, ...]
+    features: tuple[Feature, ...]
     _pieces: _Pieces
 
     def terms(self, values: Sequence[float]) -> list[dict[str, float]]:

@@ -10,7 +10,7 @@ from functools import cache
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.lint.findings import AUTO, Estimate, Finding
 from dancetutor_cli.lint.meter_model import Feature, MeterModel, Scale, model_for
-from dancetutor_cli.lint.rule import Played, SongRule, all_rules
+from dancetutor_cli.lint.rule import RatedChart, SongRule, all_rules
 from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.lint.subject import ChartSubject
 
@@ -25,7 +25,7 @@ Ask = Callable[[Sequence[Feature], float], Sequence[float]]  # the features of a
 
 
 @dataclass(frozen=True, slots=True)
-class Sized:
+class MeteredChart:
     """A chart before its scale is known.
 
     label : the meter it has in the file; on : scale -> its meter there at rate 1
@@ -41,7 +41,7 @@ class Sized:
     rate: float = 1.0
 
 
-def size(steps_type: str, label: tuple[int, str], ask: Ask, rate: float = 1.0) -> Sized | None:
+def size(steps_type: str, label: tuple[int, str], ask: Ask, rate: float = 1.0) -> MeteredChart | None:
     """A chart's meters on every scale; None for a pad without a model.
 
     label : its meter and difficulty; ask : what tells features of its play, at a rate
@@ -49,17 +49,17 @@ def size(steps_type: str, label: tuple[int, str], ask: Ask, rate: float = 1.0) -
     model = model_for(steps_type)
     if model is None:
         return None
-    one = sized(model, ask(model.wanted, 1.0), label)
+    one = sized(model, ask(model.features, 1.0), label)
     if rate == 1.0:
         return one
-    return replace(one, played=model.terms(ask(model.wanted, rate)), rate=rate)
+    return replace(one, played=model.terms(ask(model.features, rate)), rate=rate)
 
 
-def sized(model: MeterModel, values: Sequence[float], label: tuple[int, str]) -> Sized:
+def sized(model: MeterModel, values: Sequence[float], label: tuple[int, str]) -> MeteredChart:
     """The same by the features of `model.wanted`."""
     terms = model.terms(values)
     on = {scale.name: scale.start + sum(of.values()) for scale, of in zip(model.scales, terms, strict=True)}
-    return Sized(model, *label, on, terms, terms)
+    return MeteredChart(model, *label, on, terms, terms)
 
 
 def _interval(scale: Scale, meter: float) -> tuple[float, float]:
@@ -72,7 +72,7 @@ def says_scale(tag: str) -> bool:
     return tag.strip().upper() in _TAGS
 
 
-def scales_of(charts: Sequence[Sized], tag: str = "", said: str = AUTO) -> list[tuple[str, bool]]:
+def scales_of(charts: Sequence[MeteredChart], tag: str = "", said: str = AUTO) -> list[tuple[str, bool]]:
     """The scale of each of a song's charts for one pad, and whether it is known.
 
     What the user or #METERTYPE says; else the scale on which the labels of the other charts are missed least, of which
@@ -103,13 +103,13 @@ class _Misses:
         self.count = 0
         self._by: dict[str, float] = {}
 
-    def add(self, one: Sized, times: int) -> None:
+    def add(self, one: MeteredChart, times: int) -> None:
         """Count a chart in, or with -1 out."""
         self.count += times
         for name, meter in one.on.items():
             self._by[name] = self._by.get(name, 0.0) + times * abs(meter - one.label)
 
-    def best_without(self, one: Sized, is_in: bool) -> tuple[str, bool]:
+    def best_without(self, one: MeteredChart, is_in: bool) -> tuple[str, bool]:
         """The scale that fits the others best, the usual one unless another does clearly; whether they are enough."""
         usual = next(iter(one.on))
         if is_in:
@@ -121,7 +121,7 @@ class _Misses:
         return (found, count >= _FEWEST) if count else (usual, False)
 
 
-def on_scale(one: Sized, name: str, known: bool, *, faster: bool = True) -> Estimate:
+def on_scale(one: MeteredChart, name: str, known: bool, *, faster: bool = True) -> Estimate:
     """The estimate on a scale (its usual one if the pad lacks it), at the rate asked for unless not `faster`."""
     model = one.model
     number = next((n for n, scale in enumerate(model.scales) if scale.name == name), 0)
@@ -139,7 +139,7 @@ def on_scale(one: Sized, name: str, known: bool, *, faster: bool = True) -> Esti
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class MeterReport:
     """What is told of one chart: its estimate, and findings of the rules about a song's meters."""
 
     estimate: Estimate
@@ -157,7 +157,7 @@ class Meters:
 
     def __init__(self, song: Song, settings: Settings) -> None:
         self._song, self._settings = song, settings
-        self._sized: dict[str, list[tuple[int, Sized]]] = defaultdict(list)
+        self._sized: dict[str, list[tuple[int, MeteredChart]]] = defaultdict(list)
 
     def add(self, subject: ChartSubject, rate: float = 1.0) -> None:
         """Take note of a chart, if its pad has a model of meters and it has steps."""
@@ -174,9 +174,9 @@ class Meters:
             return frozenset()
         return frozenset(kind for kind, of_pad in self._sized.items() if len(of_pad[0][1].on) > 1)
 
-    def told(self, scale: str = AUTO) -> dict[int, Told]:
+    def reports(self, scale: str = AUTO) -> dict[int, MeterReport]:
         """Index of the chart -> what is told of it."""
-        out: dict[int, Told] = {}
+        out: dict[int, MeterReport] = {}
         for of_pad in self._sized.values():
             one_pad = [sized for _, sized in of_pad]
             scales = scales_of(one_pad, self._song.tags.get("METERTYPE", ""), scale)
@@ -184,20 +184,20 @@ class Meters:
                 on_scale(one, name, known, faster=False) for one, (name, known) in zip(one_pad, scales, strict=True)
             ]
             here = [self._played(index, estimate) for (index, _), estimate in zip(of_pad, usual, strict=True)]
-            sure = [one for one in here if one.estimate.known]  # nothing is said where the scale is a guess
+            sure = [one for one in here if one.estimate.is_scale_known]  # nothing is said where the scale is a guess
             for (index, one), played in zip(of_pad, here, strict=True):
                 at_1 = played.estimate
-                estimate = at_1 if one.rate == 1.0 else on_scale(one, at_1.scale, at_1.known)
-                out[index] = Told(estimate, self._findings(played, sure) if at_1.known else ())
+                estimate = at_1 if one.rate == 1.0 else on_scale(one, at_1.scale, at_1.is_scale_known)
+                out[index] = MeterReport(estimate, self._findings(played, sure) if at_1.is_scale_known else ())
         return out
 
-    def _played(self, index: int, estimate: Estimate) -> Played:
+    def _played(self, index: int, estimate: Estimate) -> RatedChart:
         """A chart as the rules see it."""
         chart = self._song.charts[index]
         place = {"line": chart.line, "column": 1, "chart": index}
-        return Played(chart.steps_type, chart.difficulty, chart.meter, chart.label, estimate, place)
+        return RatedChart(chart.steps_type, chart.difficulty, chart.meter, chart.label, estimate, place)
 
-    def _findings(self, here: Played, charts: list[Played]) -> tuple[Finding, ...]:
+    def _findings(self, here: RatedChart, charts: list[RatedChart]) -> tuple[Finding, ...]:
         rules = self._settings.for_chart(self._song.path, here.steps_type, here.difficulty, here.meter)
         found: list[Finding] = []
         for code, rule in _rules().items():

@@ -99,7 +99,7 @@ def hardest(play: Play, timing: Timing, settings: PassageSettings | None = None)
     weigh more a second than `harder` times the chart's mean.
     """
     settings = settings or passage_settings()
-    stepped = _seen(play)
+    stepped = _visible_steps(play)
     rows = np.flatnonzero(stepped.any(axis=1))
     if not len(rows):
         return ()
@@ -123,12 +123,12 @@ def hardest(play: Play, timing: Timing, settings: PassageSettings | None = None)
         taken[at : at + length] = True
         inside = rows[(measure - measure[0] >= at) & (measure - measure[0] < at + length)]
         first = int(measure[0]) + at
-        where = _Where(first, first + length, float(edges[at]), float(edges[at + length]), float(scores[at]))
+        where = _PassagePlace(first, first + length, float(edges[at]), float(edges[at + length]), float(scores[at]))
         out.append(_passage(play, inside, stepped[inside], where, settings))
     return tuple(out)
 
 
-def _seen(play: Play) -> NDArray[np.bool_]:
+def _visible_steps(play: Play) -> NDArray[np.bool_]:
     """Which cells (n, c) a person sees a step in: not the virtual taps of rolls."""
     steps = play.rows.steps
     return np.asarray((steps != StepKind.NONE) & (steps != StepKind.ROLL_TAP))
@@ -179,7 +179,7 @@ def _weights(
     return np.asarray(out + settings.unsure * _unsure(play, rows, settings.close))
 
 
-class _Where(NamedTuple):
+class _PassagePlace(NamedTuple):
     """Measures and seconds of a passage, and how hard it is; as in `Passage`."""
 
     first: int
@@ -190,7 +190,7 @@ class _Where(NamedTuple):
 
 
 def _passage(
-    play: Play, rows: NDArray[np.int64], stepped: NDArray[np.bool_], where: _Where, settings: PassageSettings
+    play: Play, rows: NDArray[np.int64], stepped: NDArray[np.bool_], where: _PassagePlace, settings: PassageSettings
 ) -> Passage:
     """What happens in some rows; stepped : (rows, columns), where they have steps that are seen."""
 

@@ -53,7 +53,7 @@ class JoinedPlays:
         np.minimum.at(found, self.number[rows], values)
         return found.tolist()
 
-    def how_often(self, rows: NDArray[np.int64]) -> list[int]:
+    def count_rows(self, rows: NDArray[np.int64]) -> list[int]:
         """How many of some rows, which may come twice, each play has."""
         counts: list[int] = np.bincount(self.number[rows], minlength=len(self.plays)).tolist()
         return counts
@@ -133,8 +133,8 @@ EPSILON = 1e-6
 CROSSED = 90 + EPSILON  # degrees that the body is turned
 _LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
 _NONE, _ROLL_TAP = int(StepKind.NONE), int(StepKind.ROLL_TAP)
-WRITTEN = np.ones(len(StepKind), dtype=bool)  # by kind: whether the file has such a step
-WRITTEN[[_NONE, _ROLL_TAP]] = False
+ALL_KINDS = np.ones(len(StepKind), dtype=bool)  # by kind: whether the file has such a step
+ALL_KINDS[[_NONE, _ROLL_TAP]] = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +181,7 @@ class Plays(JoinedPlays):
     @cached_property
     def real(self) -> NDArray[np.bool_]:
         """(c, n) where a step is that the file has: no tap of a roll."""
-        return WRITTEN[self.steps_by_column]
+        return ALL_KINDS[self.steps_by_column]
 
     @cached_property
     def _heads(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
@@ -202,12 +202,12 @@ class Plays(JoinedPlays):
     @cached_property
     def with_holds(self) -> list[bool]:
         """Which plays have holds."""
-        return [count > 0 for count in self.how_often(self._heads[0])]
+        return [count > 0 for count in self.count_rows(self._heads[0])]
 
     @cached_property
     def with_mines(self) -> list[bool]:
         """Which plays have mines."""
-        return [count > 0 for count in self.how_often(np.flatnonzero(self.mined))]
+        return [count > 0 for count in self.count_rows(np.flatnonzero(self.mined))]
 
     @cached_property
     def stepped(self) -> NDArray[np.int64]:
@@ -255,7 +255,7 @@ class Plays(JoinedPlays):
 
     @cached_property
     def free(self) -> NDArray[np.bool_]:
-        """(n,) see `Feet.follows_freely`."""
+        """(n,) see `Feet.is_unconstrained`."""
         foot, lone = self.foot, self.lone
         free = lone & (foot <= _RIGHT) & ~self.mined
         free[1:] &= lone[:-1]
@@ -317,10 +317,10 @@ class Plays(JoinedPlays):
     def having(self, move: str) -> list[bool]:
         """Which plays have such rows."""
         if move not in self._having:
-            self._having[move] = [count > 0 for count in self.how_often(self.rows_with(move))]
+            self._having[move] = [count > 0 for count in self.count_rows(self.rows_with(move))]
         return self._having[move]
 
-    def soonest(self, move: str) -> list[float]:
+    def least_seconds(self, move: str) -> list[float]:
         """For each play the least time (s) from a step to such a row."""
         if move not in self._soonest:
             rows = self.rows_with(move)
@@ -335,7 +335,7 @@ class Plays(JoinedPlays):
         present = int(np.bitwise_or.reduce(bits, initial=0))
         for bit, name in enumerate(names):
             if present >> bit & 1:
-                for of_play, rows in zip(counts, self.how_often(np.flatnonzero(bits >> bit & 1)), strict=True):
+                for of_play, rows in zip(counts, self.count_rows(np.flatnonzero(bits >> bit & 1)), strict=True):
                     if rows:
                         of_play[name] = rows
         return counts

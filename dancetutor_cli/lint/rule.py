@@ -76,7 +76,7 @@ class ChartRule(Rule):
         """Findings in one chart."""
 
 
-class Played(NamedTuple):
+class RatedChart(NamedTuple):
     """A chart with how hard it plays, as a `SongRule` sees it; place : where it starts, for `Finding`."""
 
     steps_type: str
@@ -91,7 +91,7 @@ class SongRule(Rule):
     """A rule about how hard the charts of a song play; those of one pad come together."""
 
     @abstractmethod
-    def check(self, chart: Played, charts: Sequence[Played]) -> Iterable[Finding]:
+    def check(self, chart: RatedChart, charts: Sequence[RatedChart]) -> Iterable[Finding]:
         """Findings in one chart, beside all charts of its pad."""
 
 
@@ -121,12 +121,12 @@ class ReaderRule(Rule):
                 yield self.finding("; also: ".join(messages), place, **least)
 
 
-class Happening(NamedTuple):
+class Occurrence(NamedTuple):
     """One time that what a rule is about happens: in a row, so many seconds after the step before (or what counts)."""
 
     row: int
     seconds: float
-    said: str
+    description: str
     column: int | None = None
 
 
@@ -156,31 +156,31 @@ class TimedRule(ChartRule):
         return "is a number of per cent, at most 100" if option == "share" and value > 100 else None
 
     @abstractmethod
-    def happens(self, subject: ChartSubject) -> Iterable[Happening]:
+    def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Every time it happens, however slow."""
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each that is quick enough, or for each passage of them."""
         longest = self.longest(subject) + EPSILON
-        for passage in self.passages([one for one in self.happens(subject) if one.seconds <= longest], subject):
+        for passage in self.passages([one for one in self.occurrences(subject) if one.seconds <= longest], subject):
             rows = [one.row for one in passage]
-            row, _, said, column = passage[self.told(subject, rows) if len(rows) > 1 else 0]
+            row, _, said, column = passage[self.representative(subject, rows) if len(rows) > 1 else 0]
             if len(rows) > 1:
                 said += f"; {len(rows)} of them from beat {subject.beat(rows[0]):g} to {subject.beat(rows[-1]):g}"
             least = {"severity": "info"} if self.no_surprise(subject, rows) else {}
             yield self.finding(said, subject.at_row(row, column), **least)
 
-    def told(self, subject: ChartSubject, rows: list[int]) -> int:
+    def representative(self, subject: ChartSubject, rows: list[int]) -> int:
         """Place in the rows of a passage of the one that its finding stands at and speaks of."""
-        return subject.surest(rows) if self.about_feet else 0
+        return subject.most_confident(rows) if self.about_feet else 0
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
         """Whether who plays this chart expects what happens in these rows: never more than an info."""
         return False
 
-    def passages(self, found: list[Happening], subject: ChartSubject) -> Iterable[list[Happening]]:
+    def passages(self, found: list[Occurrence], subject: ChartSubject) -> Iterable[list[Occurrence]]:
         """What is told in one finding each."""
-        passage: list[Happening] = []
+        passage: list[Occurrence] = []
         for one in found:
             if passage and subject.beat(one.row) - subject.beat(passage[-1].row) > self.passage_beats - EPSILON:
                 yield passage
@@ -214,20 +214,20 @@ class MoveRule(TimedRule):
     """A rule that reports every row in which a named move, or a kind of it, happens.
 
     With an option `max_seconds` only those rows count that come at most so long after the step before.
-    `said` : what to say about a row; a rule that has more to tell has a `message` of its own
+    `description` : what to say about a row; a rule that has more to tell has a `message` of its own
     """
 
     move: ClassVar[str]
-    said: ClassVar[str]
+    description: ClassVar[str]
 
     def is_silent(self, subject: ChartSubject) -> bool:
         """Whether the move never happens, or never quickly enough."""
-        return not subject.has(self.move) or subject.soonest(self.move) > self.longest(subject) + EPSILON
+        return not subject.has(self.move) or subject.least_seconds(self.move) > self.longest(subject) + EPSILON
 
-    def happens(self, subject: ChartSubject) -> Iterable[Happening]:
+    def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each quick row with the move, with the time since the step before."""
         for row in self.rows(subject):
-            yield Happening(row, subject.pause(row), self.message(subject, row))
+            yield Occurrence(row, subject.pause(row), self.message(subject, row))
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Quick rows with the move."""
@@ -235,7 +235,7 @@ class MoveRule(TimedRule):
 
     def message(self, subject: ChartSubject, row: int) -> str:
         """What to say about this row."""
-        return self.said
+        return self.description
 
 
 # What rules about pictures share: whether the one that a song names is there and has a usual size.

@@ -115,7 +115,7 @@ def _resolve(layers: Any) -> dict[str, Options]:
 
 # What a configuration says of rules, as layers: their defaults, and what is laid on them; faults have their place.
 
-_Found = TypeVar("_Found")
+_Meaning = TypeVar("_Meaning")
 
 
 @cache
@@ -158,7 +158,7 @@ def layer_of(data: Mapping[str, Any], when: Condition, place: tuple[str | int, .
         raise SettingError((*place, "rules"), "'rules' is a mapping of rules to their settings")
     for name, options in entries.items():
         at = (*place, "rules", str(name))
-        code = known(rule_named, str(name), at).code
+        code = resolve_name(rule_named, str(name), at).code
         # YAML 1.1 reads a bare `off` as False.
         short = "off" if options is False else options
         rules[code] = _options(code, {"severity": short} if isinstance(short, str) else short, at)
@@ -213,11 +213,11 @@ def _too_small(value: Any, default: Any) -> str:
 def _selected(data: Mapping[str, Any], key: str, place: tuple[str | int, ...]) -> frozenset[str]:
     found: frozenset[str] = frozenset()
     for selector in texts_of(data, key):
-        found |= known(matching, selector, (*place, key))
+        found |= resolve_name(matching, selector, (*place, key))
     return found
 
 
-def known(look_up: Callable[[str], _Found], name: str, place: tuple[str | int, ...]) -> _Found:
+def resolve_name(look_up: Callable[[str], _Meaning], name: str, place: tuple[str | int, ...]) -> _Meaning:
     """What a name in a file means; SettingError with its place if it means nothing."""
     try:
         return look_up(name)

@@ -67,7 +67,7 @@ class LintRun:
     _sources: dict[Path, Path | None] = field(default_factory=dict)
     _choices: dict[int, PresetChoice] = field(default_factory=dict)
     _baseline: Baseline | None = None
-    _found: list[Key] = field(default_factory=list)
+    _found_keys: list[Key] = field(default_factory=list)
 
     def configuration(self, path: Path) -> Configuration:
         """What holds for a file: --config, or the nearest dancetutor.yaml up the tree, and the command line on top."""
@@ -137,14 +137,14 @@ class LintRun:
         """Whether findings are compared with a baseline."""
         return self._baseline is not None
 
-    def without_known(self, result: FileResult) -> FileResult:
+    def without_baseline(self, result: FileResult) -> FileResult:
         """The result without the findings that the baseline knows."""
         baseline = self._baseline
         if baseline is None or result.error is not None:
             return result
-        self._tell_what_ran(baseline, result)
+        self._note_rules_run(baseline, result)
         found = [(f, chart, baseline.key(result.path, _name(chart), f)) for f, chart in result.all_findings()]
-        self._found += [key for _, _, key in found]
+        self._found_keys += [key for _, _, key in found]
         known = self.request.update_baseline  # what is written now is known from now on
         left = [(f, chart) for f, chart, key in found if not known and not baseline.absorbs(key)]
         of_chart: dict[int, list[Finding]] = {}
@@ -153,7 +153,7 @@ class LintRun:
         charts = tuple(replace(chart, findings=tuple(of_chart.get(id(chart), ()))) for chart in result.charts)
         return replace(result, findings=tuple(of_chart.get(id(None), ())), charts=charts)
 
-    def _tell_what_ran(self, baseline: Baseline, result: FileResult) -> None:
+    def _note_rules_run(self, baseline: Baseline, result: FileResult) -> None:
         path = Path(result.path).absolute()
         settings = self.configuration(Path(result.path)).settings
         baseline.saw(result.path, "", settings.for_file(path))
@@ -169,11 +169,11 @@ class LintRun:
             return []
         path = self._baseline.path
         if self.request.update_baseline:
-            new = self._baseline.replaced(self._found)
+            new = self._baseline.replaced(self._found_keys)
             new.write()
-            others = sum(new.known.values()) - len(self._found)
+            others = sum(new.allowed.values()) - len(self._found_keys)
             kept = f", {others} of other files and rules kept" if others else ""
-            return [f"{path}: {len(self._found)} finding{'' if len(self._found) == 1 else 's'} written{kept}"]
+            return [f"{path}: {len(self._found_keys)} finding{'' if len(self._found_keys) == 1 else 's'} written{kept}"]
         unused = self._baseline.unused()
         if not unused:
             return []
@@ -244,7 +244,7 @@ def _in_workers(tasks: Sequence[AnalyzeTask], jobs: int | None) -> _Fresh:
     try:
         for places in _batches(len(tasks), count):
             workers.submit(Work(places, _analyze, ([tasks[place] for place in places],)))
-        for done in workers.done():
+        for done in workers.results():
             if done.error is None:
                 for place, result in zip(done.key, done.result, strict=True):
                     yield place, result, True

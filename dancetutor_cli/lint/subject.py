@@ -17,7 +17,7 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.overrides import FeetProblem, Ignores, Overrides
 from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.play import SAME_TIME, Ambiguity, StepKind, too_quick
-from dancetutor_cli.feet.preset import LEAP, Preset, Why
+from dancetutor_cli.feet.preset import LEAP, DropReason, Preset
 from dancetutor_cli.feet.solved import Solved, solve_song
 from dancetutor_cli.lint.candidates import Candidates
 from dancetutor_cli.lint.foot_questions import Feet
@@ -25,20 +25,20 @@ from dancetutor_cli.lint.note_questions import Notes, PlacedChart
 from dancetutor_cli.lint.other_foot import Beginnings
 
 if TYPE_CHECKING:
-    from dancetutor_cli.lint.meters import Sized
+    from dancetutor_cli.lint.meters import MeteredChart
 
 
 # Charts that are looked at together, so that what rules ask of one is answered for all of them at once.
 
 
-class Shared(NamedTuple):
+class SharedPlays(NamedTuple):
     """Plays that are looked at together, and which of them is meant."""
 
     candidates: Candidates
     number: int
 
 
-def look_at_together(subjects: Iterable[ChartSubject]) -> None:
+def share_plays(subjects: Iterable[ChartSubject]) -> None:
     """Let charts share their work: what is asked of one is answered for those on the same pad at once."""
     of_pads: dict[str, list[ChartSubject]] = defaultdict(list)
     for subject in subjects:
@@ -48,7 +48,7 @@ def look_at_together(subjects: Iterable[ChartSubject]) -> None:
         assert alike[0].pad is not None
         candidates = Candidates([subject.play for subject in alike if subject.play is not None], alike[0].pad)
         for number, subject in enumerate(alike):
-            vars(subject)["shared"] = Shared(candidates, number)
+            vars(subject)["shared"] = SharedPlays(candidates, number)
 
 
 # What a rule looks at: a file, or one chart with its play.
@@ -102,13 +102,13 @@ class ChartSubject(PlacedChart):
         return None if self.play is None or self.pad is None else Feet(*self.shared, self.chart.timing)
 
     @cached_property
-    def shared(self) -> Shared:
+    def shared(self) -> SharedPlays:
         """Plays that are looked at together, and which of them is this one; for charts with a play.
 
-        Only this one, unless `look_at_together` has been told of others.
+        Only this one, unless `share_plays` has been told of others.
         """
         assert self.play is not None and self.pad is not None
-        return Shared(Candidates((self.play,), self.pad), 0)
+        return SharedPlays(Candidates((self.play,), self.pad), 0)
 
     @cached_property
     def notes(self) -> Notes:
@@ -120,7 +120,7 @@ class ChartSubject(PlacedChart):
         """Name of the move -> rows of the play in which it happens."""
         return {} if self.play is None else self.shared.candidates.plays.counts[self.shared.number]
 
-    def sized(self, rate: float = 1.0) -> Sized | None:
+    def sized(self, rate: float = 1.0) -> MeteredChart | None:
         """The chart's meters on every scale, for music that plays so fast; None without a play or a model."""
         from dancetutor_cli.lint.meters import size
 
@@ -150,9 +150,9 @@ class ChartSubject(PlacedChart):
         """Whether a move of this name or of a kind of it happens in the play."""
         return self.play is not None and self.shared.candidates.plays.having(move)[self.shared.number]
 
-    def soonest(self, move: str) -> float:
+    def least_seconds(self, move: str) -> float:
         """The least time (s) from a step to a row with such a move; endless where there is none."""
-        return math.inf if self.play is None else self.shared.candidates.plays.soonest(move)[self.shared.number]
+        return math.inf if self.play is None else self.shared.candidates.plays.least_seconds(move)[self.shared.number]
 
     def rows_with(self, move: str) -> list[int]:
         """Rows with a move of this name or of a kind of it: "crossover" finds "crossover-half" too."""
@@ -163,12 +163,12 @@ class ChartSubject(PlacedChart):
         return rows
 
     @cached_property
-    def too_quick(self) -> tuple[tuple[int, int, Why], ...]:
+    def too_quick(self) -> tuple[tuple[int, int, DropReason], ...]:
         """Row, column and reason of each note whose limb cannot be there in time: the dancer lets it go."""
         if self.play is None or self.pad is None:
             return ()
         candidates, number = self.shared
-        if candidates.quickest_feet[number] > LEAP + SAME_TIME and not self.has("hand"):
+        if candidates.least_foot_seconds[number] > LEAP + SAME_TIME and not self.has("hand"):
             return ()
         return tuple(too_quick(self.play, self.pad))
 
@@ -221,7 +221,7 @@ class ChartSubject(PlacedChart):
         within = [float(bpm) for tick, bpm in self.chart.timing.bpms if first < tick <= last]
         return [self.chart.timing.bpm_at(first), *within]
 
-    def sureness(self, beat: float) -> tuple[int | None, float | None]:
+    def confidence(self, beat: float) -> tuple[int | None, float | None]:
         """Margin and confidence of the feet in a row and in that with a step before it, the lesser; None: not known."""
         play = self.play
         if play is None or play.margin is None:
@@ -233,9 +233,9 @@ class ChartSubject(PlacedChart):
         sure = [] if play.confidence is None else [float(play.confidence[one]) for one in rows]
         return min(margins, default=None), min((one for one in sure if one == one), default=None)
 
-    def surest(self, rows: list[int]) -> int:
+    def most_confident(self, rows: list[int]) -> int:
         """Place in some rows of the one whose feet are surest, of several the first."""
-        known = [self.sureness(self.beat(row))[1] for row in rows]
+        known = [self.confidence(self.beat(row))[1] for row in rows]
         sure = [1.0 if one is None else one for one in known]
         return sure.index(max(sure))
 

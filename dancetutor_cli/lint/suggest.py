@@ -12,7 +12,7 @@ from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart
 from dancetutor_cli.feet import Play, StepKind, solve
 from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.solver.engine import engine_for
-from dancetutor_cli.feet.solver.solve import OneTap, Outline, forced_limbs, moved_tap
+from dancetutor_cli.feet.solver.solve import OneTap, Outline, forced_limbs, move_tap
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.lint.check import check_rule, rules_of
 from dancetutor_cli.lint.findings import Finding
@@ -119,7 +119,7 @@ class _Trial:
 
     def _outline(self, edit: _Edit) -> Outline:
         if edit not in self._outlines:
-            self._outlines[edit] = self._one_tap.moved(edit.row, edit.column, edit.to)
+            self._outlines[edit] = self._one_tap.outline_with(edit.row, edit.column, edit.to)
         return self._outlines[edit]
 
     @cached_property
@@ -141,7 +141,7 @@ class _Trial:
     def _subject_after(self, edit: _Edit) -> ChartSubject:
         subject = self.subject
         assert subject.play is not None and subject.pad is not None
-        rows = moved_tap(subject.play.rows, edit.row, edit.column, edit.to)
+        rows = move_tap(subject.play.rows, edit.row, edit.column, edit.to)
         return replace(subject, play=solve(rows, subject.pad, self.preset, subject.overrides, margins=True))
 
 

@@ -50,11 +50,11 @@ class RowChange:
 
 @dataclass(frozen=True, slots=True)
 class ChartChange:
-    """What is other in a file or in one of its charts. chart : its label, "" for the file; said : a line each"""
+    """What is other in a file or in one of its charts. chart : its label, "" for the file; messages : a line each"""
 
     file: str
     chart: str
-    said: tuple[str, ...]
+    messages: tuple[str, ...]
     rows: tuple[RowChange, ...] = ()
 
 
@@ -190,7 +190,7 @@ def _times(old: Chart, new: Chart, ticks: Sequence[int]) -> Iterator[str]:
 def change_lines(changes: Sequence[ChartChange], most_rows: int | None) -> Iterator[str]:
     """The changes for people: a line for a file or chart, below it its rows. most_rows : of a chart, None: all"""
     for change in _folded(changes):
-        yield f"{change.file}{f' [{change.chart}]' if change.chart else ''}: {'; '.join(change.said)}"
+        yield f"{change.file}{f' [{change.chart}]' if change.chart else ''}: {'; '.join(change.messages)}"
         shown = change.rows if most_rows is None else change.rows[:most_rows]
         yield from (f"  {row}" for row in shown)
         if len(shown) < len(change.rows):
@@ -202,7 +202,7 @@ def _folded(changes: Sequence[ChartChange]) -> Iterator[ChartChange]:
     alike: dict[tuple[str, tuple[str, ...]], list[ChartChange]] = {}
     for n, change in enumerate(changes):
         own = (str(n),) if change.rows or not change.chart else ()
-        alike.setdefault((change.file, (*change.said, *own)), []).append(change)
+        alike.setdefault((change.file, (*change.messages, *own)), []).append(change)
     for found in alike.values():
         yield found[0] if len(found) == 1 else replace(found[0], chart=f"{len(found)} charts")
 
@@ -224,7 +224,7 @@ TEN = (
 )  # fmt: skip
 SIX = ("Crossovers", "Footswitches", "Sideswitches", "Jacks", "Brackets", "Doublesteps")
 FIVE = SIX[:5]
-COUNTED = ("dance-single", "dance-double")  # steps types that the game has a pad for
+COMPARED_STEPS_TYPES = ("dance-single", "dance-double")  # steps types that the game has a pad for
 # Technique -> how often, or the tick of each time, ascending.
 Theirs = Mapping[str, int] | Mapping[str, Sequence[int]]
 _PLAYERS = 2  # of the game: it writes the numbers of both, whatever the chart
@@ -242,7 +242,7 @@ class Key:
 
 
 @dataclass(frozen=True, slots=True)
-class Compared:
+class ComparedChart:
     """One chart that both know. ours : technique -> tick of each time, ascending; theirs : as `Theirs`"""
 
     file: str
@@ -264,10 +264,10 @@ class Compared:
 
 
 @dataclass
-class Beside:
+class TechniqueComparison:
     """All charts that both know, and how many only one of them has."""
 
-    charts: list[Compared] = field(default_factory=list)
+    charts: list[ComparedChart] = field(default_factory=list)
     only_ours: int = 0
     only_theirs: int = 0
 
@@ -301,7 +301,7 @@ def _cached(path: Path) -> Iterator[tuple[Key, dict[str, int]]]:
             said[tag.name] = _text(data, tag)
             continue
         counts = _counts(said.get("TECHCOUNTS", ""))
-        if counts is not None and said.get("STEPSTYPE", "").lower() in COUNTED:
+        if counts is not None and said.get("STEPSTYPE", "").lower() in COMPARED_STEPS_TYPES:
             # A cached chart names its file; any other .ssc that says TECHCOUNTS is its own.
             name = said.get("STEPFILENAME") or path.as_posix()
             description = said.get("DESCRIPTION", "")
@@ -369,9 +369,9 @@ def _key(file: str, steps_type: str, difficulty: str, description: str) -> Key:
     return Key(parts[-2:], steps_type.strip().lower(), named(difficulty, description, 0, True)[0], description.strip())
 
 
-def beside(tasks: Iterable[AnalyzeTask], theirs: Mapping[Key, Theirs]) -> Beside:
+def compare_techniques(tasks: Iterable[AnalyzeTask], theirs: Mapping[Key, Theirs]) -> TechniqueComparison:
     """Our counts of every chart that the game knows; charts of files that neither of us can read are left out."""
-    found, seen = Beside(), set[Key]()
+    found, seen = TechniqueComparison(), set[Key]()
     by_chart: dict[tuple[object, ...], list[Key]] = defaultdict(list)
     for key in theirs:
         by_chart[key.song, key.steps_type, key.difficulty].append(key)
@@ -395,6 +395,6 @@ def beside(tasks: Iterable[AnalyzeTask], theirs: Mapping[Key, Theirs]) -> Beside
                 continue
             seen.add(same)
             ours = {name: sorted(play.rows.tick[rows].tolist()) for name, rows in tech_rows(subject).items()}
-            found.charts.append(Compared(task.path.as_posix(), chart.label, ours, theirs[same]))
+            found.charts.append(ComparedChart(task.path.as_posix(), chart.label, ours, theirs[same]))
     found.only_theirs = len(theirs) - len(seen)
     return found

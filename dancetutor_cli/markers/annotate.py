@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.feet.preset import Preset
     from dancetutor_cli.lint.run import LintRun
     from dancetutor_cli.markers.comments import FileChange, Lack
-    from dancetutor_cli.markers.planning import MarkerPlan, Planned
+    from dancetutor_cli.markers.planning import FilePlan, MarkerPlan
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ class AnnotateOutcome:
     """What became of a file: lines for people, mostly.
 
     problems : contradictions in what people said about feet; lacks : what is missing or stale
-    changed : whether anything is or would be different; beside : such files beside the chart file
+    changed : whether anything is or would be different; companions : such files beside the chart file
     unselected : the charts of a file of which none was meant
     """
 
@@ -69,7 +69,7 @@ class AnnotateOutcome:
     unselected: tuple[str, ...] = ()
     counts: tuple[tuple[str, int], ...] = ()
     changed: bool = False
-    beside: tuple[Path, ...] = ()
+    companions: tuple[Path, ...] = ()
     diff: tuple[str, ...] = ()
 
 
@@ -99,9 +99,9 @@ def _attempt(item: Item, order: Order, second: bool) -> AnnotateOutcome:
 
 def _annotate(item: Item, order: Order, second: bool) -> AnnotateOutcome:
     from dancetutor_cli import chart as reader
-    from dancetutor_cli.markers.comments import BESIDE, EDIT, SIDECAR
+    from dancetutor_cli.markers.comments import EDIT, FILE_STYLES, SIDECAR
 
-    beside = [style for style in order.styles if style in BESIDE and (style == SIDECAR or not second)]
+    beside = [style for style in order.styles if style in FILE_STYLES and (style == SIDECAR or not second)]
     if order.into_file and not order.strip and EDIT in beside:
         beside.remove(EDIT)
     work = _Work(item, order, reader.load(item.source), tuple(beside))
@@ -196,7 +196,7 @@ class _Work:
             unselected=() if selection.is_all or self._charts(self.song) else tuple(c.label for c in self.song.charts),
             counts=tuple(sorted(self.counts.items())),
             changed=any(change.needed for change in self.changes),
-            beside=tuple(change.path for change in self.changes[1:] if change.needed),
+            companions=tuple(change.path for change in self.changes[1:] if change.needed),
             diff=tuple(_diff(self.changes)) if self.order.diff else (),
         )
 
@@ -236,7 +236,7 @@ class _Work:
         self.notes += plan.notes
         self.counts += plan.counts
 
-    def _add(self, planned: Planned | FileError) -> None:
+    def _add(self, planned: FilePlan | FileError) -> None:
         if isinstance(planned, FileError):
             self.errors.append(str(planned))
             return

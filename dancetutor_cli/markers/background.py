@@ -32,7 +32,7 @@ _SONG_ENDS = ("NOTES", "NOTES2", "NOTEDATA")
 
 
 @dataclass(frozen=True, slots=True)
-class Added:
+class EntryInsertion:
     """The replacements that put an entry in. later : beats of others' entries after it, which take the film away"""
 
     splices: tuple[Splice, ...]
@@ -54,17 +54,17 @@ def entry(song: Song, name: str) -> bytes:
     return f"{beat:.3f}={name}=1.000=0=0=0=StretchNoLoop====".encode()
 
 
-def add(song: Song, name: str) -> Added:
+def add(song: Song, name: str) -> EntryInsertion:
     """Put the entry of a film into a chart file that has none of ours. FileError where there is no place for it."""
     text, tag = entry(song, name), _tag(song.data)
     if tag is None:
-        return Added((_new_tag(song, text + _ALONE),), ())
+        return EntryInsertion((_new_tag(song, text + _ALONE),), ())
     start, end = tag.spans[0]
     value, _ = blanked(song.data[start:end])
     at = start + len(value.rstrip())
     text = b"," + text if value.strip() else text + _ALONE
     later = tuple(beat for beat in _beats(value) if beat > float(song.timing.beats(np.array([0.0]))[0]))
-    return Added((Splice(at, at, text),), later)
+    return EntryInsertion((Splice(at, at, text),), later)
 
 
 def remove(song: Song) -> list[Splice]:

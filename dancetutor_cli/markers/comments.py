@@ -21,7 +21,7 @@ from dancetutor_cli.feet.play import Play
 
 MEASURE, ROWS, SIDECAR, SMEDITOR, EDIT, THEME = "measure", "rows", "sidecar", "smeditor", "edit", "theme"
 BACKGROUND = "background"  # no style of feet: what `render --background --into-file` has entered, to be taken out
-BESIDE = (SIDECAR, SMEDITOR, EDIT, THEME)  # styles that write files beside the chart file
+FILE_STYLES = (SIDECAR, SMEDITOR, EDIT, THEME)  # styles that write files beside the chart file
 STYLES = (MEASURE, ROWS, SIDECAR, SMEDITOR, EDIT, THEME)
 STRIPPED = (*STYLES, BACKGROUND)
 
@@ -246,10 +246,10 @@ def write_rows(data: bytes, chart: Chart, rows: StepRows, letters: Sequence[str]
 
 def strip_rows(data: bytes, chart: Chart) -> list[Splice]:
     """Replacements that take the letters of a chart out."""
-    return [Splice(start, end, b"") for start, end in _found(data, chart)]
+    return [Splice(start, end, b"") for start, end in _marker_spans(data, chart)]
 
 
-def _found(data: bytes, chart: Chart) -> Iterator[tuple[int, int]]:
+def _marker_spans(data: bytes, chart: Chart) -> Iterator[tuple[int, int]]:
     for end in chart.rows.end.tolist():
         if data[end : end + 4] == b"//dt" and (match := _OURS.match(data, end)):
             yield match.span()

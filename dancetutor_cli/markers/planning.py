@@ -38,10 +38,10 @@ from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
 
 # The styles that write beside a chart file: the sidecar, SMEditor's `data.sme`, `.edit` files and a theme's cues.
 
-Planned = tuple[FileChange, list[Lack]]
+FilePlan = tuple[FileChange, list[Lack]]
 
 
-def write(style: str, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[Planned | FileError]:
+def write(style: str, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FilePlan | FileError]:
     """The files that a style puts beside a song. folder : where they go; what is merged lies there or by the song.
 
     Yields an error in place of a file that there cannot be; the others come nevertheless.
@@ -78,7 +78,7 @@ def write(style: str, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> It
             yield FileChange(path, old, new), lacks
 
 
-def strip(style: str, song: Song, charts: Sequence[Chart]) -> Iterator[Planned]:
+def strip(style: str, song: Song, charts: Sequence[Chart]) -> Iterator[FilePlan]:
     """What taking a style out again does to the files beside a song."""
     if style == SIDECAR:
         path = sidecar.sidecar_path(song.path)
@@ -101,7 +101,7 @@ def strip(style: str, song: Song, charts: Sequence[Chart]) -> Iterator[Planned]:
         yield _removed(lua, script, theme.as_lua(said) if kept and script else None)
 
 
-def _removed(path: Path, old: bytes | None, new: bytes | None) -> Planned:
+def _removed(path: Path, old: bytes | None, new: bytes | None) -> FilePlan:
     return FileChange(path, old, new), [] if old == new else [Lack(f"{path.name} has feet to take out")]
 
 
@@ -193,7 +193,7 @@ def mark(song: Song, feet: Sequence[ChartFeet], styles: Sequence[str], force: bo
         if MEASURE in styles:
             new, states = comments.write_measures(song.data, one.chart, one.rows, one.letters, force)
             splices += new
-            _tell_measures(plan, song, one.chart, states)
+            _count_measures(plan, song, one.chart, states)
         if ROWS in styles:
             new, lacking = comments.write_rows(song.data, one.chart, one.rows, one.letters)
             splices += new
@@ -250,7 +250,7 @@ def checked(song: Song, plan: MarkerPlan) -> MarkerPlan:
     return plan
 
 
-def _tell_measures(plan: MarkerPlan, song: Song, chart: Chart, states: Sequence[MeasureState]) -> None:
+def _count_measures(plan: MarkerPlan, song: Song, chart: Chart, states: Sequence[MeasureState]) -> None:
     """Count what was found, and list what lacks: one line for each kind in a chart, with the first place."""
     by_state: dict[State, list[MeasureState]] = {}
     for one in states:

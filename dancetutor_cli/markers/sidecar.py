@@ -168,7 +168,7 @@ def _beat(tick: int) -> int | float:
 
 
 def _rewrite(path: Path, old: bytes | None, new: dict[_Key, list[list[Any]]]) -> bytes | None:
-    before, ours = _taken_apart(path, old)
+    before, ours = _split_own_entries(path, old)
     ours = {key: value for key, value in {**ours, **new}.items() if value}
     if not ours:
         return None if before is None else before.encode("utf-8")
@@ -189,7 +189,7 @@ def _rewrite(path: Path, old: bytes | None, new: dict[_Key, list[list[Any]]]) ->
     return _compact(data).encode("utf-8")
 
 
-def _taken_apart(path: Path, old: bytes | None) -> tuple[str | None, dict[_Key, list[list[Any]]]]:
+def _split_own_entries(path: Path, old: bytes | None) -> tuple[str | None, dict[_Key, list[list[Any]]]]:
     """The file as it was without us (None: not there), and what we had written into it."""
     if old is None:
         return None, {}

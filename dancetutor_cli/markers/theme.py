@@ -60,13 +60,13 @@ def _crossovers(play: Play) -> Iterator[ThemeCue]:
         moves = {name.removeprefix("crossover-") for row in range(first, last + 1) for name in play.moves[row]}
         way = next((name for name in ("full", "front", "back") if name in moves), "")
         end = min(last + 1, len(play.rows) - 1)
-        yield _cue(play, CROSSOVER, (first, end), range(first, last + 1), way=way, who=_who(play, first))
+        yield _cue(play, CROSSOVER, (first, end), range(first, last + 1), way=way, who=_limb_names(play, first))
 
 
 def _brackets(play: Play) -> Iterator[ThemeCue]:
     rows = [row for row, moves in enumerate(play.moves) if "bracket" in moves]
     for passage in _near(rows, play.rows.tick.tolist()):
-        feet = {foot for row in passage for foot in _who(play, row, bracketing=True)}
+        feet = {foot for row in passage for foot in _limb_names(play, row, bracketing=True)}
         yield _cue(play, BRACKET, (passage[0], passage[-1]), passage, who=feet)
 
 
@@ -79,7 +79,7 @@ def _turns(play: Play) -> Iterator[ThemeCue]:
     turn = np.where(around, steps, (steps + 180.0) % 360.0 - 180.0)
     for row in (np.flatnonzero(around | (np.abs(turn) >= LEAST_TURN - _EPSILON)) + 1).tolist():
         way = "left" if turn[row - 1] > 0 else "right"
-        yield _cue(play, TURN, (row, row), (row,), way=way, who=_who(play, row))
+        yield _cue(play, TURN, (row, row), (row,), way=way, who=_limb_names(play, row))
 
 
 def _cue(
@@ -100,7 +100,7 @@ def _cue(
     )
 
 
-def _who(play: Play, row: int, bracketing: bool = False) -> set[str]:
+def _limb_names(play: Play, row: int, bracketing: bool = False) -> set[str]:
     limbs = [Limb(one) for one in play.limb[row].tolist() if one in _FEET]
     wanted: Callable[[Limb], bool] = (lambda one: limbs.count(one) > 1) if bracketing else (lambda one: True)
     return {_FEET[one] for one in limbs if wanted(one)}

@@ -16,7 +16,7 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.feet.limbs import hex_colour, limb_colours
 from dancetutor_cli.feet.solver.techniques import moves_and_turns
 from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
-from dancetutor_cli.film.scene.geometry import Packed, pack
+from dancetutor_cli.film.scene.geometry import PackedMeshes, pack
 from dancetutor_cli.film.scene.props import JOINT, bar_matrix, with_bar
 from dancetutor_cli.film.scene.scene import PANEL, SOLE_RADIUS, Scene
 from dancetutor_cli.formats.glb import clocks
@@ -136,7 +136,7 @@ def _bytes_that_sum(weights: NDArray[np.float32]) -> NDArray[np.uint8]:
     return out.astype(np.uint8)
 
 
-def _by_side(mesh: Packed, skeleton: Skeleton) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+def _by_side(mesh: PackedMeshes, skeleton: Skeleton) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
     """Triangles (t, 3), the feet's first, of these the left one's; and 0 left, 1 right, 2 no foot."""
     right = np.array([name.startswith("r_") for name in skeleton.names])
     mostly = (mesh.weights * right[mesh.joints]).sum(axis=1) > 0.5
@@ -169,7 +169,7 @@ class Content:
     notes : as the films draw them; ticks : int64 (n,), 1/48 beats, of the notes
     beats : seconds of beats 0, 1, 2, ...
     motions : the dancer's, and that of who dances beside her if there is one, both of `character`'s joints
-    beside : what she plays; beside_rows : the rows that she steps with other limbs
+    second_name : what she plays; second_rows : the rows that she steps with other limbs
     pair : the two are the players of a chart for two, in one picture, the second one in other colours
     passages : the hardest parts, ready for the page; flips : what other feet in a row would change, by row
     """
@@ -184,8 +184,8 @@ class Content:
     character: Character
     motions: Sequence[Motion]
     directions: Sequence[float | None]
-    beside: str = ""
-    beside_rows: Sequence[int] = ()
+    second_name: str = ""
+    second_rows: Sequence[int] = ()
     passages: Sequence[Mapping[str, Any]] = ()
     flips: Sequence[Mapping[str, Any]] = ()
     pair: bool = False
@@ -227,7 +227,7 @@ def pack_content(content: Content) -> tuple[dict[str, Any], Blob]:
         "body": pack_body(blob, content.character, bar, -scene.look.stage.pad_height, content.pair),
         "pair": content.pair,
         "motions": [pack_motion(blob, motion, f"motion{k}") for k, motion in enumerate(content.motions)],
-        "beside": {"name": content.beside, "rows": list(content.beside_rows)},
+        "beside": {"name": content.second_name, "rows": list(content.second_rows)},
         "beats": [round(second, 6) for second in content.beats],
         "findings": [_finding(one) for one in content.findings],
         "passages": [dict(one) for one in content.passages],

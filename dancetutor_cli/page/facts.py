@@ -143,7 +143,7 @@ def sentence(passage: Passage, labels: Mapping[str, str]) -> str:
     return text[0].upper() + text[1:]
 
 
-def told(passage: Passage) -> dict[str, Any]:
+def passage_object(passage: Passage) -> dict[str, Any]:
     """A passage as the page has it."""
     return {
         "from": passage.first,

@@ -124,7 +124,7 @@ def pack_page(page: PageSubject) -> Page:
 
     request, solved = page.request, page.solved
     music, warnings = _music(page.song, page.chart) if request.music else (None, ())
-    beside = _beside(page)
+    beside = _second_play(page)
     motions = [motion for some in (solved, beside) if some for motion in _motions(request, some)]
     warnings = (*page.warnings, *warnings, *(note for motion in motions for note in motion.notes))
     fitted = [retarget(motion, page.character) for motion in motions]
@@ -140,7 +140,7 @@ def _motions(request: PageRequest, solved: tuple[Solved, ...]) -> list[Motion]:
     return [shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True)]
 
 
-def _beside(page: PageSubject) -> tuple[Solved, ...]:
+def _second_play(page: PageSubject) -> tuple[Solved, ...]:
     """The other play that a second dancer dances: the next best, another preset's, or a file's; empty if none is."""
     wanted, path, one = page.request.beside, page.request.dance.path, page.solved[0]
     if wanted is None:
@@ -187,8 +187,8 @@ def _content(
         character=page.character,
         motions=motions,
         directions=pad.directions,
-        beside=Path(page.request.beside or "").stem,
-        beside_rows=[row for one in beside for row in _differing(one.play, play)],
+        second_name=Path(page.request.beside or "").stem,
+        second_rows=[row for one in beside for row in _differing(one.play, play)],
         passages=_passages(solved),
         flips=flips_of(play, pad, first.preset, overrides)
         if alone and (overrides := first.overrides) is not None
@@ -222,14 +222,14 @@ def _findings(solved: tuple[Solved, ...]) -> Iterator[Finding]:
 def _passages(solved: tuple[Solved, ...]) -> list[dict[str, Any]]:
     """The hardest passages, the hardest first; of two parts told with whose they are."""
     from dancetutor_cli.lint.passages import hardest
-    from dancetutor_cli.page.facts import differing, told
+    from dancetutor_cli.page.facts import differing, passage_object
 
     pairs = [(found, one.chart) for one in solved if one.play for found in hardest(one.play, one.chart.timing)]
     if len(solved) == 1:
-        return differing([told(passage) for passage, _ in pairs])
+        return differing([passage_object(passage) for passage, _ in pairs])
     out = []
     for passage, chart in sorted(pairs, key=lambda one: -one[0].score):
-        data = told(passage)
+        data = passage_object(passage)
         out.append({**data, "sentence": {name: f"P{chart.player}: {text}" for name, text in data["sentence"].items()}})
     return differing(out)
 
@@ -328,7 +328,7 @@ def make_all(jobs: list[PageJob], processes: int) -> Iterator[PageOutcome]:
     try:
         for k, job in enumerate(jobs):
             workers.submit(Task(k, _make, (job,)))
-        for done in workers.done():
+        for done in workers.results():
             job = jobs[done.key]
             yield PageOutcome(job, error=str(done.error)) if done.error is not None else PageOutcome(job, *done.result)
     finally:

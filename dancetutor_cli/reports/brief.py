@@ -130,22 +130,24 @@ class BriefReport:
             rule = self._paint(f"{first.first.rule} {first.first.name}", STYLES[first.first.severity])
             charts = len({(one.path, one.chart and one.chart.index) for one in found})
             lines.append(f"{rule}: {_sum(found)} in {charts} chart{'' if charts == 1 else 's'}, for example")
-            lines += [self._cut(f"  {self._told(one, False)}") for one in sorted(found, key=lambda x: x.order)[:each]]
-        return [*lines, "", _HOW]
+            lines += [
+                self._cut(f"  {self._entry_line(one, False)}") for one in sorted(found, key=lambda x: x.order)[:each]
+            ]
+        return [*lines, "", _HINT]
 
     def _listed(self, room: int) -> list[str]:
         entries = sorted(self._entries, key=lambda one: one.order)
-        told = list(dict.fromkeys(self._cut(self._told(entry, True)) for entry in entries))
+        told = list(dict.fromkeys(self._cut(self._entry_line(entry, True)) for entry in entries))
         if not told:
             return []
         shown = told[: max(4, room - 3)]
-        return ["", *shown, *_more(len(told) - len(shown), "such lines"), _HOW]
+        return ["", *shown, *_more(len(told) - len(shown), "such lines"), _HINT]
 
     def _name(self, path: str) -> str:
         """A file by its path below the folder that all of them are in."""
         return safe_path(os.path.relpath(path, self._below or "."))
 
-    def _told(self, entry: _Entry, one_file: bool) -> str:
+    def _entry_line(self, entry: _Entry, one_file: bool) -> str:
         """ "DT201 14 times, measures 3 7 9 ...: the left foot steps twice [dance-single Hard 9]" """
         first, many = entry.first, len(entry.findings)
         measures = list(dict.fromkeys(f.measure for f in entry.findings if f.measure is not None))
@@ -163,7 +165,7 @@ class BriefReport:
         return line if plain <= self._width else line[: self._width - 1 + len(line) - plain] + "…"
 
 
-_HOW = "--full tells every finding with its rows, --format json all there is, --statistics only counts"
+_HINT = "--full tells every finding with its rows, --format json all there is, --statistics only counts"
 
 
 def _counts(chart: ChartResult) -> str:

@@ -112,7 +112,7 @@ def _estimate_object(estimate: Estimate) -> dict[str, Any]:
         "low": round(estimate.low, 2),
         "high": round(estimate.high, 2),
         "scale": estimate.scale,
-        "scale_known": estimate.known,
+        "scale_known": estimate.is_scale_known,
         "rate": estimate.rate,
         "terms": {name: round(meters, 2) for name, meters in estimate.terms},
     }
@@ -203,13 +203,13 @@ class CsvReport:
             self._errors.write(f"dancetutor: {safe(result.error)}\n")
         file = (relative(result.path), safe(result.title), safe(result.artist)) if result.charts else ("", "", "")
         for chart in result.charts:
-            self._stream.write(_written(_line(*file, chart).values()))
+            self._stream.write(_csv_line(_line(*file, chart).values()))
 
     def end(self, tally: Tally) -> None:
         """Nothing comes after the last chart."""
 
 
-def _written(cells: Iterable[Any]) -> str:
+def _csv_line(cells: Iterable[Any]) -> str:
     """One line of the file."""
     line = io.StringIO()
     csv.writer(line, lineterminator="\n").writerow([as_text(cell) if isinstance(cell, str) else cell for cell in cells])

@@ -107,13 +107,13 @@ class Report(Protocol):
 class Format(NamedTuple):
     """module, kind : where the report is, and its class
 
-    given : what that is made with, of `_GIVEN`: "text" (standard output in UTF-8), "terminal" (with "?" for what it
+    inputs : what that is made with, of `_INPUTS`: "text" (standard output in UTF-8), "terminal" (with "?" for what it
     cannot show), "bytes", "errors" (standard error), "preset" (name of the cost preset)
     """
 
     module: str
     kind: str
-    given: tuple[str, ...] = ("text",)
+    inputs: tuple[str, ...] = ("text",)
 
 
 FORMATS = {
@@ -141,11 +141,11 @@ def open_report(name: str, preset: str) -> Report:
     """A report in this format on standard output. `preset` is the cost preset's name."""
     form = FORMATS[name]
     kind = getattr(import_module(f"dancetutor_cli.reports.{form.module}"), form.kind)
-    report: Report = kind(*(_GIVEN[what](preset) for what in form.given))
+    report: Report = kind(*(_INPUTS[what](preset) for what in form.inputs))
     return report
 
 
-_GIVEN: dict[str, Callable[[str], Any]] = {
+_INPUTS: dict[str, Callable[[str], Any]] = {
     "text": lambda _: _utf8_or_replacing(sys.stdout, utf8=True),
     "terminal": lambda _: _utf8_or_replacing(sys.stdout, utf8=False),
     "bytes": lambda _: sys.stdout.buffer,

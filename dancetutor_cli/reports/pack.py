@@ -11,7 +11,7 @@ from pathlib import Path
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.chart.pack_files import pack_folder, read_pack_ini
 from dancetutor_cli.lint.results import ChartResult, FileResult
-from dancetutor_cli.lint.versions import TEN, Beside, Compared
+from dancetutor_cli.lint.versions import TEN, ComparedChart, TechniqueComparison
 from dancetutor_cli.reports.terminal import safe, safe_path
 
 # What is known of a pack: its charts, each once, and what is missing or stands out.
@@ -145,7 +145,7 @@ class Pack:
         off = [
             (abs(told.meter - one.result.meter), one, told.meter)
             for one in charts
-            if (told := one.result.estimate) is not None and told.known and one.result.meter > 0
+            if (told := one.result.estimate) is not None and told.is_scale_known and one.result.meter > 0
         ]
         for how_far, one, meter in sorted(off, key=lambda x: -x[0]):
             if how_far >= _FEW:
@@ -229,7 +229,7 @@ def _listed(what: str, said: Iterable[str], most: int) -> Iterator[str]:
 # Our technique counts beside the game's, as a table in Markdown; and chart by chart where they differ.
 
 
-def table_lines(found: Beside) -> Iterator[str]:
+def table_lines(found: TechniqueComparison) -> Iterator[str]:
     """The table: for each technique how often each counts it, how often both do in the same chart, charts alike."""
     rows = [["technique", "charts", "ours", "theirs", "both", "charts alike"]]
     for name in TEN:
@@ -250,20 +250,20 @@ def table_lines(found: Beside) -> Iterator[str]:
     yield f"{count} of both; only ours: {found.only_ours}; only theirs: {found.only_theirs}"
 
 
-def chart_lines(found: Beside) -> Iterator[str]:
+def chart_lines(found: TechniqueComparison) -> Iterator[str]:
     """Every chart that differs, a technique a line: the measures of ours, or the rows that only one has."""
     for one in found.charts:
         for name in TEN:
             if name in one.theirs and one.differs(name):
-                yield f"{safe_path(one.file)} [{safe(one.label)}] {name}: {_told(one, name)}"
+                yield f"{safe_path(one.file)} [{safe(one.label)}] {name}: {_technique_line(one, name)}"
 
 
-def _count(one: Compared, name: str) -> int:
+def _count(one: ComparedChart, name: str) -> int:
     theirs = one.theirs[name]
     return theirs if isinstance(theirs, int) else len(theirs)
 
 
-def _told(one: Compared, name: str) -> str:
+def _technique_line(one: ComparedChart, name: str) -> str:
     ours, theirs = one.ours[name], one.theirs[name]
     if isinstance(theirs, int):
         where = _places("measures", [tick // TICKS_PER_MEASURE for tick in dict.fromkeys(ours)])

@@ -254,7 +254,7 @@ def _table(charts: Iterable[PackChart]) -> str:
     rows = []
     for one in charts:
         chart, figures, told = one.result, one.result.figures, one.result.estimate
-        off = told is not None and told.known and abs(told.meter - chart.meter) >= _OFF
+        off = told is not None and told.is_scale_known and abs(told.meter - chart.meter) >= _OFF
         plays = f"<td{' class=off' if off else ''}>{told.meter:.1f}</td>" if told else "<td></td>"
         cells = [str(chart.row_count), f"{figures.nps_mean:.1f}" if figures else ""]
         cells += [str(one.rows_of(technique) or "") for technique in TECHNIQUES]

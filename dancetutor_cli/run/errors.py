@@ -81,6 +81,6 @@ PACKAGES: Mapping[Extra, str] = {
 }
 
 
-def how_to_add(extra: Extra) -> str:
+def install_command(extra: Extra) -> str:
     """The command that adds an extra, for the end of a message."""
     return f"pip install {PACKAGES[extra]}"

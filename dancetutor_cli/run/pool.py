@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from dancetutor_cli.run.errors import DancetutorError, UnavailableError, how_to_add
-from dancetutor_cli.run.process import is_interruption, told
+from dancetutor_cli.run.errors import DancetutorError, UnavailableError, install_command
+from dancetutor_cli.run.process import is_interruption, os_error_message
 
 # Workers: pieces of work in, results out, in any order; in this process, or in others (`processes`).
 #
@@ -32,7 +32,7 @@ class Task:
 
 
 @dataclass(frozen=True, slots=True)
-class Finished:
+class FinishedWork:
     """A piece of work that has ended: its result, or the error it raised."""
 
     key: Any
@@ -41,7 +41,7 @@ class Finished:
 
 
 class Workers(Protocol):
-    """What does the work. `submit` may be called at any time, also between the items of `done`."""
+    """What does the work. `submit` may be called at any time, also between the items of `results`."""
 
     def at_once(self) -> int:
         """How many pieces are worked on at a time."""
@@ -49,7 +49,7 @@ class Workers(Protocol):
     def submit(self, task: Task) -> None:
         """Add a piece of work to the end of the queue."""
 
-    def done(self) -> Iterator[Finished]:
+    def results(self) -> Iterator[FinishedWork]:
         """Yield results as they come; ends when nothing is left to do."""
 
     def close(self) -> None:
@@ -76,17 +76,17 @@ def open_workers(jobs: int, report: Callable[[Any, int], None], common: str = ""
     return ProcessWorkers(jobs, report, common)
 
 
-def attempt(task: Task, report: Report) -> Finished:
+def attempt(task: Task, report: Report) -> FinishedWork:
     """Do a piece of work; whatever it raises becomes an error that can be sent between processes.
 
     KeyboardInterrupt if it failed by a Ctrl-C in the middle of it.
     """
     try:
-        return Finished(task.key, task.function(report, *task.arguments))
+        return FinishedWork(task.key, task.function(report, *task.arguments))
     except Exception as error:
         if is_interruption(error):
             raise KeyboardInterrupt from error
-        return Finished(task.key, error=_sendable(error))
+        return FinishedWork(task.key, error=_sendable(error))
 
 
 def _sendable(error: Exception) -> DancetutorError:
@@ -95,7 +95,7 @@ def _sendable(error: Exception) -> DancetutorError:
     if isinstance(error, MemoryError):
         return UnavailableError("out of memory; try fewer --jobs or a smaller --size")
     if isinstance(error, OSError):
-        return UnavailableError(told(error))
+        return UnavailableError(os_error_message(error))
     said = (str(error).strip().splitlines() or [""])[-1][:300]
     return WorkFailedError(f"a fault of the program: {type(error).__name__}: {said}")
 
@@ -113,7 +113,7 @@ class SerialWorkers:
     def submit(self, task: Task) -> None:
         self._queue.append(task)
 
-    def done(self) -> Iterator[Finished]:
+    def results(self) -> Iterator[FinishedWork]:
         while self._queue:
             task = self._queue.popleft()
             yield attempt(task, lambda n, key=task.key: self._report(key, n))  # type: ignore[misc]
@@ -126,10 +126,10 @@ class SerialWorkers:
 
 TIMEOUT = 10  # seconds to find the scheduler
 RETRIES = 3  # how often a piece of work is begun again when its worker is lost
-_MEND = f"install it: {how_to_add('cluster')}"
+_MEND = f"install it: {install_command('cluster')}"
 
 
-def perform(task: Task) -> Finished:
+def perform(task: Task) -> FinishedWork:
     """Do a piece of work on a worker of the cluster; what it reports is summed up in its result."""
     return attempt(task, lambda _count: None)
 
@@ -165,7 +165,7 @@ class ClusterWorkers:
         self._tasks[future.key] = task
         self._running.add(future)
 
-    def done(self) -> Iterator[Finished]:
+    def results(self) -> Iterator[FinishedWork]:
         """Results as they come."""
         while self._running.count():
             future = next(self._running)
@@ -176,14 +176,14 @@ class ClusterWorkers:
             yield result
 
     @staticmethod
-    def _result(future: Any, task: Task) -> Finished:
+    def _result(future: Any, task: Task) -> FinishedWork:
         try:
             result = future.result()
         except Exception as error:  # whatever the cluster itself ran into
-            return Finished(
+            return FinishedWork(
                 task.key, error=WorkFailedError(f"the cluster gave a piece of work up: {type(error).__name__}")
             )
-        assert isinstance(result, Finished)
+        assert isinstance(result, FinishedWork)
         return result
 
     def close(self) -> None:

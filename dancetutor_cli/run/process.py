@@ -82,13 +82,13 @@ def open_streams() -> bool:
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115
     if sys.stdout is None:
         return False
-    sys.stdout, sys.stderr = _written_by(_NamedOutput, sys.stdout), _written_by(_Errors, sys.stderr)
+    sys.stdout, sys.stderr = _reopen_as(_NamedOutput, sys.stdout), _reopen_as(_Errors, sys.stderr)
     for stream in (sys.stdout, sys.stderr):
         _say_what_it_can(stream)
     return True
 
 
-def _written_by(kind: type[io.FileIO], stream: Any) -> Any:
+def _reopen_as(kind: type[io.FileIO], stream: Any) -> Any:
     """The same stream on a file of this kind, in which no text of others is a command for CI.
 
     A console of Windows, which is never full, stays as it is.
@@ -117,7 +117,7 @@ def leave_output() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def told(error: OSError) -> str:
+def os_error_message(error: OSError) -> str:
     """What the system said, in one line: where, what, and what to do about a full disk."""
     where = f"{error.filename}: " if error.filename else ""
     line = f"{where}{error.strerror or error}"

@@ -20,7 +20,7 @@ from multiprocessing.connection import Connection, wait
 from typing import Any
 
 from dancetutor_cli.run.errors import UnavailableError
-from dancetutor_cli.run.pool import Finished, Task, WorkFailedError, attempt
+from dancetutor_cli.run.pool import FinishedWork, Task, WorkFailedError, attempt
 from dancetutor_cli.run.process import collect_seldom, leave_garbage
 
 SHARED = "DANCETUTOR_WORKERS_SHARE"  # names the module to the server that workers are forked off
@@ -56,7 +56,7 @@ def _uninterrupted() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _said(name: str, value: str) -> Iterator[None]:
+def _with_environment(name: str, value: str) -> Iterator[None]:
     """A process started in here has this in its environment."""
     before = os.environ.get(name)
     os.environ[name] = value
@@ -71,7 +71,7 @@ def _said(name: str, value: str) -> Iterator[None]:
 
 def _nothing_from_here() -> contextlib.AbstractContextManager[None]:
     """A process started in here takes no module from the folder it is started in, which may be a stranger's pack."""
-    return _said(_SAFE_PATH, "1")
+    return _with_environment(_SAFE_PATH, "1")
 
 
 def _server(common: str) -> Any:
@@ -86,7 +86,7 @@ def _server(common: str) -> Any:
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(["dancetutor_cli.run.preload"])
     try:
-        with _nothing_from_here(), _said(SHARED, common), _uninterrupted():
+        with _nothing_from_here(), _with_environment(SHARED, common), _uninterrupted():
             forkserver.ensure_running()
     except OSError:  # it needs a place for a socket
         return None
@@ -113,7 +113,9 @@ def _worker(connection: Connection, common: str) -> None:
             try:
                 message = pickle.dumps(done)
             except Exception as error:
-                message = pickle.dumps(Finished(done.key, error=WorkFailedError(f"a result cannot be sent: {error}")))
+                message = pickle.dumps(
+                    FinishedWork(done.key, error=WorkFailedError(f"a result cannot be sent: {error}"))
+                )
             connection.send_bytes(message)
 
 
@@ -180,7 +182,7 @@ class ProcessWorkers:
                 with contextlib.suppress(OSError):  # a dead worker is noticed where results are read
                     worker.connection.send_bytes(pickle.dumps(worker.task))
 
-    def done(self) -> Iterator[Finished]:
+    def results(self) -> Iterator[FinishedWork]:
         while self._queue or any(w.task is not None for w in self._workers):
             self._feed()
             busy = {w.connection: w for w in self._workers if w.task is not None}
@@ -190,19 +192,19 @@ class ProcessWorkers:
                     self._feed()
                     yield result
 
-    def _receive(self, worker: _Worker) -> Finished | None:
+    def _receive(self, worker: _Worker) -> FinishedWork | None:
         try:
             message = pickle.loads(worker.connection.recv_bytes())
         except (EOFError, OSError):
             return self._bury(worker)
-        if isinstance(message, Finished):
+        if isinstance(message, FinishedWork):
             worker.task = None
             return message
         if worker.task is not None:
             self.report(worker.task.key, message)
         return None
 
-    def _bury(self, worker: _Worker) -> Finished | None:
+    def _bury(self, worker: _Worker) -> FinishedWork | None:
         """A worker died. Its work goes to a new one, once; then it is given up."""
         worker.process.join(5)
         self._workers.remove(worker)
@@ -215,7 +217,7 @@ class ProcessWorkers:
             self._queue.appendleft(task)
             return None
         code = worker.process.exitcode
-        return Finished(
+        return FinishedWork(
             task.key, error=UnavailableError(f"a worker process was killed (status {code}); out of memory?")
         )
 

@@ -18,7 +18,7 @@ from dancetutor_cli.commands.fixing import _Talk
 from dancetutor_cli.lint.analysis import analyze_file
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.fix import FixOutcome
-from dancetutor_cli.lint.mend import GONE, NO_MOVE, Left
+from dancetutor_cli.lint.mend import ALREADY_REMOVED, NO_MOVE, SkippedFinding
 from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import temporary_name
@@ -101,10 +101,13 @@ def test_safe_mends_what_no_one_hears(tmp_path: Path) -> None:
 
 def test_what_went_with_another_edit_is_gone_and_no_failure(capsys: pytest.CaptureFixture[str]) -> None:
     finding = Finding("DT207", "ambiguous-start", "warning", "m", line=4)
-    gone, kept = Left("dance-single Hard 9", finding, GONE), Left("dance-single Hard 9", finding, NO_MOVE)
+    gone, kept = (
+        SkippedFinding("dance-single Hard 9", finding, ALREADY_REMOVED),
+        SkippedFinding("dance-single Hard 9", finding, NO_MOVE),
+    )
     for left, status in ((gone, 0), (kept, 1)):
         talk = _Talk(diff=False)
-        talk.tell(Path("x.sm"), FixOutcome(left=(left,)))
+        talk.tell(Path("x.sm"), FixOutcome(unfixed=(left,)))
         assert talk.end() == status
         said = capsys.readouterr().out
         assert ("left alone" in said) == (status == 1) and ("] gone: an edit before it" in said or status == 1)

@@ -25,14 +25,14 @@ def problem(n: int = 9) -> tuple[BandedLeastSquares, Limits]:
 
 def test_limits_that_contradict_give_way_and_it_is_told() -> None:
     found = solve_surely(*_as_list(problem()), "a path")
-    assert found.found and found.softened
+    assert found.is_feasible and found.softened
     np.testing.assert_allclose(found.x, 0.0, atol=1e-4)
 
 
 def test_what_converges_is_not_softened() -> None:
     least_squares, limits = problem()
     found = solve_surely(least_squares, [replace(limits, high=np.full(9, 2.0))], "a path")
-    assert found.found and not found.softened
+    assert found.is_feasible and not found.softened
     np.testing.assert_allclose(found.x, 1.0, atol=1e-4)
 
 
@@ -55,7 +55,7 @@ def test_a_bake_says_what_gave_way_and_is_still_a_motion(monkeypatch: pytest.Mon
         """The method as if it needed more rounds than it has, but for the second try."""
         given_up.append(most or 0)
         found = real(problem, limits, most)
-        return found if most else replace(found, found=False, x=np.full_like(found.x, np.nan))
+        return found if most else replace(found, is_feasible=False, x=np.full_like(found.x, np.nan))
 
     monkeypatch.setattr(quadratic, "solve", once)
     plan, context = planned(chart().timing, play(MEDLEY), pad())

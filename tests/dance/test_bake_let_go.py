@@ -10,7 +10,7 @@ from dancetutor_cli.dance.bake import bake, plan_of
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.feet.play import Play
-from dancetutor_cli.feet.preset import Why
+from dancetutor_cli.feet.preset import DropReason
 from dancetutor_cli.formats.moves_json import moves_data
 from dancetutor_cli.formats.npz import read_npz, write_npz
 from tests.dance.bake_plays import L, R, chart, pad, play
@@ -29,7 +29,10 @@ def motion() -> Motion:
 
 def test_only_what_she_plays_is_a_contact(motion: Motion) -> None:
     assert [c.row for c in motion.contacts] == [0, 1, 3, 5, 6]
-    assert [(one.row, one.column, one.why) for one in motion.let_go] == [(2, 1, Why.LEAP), (4, 1, Why.LEAP)]
+    assert [(one.row, one.column, one.reason) for one in motion.let_go] == [
+        (2, 1, DropReason.LEAP),
+        (4, 1, DropReason.LEAP),
+    ]
     assert motion.notes[0].startswith("2 notes let go")
     figures = {f.name: f for f in report(motion).figures}
     assert figures["notes let go"].value == 2 and figures["notes let go"].goal is None

@@ -56,7 +56,7 @@ def test_the_weight_makes_up_for_legs_that_swing(monkeypatch: pytest.MonkeyPatch
     """In a stream the ground has less to supply that it cannot, and her hips are no more jerked for it."""
     dance = play([(1.0 + 0.14 * k, {(0, 1, 3, 2, 0, 2, 3, 1)[k % 8]: (L, R)[k % 2]}) for k in range(48)])
     with_it = report(bake(chart().timing, dance, pad()))
-    monkeypatch.setattr(settle, "moved_by_turning", lambda _, places, *rest: np.zeros((len(places), 2)))
+    monkeypatch.setattr(settle, "rotation_zmp_offset", lambda _, places, *rest: np.zeros((len(places), 2)))
     without = report(bake(chart().timing, dance, pad()))
     assert with_it["residual moment, median"].value < 0.9 * without["residual moment, median"].value
     assert with_it["jerk of the root"].value < without["jerk of the root"].value

@@ -8,10 +8,10 @@ from bake_plays import MEDLEY, chart, pad, play, stream
 
 from dancetutor_cli.dance.bake import planned
 from dancetutor_cli.dance.foot_path import both_feet
-from dancetutor_cli.dance.settle import ROUNDS, ROUNDS_WITH_PALMS, Settled, settle
+from dancetutor_cli.dance.settle import ROUNDS, ROUNDS_WITH_PALMS, SettledTrajectory, settle
 
 
-def settled(events: list, until: float) -> Settled:  # type: ignore[type-arg]
+def settled(events: list, until: float) -> SettledTrajectory:  # type: ignore[type-arg]
     plan, context = planned(chart().timing, play(events), pad())
     grid = np.arange(240.0, 240.0 * until) / 240.0
     return settle(plan, grid, both_feet(plan.feet, grid, context.settings), context)

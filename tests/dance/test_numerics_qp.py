@@ -30,7 +30,7 @@ def test_agrees_with_a_general_solver(seed: int) -> None:
     box = Limits(np.arange(n), np.ones((n, 1)), np.full(n, -1.0), np.full(n, 1.5))
     bend = Limits(np.arange(n - 2), np.tile(differences(2), (n - 2, 1)), np.full(n - 2, -0.4), np.full(n - 2, 0.4))
     found = solve(path_problem(target, 2.0), [box, bend])
-    assert found.found
+    assert found.is_feasible
     second = np.array([np.convolve(np.eye(n)[i], differences(2)[::-1], "valid") for i in range(n)]).T
     constraints = [{"type": "ineq", "fun": lambda x, s=s: 0.4 - s * (second @ x)} for s in (1, -1)]
     best = minimize(
@@ -50,7 +50,7 @@ def test_loose_limits_change_nothing() -> None:
 
 def test_limits_that_contradict_are_reported() -> None:
     box = Limits(np.arange(9), np.ones((9, 1)), np.full(9, 1.0), np.full(9, 0.0))
-    assert not solve(path_problem(np.zeros(9), 1.0), [box]).found
+    assert not solve(path_problem(np.zeros(9), 1.0), [box]).is_feasible
 
 
 def test_limits_that_give_way_cost_what_they_say() -> None:
@@ -59,7 +59,7 @@ def test_limits_that_give_way_cost_what_they_say() -> None:
     target = np.linspace(-0.5, 1.5, n)
     box = Limits(np.arange(n), np.ones((n, 1)), np.full(n, 1.0), np.full(n, 0.0), give)
     found = solve(path_problem(target, 0.7), [box])
-    assert found.found
+    assert found.is_feasible
 
     def whole(x: np.ndarray) -> float:
         beyond = np.maximum(1.0 - x, 0.0) ** 2 + np.maximum(x, 0.0) ** 2
@@ -82,7 +82,7 @@ def test_two_coordinates_by_turns_agree_with_a_general_solver() -> None:
         problem.add(2 * np.arange(n - 3) + axis, jerk, np.ones(n - 3), np.zeros((n - 3, 1)))
     aslant = Limits(2 * np.arange(n), np.full((n, 2), 0.5**0.5), np.full(n, -0.8), np.full(n, 0.6))
     found = solve(problem, [aslant])
-    assert found.found
+    assert found.is_feasible
 
     def whole(x: np.ndarray) -> float:
         return cost(x[::2], target[:, 0], 1.5) + cost(x[1::2], target[:, 1], 1.5)

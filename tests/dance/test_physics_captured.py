@@ -9,7 +9,7 @@ from physics_phrase import phrase
 
 from dancetutor_cli.character.humanoid import humanoid_of
 from dancetutor_cli.dance.motion import Motion
-from dancetutor_cli.dance.physics.captured import Captured, on_body
+from dancetutor_cli.dance.physics.captured import CapturedMotion, on_body
 from dancetutor_cli.dance.physics.pipeline import through_ragdoll
 from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN
 from dancetutor_cli.dance.physics.style import load_style
@@ -55,7 +55,7 @@ def named(naming: str) -> dict[str, str]:
     return out
 
 
-def recorded(naming: str = "mixamo", times: float = 1.0) -> Captured:
+def recorded(naming: str = "mixamo", times: float = 1.0) -> CapturedMotion:
     """The test phrase as somebody else would have captured it: other names, `times` as large, resting in a T pose."""
     given = phrase(1.0)
     ours, words = given.skeleton, named(naming)
@@ -87,7 +87,7 @@ def in_t_pose(motion: Motion, shoulders: dict[str, str]) -> Motion:
     return replace(motion, skeleton=new, rotations=local_rotations(new, quat.multiply(world, quat.conjugate(turn))))
 
 
-def on_dancer(captured: Captured) -> Motion:
+def on_dancer(captured: CapturedMotion) -> Motion:
     found = humanoid_of(captured.path, captured.names, captured.parents).joints()
     return on_body(captured, {joint: node for node, joint in found.items()}, dancer_skeleton())
 

@@ -12,7 +12,7 @@ from dancetutor_cli.dance.physics import hair
 from dancetutor_cli.dance.physics.hair import BACK, HEAD, JOINTS, NECK, TIP, add_hair
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import BodyPoint, place, world_transforms
-from dancetutor_cli.dance.rig.limbs import segments_apart
+from dancetutor_cli.dance.rig.limbs import segment_distance
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.dance.smoothing import smooth
@@ -133,7 +133,7 @@ def test_arms_that_swing_through_where_it_hangs_push_it_aside() -> None:
         add_hair(SKELETON, times, rotations, root, arms)
         points, joints = points_of(rotations, root)
         limbs = [[joints[:, SKELETON.index(f"{s}_{n}")] for n in ("shoulder", "elbow", "radiocarpal")] for s in "lr"]
-        gaps = [segments_apart(points[:, k], points[:, k + 1], limb[j], limb[j + 1])
+        gaps = [segment_distance(points[:, k], points[:, k + 1], limb[j], limb[j + 1])
                 for limb in limbs for j in (0, 1) for k in (1, 2, 3)]  # fmt: skip
         deep[arms.forearm_radius] = np.min(gaps)
     assert deep[HAIR.forearm_radius] > 0.034, "a forearm is as thick, but near the wrist"
@@ -187,7 +187,7 @@ def test_over_a_shoulder_it_lies_on_it() -> None:
         for side, sign in (("l", 1.0), ("r", -1.0)):
             neck = joints[:, chest] + quat.rotate(world[:, chest], np.array(NECK) * [sign, 1.0, 1.0])
             shoulder = joints[:, SKELETON.index(f"{side}_shoulder")]
-            gaps += [segments_apart(points[:, k], points[:, k + 1], neck, shoulder) for k in (1, 2, 3)]
+            gaps += [segment_distance(points[:, k], points[:, k + 1], neck, shoulder) for k in (1, 2, 3)]
         gap[settings.shoulder_radius] = np.min(gaps, axis=0)
     within, without = gap[HAIR.shoulder_radius], gap[0.001]
     assert within.min() > 0.030 and np.sum(within < 0.050) <= 10

@@ -11,7 +11,7 @@ from physics_phrase import phrase
 
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics import style as backend
-from dancetutor_cli.dance.physics.pipeline import Passed, through_ragdoll
+from dancetutor_cli.dance.physics.pipeline import RagdollResult, through_ragdoll
 from dancetutor_cli.dance.physics.ragdoll import bones_of, points_of, pose_of, turns_of
 from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN
 from dancetutor_cli.dance.physics.style import PARTS, Spring, Style, load_style
@@ -30,12 +30,12 @@ def changed(style: Style = NEUTRAL, frequency: float | None = None, damping: flo
     return replace(style, springs={p: Spring((frequency,) * 3, (damping,) * 3) for p in PARTS})
 
 
-def degrees_off(given: Motion, passed: Passed, joint: str) -> float:
+def degrees_off(given: Motion, passed: RagdollResult, joint: str) -> float:
     j = given.skeleton.index(joint)
     return float(np.degrees(quat.angle_between(given.rotations[:, j], passed.motion.rotations[:, j])).mean())
 
 
-def wobble(passed: Passed) -> float:
+def wobble(passed: RagdollResult) -> float:
     """Mean second difference of the distances, cm: what shakes from step to step."""
     return float(np.abs(np.diff(passed.distances.values, 2, axis=0)).mean())
 
@@ -46,11 +46,11 @@ def given() -> Motion:
 
 
 @pytest.fixture(scope="module")
-def neutral(given: Motion) -> Passed:
+def neutral(given: Motion) -> RagdollResult:
     return through_ragdoll(given, NEUTRAL)
 
 
-def test_the_goals_of_one_on_one_simulation_hold(neutral: Passed) -> None:
+def test_the_goals_of_one_on_one_simulation_hold(neutral: RagdollResult) -> None:
     mean, deviation, largest = neutral.distances.worst
     assert mean <= MEAN and deviation <= DEVIATION and largest <= LARGEST
     assert mean > 0.001, "springs never follow exactly"
@@ -63,7 +63,7 @@ def test_the_pose_of_a_ragdoll_is_read_back(given: Motion) -> None:
     assert np.degrees(quat.angle_between(turns, back)).max() < 1e-4
 
 
-def test_two_runs_give_the_same_bytes(given: Motion, neutral: Passed) -> None:
+def test_two_runs_give_the_same_bytes(given: Motion, neutral: RagdollResult) -> None:
     again = through_ragdoll(given, NEUTRAL)
     assert again.motion.rotations.tobytes() == neutral.motion.rotations.tobytes()
     assert again.motion.root.tobytes() == neutral.motion.root.tobytes()
@@ -79,7 +79,7 @@ def test_feet_stay_where_the_input_has_them(given: Motion) -> None:
     assert np.abs(given.root - passed.motion.root).max() > 0.01, "the body does move otherwise"
 
 
-def test_without_extra_points_limbs_turn_about_themselves(given: Motion, neutral: Passed) -> None:
+def test_without_extra_points_limbs_turn_about_themselves(given: Motion, neutral: RagdollResult) -> None:
     loose = through_ragdoll(given, replace(NEUTRAL, extra_points=False))
     assert degrees_off(given, neutral, "l_radiocarpal") < 3.0
     assert degrees_off(given, loose, "l_radiocarpal") > 20.0
@@ -104,7 +104,7 @@ def test_without_joint_stiffness_joints_wobble(given: Motion) -> None:
     assert wobble(through_ragdoll(given, stiff)) < 0.8 * wobble(through_ragdoll(given, loose))
 
 
-def test_low_update_and_sample_rates_shake(given: Motion, neutral: Passed) -> None:
+def test_low_update_and_sample_rates_shake(given: Motion, neutral: RagdollResult) -> None:
     slow = through_ragdoll(given, changed(update_rate=120))
     assert slow.distances.worst[2] > 1.3 * neutral.distances.worst[2]
     coarse = through_ragdoll(given, changed(sample_rate=8))
@@ -127,7 +127,7 @@ def test_stiffer_springs_follow_more_closely_and_each_axis_has_its_own(given: Mo
     assert fell.distances.values[-1].mean() > 1.5, "gravity pulls down what is soft upward: g / (2 pi 3)^2 is 2.8 cm"
 
 
-def test_a_disabled_point_is_followed_less(given: Motion, neutral: Passed) -> None:
+def test_a_disabled_point_is_followed_less(given: Motion, neutral: RagdollResult) -> None:
     off = through_ragdoll(given, replace(NEUTRAL, disabled=("l_elbow", "l_radiocarpal", "l_hand_tip")))
     assert off.distances.table()["l_hand_tip"][2] > 10 * neutral.distances.table()["l_hand_tip"][2]
     with pytest.raises(UsageError, match=r"no retargeting point 'l_elbw' \(did you mean l_elbow\?\)"):

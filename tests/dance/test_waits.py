@@ -13,7 +13,7 @@ from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.quality.figures import body_of
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.settings import default_settings
-from dancetutor_cli.dance.waits import Waiting, waiting_at
+from dancetutor_cli.dance.waits import WaitMotion, waiting_at
 from dancetutor_cli.feet.play import Play
 from tests.dance.bake_mirror import mirrored_play
 from tests.dance.bake_plays import L, R, chart, context, pad, play
@@ -41,14 +41,14 @@ def plan() -> Plan:
 
 
 @pytest.fixture(scope="module")
-def waiting(plan: Plan) -> Waiting:
+def waiting(plan: Plan) -> WaitMotion:
     return waiting_at(plan, TIMES, beaten())
 
 
-def test_only_a_stand_is_a_wait(plan: Plan, waiting: Waiting) -> None:
+def test_only_a_stand_is_a_wait(plan: Plan, waiting: WaitMotion) -> None:
     for move in (m for track in plan.feet for m in track.moves):
         near = (move.lift - 0.4 < TIMES) & (move.land + 0.2 > TIMES)
-        for one in fields(Waiting):
+        for one in fields(WaitMotion):
             assert not getattr(waiting, one.name)[near].any(), one.name
     assert (waiting.share[(TIMES > 12.0) & (TIMES < 30.5)] == 1.0).all()
 
@@ -67,7 +67,7 @@ def test_the_weight_is_on_a_foot_on_beats(plan: Plan, every: float) -> None:
     assert np.abs(np.diff(ends)).max() > 0.03
 
 
-def test_nothing_repeats(waiting: Waiting) -> None:
+def test_nothing_repeats(waiting: WaitMotion) -> None:
     """No two stretches of four seconds are alike."""
     inner = np.flatnonzero((TIMES > 12.0) & (TIMES < 31.0))
     parts = [waiting.shift[inner[k : k + 240]] for k in range(0, len(inner) - 240, 240)]
@@ -80,7 +80,7 @@ def test_nothing_repeats(waiting: Waiting) -> None:
     assert acts >= 3, "several things are done in 19 s and before and after"
 
 
-def test_a_mirrored_plan_waits_mirrored(waiting: Waiting) -> None:
+def test_a_mirrored_plan_waits_mirrored(waiting: WaitMotion) -> None:
     image = waiting_at(
         plan_of(chart().timing, mirrored_play(danced(), SINGLE), pad(), settings=STANDING), TIMES, beaten()
     )
@@ -92,7 +92,7 @@ def test_a_mirrored_plan_waits_mirrored(waiting: Waiting) -> None:
         np.testing.assert_allclose(getattr(image, name), getattr(waiting, name)[:, ::-1], atol=1e-12)
 
 
-def test_another_song_waits_otherwise(plan: Plan, waiting: Waiting) -> None:
+def test_another_song_waits_otherwise(plan: Plan, waiting: WaitMotion) -> None:
     other = waiting_at(replace(plan, first=plan.first + 1.0), TIMES, beaten())
     assert np.abs(other.hands - waiting.hands).max() > 0.01
 
@@ -113,7 +113,7 @@ def test_a_body_that_waits_keeps_its_balance_and_its_feet() -> None:
             assert np.ptp(hips[:, 0]) < 0.25
 
 
-def test_arms_and_chest_are_held_otherwise_every_few_seconds(waiting: Waiting) -> None:
+def test_arms_and_chest_are_held_otherwise_every_few_seconds(waiting: WaitMotion) -> None:
     """One hand is before her for a while, then the other or none; the chest turns to a side and back."""
     inner = (TIMES > 12.0) & (TIMES < 30.0)
     ahead = waiting.hands[inner, :, 2]

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.feet.limbs import Limb
-from dancetutor_cli.feet.play import LetGo, Play, StepKind, told, without_unplayable
-from dancetutor_cli.feet.preset import Why
+from dancetutor_cli.feet.play import DroppedNote, Play, StepKind, dropped_notes_message, without_unplayable
+from dancetutor_cli.feet.preset import DropReason
 from tests.dance.bake_plays import LH, RH, L, R, pad, play
 
 LEFT, DOWN, UP, RIGHT = range(4)
 
 
-def gone(one: Play) -> list[tuple[int, int, Why]]:
-    return [(g.row, g.column, g.why) for g in without_unplayable(one, pad())[1]]
+def gone(one: Play) -> list[tuple[int, int, DropReason]]:
+    return [(g.row, g.column, g.reason) for g in without_unplayable(one, pad())[1]]
 
 
 @pytest.mark.parametrize(
@@ -31,7 +31,7 @@ def gone(one: Play) -> list[tuple[int, int, Why]]:
 )
 def test_a_foot_does_not_leap(apart: float, way: tuple[int, int], is_gone: bool) -> None:
     one = play([(0.0, {LEFT: L, way[0]: R}), (apart, {way[1]: R}), (1.0, {RIGHT: R})])
-    assert gone(one) == ([(1, way[1], Why.LEAP)] if is_gone else [])
+    assert gone(one) == ([(1, way[1], DropReason.LEAP)] if is_gone else [])
 
 
 def test_of_a_trill_of_one_foot_it_plays_every_second_note() -> None:
@@ -56,7 +56,7 @@ def test_the_next_step_faces_as_the_feet_really_stand() -> None:
 def test_a_hand_does_not_hop_but_drums_a_roll() -> None:
     quad = {LEFT: L, RIGHT: R, UP: RH, DOWN: LH}
     one = play([(0.36 * k, quad) for k in range(4)])
-    assert {g[0] for g in gone(one)} == {1, 2, 3} and {g[2] for g in gone(one)} == {Why.HAND}
+    assert {g[0] for g in gone(one)} == {1, 2, 3} and {g[2] for g in gone(one)} == {DropReason.HAND}
     assert not gone(play([(0.5 * k, quad) for k in range(4)]))
     drummed = play([(0.36 * k, {LEFT: L, UP: RH} if k else quad) for k in range(4)])
     assert len(gone(drummed)) == 3
@@ -67,7 +67,7 @@ def test_a_hand_does_not_hop_but_drums_a_roll() -> None:
 def test_what_the_solver_left_over_is_told_and_mirrors() -> None:
     one = play([(0.0, {LEFT: L, RIGHT: R}), (0.5, {UP: R}), (0.57, {DOWN: R})])
     one.limb[0, UP] = Limb.UNPLAYED
-    assert gone(one) == [(0, UP, Why.LIMBS), (2, DOWN, Why.LEAP)]
+    assert gone(one) == [(0, UP, DropReason.LIMBS), (2, DOWN, DropReason.LEAP)]
     mirrored = play([(0.0, {LEFT: L, RIGHT: R}), (0.5, {UP: L}), (0.57, {DOWN: L})])
     mirrored.limb[0, UP] = Limb.UNPLAYED
     assert gone(mirrored) == gone(one)
@@ -78,7 +78,7 @@ def test_why_is_kept_for_who_decided_before() -> None:
     left, found = without_unplayable(one, pad())
     slower = replace(left, rows=replace(left.rows, second=2 * left.rows.second))
     again, same = without_unplayable(slower, pad(), found)
-    assert [(g.row, g.column, g.why) for g in same] == [(2, DOWN, Why.LEAP)]
+    assert [(g.row, g.column, g.reason) for g in same] == [(2, DOWN, DropReason.LEAP)]
     assert same[0].second == pytest.approx(1.14) and (again.limb == left.limb).all()
 
 
@@ -88,8 +88,12 @@ def test_a_play_that_can_be_played_is_the_same_object() -> None:
 
 
 def test_it_is_told_in_one_line() -> None:
-    found = [LetGo(1.0, 0, 2, Why.LEAP), LetGo(2.0, 5, 1, Why.LEAP), LetGo(2.0, 5, 2, Why.LIMBS)]
-    assert told(found) == (
+    found = [
+        DroppedNote(1.0, 0, 2, DropReason.LEAP),
+        DroppedNote(2.0, 5, 1, DropReason.LEAP),
+        DroppedNote(2.0, 5, 2, DropReason.LIMBS),
+    ]
+    assert dropped_notes_message(found) == (
         "3 notes let go, for nobody plays them: 1 more panels at once than limbs, 2 a foot would have to leap at once"
     )
-    assert told(()) == "" and told(found[:1]).startswith("1 note let go")
+    assert dropped_notes_message(()) == "" and dropped_notes_message(found[:1]).startswith("1 note let go")

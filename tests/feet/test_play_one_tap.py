@@ -11,7 +11,7 @@ import pytest
 from dancetutor_cli.chart import Chart, load, parse
 from dancetutor_cli.feet import Overrides, Rows, StepKind, default_preset, load_pad, load_preset, prepare
 from dancetutor_cli.feet.solver.engine import Engine, engine_for
-from dancetutor_cli.feet.solver.solve import OneTap, forced_limbs, moved_tap
+from dancetutor_cli.feet.solver.solve import OneTap, forced_limbs, move_tap
 from dancetutor_cli.feet.solver.store import BASE, MOVES
 from dancetutor_cli.run.reading import charts_path
 
@@ -35,8 +35,8 @@ def assert_same(engine: Engine, rows: Rows, overrides: Overrides | None = None, 
     _, _, path = engine.solved(rows, forced_limbs(rows, overrides))
     short = 0
     for row, column, to in edits_of(rows)[::every]:
-        said = one.moved(row, column, to)
-        edited = moved_tap(rows, row, column, to)
+        said = one.outline_with(row, column, to)
+        edited = move_tap(rows, row, column, to)
         _, nodes, whole = engine.solved(edited, forced_limbs(edited, overrides))
         events = engine.events(path)
         events[said.first : said.first + len(said.events)] = said.events
@@ -93,9 +93,9 @@ def test_tables_that_start_anew_are_no_matter() -> None:
     rows = prepare(chart, pad, preset.roll_window)
     one = OneTap(engine, rows, lambda _: None)
     edit = next(edit for edit in edits_of(rows) if edit[0] > 20)
-    before, era = one.moved(*edit), engine.era
+    before, era = one.outline_with(*edit), engine.era
     engine.tables.counts[MOVES] = 3_000_000
-    after = one.moved(*edit)
+    after = one.outline_with(*edit)
     assert engine.era == era + 1
     assert (after.total, after.first, after.events.tolist()) == (before.total, before.first, before.events.tolist())
 

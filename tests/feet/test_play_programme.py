@@ -152,8 +152,8 @@ def test_little_room_changes_nothing(corpus_rows: list[tuple[str, Rows]]) -> Non
         little._moves = moves(len(preset.weights), 1)
         used = int(usual.solved(rows)[1].row[len(rows) + 1, FIRST])
         for room in (1, used, used + 1):
-            found = little._found(*rows.steps.shape, margins=True)
-            little._until_done(0, _arrays(rows, None), _nodes(len(rows), np.empty(room, dtype=np.int64)), found)
+            found = little._empty_path(*rows.steps.shape, margins=True)
+            little._run_to_end(0, _arrays(rows, None), _nodes(len(rows), np.empty(room, dtype=np.int64)), found)
             for field in ("limb", "part", "margin", "ambiguity"):
                 assert np.array_equal(getattr(found, field), getattr(expected, field)), (steps_type, room, field)
 

@@ -38,7 +38,7 @@ def test_the_tempo_of_m_is_that_of_the_notes() -> None:
     eighths = np.arange(0.0, 60.0, 0.25)  # of 120 BPM
     ones = np.ones(len(eighths))
     assert reading_bpm(eighths, 2 * eighths, ones) == pytest.approx(120)
-    slow = parse_segments("0=8").shown(eighths / 4)  # 15 BPM
+    slow = parse_segments("0=8").drawn_beats(eighths / 4)  # 15 BPM
     assert reading_bpm(eighths, slow, ones) == pytest.approx(120)
     assert reading_bpm(eighths, 2 * eighths, 3 * ones) == pytest.approx(360), "speed segments spread the notes"
     burst = np.interp(eighths, [0, 57, 60], [0, 114, 114 + 96])  # three seconds at 1920 BPM
@@ -57,12 +57,12 @@ def test_what_stands_still_has_no_tempo() -> None:
 def test_scroll_segments_integrate_their_ratios() -> None:
     segments = parse_segments("0=1,4=0.5,8=-1,x=3,9")
     beats = np.array([-1.0, 2.0, 4.0, 6.0, 8.0, 9.0])
-    assert segments.shown(beats) == pytest.approx([-1, 2, 4, 5, 6, 5])
+    assert segments.drawn_beats(beats) == pytest.approx([-1, 2, 4, 5, 6, 5])
 
 
 def test_no_segments_leave_the_beats_alone() -> None:
     beats = np.array([0.0, 3.5])
-    assert parse_segments("0=1").shown(beats) is beats
+    assert parse_segments("0=1").drawn_beats(beats) is beats
 
 
 def test_speeds_go_evenly_from_one_to_the_next() -> None:

@@ -39,7 +39,7 @@ def test_nothing_changed(tmp_path: Path) -> None:
 def test_a_row_has_another_panel_a_new_one_and_one_that_is_gone(tmp_path: Path) -> None:
     found = changed(tmp_path, lambda text: text.replace("0110\n00M0\n0000\n0001", "0101\n0000\n1000\n0001"))
     assert [change.chart for change in found] == ["dance-single Hard 9"]
-    assert found[0].said == ("rows: 1 new, 1 gone, 1 other",)
+    assert found[0].messages == ("rows: 1 new, 1 gone, 1 other",)
     assert [str(row) for row in found[0].rows] == [
         "measure 1 beat 4: 0110 → 0101", "measure 1 beat 5: gone 00M0", "measure 1 beat 6: new 1000",
     ]  # fmt: skip

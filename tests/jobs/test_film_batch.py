@@ -19,7 +19,7 @@ from dancetutor_cli.film.work.batch import Batch, BatchRequest, film_list, parse
 from dancetutor_cli.film.work.records import WORK
 from dancetutor_cli.film.work.segments import FilmJob, FilmOutcome
 from dancetutor_cli.run.errors import FileError, UsageError
-from dancetutor_cli.run.pool import Finished, SerialWorkers
+from dancetutor_cli.run.pool import FinishedWork, SerialWorkers
 
 SIZE = (64, 64)
 NOTES = "1000\n0100\n0010\n0001\n,\n1000\n0010\n0100\n0001\n"
@@ -116,8 +116,8 @@ class Many(SerialWorkers):
     def at_once(self) -> int:
         return self.count
 
-    def done(self) -> Iterator[Finished]:
-        for done in super().done():
+    def results(self) -> Iterator[FinishedWork]:
+        for done in super().results():
             self.kinds.append(done.key[0])
             yield done
 
@@ -137,8 +137,8 @@ class Stopping(SerialWorkers):
         super().__init__(lambda key, frames: None)
         self.after = after
 
-    def done(self) -> Iterator[Finished]:
-        for done in super().done():
+    def results(self) -> Iterator[FinishedWork]:
+        for done in super().results():
             yield done
             if done.key[0] == "segment":
                 self.after -= 1

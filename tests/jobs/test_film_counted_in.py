@@ -11,14 +11,14 @@ from dance_requests import film_request
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.film.clock import Practice
 from dancetutor_cli.film.layout import FilmLook, load_layout
-from dancetutor_cli.film.work.planning import Prepared, prepare
+from dancetutor_cli.film.work.planning import PreparedFilm, prepare
 from dancetutor_cli.film.work.request import look_up, notes_without, quiet_in
 
 STREAM = "1000\n0100\n0010\n0001\n0100\n1000\n0010\n0001\n"
 
 
 @pytest.fixture(scope="module", params=[1, 2])
-def prepared(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Prepared:
+def prepared(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> PreparedFilm:
     """Four steps a second for 16 seconds, of which 8 to 10 are practised, by one or by two."""
     path = tmp_path_factory.mktemp("counted") / "stream.sm"
     steps, notes = "dance-single", ",\n".join([STREAM] * 8)
@@ -31,7 +31,7 @@ def prepared(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRe
     return prepare(wanted, look_up(wanted))
 
 
-def test_nothing_is_stepped_or_shown_while_it_counts(prepared: Prepared) -> None:
+def test_nothing_is_stepped_or_shown_while_it_counts(prepared: PreparedFilm) -> None:
     plan = prepared.plan
     one = plan.clock.passes[0]
     assert (one.start, one.sound_from) == (6.0, 8.0)
@@ -46,12 +46,12 @@ def test_nothing_is_stepped_or_shown_while_it_counts(prepared: Prepared) -> None
             assert (np.abs(starts - 8.0) < 0.02).any()
 
 
-def test_the_strip_still_shows_the_whole_song(prepared: Prepared) -> None:
+def test_the_strip_still_shows_the_whole_song(prepared: PreparedFilm) -> None:
     steps = prepared.plan.song.steps
     assert ((steps >= 6.0) & (steps < 8.0)).sum() == 8
 
 
-def test_without_a_count_in_all_is_danced(prepared: Prepared) -> None:
+def test_without_a_count_in_all_is_danced(prepared: PreparedFilm) -> None:
     plan = prepared.plan
     assert quiet_in((replace(plan.clock.passes[0], count=0),)) is None
     assert notes_without(plan.notes, None) is plan.notes

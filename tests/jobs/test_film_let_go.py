@@ -16,14 +16,14 @@ from dancetutor_cli.film.notes import PanelLights
 from dancetutor_cli.film.overlay import sprites
 from dancetutor_cli.film.overlay.diagram import NextRows, PadView
 from dancetutor_cli.film.overlay.text import Typeface
-from dancetutor_cli.film.work.planning import Prepared, prepare
+from dancetutor_cli.film.work.planning import PreparedFilm, prepare
 from dancetutor_cli.film.work.request import look_up
 
 # the left foot holds, and the right one is asked for up and down 75 ms apart
 TRILL = "2000\n0000\n0000\n0000\n0000\n0000\n0000\n0000\n0010\n0100\n0010\n0100\n0000\n3000\n0000\n0001\n"
 
 
-def prepared(folder: Path, **more: object) -> Prepared:
+def prepared(folder: Path, **more: object) -> PreparedFilm:
     path = folder / "trill.sm"
     path.write_text(f"#TITLE:T;\n#OFFSET:0;\n#BPMS:0=200;\n#NOTES:dance-single::Hard:9::\n{TRILL};\n")
     look = FilmLook(load_layout("practice"), (320, 180), quality="draft", renderer="cpu")
@@ -32,11 +32,11 @@ def prepared(folder: Path, **more: object) -> Prepared:
 
 
 @pytest.fixture(scope="module")
-def film(tmp_path_factory: pytest.TempPathFactory) -> Prepared:
+def film(tmp_path_factory: pytest.TempPathFactory) -> PreparedFilm:
     return prepared(tmp_path_factory.mktemp("trill"))
 
 
-def test_the_notes_are_marked_and_light_nothing(film: Prepared) -> None:
+def test_the_notes_are_marked_and_light_nothing(film: PreparedFilm) -> None:
     left = film.plan.notes.limb == Limb.UNPLAYED
     assert left.sum() == 2 and (film.plan.notes.column[left] == 1).all()
     lights = PanelLights(film.plan.presses, 4, 0.3)
@@ -46,14 +46,14 @@ def test_the_notes_are_marked_and_light_nothing(film: Prepared) -> None:
     assert film.warnings[0].startswith("2 notes let go")
 
 
-def test_words_say_it_and_what_the_linter_finds_there(film: Prepared) -> None:
+def test_words_say_it_and_what_the_linter_finds_there(film: PreparedFilm) -> None:
     """Without --show-findings; what it finds in rows that can be played is for authors."""
     (one,) = (one for one in film.plan.callouts if "no foot left" in one.text)
     assert one.text == "no foot left (DT305 fast step) ×2" and one.tag == "no foot left ×2"
     assert all(one.severity == "move" for one in film.plan.callouts)
 
 
-def test_a_small_pad_has_a_cross_where_no_foot_comes(film: Prepared) -> None:
+def test_a_small_pad_has_a_cross_where_no_foot_comes(film: PreparedFilm) -> None:
     rows = film.plan.rows
     assert rows is not None
     row = int(np.flatnonzero((rows.limb == Limb.UNPLAYED).any(axis=1))[0])
@@ -73,7 +73,7 @@ def test_runs_at_all_rates_let_the_same_notes_go(tmp_path: Path) -> None:
     two = prepared(tmp_path, rates=(0.5, 1.0))
     assert sorted(two.plan.motions) == [0.5, 1.0]
     for (motion,) in two.plan.motions.values():
-        assert len(motion.let_go) == 2 and len({one.why for one in motion.let_go}) == 1
+        assert len(motion.let_go) == 2 and len({one.reason for one in motion.let_go}) == 1
     slow = prepared(tmp_path, rates=(0.5,))
     assert not slow.plan.motions[0.5][0].let_go and not (slow.plan.notes.limb == Limb.UNPLAYED).any()
 

@@ -15,7 +15,7 @@ from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.notes import PanelLights, lighting
 from dancetutor_cli.film.overlay import sprites
-from dancetutor_cli.film.work.planning import Prepared, prepare
+from dancetutor_cli.film.work.planning import PreparedFilm, prepare
 from dancetutor_cli.film.work.request import look_up
 
 # the right foot holds, the left one steps, and 12 ms later mines pass on its panel and on another one
@@ -23,7 +23,7 @@ ROWS = ["0001", *["0000"] * 23, "0002", *["0000"] * 23, "1000", "M0M0", *["0000"
 
 
 @pytest.fixture(scope="module")
-def film(tmp_path_factory: pytest.TempPathFactory) -> Prepared:
+def film(tmp_path_factory: pytest.TempPathFactory) -> PreparedFilm:
     path = tmp_path_factory.mktemp("mines") / "mines.sm"
     rows = "\n".join(ROWS)
     path.write_text(f"#TITLE:T;\n#OFFSET:0;\n#BPMS:0=200;\n#NOTES:dance-single::Hard:9::\n{rows}\n;\n")
@@ -32,7 +32,7 @@ def film(tmp_path_factory: pytest.TempPathFactory) -> Prepared:
     return prepare(request, look_up(request))
 
 
-def test_the_mine_under_the_foot_is_marked_and_no_other(film: Prepared) -> None:
+def test_the_mine_under_the_foot_is_marked_and_no_other(film: PreparedFilm) -> None:
     notes = film.plan.notes
     mines = notes.kind == Kind.MINE
     assert mines.sum() == 2 and notes.limb[mines & (notes.column == 0)] == 0
@@ -41,7 +41,7 @@ def test_the_mine_under_the_foot_is_marked_and_no_other(film: Prepared) -> None:
     assert said == f"a foot is on a mine as it passes, or less than 3 cm over: {notes.second[mines][0]:.2f} s"
 
 
-def test_words_say_it_and_what_the_linter_finds_there(film: Prepared) -> None:
+def test_words_say_it_and_what_the_linter_finds_there(film: PreparedFilm) -> None:
     (one,) = (one for one in film.plan.callouts if "mine" in one.text)
     assert one.text == "mine: not cleared (DT303 mine under hold)" and one.tag == "not cleared"
     assert one.severity == "move"
@@ -61,7 +61,7 @@ def test_of_two_who_dance_it_says_whose_foot_it_is(whose: int, tmp_path: Path) -
     assert plan.notes.limb[(plan.notes.kind == Kind.MINE) & (plan.notes.column == 4 * whose - 4)].tolist() == [0]
 
 
-def test_its_panel_is_lit_and_it_is_no_step(film: Prepared) -> None:
+def test_its_panel_is_lit_and_it_is_no_step(film: PreparedFilm) -> None:
     """Nothing claps on it either: that goes by presses."""
     plan = film.plan
     second = float(plan.notes.second[plan.notes.kind == Kind.MINE][0])
@@ -70,7 +70,7 @@ def test_its_panel_is_lit_and_it_is_no_step(film: Prepared) -> None:
     assert lights.at(0, second) == (1.0, 0) and lights.at(2, second) == (0.0, -1)
 
 
-def test_only_the_mine_under_the_foot_has_a_cross(film: Prepared) -> None:
+def test_only_the_mine_under_the_foot_has_a_cross(film: PreparedFilm) -> None:
     look = FilmLook(load_layout("highway"), (320, 360), quality="draft", renderer="cpu")
     highway = Film(replace(film.plan, look=look)).highway
     assert highway is not None

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from dancetutor_cli.run.errors import FileError, UnavailableError, UsageError
-from dancetutor_cli.run.pool import Finished, Report, Task, WorkFailedError, open_workers
+from dancetutor_cli.run.pool import FinishedWork, Report, Task, WorkFailedError, open_workers
 
 COMMON = "dancetutor_cli.film.choices"
 
@@ -66,7 +66,7 @@ def test_results_and_reports_come_back(jobs: int, common: str) -> None:
     try:
         for number in range(5):
             workers.submit(Task(f"t{number}", double, (number,)))
-        results = {done.key: done.result for done in workers.done()}
+        results = {done.key: done.result for done in workers.results()}
     finally:
         workers.close()
     assert results == {f"t{n}": 2 * n for n in range(5)}
@@ -79,7 +79,7 @@ def test_errors_come_back_as_they_are(jobs: int) -> None:
     try:
         workers.submit(Task("known", refuse, (7,)))
         workers.submit(Task("unknown", stumble))
-        results = {done.key: done for done in workers.done()}
+        results = {done.key: done for done in workers.results()}
     finally:
         workers.close()
     assert isinstance(results["known"].error, FileError) and str(results["known"].error) == "a.sm:3: refused 7"
@@ -93,7 +93,7 @@ def test_more_work_may_come_while_results_do() -> None:
     seen = []
     try:
         workers.submit(Task(1, double, (1,)))
-        for done in workers.done():
+        for done in workers.results():
             seen.append(done.result)
             if done.result < 30:
                 workers.submit(Task(done.result, double, (done.result,)))
@@ -109,10 +109,10 @@ def test_the_work_of_a_dead_worker_is_done_again_once(tmp_path: Path, common: st
         workers.submit(Task("once", die, (tmp_path / "died",)))
         workers.submit(Task("always", die, (None,)))
         workers.submit(Task("fine", double, (4,)))
-        results = {done.key: done for done in workers.done()}
+        results = {done.key: done for done in workers.results()}
     finally:
         workers.close()
-    assert results["once"] == Finished("once", "survived") and results["fine"].result == 8
+    assert results["once"] == FinishedWork("once", "survived") and results["fine"].result == 8
     assert isinstance(results["always"].error, UnavailableError) and "killed" in str(results["always"].error)
 
 
@@ -129,7 +129,7 @@ def test_what_is_common_is_there_before_the_first_work() -> None:
     workers = open_workers(2, lambda key, n: None, COMMON)
     try:
         workers.submit(Task(1, has_imported, (COMMON,)))
-        assert [done.result for done in workers.done()] == [True]
+        assert [done.result for done in workers.results()] == [True]
     finally:
         workers.close()
 
@@ -146,7 +146,7 @@ def test_a_server_that_is_killed_is_done_without(monkeypatch: pytest.MonkeyPatch
     workers = open_workers(2, lambda key, n: None, COMMON)
     try:
         workers.submit(Task(1, double, (1,)))
-        assert [done.result for done in workers.done()] == [2]
+        assert [done.result for done in workers.results()] == [2]
     finally:
         workers.close()
 

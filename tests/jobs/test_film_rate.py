@@ -15,7 +15,7 @@ from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig.body import centre_of_mass, joint_matrices, world_transforms
 from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
-from dancetutor_cli.film.work.planning import Prepared, prepare
+from dancetutor_cli.film.work.planning import PreparedFilm, prepare
 from dancetutor_cli.film.work.request import look_up
 
 RATES = (0.5, 1.0)
@@ -33,13 +33,13 @@ def song(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def prepared(song: Path) -> Prepared:
+def prepared(song: Path) -> PreparedFilm:
     look = FilmLook(load_layout("dancer"), (64, 64), "draft", "cpu")
     request = film_request(song, Selection(), look, fps=FPS, section="3:7", mute=True, rates=RATES)
     return prepare(request, look_up(request))
 
 
-def test_each_run_is_baked_as_animate_bakes_it(song: Path, prepared: Prepared) -> None:
+def test_each_run_is_baked_as_animate_bakes_it(song: Path, prepared: PreparedFilm) -> None:
     film, clock = Film(prepared.plan), prepared.plan.clock
     for run, rate in enumerate(RATES):
         motion = baked(DanceRequest(song, Selection(), "thesis", rates=(rate,)), "3:7", rate)
@@ -50,7 +50,7 @@ def test_each_run_is_baked_as_animate_bakes_it(song: Path, prepared: Prepared) -
         np.testing.assert_allclose(shown, expected, atol=1e-9)
 
 
-def test_she_falls_in_the_film_as_everybody_does(prepared: Prepared) -> None:
+def test_she_falls_in_the_film_as_everybody_does(prepared: PreparedFilm) -> None:
     clock = prepared.plan.clock
     for run, rate in enumerate(RATES):
         (motion,) = prepared.plan.motions[rate]

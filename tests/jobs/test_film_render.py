@@ -23,7 +23,7 @@ from dancetutor_cli.film.media.encoder import Encoding, join
 from dancetutor_cli.film.media.sound import SoundPlan
 from dancetutor_cli.film.notes import NoteTrack
 from dancetutor_cli.film.work import segments
-from dancetutor_cli.film.work.planning import Prepared
+from dancetutor_cli.film.work.planning import PreparedFilm
 from dancetutor_cli.film.work.render import make_film
 from dancetutor_cli.run.errors import DancetutorError
 
@@ -90,7 +90,7 @@ def test_the_receptor_lights_in_the_frame_of_the_click(tmp_path: Path, fps: int,
     notes = NoteTrack(*(getattr(plan.notes, field.name)[:0] for field in fields(NoteTrack)))
     plan = replace(plan, notes=notes, beats=np.full(clock.frames, -1.0))  # nothing else moves than the receptor's light
     film = tmp_path / "film.mp4"
-    prepared = Prepared(plan, SoundPlan(tmp_path / "song.wav"), ())
+    prepared = PreparedFilm(plan, SoundPlan(tmp_path / "song.wav"), ())
     make_film(lambda: prepared, Encoding("mp4", size, fps, quality), film, 1, Silent())
 
     heard = onsets(decode_sound(film))
@@ -121,7 +121,7 @@ def digest(path: Path) -> str:
 def test_any_number_of_workers_makes_the_same_film(tmp_path: Path) -> None:
     plan = film_plan(np.arange(0.5, 9.0, 0.25), size=(96, 96))
     write_clicks(tmp_path / "song.wav")
-    prepared = Prepared(plan, SoundPlan(tmp_path / "song.wav"), ())
+    prepared = PreparedFilm(plan, SoundPlan(tmp_path / "song.wav"), ())
     films = []
     for jobs in (1, 2):
         film = tmp_path / f"film{jobs}.mp4"
@@ -136,7 +136,7 @@ def test_any_number_of_workers_makes_the_same_film(tmp_path: Path) -> None:
 def test_the_film_is_marked_as_bt709_and_starts_fast(tmp_path: Path) -> None:
     plan = film_plan(np.array([0.5]), size=(64, 64))
     film = tmp_path / "film.mp4"
-    make_film(lambda: Prepared(plan, None, ()), Encoding("mp4", (64, 64), 30), film, 1, Silent())
+    make_film(lambda: PreparedFilm(plan, None, ()), Encoding("mp4", (64, 64), 30), film, 1, Silent())
     said = subprocess.run([ffmpeg.executable(), "-i", str(film)], capture_output=True, text=True, check=False).stderr
     assert "yuv420p(tv, bt709" in said and "unknown" not in said.split("yuv420p")[1].split("\n")[0]
     data = film.read_bytes()
@@ -149,7 +149,7 @@ def test_pictures_are_the_frames_and_replace_older_ones(tmp_path: Path) -> None:
     folder.mkdir()
     (folder / "frame_999999.png").write_bytes(b"old")
     (folder / "mine.png").write_bytes(b"the user's")
-    make_film(lambda: Prepared(plan, None, ()), Encoding("png", (64, 48), 30), folder, 1, Silent())
+    make_film(lambda: PreparedFilm(plan, None, ()), Encoding("png", (64, 48), 30), folder, 1, Silent())
     names = sorted(p.name for p in folder.iterdir())
     assert names == [*(f"frame_{k:06d}.png" for k in range(plan.clock.frames)), "mine.png"]
 
@@ -164,7 +164,7 @@ def test_moving_pictures_have_all_frames(tmp_path: Path, kind: str) -> None:
     clock = Clock((Pass(0.0, 1.0),), 20)
     plan = film_plan(np.array([0.2, 0.4]), clock, (64, 64))
     film = tmp_path / f"film.{kind}"
-    make_film(lambda: Prepared(plan, None, ()), Encoding(kind, (64, 64), 20), film, 1, Silent())  # type: ignore[arg-type]
+    make_film(lambda: PreparedFilm(plan, None, ()), Encoding(kind, (64, 64), 20), film, 1, Silent())  # type: ignore[arg-type]
     with Image.open(film) as image:
         assert image.format == kind.upper() and image.size == (64, 64)
         assert getattr(image, "n_frames", 1) >= 15  # equal neighbours may be merged
@@ -181,7 +181,7 @@ def test_a_dead_encoder_says_its_own_words_and_leaves_nothing(tmp_path: Path, mo
     out = tmp_path / "out"
     out.mkdir()
     with pytest.raises(DancetutorError, match="the codec fell over") as caught:
-        make_film(lambda: Prepared(plan, None, ()), Encoding("mp4", (64, 64), 30), out / "film.mp4", 1, Silent())
+        make_film(lambda: PreparedFilm(plan, None, ()), Encoding("mp4", (64, 64), 30), out / "film.mp4", 1, Silent())
     assert "\n" not in str(caught.value)
     assert list(out.iterdir()) == []
 
@@ -195,7 +195,7 @@ def test_an_interrupted_film_leaves_the_old_one(tmp_path: Path) -> None:
     film.write_bytes(b"the old one")
     plan = film_plan(np.array([0.5]), size=(64, 64))
     with pytest.raises(KeyboardInterrupt):
-        make_film(lambda: Prepared(plan, None, ()), Encoding("mp4", (64, 64), 30), film, 1, Stop())
+        make_film(lambda: PreparedFilm(plan, None, ()), Encoding("mp4", (64, 64), 30), film, 1, Stop())
     assert film.read_bytes() == b"the old one"
     assert [p.name for p in tmp_path.iterdir()] == ["film.mp4"]
 

@@ -14,7 +14,7 @@ from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.film.clock import REST, Practice
 from dancetutor_cli.film.film import BACKGROUND, Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
-from dancetutor_cli.film.work.planning import Prepared, prepare
+from dancetutor_cli.film.work.planning import PreparedFilm, prepare
 from dancetutor_cli.film.work.request import FilmRequest, look_up, quiet_after
 
 STREAM = "1000\n0100\n0010\n0001\n0100\n1000\n0010\n0001\n"
@@ -37,19 +37,19 @@ def asked(song: Path, section: str | None, practice: Practice, *rates: float) ->
 
 
 @pytest.fixture(scope="module")
-def prepared(song: Path) -> Prepared:
+def prepared(song: Path) -> PreparedFilm:
     wanted = asked(song, "6:8", Practice(rest=REST), *RATES)
     return prepare(wanted, look_up(wanted))
 
 
-def test_the_last_run_alone_lasts_longer(prepared: Prepared) -> None:
+def test_the_last_run_alone_lasts_longer(prepared: PreparedFilm) -> None:
     first, last = prepared.plan.clock.passes
     assert (first.end, first.rest) == (8.0, 0.0)
     assert last.end == pytest.approx(8.0 + 1.25 * REST) and last.until == pytest.approx(8.0)
     assert prepared.plan.clock.seconds == pytest.approx(2 / 0.5 + 2 / 1.25 + REST)
 
 
-def test_what_follows_the_passage_is_neither_danced_nor_shown(prepared: Prepared) -> None:
+def test_what_follows_the_passage_is_neither_danced_nor_shown(prepared: PreparedFilm) -> None:
     plan = prepared.plan
     for seconds in (plan.notes.second, plan.presses.start):
         assert (seconds == 7.75).any() and not (seconds >= 8.0).any()
@@ -59,7 +59,7 @@ def test_what_follows_the_passage_is_neither_danced_nor_shown(prepared: Prepared
         assert (np.abs(starts - 7.75) < 0.02).any() and not (starts > 7.99).any()
 
 
-def test_she_stands_at_the_end_and_smiles(prepared: Prepared) -> None:
+def test_she_stands_at_the_end_and_smiles(prepared: PreparedFilm) -> None:
     (motion,) = prepared.plan.motions[1.25]
     places, _ = world_transforms(motion.skeleton, motion.rotations, motion.root)
     end = prepared.plan.clock.passes[-1].end / 1.25
@@ -88,7 +88,7 @@ def test_no_rest_is_added_behind_a_song_nor_where_none_is_asked_for(
     assert clock.passes[-1].rest == 0.0 and quiet_after(clock.passes) is None
 
 
-def test_the_picture_goes_dark_at_the_end_of_a_film_and_not_of_poses(song: Path, prepared: Prepared) -> None:
+def test_the_picture_goes_dark_at_the_end_of_a_film_and_not_of_poses(song: Path, prepared: PreparedFilm) -> None:
     plan = prepared.plan
     assert plan.fade > 0
     last = plan.clock.frames - 1

@@ -17,7 +17,7 @@ from dancetutor_cli.lint.cache import ResultCache
 from dancetutor_cli.lint.results import to_bytes
 from dancetutor_cli.lint.run import LintRequest, LintRun, _batches, analyze_all
 from dancetutor_cli.run.errors import UnavailableError
-from dancetutor_cli.run.pool import Finished, SerialWorkers
+from dancetutor_cli.run.pool import FinishedWork, SerialWorkers
 from dancetutor_cli.run.reading import charts_path
 
 NOTES = "#TITLE:{};\n#ARTIST:A;\n#CREDIT:C;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n1000\n0100\n0010\n0001\n;\n"
@@ -160,8 +160,8 @@ def test_what_could_not_be_opened_is_not_kept(tmp_path: Path) -> None:
 
 def test_a_breakdown_is_not_kept(song: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     class Dying(SerialWorkers):
-        def done(self) -> Iterator[Finished]:
-            yield from (Finished(task.key, error=UnavailableError("killed")) for task in self._queue)
+        def results(self) -> Iterator[FinishedWork]:
+            yield from (FinishedWork(task.key, error=UnavailableError("killed")) for task in self._queue)
 
     monkeypatch.setattr("dancetutor_cli.lint.run._WORTH_WORKERS", 1)
     monkeypatch.setattr("dancetutor_cli.run.pool.open_workers", lambda jobs, report: Dying(report))
@@ -176,12 +176,12 @@ def test_of_files_sent_together_only_the_one_that_breaks_a_worker_is_lost(
     """As a worker that the system kills, for it has taken too much memory: what it had in hand fails as one."""
 
     class Dying(SerialWorkers):
-        def done(self) -> Iterator[Finished]:
+        def results(self) -> Iterator[FinishedWork]:
             while self._queue:
                 task = self._queue.popleft()
                 deadly = any(one.path.name == "5.sm" for one in task.arguments[0])
                 error = UnavailableError("killed") if deadly else None
-                yield Finished(task.key, None if deadly else task.function(lambda n: None, *task.arguments), error)
+                yield FinishedWork(task.key, None if deadly else task.function(lambda n: None, *task.arguments), error)
 
     tasks = []
     for n in range(40):

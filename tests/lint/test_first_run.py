@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.feet import load_preset
 from dancetutor_cli.feet.solver import compiled
 from dancetutor_cli.lint.configuration import PresetChoice
-from dancetutor_cli.run.kernels.store import Kept, kernel_folder
+from dancetutor_cli.run.kernels.store import StoredCode, kernel_folder
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def fill(cache: Path, *names: str, stamp: str | None = None) -> None:
     for name in names:
-        Kept(compiled._HERE / "solvers.py", name, stamp or compiled.source_stamp()).write("", b"...")
+        StoredCode(compiled._HERE / "solvers.py", name, stamp or compiled.source_stamp()).write("", b"...")
 
 
 def test_kernels_are_missing_until_they_are_all_there(cache: Path) -> None:
@@ -52,10 +52,10 @@ def test_kernels_of_other_code_count_for_nothing(cache: Path) -> None:
 def test_only_a_terminal_is_told(
     cache: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    tell_of_compiling(PresetChoice())
+    announce_compiling(PresetChoice())
     assert capsys.readouterr().err == ""
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
-    tell_of_compiling(PresetChoice())
+    announce_compiling(PresetChoice())
     assert capsys.readouterr().err.startswith("compiling the solver's kernels (once;")
     shutil.rmtree(cache)
 

@@ -22,8 +22,8 @@ def test_it_survives_the_file(tmp_path: Path) -> None:
     keys = [empty.key("a/x.sm", CHART, SPIN)] * 2 + [empty.key("a/x.sm", "", TITLE)]
     empty.replaced(keys).write()
     read = load_baseline(path)
-    assert read.known == empty.replaced(keys).known
-    assert sum(read.known.values()) == 3
+    assert read.allowed == empty.replaced(keys).allowed
+    assert sum(read.allowed.values()) == 3
 
 
 def test_each_entry_absorbs_one_finding_and_other_beats_none(tmp_path: Path) -> None:
@@ -49,7 +49,7 @@ def test_an_update_keeps_the_files_that_were_not_analysed(tmp_path: Path) -> Non
     keys = [("x.sm", CHART, "DT202", 48), ("y.sm", CHART, "DT202", 48)]
     baseline = Baseline(tmp_path / "b.json").replaced(keys)
     baseline.saw(str(tmp_path / "x.sm"), CHART, ["DT201", "DT202"])
-    assert sorted(baseline.replaced([("x.sm", CHART, "DT201", 0)]).known) == [("x.sm", CHART, "DT201", 0), keys[1]]
+    assert sorted(baseline.replaced([("x.sm", CHART, "DT201", 0)]).allowed) == [("x.sm", CHART, "DT201", 0), keys[1]]
 
 
 @pytest.mark.parametrize(
@@ -79,9 +79,9 @@ def test_an_update_keeps_entries_of_rules_and_charts_that_were_not_looked_at(tmp
     baseline = Baseline(tmp_path / "b.json").replaced(keys)
     baseline.saw(str(tmp_path / "x.sm"), CHART, ["DT202"])
     assert baseline.unused() == keys[:1]
-    assert set(baseline.replaced([]).known) == set(keys[1:])
+    assert set(baseline.replaced([]).allowed) == set(keys[1:])
     baseline.saw_all_charts(str(tmp_path / "x.sm"))  # so there is no Easy any more
-    assert sorted(baseline.replaced([]).known) == keys[1:2]
+    assert sorted(baseline.replaced([]).allowed) == keys[1:2]
 
 
 SONG = "#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single:C:{}:9::\n{}\n;\n"
@@ -94,7 +94,7 @@ def test_an_update_of_a_part_leaves_the_rest(how: str, tmp_path: Path, capfd: py
     notes = "1000\n0100\n0010\n0001\n" * 4 + "1000\n1000\n0001\n0001\n"
     song.write_text("".join(SONG.format(difficulty, notes) for difficulty in ("Hard", "Easy")).replace(";#", ";\n#"))
     assert run("analyze", song, "--baseline", known, "--update-baseline") == 0
-    before = load_baseline(known).known
+    before = load_baseline(known).allowed
     rules = {rule for _, _, rule, _ in before}
     assert len(rules) > 1 and len({chart for _, chart, _, _ in before}) > 1
     first = sorted(rules)[0]
@@ -105,7 +105,7 @@ def test_an_update_of_a_part_leaves_the_rest(how: str, tmp_path: Path, capfd: py
     assert run("analyze", song, "--baseline", known, *options.get(how, [])) == 0
     assert "no longer needed" not in capfd.readouterr().err
     assert run("analyze", song, "--baseline", known, "--update-baseline", *options.get(how, [])) == 0
-    assert load_baseline(known).known == before
+    assert load_baseline(known).allowed == before
 
 
 def test_entries_that_are_gone_are_counted_in_one_line(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -82,8 +82,8 @@ def test_an_edit_is_tried_once_and_rules_look_at_the_cheapest_only(
 
     tried: list[object] = []
     checked: list[object] = []
-    moved, subject_after = suggest.OneTap.moved, suggest._Trial._subject_after
-    monkeypatch.setattr(suggest.OneTap, "moved", lambda self, *edit: (tried.append(edit), moved(self, *edit))[1])
+    moved, subject_after = suggest.OneTap.outline_with, suggest._Trial._subject_after
+    monkeypatch.setattr(suggest.OneTap, "outline_with", lambda self, *edit: (tried.append(edit), moved(self, *edit))[1])
     monkeypatch.setattr(
         suggest._Trial, "_subject_after", lambda self, edit: (checked.append(edit), subject_after(self, edit))[1]
     )

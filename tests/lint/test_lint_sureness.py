@@ -107,6 +107,6 @@ def test_pins_are_sure() -> None:
     forced = Overrides.of({(row * 48, column): (limb, 0) for row, (column, limb) in list(FEET.items())[:4]})
     play = solve_chart(song.charts[0], load_preset("itg"), forced)
     subject = ChartSubject(song, song.charts[0], play, load_pad("dance-single"))
-    assert subject.sureness(2.0)[0] is None
+    assert subject.confidence(2.0)[0] is None
     rules = {one.rule: one.severity for one in check_chart(subject, load_configuration(None).settings)}
     assert rules["DT201"] == "warning"

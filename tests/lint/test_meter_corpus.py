@@ -22,7 +22,7 @@ def test_real_charts_play_like_their_meters(corpus: Path, tmp_path: Path) -> Non
     assert model is not None
     for path in sorted(corpus.rglob("*.s[ms]*"))[::9]:
         shutil.copy(path, tmp_path / path.name)
-    charts = [one for one in labelled(tmp_path, model.wanted) if one.steps_type == "dance-single"]
+    charts = [one for one in labelled(tmp_path, model.features) if one.steps_type == "dance-single"]
     by_file: dict[str, list[Labelled]] = defaultdict(list)
     for one, reason in sorted_out(charts):
         if not reason:

@@ -13,7 +13,7 @@ from dancetutor_cli.chart import load, parse
 from dancetutor_cli.feet import Play, load_preset
 from dancetutor_cli.lint.findings import Estimate
 from dancetutor_cli.lint.meter_model import features, model_for
-from dancetutor_cli.lint.meters import Sized, on_scale, scales_of, size
+from dancetutor_cli.lint.meters import MeteredChart, on_scale, scales_of, size
 from dancetutor_cli.lint.subject import solved_chart
 from dancetutor_cli.run.reading import charts_path
 
@@ -80,10 +80,10 @@ def test_the_mirror_image_plays_the_same() -> None:
     assert estimated(stream(rows)).meter == pytest.approx(estimated(stream(mirrored)).meter, abs=0.02)
 
 
-def sized(label: int, difficulty: str = "Hard", **on: float) -> Sized:
+def sized(label: int, difficulty: str = "Hard", **on: float) -> MeteredChart:
     model = model_for("dance-single")
     assert model is not None
-    return Sized(model, label, difficulty, on, (), ())
+    return MeteredChart(model, label, difficulty, on, (), ())
 
 
 def test_the_scale_is_that_of_the_others() -> None:

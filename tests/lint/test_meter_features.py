@@ -94,4 +94,4 @@ def test_the_rate_is_felt() -> None:
 def test_models_ask_for_features_that_there_are(steps_type: str) -> None:
     model = model_for(steps_type)
     assert model is not None
-    assert len(features(mixed(), model.wanted)) == len(model.wanted)
+    assert len(features(mixed(), model.features)) == len(model.features)

@@ -42,7 +42,7 @@ def test_the_curves_of_a_term_add_up_and_scales_stay_apart(tmp_path: Path) -> No
     itg = text[text.index("  itg:") : text.index("alone")]
     path = model_of(tmp_path, text.replace("alone", itg.replace("itg", "ddr").replace("[0, 2]", "[0, 4]") + "alone"))
     model = load_model(path)
-    assert [feature.thing for feature in model.wanted] == ["steps", "jumps", "jacks"]
+    assert [feature.thing for feature in model.features] == ["steps", "jumps", "jacks"]
     assert model.terms([2.0, 1.0, 0.5]) == [{"streams": 3.0, "jacks": 1.0}, {"streams": 5.0, "jacks": 2.0}]
 
 

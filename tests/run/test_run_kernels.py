@@ -15,7 +15,7 @@ import pytest
 from module_file import loaded
 
 from dancetutor_cli.commands.doctor import _cache
-from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.lint.configuration import PresetChoice
 from dancetutor_cli.run import trust
 from dancetutor_cli.run.kernels import compiling, store
@@ -56,10 +56,10 @@ def test_a_read_only_installation_and_home_leave_a_temporary_folder(
     nowhere: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = store.kernel_folder()
-    assert folder.kept and folder.root is not None and folder.root.parent == nowhere
+    assert folder.is_writable and folder.root is not None and folder.root.parent == nowhere
     if os.name != "nt":
         assert folder.root.stat().st_mode & 0o777 == 0o700
-    tell_of_compiling(PresetChoice())
+    announce_compiling(PresetChoice())
     (line,) = capsys.readouterr().err.splitlines()
     assert str(folder.root) in line and "cannot be written" in line
     check = _cache()
@@ -72,8 +72,8 @@ def test_a_temporary_folder_of_somebody_else_is_not_used(nowhere: Path, capsys: 
     assert first is not None
     first.chmod(0o777)
     store._use_folder.cache_clear()
-    assert not store.kernel_folder().kept
-    tell_of_compiling(PresetChoice())
+    assert not store.kernel_folder().is_writable
+    announce_compiling(PresetChoice())
     assert "compiles again" in capsys.readouterr().err
 
 
@@ -171,7 +171,7 @@ def test_a_kernel_is_compiled_again_when_what_it_is_made_of_changes(tmp_path: Pa
     ):
         found = {
             path.relative_to(tmp_path / "p").as_posix()
-            for path in compiling.made_of(tmp_path / "p" / source, tmp_path / "p")
+            for path in compiling.source_modules(tmp_path / "p" / source, tmp_path / "p")
         }
         assert found >= {source, *others}
     source = tmp_path / "p" / "dance" / "physics" / "hair.py"

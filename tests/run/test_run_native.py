@@ -250,7 +250,7 @@ def test_what_is_kept_but_cannot_be_loaded_is_made_again(folder: Path, compiled:
     values = np.zeros(3)
     kernel(folder, "enter")(values)
     (path,) = folder.rglob("*.kernel")
-    kept = kernel(folder, "enter")._kept()
+    kept = kernel(folder, "enter")._stored_code()
     (name,) = ["<f81"]
     for n, (needs, data) in enumerate(((["no_such_function"], b"\x7fELF"), ([], b"no machine code")), 2):
         kept.write(name, json.dumps(["entry", needs]).encode() + b"\n" + data)

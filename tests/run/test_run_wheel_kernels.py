@@ -19,7 +19,7 @@ from hatchling.builders.wheel import WheelBuilder
 from module_file import loaded
 
 from dancetutor_cli.commands.doctor import _cache
-from dancetutor_cli.commands.first_run import tell_of_compiling
+from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.lint.configuration import PresetChoice
 from dancetutor_cli.run.kernels import compiling, store, target
 
@@ -86,8 +86,8 @@ def test_what_came_serves_where_nothing_can_be_kept(
 ) -> None:
     monkeypatch.setattr(store, "_use_folder", lambda *_: "cannot be written")
     monkeypatch.setattr(store, "temporary_folder", lambda name: None)
-    assert not store.kernel_folder().kept and hits(source_of(package))
-    tell_of_compiling(PresetChoice())
+    assert not store.kernel_folder().is_writable and hits(source_of(package))
+    announce_compiling(PresetChoice())
     assert capsys.readouterr().err == ""
 
 

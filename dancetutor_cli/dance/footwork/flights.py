@@ -9,7 +9,16 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Spot
 from dancetutor_cli.dance.foot_path import jump_ways
-from dancetutor_cli.dance.footwork.foothold import Heel, Pitches, Pose, around, beside, heel_up, pose, shoes_apart
+from dancetutor_cli.dance.footwork.foothold import (
+    Heel,
+    Pitches,
+    Pose,
+    around,
+    heel_up,
+    pose,
+    resolve_overlap,
+    shoe_distance,
+)
 from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, Row, TakeOff, pair
 from dancetutor_cli.dance.plan import STRAIGHT, Bulge, Jump
 from dancetutor_cli.dance.rig.body import GRAVITY
@@ -60,7 +69,7 @@ def flown(footing: Footing, flight: Flight, goals: Goals, pitches: list[Pitches]
         swing = Jump(
             lift, flight.land, pair(ends[side]), float(after[side]), rise, height, bulge, tuck, turn, middles, share,
         )  # fmt: skip
-        footing = footing.with_foot(foot.moved(swing, ends[side], goals[side][1]))
+        footing = footing.with_foot(foot.with_move(swing, ends[side], goals[side][1]))
     return footing
 
 
@@ -133,7 +142,7 @@ def leap(row: Row, foot: FootState, goal: tuple[Array, float], columns: list[int
     landed = Pose(goal[0], footing.toes(foot, goal[1]))
     away = goal[0] - other.ball
     far = float(np.linalg.norm(away))
-    in_the_way = shoes_apart(landed, pose(footing, other)) < step.touching
+    in_the_way = shoe_distance(landed, pose(footing, other)) < step.touching
     if far <= step.leap and not in_the_way:
         return None
     apex = jump.apex_near if in_the_way else jump.apex_far
@@ -145,7 +154,7 @@ def leap(row: Row, foot: FootState, goal: tuple[Array, float], columns: list[int
     yaw = footing.limited(other.yaw + step.yaw_to_normal * (footing.body_yaw() - other.yaw), footing.body_yaw())
     goals = [goal, goal]
     if in_the_way:
-        goals[other.side] = beside(
+        goals[other.side] = resolve_overlap(
             footing, other, Spot(other.ball, np.full(2, step.leap_aside)), other.ball, other.yaw, landed
         )
     else:

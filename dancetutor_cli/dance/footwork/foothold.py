@@ -105,7 +105,7 @@ def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple
     ball = ball + step.on_the_way * hurry * (on_panel(way, toes, spot) - ball)
     if (np.abs(foot.ball - panel) <= room).all() and following is not None:  # a jack need not move
         ball = on_panel(ball + max(step.staying, wide) * (foot.ball - ball), toes, spot)
-    return beside(footing, foot, spot, ball, yaw, other)
+    return resolve_overlap(footing, foot, spot, ball, yaw, other)
 
 
 def landing_ball(spot: Spot, yaw: float, other: Array, cut: float, edge_margin: float) -> Array:
@@ -127,7 +127,9 @@ def landing_ball(spot: Spot, yaw: float, other: Array, cut: float, edge_margin: 
     return on_panel(ball_of(middle, yaw), yaw, spot)
 
 
-def beside(footing: Footing, foot: FootState, spot: Spot, ball: Array, yaw: float, other: Pose) -> tuple[Array, float]:
+def resolve_overlap(
+    footing: Footing, foot: FootState, spot: Spot, ball: Array, yaw: float, other: Pose
+) -> tuple[Array, float]:
     """The place on the panel nearest to the wanted one, and the yaw, that leave the other shoe its room.
 
     Nor do the legs cross there farther than they must.
@@ -216,7 +218,7 @@ def heel_up(step: StepSettings, cut: float, heel: Heel, columns: list[int]) -> P
     return float(out[0]), float(max(out[0], out[1])), float(max(out[2], out[3])), float(out[3])
 
 
-def shoes_apart(a: Pose, b: Pose) -> float:
+def shoe_distance(a: Pose, b: Pose) -> float:
     """Least distance between the middle lines of two standing shoes, metres."""
     return float(gaps_at(a.ball[None], np.array([a.toes]), b.ball, b.toes)[0])
 

@@ -136,7 +136,7 @@ class FootState:
         """1 for the left foot, -1 for the right one: which way its toes turn out."""
         return 1.0 if self.side == 0 else -1.0
 
-    def moved(self, move: Move, target: Array, yaw: float) -> FootState:
+    def with_move(self, move: Move, target: Array, yaw: float) -> FootState:
         """The foot after one more move, standing at its target."""
         if self.moves and move.lift - self.moves[-1].land < self.step.heel_stays:
             heel = self.moves[-1].pitches[2]
@@ -145,15 +145,15 @@ class FootState:
             self, ball=target, yaw=yaw, free=move.land + FREE_WINDOW, landed=move.land, moves=(*self.moves, move)
         )
 
-    def moved_otherwise(self, last: Move) -> FootState:
+    def with_last_move(self, last: Move) -> FootState:
         """The foot with another last move."""
         return replace(self, moves=(*self.moves[:-1], last))
 
-    def not_moved(self, evading: Evading) -> FootState:
+    def without_last_move(self, evading: Evading) -> FootState:
         """The foot as if its last move, over a mine, had not begun."""
         return replace(self, ball=evading.ball, yaw=evading.yaw, moves=self.moves[:-1], evading=None)
 
-    def settled(self, newest: int) -> tuple[tuple[Move, ...], FootState]:
+    def split_moves(self, newest: int) -> tuple[tuple[Move, ...], FootState]:
         """Moves that are older than the newest ones, and the foot without them."""
         old = self.moves[:-newest]
         if not old:
@@ -162,7 +162,7 @@ class FootState:
 
     def track(self, newest: int | None = None) -> FootTrack:
         """What the foot has done, as far as it knows, or only its newest moves."""
-        foot = self if newest is None else self.settled(newest)[1]
+        foot = self if newest is None else self.split_moves(newest)[1]
         return FootTrack(foot.start, foot.start_toes, foot.moves)
 
     def holding(self, time: float) -> bool:
@@ -294,7 +294,7 @@ class Footing:
         rest = foot.moves[-1].pitches[3] if foot.moves else 0.0
         pitches = (rest, max(up, rest), rest, rest)
         move = Pivot(begin, time, pair(foot.ball), self.toes(foot, yaw), pitches)
-        done = foot.moved(move, foot.ball, yaw)
+        done = foot.with_move(move, foot.ball, yaw)
         return self.with_foot(replace(done, free=max(foot.free, done.free), landed=foot.landed, turned=time))
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.dance.clearance import over
 from dancetutor_cli.dance.context import HALF_PANEL, Spot, ball_of, room_on
 from dancetutor_cli.dance.footwork.flights import Flight, flown
-from dancetutor_cli.dance.footwork.foothold import Pitches, around, beside, landing_ball, pose
+from dancetutor_cli.dance.footwork.foothold import Pitches, around, landing_ball, pose, resolve_overlap
 from dancetutor_cli.dance.footwork.footing import (
     FREE_WINDOW,
     SHORTEST,
@@ -97,20 +97,20 @@ def _lifted(footing: Footing, foot: FootState, time: float, column: int) -> Foot
     if foot.evading is not None and foot.landed > time - half and isinstance(foot.moves[-1], Hover):
         # it stays up from the last mine
         first, lift = foot.evading.first, foot.moves[-1].lift
-        foot = foot.not_moved(foot.evading)
+        foot = foot.without_last_move(foot.evading)
         footing = footing.with_foot(foot)
     elif lift > time:
         return footing
     other = footing.other(foot)
-    target, yaw = _beside_the_mines(footing, foot, column)
+    target, yaw = _place_clear_of_mines(footing, foot, column)
     bulge = around(footing, foot, (lift, time + half), target, yaw, other)
     toes = footing.toes(foot, yaw)
-    up = foot.moved(Hover(lift, time + half, pair(target), toes, _pitches(mines), mines.height, bulge), target, yaw)
+    up = foot.with_move(Hover(lift, time + half, pair(target), toes, _pitches(mines), mines.height, bulge), target, yaw)
     up = replace(up, evading=Evading(first, time, foot.ball, foot.yaw))
     return _one_after_the_other(footing.with_foot(up), up, other)
 
 
-def _beside_the_mines(footing: Footing, foot: FootState, column: int) -> tuple[Array, float]:
+def _place_clear_of_mines(footing: Footing, foot: FootState, column: int) -> tuple[Array, float]:
     """Where a foot comes down that is up over a mine on a column, -1 for none, and its yaw."""
     panels, other, mines = footing.context.panels, footing.other(foot), footing.settings.mines
     there = panels[column] if column >= 0 else None
@@ -123,7 +123,7 @@ def _beside_the_mines(footing: Footing, foot: FootState, column: int) -> tuple[A
         spot, yaw = Spot(there, room_on(panels, column, footing.settings.step)), foot.yaw
         middle, edge = pose(footing, other).middle, footing.settings.step.edge_margin
         target = landing_ball(spot, footing.toes(foot), middle, 1.0, edge)
-    return beside(footing, foot, spot, target, yaw, pose(footing, other))
+    return resolve_overlap(footing, foot, spot, target, yaw, pose(footing, other))
 
 
 def _one_after_the_other(footing: Footing, foot: FootState, other: FootState) -> Footing:
@@ -146,11 +146,13 @@ def _hurried(foot: FootState, settings: MotionSettings, lift: float, land: float
     need = settings.mines.before + settings.mines.steep
     lift = max(swing.lift, min(lift, evading.first - need))
     land = min(swing.land, max(land, evading.last + need))
-    sooner = foot.moved_otherwise(replace(swing, lift=lift, land=land))
+    sooner = foot.with_last_move(replace(swing, lift=lift, land=land))
     return replace(sooner, landed=land, free=land + (foot.free - swing.land))
 
 
-def left_standing(other: FootState, settings: MotionSettings, lift: float, time: float) -> tuple[FootState, float]:
+def wait_for_other_foot(
+    other: FootState, settings: MotionSettings, lift: float, time: float
+) -> tuple[FootState, float]:
     """When a foot leaves for its step at `time`, at `lift` or later: when the other one is down again from a mine.
 
     And what that other foot does for it.
@@ -177,7 +179,7 @@ def resumed(foot: FootState, other: FootState, time: float, settings: MotionSett
     stepped = evading is not None and other.landed > evading.last and time - foot.landed > settings.mines.push
     if evading is None or time - evading.last > settings.step.longest or stepped:
         return replace(foot, evading=None), None
-    return foot.not_moved(evading), foot.moves[-1].lift
+    return foot.without_last_move(evading), foot.moves[-1].lift
 
 
 def _hopping(foot: FootState) -> bool:
@@ -196,7 +198,7 @@ def flown_on(footing: Footing, time: float) -> tuple[Footing, float]:
     if left is None or right is None or left.first != right.first or landed <= time - numbers.haste - numbers.push:
         return footing, time
     for foot, evading in zip(footing.feet, (left, right), strict=True):
-        up, swing = foot.not_moved(evading), foot.moves[-1]
+        up, swing = foot.without_last_move(evading), foot.moves[-1]
         landed = up.moves[-1].land if up.moves else -np.inf
         footing = footing.with_foot(replace(up, landed=landed, free=min(swing.lift, foot.free)))
     return footing, left.first - numbers.before
@@ -214,7 +216,7 @@ def landed_early(foot: FootState, settings: MotionSettings, time: float) -> tupl
     if evading.last + need <= ready:
         return replace(_hurried(foot, settings, foot.moves[-1].lift, ready), evading=None), time
     swing = foot.moves[-1]
-    up = foot.not_moved(evading)
+    up = foot.without_last_move(evading)
     up = replace(up, landed=up.moves[-1].land if up.moves else -np.inf, free=min(swing.lift, foot.free))
     return up, max(evading.first - need, swing.lift)
 
@@ -231,5 +233,5 @@ def stayed_up(before: Footing, after: Footing, until: list[float], take_off: flo
             bulge = around(before, stood, (lift, jump.land), foot.ball, foot.yaw, after.other(foot))
             height = before.settings.mines.height
             up = Hover(lift, jump.land, jump.target, jump.yaw, jump.pitches, height, bulge)
-            after = after.with_foot(foot.moved_otherwise(up))
+            after = after.with_foot(foot.with_last_move(up))
     return after

@@ -134,7 +134,7 @@ class Planner:
         """Take over what a rule proposes; moves that are so old that no rule asks for them are put aside."""
         for done, foot in zip(self.moves, proposal.footing.feet, strict=True):
             if len(foot.moves) > 2 * NEWEST:
-                old, foot = foot.settled(NEWEST)
+                old, foot = foot.split_moves(NEWEST)
                 done += old
                 proposal = replace(proposal, footing=proposal.footing.with_foot(foot))
         self.footing = proposal.footing

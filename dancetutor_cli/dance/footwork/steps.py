@@ -12,7 +12,7 @@ from dancetutor_cli.dance.context import HALF_PANEL, PANEL
 from dancetutor_cli.dance.footwork.flights import Goals, galloping, hop, leap, take_off_for, tuck_for
 from dancetutor_cli.dance.footwork.foothold import Goal, Pose, around, heel_of_step, heel_up, landing, pose
 from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, Row, TakeOff, pair
-from dancetutor_cli.dance.footwork.mines import flown_on, landed_early, left_standing, resumed, stayed_up
+from dancetutor_cli.dance.footwork.mines import flown_on, landed_early, resumed, stayed_up, wait_for_other_foot
 from dancetutor_cli.dance.plan import Gallop, Hover, Jump, Step, Swing
 from dancetutor_cli.dance.rig.body import GRAVITY
 from dancetutor_cli.feet.limbs import Part
@@ -102,7 +102,7 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
     numbers, time = footing.settings.step, row.time
     footing = galloping(row, side, footing)
     resuming, up = resumed(footing.feet[side], footing.feet[1 - side], time, footing.settings)
-    footing = _room_made(row, side, footing.with_foot(resuming))
+    footing = _make_room(row, side, footing.with_foot(resuming))
     foot, other = footing.feet[side], footing.feet[1 - side]
     body = footing.body_yaw()
     wanted = footing.limited(other.yaw + numbers.yaw_to_normal * (body - other.yaw), body)
@@ -115,7 +115,7 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
     if gallop is not None:
         lift = gallop.time
     else:
-        standing, lift = left_standing(
+        standing, lift = wait_for_other_foot(
             other, footing.settings, _lift(row, footing, float(np.linalg.norm(target - foot.ball))), time
         )
         footing = footing.with_foot(standing)
@@ -127,7 +127,7 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
         leapt = leap(row, foot, (target, yaw), columns, footing)
         if leapt is not None:
             return replace(leapt, leaves=leapt.footing.feet[side].moves[-1].lift)
-        footing = _given_way(footing, foot, (target, yaw), (lift, time))
+        footing = _give_way(footing, foot, (target, yaw), (lift, time))
     heel = heel_of_step(numbers)
     if kind is Jump:  # legs that push off need it
         heel = replace(heel, flat=(footing.settings.jump.lift_flat, footing.settings.jump.swing_flat))
@@ -139,10 +139,10 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
         jump = footing.settings.jump
         tuck = tuck_for(float(np.linalg.norm(target - foot.ball)), time - lift, jump)
         swing = replace(swing, tuck=tuck, middles=(pair(foot.ball), pair(target)))
-    return Proposal(footing.with_foot(foot.moved(swing, target, yaw)), lift)
+    return Proposal(footing.with_foot(foot.with_move(swing, target, yaw)), lift)
 
 
-def _room_made(row: Row, side: int, footing: Footing) -> Footing:
+def _make_room(row: Row, side: int, footing: Footing) -> Footing:
     """The footing in which the other foot turns with the body, if this one comes to stay beside it on its panel.
 
     One that lies across the panel would leave room for half a shoe, and the rest would hang over the pad's edge.
@@ -204,7 +204,7 @@ def _kind(
     return kind, height
 
 
-def _given_way(footing: Footing, foot: FootState, goal: tuple[Array, float], span: tuple[float, float]) -> Footing:
+def _give_way(footing: Footing, foot: FootState, goal: tuple[Array, float], span: tuple[float, float]) -> Footing:
     """The standing foot turns with the body while the other one goes to its goal, from lift to landing."""
     other, (target, yaw) = footing.other(foot), goal
     after = footing.turned_to((yaw, other.yaw) if foot.side == 0 else (other.yaw, yaw))

@@ -59,7 +59,7 @@ def walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropos
     goal = standing(plan.feet, -np.inf)
     side = side_of(plan, context)
     heading = (side - 0.5) * np.pi
-    away = np.array([_beside(ground, side, walk.beside), goal.middle[1]])
+    away = np.array([_place_off_pad(ground, side, walk.beside), goal.middle[1]])
     begin = stand_at(away, heading, settings)
     ready = min(plan.first - walk.settle, busy - walk.settle - walk.arrived)
     steps = footsteps(Trip(begin, goal, heading, -walk.early, ready), gait, plan.lead, context)
@@ -81,7 +81,7 @@ def walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropo
     came = side_of(plan, context)
     for side in (1 - came, came) if context.sides is None else context.sides[1:]:
         heading = (0.5 - side) * np.pi
-        goal = stand_at(np.array([_beside(ground, side, walk.beside), 0.0]), whole + heading, settings)
+        goal = stand_at(np.array([_place_off_pad(ground, side, walk.beside), 0.0]), whole + heading, settings)
         for late in (0.0, 0.5, 1.0, np.inf):
             ready = plan.last + walk.leave + late
             steps = footsteps(Trip(begin, goal, whole + heading, start, ready), gait, plan.lead, context)
@@ -108,7 +108,7 @@ def side_of(plan: Plan, context: Context) -> int:
     return plan.lead ^ (zlib.crc32(notes.tobytes()) & 1)
 
 
-def _beside(ground: Ground, side: int, far: float) -> float:
+def _place_off_pad(ground: Ground, side: int, far: float) -> float:
     """A place along x so far beside the pad, on her left (0) or right (1) as she looks to the screen."""
     return ground.high[0] + far if side == 0 else ground.low[0] - far
 
@@ -337,7 +337,7 @@ def stepped(footing: Footing, foot: FootState, fall: Footfall, start: float, dur
     lift = max(start + step.double_support * duration, foot.free)
     bulge = around(footing, foot, (lift, start + duration), fall.ball, fall.heading, footing.other(foot))
     aside = Sidestep(lift, start + duration, pair(fall.ball), fall.yaw, pitches, height, bulge)
-    return footing.with_foot(replace(foot.moved(aside, fall.ball, fall.heading), evading=None))
+    return footing.with_foot(replace(foot.with_move(aside, fall.ball, fall.heading), evading=None))
 
 
 def _between(places: Array) -> Array:

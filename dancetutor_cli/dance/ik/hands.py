@@ -191,7 +191,7 @@ def _trunk_of(torso: Torso) -> tuple[Array, Array]:
     return upright, torso.shoulders.mean(axis=1, keepdims=True) + quat.rotate(torso.chest, TRUNK)[:, None]
 
 
-def kept_clear(wrists: Array, torso: Torso, axes: tuple[float, float]) -> Array:
+def trunk_clearance(wrists: Array, torso: Torso, axes: tuple[float, float]) -> Array:
     """By how much wrists (f, 2, 3) are pushed out of an upright ellipse about the trunk, softly, (f, 2, 3).
 
     axes : its half axes aside and ahead, metres
@@ -216,7 +216,7 @@ class Hips:
     rotation: Array
 
 
-def beside_hips(wrists: Array, hips: Hips, arms: ArmSettings) -> Array:
+def hip_clearance(wrists: Array, hips: Hips, arms: ArmSettings) -> Array:
     """How wrists (f, 2, 3) give way to the hips, (f, 2, 3) level: softly, away from the nearest place of a line across
     them; one that is raised does not.
     """
@@ -239,7 +239,7 @@ SOFT_AT_LEGS = 0.012  # metres over which a hand comes to its least distance
 ROUNDS, LEAST_GIVEN = 2, 1e-4  # of giving way; who gave way by fewer metres is left alone then
 
 
-def beside_legs(wrists: Array, shoulders: Array, elbows: Array, legs: Legs, skeleton: Skeleton, room: float) -> Array:
+def leg_clearance(wrists: Array, shoulders: Array, elbows: Array, legs: Legs, skeleton: Skeleton, room: float) -> Array:
     """How wrists (f, 2, 3) give way, (f, 2, 3), so that hands come off thighs, softly and with some room.
 
     shoulders : (f, 2, 3); elbows : (f, 2, 3) where they point

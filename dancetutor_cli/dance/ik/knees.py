@@ -65,7 +65,7 @@ def knee_poles(yaw: Array, feet: Feet, legs: Array, hips: float, knees: KneeSett
     return np.stack(out, axis=1)
 
 
-def knees_apart(skeleton: Skeleton, hung: Hung, poles: Array, knees: KneeSettings) -> Array:
+def part_knees(skeleton: Skeleton, hung: Hung, poles: Array, knees: KneeSettings) -> Array:
     """Poles (f, 2, 3) turned about the lines from hips to ankles, as little as it takes to part legs that meet.
 
     Each frame is parted by itself, and smoothly: the same at whichever times it is asked.

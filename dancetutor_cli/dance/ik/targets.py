@@ -15,18 +15,18 @@ from dancetutor_cli.dance.ik.hands import (
     HandTargets,
     Hips,
     Torso,
-    beside_hips,
-    beside_legs,
+    hip_clearance,
     hold,
-    kept_clear,
+    leg_clearance,
     palm_down,
+    trunk_clearance,
 )
 from dancetutor_cli.dance.ik.knees import (
     Hung,
     Legs,
     knee_poles,
-    knees_apart,
     middle_joint,
+    part_knees,
     shoulders_over,
     square_to,
     torso_rotations,
@@ -84,14 +84,14 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, below: Be
     )
     wrists = torso.shoulders + quat.rotate(along[:, None], hang) + lag
     clear = context.settings.arms.clear_aside, context.settings.arms.clear_ahead
-    wrists += held[..., None] * kept_clear(wrists, torso, clear)
+    wrists += held[..., None] * trunk_clearance(wrists, torso, clear)
     wrists += _out_from_a_lean(wrists, torso, upright, arms)
-    wrists += beside_hips(wrists, below.hips, arms)
+    wrists += hip_clearance(wrists, below.hips, arms)
     out = np.empty((len(at), 2, 3))
     out[..., 0] = np.array([1.0, -1.0]) * (arms.elbow_out + (arms.bend_elbow_out - arms.elbow_out) * bent)[:, None]
     out[..., 1:] = -arms.elbow_down, -arms.elbow_back
     elbows = quat.rotate(upright[:, None], out)
-    wrists += beside_legs(wrists, torso.shoulders, elbows, below.legs, context.skeleton, arms.legs_room)
+    wrists += leg_clearance(wrists, torso.shoulders, elbows, below.legs, context.skeleton, arms.legs_room)
     inward = _on_her_own_pad(wrists[..., 0], context)
     ahead = quat.rotate(upright, np.array([0.0, 0.0, arms.own_pad_ahead]))
     wrists += np.abs(inward)[..., None] * ahead[:, None]
@@ -170,7 +170,7 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
         arm = skeleton.rest[skeleton.index(f"{name}_shoulder")] - skeleton.offsets[0]
         target = pelvis + quat.rotate(chest, arm) + quat.rotate(upright, hang[:, side])
         late = _at_most(follow(target, rate, controller) - target, arms.lag)
-        back, held[:, side] = _held_back(target + late, rate, arms)
+        back, held[:, side] = _speed_limit_offset(target + late, rate, arms)
         lag[:, side] = late + back
     if context.bar is not None:  # behind her back, a hand has the trunk in its way
         held[:] = 1.0
@@ -195,7 +195,7 @@ def _at_most(way: Array, most: float) -> Array:
     return np.asarray(way * (most * np.tanh(far / most) / np.maximum(far, 1e-9)))
 
 
-def _held_back(path: Array, rate: float, arms: ArmSettings) -> tuple[Array, Array]:
+def _speed_limit_offset(path: Array, rate: float, arms: ArmSettings) -> tuple[Array, Array]:
     """How a hand on a path (n, 3) in the world leaves it, (n, 3): where it is too quick it takes a shorter way; and how
     much (n,) it is held back, 0 to 1."""
     ones = np.ones(len(path))
@@ -357,7 +357,7 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
     poles = knee_poles(yaw, feet, ankles - pelvis[:, None], half_hips(skeleton), context.settings.knees)
     hung = Hung(pelvis, pelvis_rotation, ankles)
     poles = hung.legs(skeleton, poles).turned(sample_path(body.knees, body.times, at))
-    poles = knees_apart(skeleton, hung, poles, context.settings.knees)
+    poles = part_knees(skeleton, hung, poles, context.settings.knees)
     below = Below(Hips(pelvis, pelvis_rotation), hung.legs(skeleton, poles))
     hands = arm_targets(plan, body, at, Torso(shoulders, chest), below, context)
     return Targets(
@@ -366,7 +366,7 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
     )  # fmt: skip
 
 
-def moved(targets: Targets, by: Array) -> Targets:
+def translated(targets: Targets, by: Array) -> Targets:
     """The same targets with the body moved by (f, 3) metres; feet and pinned palms stay."""
     shoulders = targets.shoulders + by[:, None]
     wrists = targets.wrists + by[:, None] * (1.0 - targets.pinned[..., None])

@@ -38,7 +38,7 @@ _LIMBS = (("shoulder", "elbow", "radiocarpal"), ("hip", "knee", "talocrural"))
 
 
 @dataclass(frozen=True, slots=True)
-class Captured:
+class CapturedMotion:
     """A file's motion, in the world as the file has it. f frames, j joints, parents before children.
 
     rest, rest_turns : (j, 3) and (j, 4) in the rest pose; times : (f,) seconds; places, turns : (f, j, 3), (f, j, 4)
@@ -55,7 +55,7 @@ class Captured:
     turns: Array
 
 
-def on_body(captured: Captured, joints: Mapping[str, int], body: Skeleton) -> Motion:
+def on_body(captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton) -> Motion:
     """The motion on a body.
 
     Parameters
@@ -94,7 +94,7 @@ def on_body(captured: Captured, joints: Mapping[str, int], body: Skeleton) -> Mo
     return Motion(body, captured.fps, start, quat.continuous(rotations), root, ())
 
 
-def _without_reference(captured: Captured) -> Captured:
+def _without_reference(captured: CapturedMotion) -> CapturedMotion:
     """Without the rest pose that some converters put before the first frame: from it everything would jump."""
     if len(captured.times) < 4:
         return captured
@@ -111,7 +111,7 @@ class _Upright:
     theirs : metres between the captured hips; wider : by which each of the body's hips is farther from the middle
     """
 
-    def __init__(self, captured: Captured, joints: Mapping[str, int], body: Skeleton) -> None:
+    def __init__(self, captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton) -> None:
         self.captured, self.joints = captured, joints
         rest = captured.rest
         at = {name: rest[k] for name, k in joints.items()}

@@ -124,7 +124,7 @@ def mass_of(skeleton: Skeleton, poses: Poses) -> Array:
     return centre_of_mass(skeleton, *world_transforms(skeleton, *poses))
 
 
-def kept_mass(
+def restore_mass_path(
     skeleton: Skeleton, poses: Poses, feet: AnkleTracks, path: tuple[Array, Array], share: Array, free: Array
 ) -> Poses:
     """Poses whose centre of mass is on its path, legs ending in `feet`.

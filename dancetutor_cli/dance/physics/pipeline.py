@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.timing import heard
 from dancetutor_cli.dance.motion import Motion
-from dancetutor_cli.dance.physics.legs import kept_mass, mass_of, risen, soft_legs
+from dancetutor_cli.dance.physics.legs import mass_of, restore_mass_path, risen, soft_legs
 from dancetutor_cli.dance.physics.plants import Plants, eased_ankles, flatten_toes, let_go, planted, tidied
 from dancetutor_cli.dance.physics.pushes import (
     Actor,
@@ -24,10 +24,10 @@ from dancetutor_cli.dance.physics.pushes import (
     disturbed,
     parse_push,
     recovered,
-    told,
+    with_push_notes,
 )
 from dancetutor_cli.dance.physics.ragdoll import NOMINAL, bones_of, place_points, points_of
-from dancetutor_cli.dance.physics.repin import AnkleTracks, arms_apart, feet_of, hands_held, repinned, restrained
+from dancetutor_cli.dance.physics.repin import AnkleTracks, clear_arms, feet_of, pin_hands, repinned, restrained
 from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN, Distances, Ragdoll, follow_all, simulate
 from dancetutor_cli.dance.physics.style import PARTS, Spring, Style
 from dancetutor_cli.dance.rig import quaternion as quat
@@ -50,7 +50,7 @@ PALM_FADE = 0.45  # seconds around a pressing palm over which the input takes ov
 
 
 @dataclass(frozen=True, slots=True)
-class Passed:
+class RagdollResult:
     """A motion behind the ragdoll, with feet as in the input; distances : of the ragdoll from the input, before that
 
     plants : where feet were held to the floor, at the motion's keys; None where they were not to be
@@ -91,7 +91,7 @@ def wishes_of(push: Sequence[str], trip: Sequence[float], rate: float = 1.0) -> 
     )
 
 
-def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> Passed:
+def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> RagdollResult:
     """Let the ragdoll of a style follow a motion of a skeleton with the dancer's joints.
 
     Joints without a body keep their turns, feet their places in the world, unless corrected; times stay, and contacts,
@@ -119,12 +119,12 @@ def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> 
     if wishes.corrections:
         poses = repinned(skeleton, (rotations, root), feet)
     else:
-        rotations = arms_apart(skeleton, motion.rotations, (rotations, root), feet, motion.times)
+        rotations = clear_arms(skeleton, motion.rotations, (rotations, root), feet, motion.times)
         path = (motion.times, mass_of(skeleton, (motion.rotations, motion.root)))
         calm = _undisturbed(motion, wishes)
-        poses = kept_mass(skeleton, (rotations, root), feet, path, calm, share)
+        poses = restore_mass_path(skeleton, (rotations, root), feet, path, calm, share)
         if motion.grips:  # arms that are moved there have mass
-            poses = kept_mass(skeleton, hands_held(motion, poses, feet), feet, path, calm, share)
+            poses = restore_mass_path(skeleton, pin_hands(motion, poses, feet), feet, path, calm, share)
     if plants is not None:
         root = risen(skeleton, poses, feet, plants, motion.times)
         poses = repinned(skeleton, (rotations, root), feet)
@@ -136,13 +136,13 @@ def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> 
         poses = repinned(skeleton, (rotations, root), feet)
     if wishes.pushes or wishes.trips:
         poses = _possible(motion, poses, feet)
-    rotations, root = hands_held(motion, poses, feet)
+    rotations, root = pin_hands(motion, poses, feet)
     if plants is not None:
         flatten_toes(skeleton, rotations, feet, plants, held)
         if style.limits:
             rotations = restrained(skeleton, rotations, motion.times)
     done = replace(motion, rotations=quat.continuous(rotations), root=root)
-    return Passed(told(done, motion.root, wishes.pushes, missed), distances, plants)
+    return RagdollResult(with_push_notes(done, motion.root, wishes.pushes, missed), distances, plants)
 
 
 def _undisturbed(motion: Motion, wishes: Wishes) -> Array:

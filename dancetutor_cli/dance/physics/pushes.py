@@ -240,7 +240,7 @@ def force_of(push: Push, motion: Motion) -> Array:
     return push.newtons * np.array([np.sin(angle), 0.0, np.cos(angle)])
 
 
-def caught(motion: Motion, feet: AnkleTracks, trip: Stumble) -> tuple[AnkleTracks, Array, float, int]:
+def catch_foot(motion: Motion, feet: AnkleTracks, trip: Stumble) -> tuple[AnkleTracks, Array, float, int]:
     """Feet of which one is caught; the force (3,) that throws her, second and which foot it is.
 
     The toes of the motion's rotations are late, too, in place. Raises UsageError if no foot is in the air from then on.
@@ -346,7 +346,7 @@ def disturbed(motion: Motion, pushes: Sequence[Push], trips: Sequence[Stumble]) 
     for trip in trips:
         motion = replace(motion, rotations=motion.rotations.copy())
         feet = feet_of(motion.skeleton, motion.rotations, motion.root)
-        feet, force, at, side = caught(motion, feet, trip)
+        feet, force, at, side = catch_foot(motion, feet, trip)
         blows.append((at, force))
         missed = missed_by_trip(motion, at, side)
         rotations, root = repinned(motion.skeleton, (motion.rotations, motion.root), feet)
@@ -383,7 +383,7 @@ def _farthest(motion: Motion, apart: Array, push: Push) -> int:
     return int(np.argmax(np.hypot(apart[:, 0], apart[:, 2]) * after))
 
 
-def told(motion: Motion, root: Array, pushes: Sequence[Push], missed: Sequence[Sequence[Contact]]) -> Motion:
+def with_push_notes(motion: Motion, root: Array, pushes: Sequence[Push], missed: Sequence[Sequence[Contact]]) -> Motion:
     """The motion with a note on each push: how far she gave way, what she misses. root : (f, 3), the input's"""
     for push, gone in zip(pushes, missed, strict=True):
         apart = motion.root - root

@@ -200,7 +200,7 @@ _ARM = ("sternoclavicular", "shoulder", "elbow", "radiocarpal")
 _RADII = (0.045, 0.036, 0.026)  # of shoulder, elbow and wrist, metres
 
 
-def arms_apart(skeleton: Skeleton, given: Array, poses: Poses, feet: AnkleTracks, times: Array) -> Array:
+def clear_arms(skeleton: Skeleton, given: Array, poses: Poses, feet: AnkleTracks, times: Array) -> Array:
     """Local rotations (f, j, 4) of poses whose arms are as clear of everything as in the input.
 
     given : local rotations (f, j, 4) of the input; feet : where the legs end; times : (f,) seconds
@@ -253,7 +253,7 @@ DEEP = 0.003  # metres that a forearm may be in the trunk
 _BODY = ("HumanoidRoot", "vl5", "vt10", "vt4", *(f"{s}_{n}" for s in "lr" for n in ("sternoclavicular", "shoulder")))
 
 
-def hands_held(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
+def pin_hands(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
     """Poses whose palms lie on the bar as the input's do, while they hold it; legs end in `feet`."""
     skeleton = motion.skeleton
     share = hold_share(motion.grips, motion.times, REACH)

@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from dancetutor_cli.run.errors import UnavailableError, UsageError, did_you_mean, how_to_add
+from dancetutor_cli.run.errors import UnavailableError, UsageError, did_you_mean, install_command
 from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.yaml_files import MarkedYaml, read
 
@@ -22,7 +22,7 @@ def engine() -> Any:
         import mujoco
     except ImportError as error:
         raise UnavailableError(
-            f"physics needs the engine MuJoCo, which cannot be loaded ({error}); {how_to_add('physics')}"
+            f"physics needs the engine MuJoCo, which cannot be loaded ({error}); {install_command('physics')}"
         ) from error
     mujoco.set_mju_user_warning(_silent)
     return mujoco

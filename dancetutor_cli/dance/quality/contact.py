@@ -119,7 +119,7 @@ PIVOT = np.radians(2.0)  # a planted foot that turns more is pivoting on purpose
 CUT_PIVOT = np.radians(0.2)  # and so is one that turns so much at a section's edge, where only a part of it is seen
 BALL = slice(2, 4)  # of a sole's points, those of the ball
 MINE_CLEARANCE = 0.03  # metres that a foot over a mine is up
-MINES_TOLD = 6  # moments at which a foot is on mines, at most, that a note names
+MAX_LISTED_MINES = 6  # moments at which a foot is on mines, at most, that a note names
 
 
 def ground_figures(motion: Motion, body: Body, mines: Array | None) -> tuple[tuple[Figure, ...], tuple[str, ...]]:
@@ -132,7 +132,7 @@ def ground_figures(motion: Motion, body: Body, mines: Array | None) -> tuple[tup
         Figure("feet on mines", float("nan") if mines is None else float((under >= 0).sum()), "", 0.0),
     )
     notes = (f"of {pivots} pivots on a planted foot, on purpose, the slide of the ball is counted",) if pivots else ()
-    return figures, (*notes, *(() if mines is None else told_mines(mines[under >= 0, 0])))
+    return figures, (*notes, *(() if mines is None else mine_messages(mines[under >= 0, 0])))
 
 
 def plant_slides(body: Body, skeleton: Skeleton) -> tuple[float, int]:
@@ -184,12 +184,12 @@ def feet_on_mines(motion: Motion, mines: Array) -> NDArray[np.int8]:
     return out
 
 
-def told_mines(seconds: Array) -> tuple[str, ...]:
+def mine_messages(seconds: Array) -> tuple[str, ...]:
     """On which mines her feet are as these pass, in one line for people; none if on none. seconds : of these mines"""
     if not len(seconds):
         return ()
     at = [f"{second:.2f} s" for second in np.unique(seconds.round(2)).tolist()]
-    when = ", ".join([*at[:MINES_TOLD], *(["..."] if len(at) > MINES_TOLD else [])])
+    when = ", ".join([*at[:MAX_LISTED_MINES], *(["..."] if len(at) > MAX_LISTED_MINES else [])])
     what = "a mine as it passes" if len(seconds) == 1 else f"{len(seconds)} mines as they pass"
     return (f"a foot is on {what}, or less than {100 * MINE_CLEARANCE:g} cm over: {when}",)
 

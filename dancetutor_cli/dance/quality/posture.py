@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.dance.motion import Contact
 from dancetutor_cli.dance.quality.figures import Body, Figure, intervals
 from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.dance.rig.limbs import ANKLE, KNEE, THIGH, Capsule, arm_in_torso, depth, segments_apart
+from dancetutor_cli.dance.rig.limbs import ANKLE, KNEE, THIGH, Capsule, arm_in_torso, depth, segment_distance
 from dancetutor_cli.dance.rig.skeleton import Skeleton, excess
 from dancetutor_cli.dance.smoothing import low_pass
 from dancetutor_cli.feet.limbs import Limb
@@ -59,7 +59,7 @@ def feet_depth(body: Body) -> Array:
         heel, toe = soles[:, :2].mean(axis=1), soles[:, 4:].mean(axis=1)
         along = (toe - heel) / np.linalg.norm(toe - heel, axis=1, keepdims=True)
         ends.append((heel + FOOT_RADIUS * along, toe - FOOT_RADIUS * along))
-    return np.asarray(2 * FOOT_RADIUS - segments_apart(*ends[0], *ends[1]))
+    return np.asarray(2 * FOOT_RADIUS - segment_distance(*ends[0], *ends[1]))
 
 
 def hair_depth(body: Body, skeleton: Skeleton) -> Array:

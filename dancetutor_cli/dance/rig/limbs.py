@@ -246,12 +246,12 @@ def arm_in_torso(skeleton: Skeleton, joints: Array, side: str) -> Array:
         across = joints[:, skeleton.index(f"l_{ends}")] - joints[:, skeleton.index(f"r_{ends}")]
         across = across / np.linalg.norm(across, axis=1, keepdims=True)
         middle = joints[:, skeleton.index(name)]
-        gap = segments_apart(middle - half * across, middle + half * across, elbow, wrist + HAND * along)
+        gap = segment_distance(middle - half * across, middle + half * across, elbow, wrist + HAND * along)
         out = np.maximum(out, radius + LIMB_RADIUS - gap)
     return out
 
 
-def segments_apart(a: Array, b: Array, c: Array, d: Array) -> Array:
+def segment_distance(a: Array, b: Array, c: Array, d: Array) -> Array:
     """Least distance (f,) between segments a-b and c-d, each (f, 3) (Ericson, Real-Time Collision Detection, 5.1.9)."""
     u, v, w = b - a, d - c, a - c
     uu, vv, uv = np.sum(u * u, axis=1), np.sum(v * v, axis=1), np.sum(u * v, axis=1)

@@ -115,7 +115,7 @@ FARTHEST = 0.03  # metres that it goes at most; farther, ankles of wide stands b
 LEAST_CARRIED = 0.4  # of her weight: lighter feet than that hold no moment worth planning for
 
 
-def moved_by_turning(skeleton: Skeleton, positions: Array, world: Array, rate: float) -> Array:
+def rotation_zmp_offset(skeleton: Skeleton, positions: Array, world: Array, rate: float) -> Array:
     """Where the zero-moment point lies beyond the point mass's, (f, 2) metres along x and z, below 10 Hz.
 
     positions (f, j, 3), world (f, j, 4) : of the joints, as of `world_transforms`, at `rate` per second
@@ -132,7 +132,7 @@ def moved_by_turning(skeleton: Skeleton, positions: Array, world: Array, rate: f
     return np.asarray(np.column_stack((moment[:, 2], -moment[:, 0])) / carried[:, None])
 
 
-def against_turning(support: Support, turning: Array) -> Array:
+def counter_rotation_zmp(support: Support, turning: Array) -> Array:
     """Where (n, 2) the mass's own zero-moment point is best, so that with `turning` (n, 2) it is in the soles' middle.
 
     Not all the way: the own point, too, stays well within the soles.
@@ -166,7 +166,7 @@ class Pendulum:
     times : (n,) seconds; slowness : (n,) 1 / omega^2 = y / (y'' + g), seconds squared; ignored in flight
     seen : the same without trembling above 10 Hz
     offset : (n, 2) from the pelvis to the centre of mass, as far as known
-    turning : (n, 2) as of `moved_by_turning`, as far as known
+    turning : (n, 2) as of `rotation_zmp_offset`, as far as known
     """
 
     times: Array
@@ -190,7 +190,7 @@ def balanced_path(
     ----------
     feet : at the pendulum's times
     settings : of the body, and how the weight sways while both feet stand
-    hand : as in `Plan`; on its side she begins to sway; shift : (n,) as in `waits.Waiting`
+    hand : as in `Plan`; on its side she begins to sway; shift : (n,) as in `waits.WaitMotion`
     tightened : rounds of narrowing limits where the path without its quickest trembling leaves them; 0 is a rough path
     """
     times, body, rate = pendulum.times, settings.body, NODE_RATE if tightened else ROUGH_RATE
@@ -204,14 +204,14 @@ def balanced_path(
     down = np.stack([f.down for f in feet])
     both = np.asarray(down.all(axis=0))
     stepping = ~both | _brief(both, settings.step.longest * rate)
-    middle = against_turning(support, stepping[:, None] * sample_path(pendulum.turning, times, nodes))
+    middle = counter_rotation_zmp(support, stepping[:, None] * sample_path(pendulum.turning, times, nodes))
     middle = middle + hand * _sway(feet, nodes, settings.layers)
     if shift is not None:
         middle = middle + _shifted(feet, settings.wait.onto, np.interp(nodes, times, shift), slowness, rate)
     middle_weight = np.where(stepping, body.middle_weight_fast, body.middle_weight)
     weight = np.where(both, middle_weight, body.foot_weight)
     flight: NDArray[np.bool_] = np.asarray(~down.any(axis=0))
-    want = _Wanted(replace(support, middle=middle), weight, offset, *room)
+    want = _PathGoals(replace(support, middle=middle), weight, offset, *room)
     what = f"the path of her balance {span(times)}"
     found = _solved(want, flight, slowness, rate, body, what)
     softened = found.softened
@@ -224,7 +224,7 @@ def balanced_path(
 
 
 @dataclass(frozen=True, slots=True)
-class _Wanted:
+class _PathGoals:
     """What the path shall do at each of n nodes.
 
     support : where the zero-moment point may be and shall be
@@ -300,7 +300,7 @@ def _zero_moment(path: Array, slowness: Array, rate: float) -> Array:
     return out
 
 
-def _tightened(want: _Wanted, given: Support, zmp: Array, flight: NDArray[np.bool_]) -> _Wanted:
+def _tightened(want: _PathGoals, given: Support, zmp: Array, flight: NDArray[np.bool_]) -> _PathGoals:
     """Limits moved inward by as much as a zero-moment point (n, 2) is beyond the given ones.
 
     What people see of a body, and what the quality report measures, has no trembling above 10 Hz; but as the weight
@@ -322,7 +322,7 @@ def _tightened(want: _Wanted, given: Support, zmp: Array, flight: NDArray[np.boo
 
 
 def _solved(
-    want: _Wanted, flight: NDArray[np.bool_], slowness: Array, rate: float, body: BodySettings, what: str
+    want: _PathGoals, flight: NDArray[np.bool_], slowness: Array, rate: float, body: BodySettings, what: str
 ) -> Solution:
     """The path (n, 2), flat; both coordinates are unknowns of one programme, by turns."""
     support = want.support

@@ -166,7 +166,7 @@ def chest_and_head(plan: Plan, course: Course, ahead: Array, settings: MotionSet
     return chest, chest + smooth_path(head[:, None], ones, course.rate, settings.inertia.head_turn)[:, 0]
 
 
-def head_held(head: Array, chest: Array, rate: float, settings: MotionSettings) -> Array:
+def limit_head_yaw(head: Array, chest: Array, rate: float, settings: MotionSettings) -> Array:
     """Yaw (n,) of a head whose neck can follow: it turns from the chest, which has turned against the legs and with the
     beat meanwhile, no faster and no farther than necks do; rate : samples per second."""
     look, neck = settings.look, head - chest
@@ -213,7 +213,7 @@ def leaning_share(grips: tuple[Grip, ...], times: Array, settings: BarSettings) 
     return out
 
 
-def kept_back(path: Array, share: Array, bar: Bar, settings: BarSettings, nearer: Array) -> Array:
+def limit_to_bar(path: Array, share: Array, bar: Bar, settings: BarSettings, nearer: Array) -> Array:
     """A path (n, 2) over the ground that stays within reach of the bar, softly, as far as `share` (n,) says.
 
     nearer : (n,) metres that it must be nearer than usual

@@ -75,7 +75,7 @@ class Groove:
 
 
 @dataclass(frozen=True, slots=True)
-class Engaged:
+class Occupation:
     """What else she does at n times, (n,) each.
 
     tempo : how quick her steps are, as in `height`; busy, waits : 0 to 1, how busy hands are and how much
@@ -87,7 +87,7 @@ class Engaged:
     waits: Array
 
 
-def groove_of(plan: Plan, times: Array, engaged: Engaged, context: Context) -> Groove:
+def groove_of(plan: Plan, times: Array, engaged: Occupation, context: Context) -> Groove:
     """At even `times` (n,): in jacks and slow steps, not in streams; where she waits she sways as `waits` says."""
     settings = context.settings
     numbers, jacks = settings.groove, repeated(plan, times, settings)

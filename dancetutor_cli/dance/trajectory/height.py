@@ -167,13 +167,13 @@ class HeightPath:
 class HeightWish:
     """What is asked of the height of the centre of mass at n even times, metres.
 
-    times : (n,) seconds; wanted : (n,) where it would like to be; highest : (n,) where it may be
+    times : (n,) seconds; target : (n,) where it would like to be; highest : (n,) where it may be
     above : (n,) how far it is over the pelvis, whose jerk on the ground is least
-    firm : (n,) how much `wanted` counts at take-offs and landings: elsewhere it always counts 1
+    firm : (n,) how much `target` counts at take-offs and landings: elsewhere it always counts 1
     """
 
     times: Array
-    wanted: Array
+    target: Array
     highest: Array
     above: Array
     firm: Array
@@ -183,7 +183,7 @@ def height_path(wish: HeightWish, flights: Array, body: BodySettings) -> HeightP
     """Solve the programme. flights : (k, 2) of take-off and landing, seconds, in order; body : settings"""
     times = wish.times
     flights = flights[(flights[:, 0] > times[0] + 0.05) & (flights[:, 1] < times[-1] - 0.05)]
-    flights = _apart(flights)
+    flights = _separate_flights(flights)
     nodes, flying = _nodes(times[0], times[-1], flights)
     inner = np.arange(1, len(nodes) - 1)
     in_flight = flying[inner - 1] & flying[inner]
@@ -207,7 +207,7 @@ def span(times: Array) -> str:
     return f"from {times[0]:.1f} s to {times[-1]:.1f} s"
 
 
-def _apart(flights: Array) -> Array:
+def _separate_flights(flights: Array) -> Array:
     """Flights (k, 2) with time on the ground between them; one that begins as the last one ends is left out."""
     keep, landed = [], -np.inf
     for k, (start, end) in enumerate(flights):
@@ -249,7 +249,7 @@ def _objective(
     nodes: Array, flying: NDArray[np.bool_], in_flight: NDArray[np.bool_], wish: HeightWish, body: BodySettings
 ) -> BandedLeastSquares:
     n = len(nodes)
-    wanted, above, firm = (np.interp(nodes, wish.times, x) for x in (wish.wanted, wish.above, wish.firm))
+    wanted, above, firm = (np.interp(nodes, wish.times, x) for x in (wish.target, wish.above, wish.firm))
     problem = BandedLeastSquares(n, 1)
     step = np.gradient(nodes) * NODE_RATE
     before, after = np.concatenate(([False], flying)), np.concatenate((flying, [False]))

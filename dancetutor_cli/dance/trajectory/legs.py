@@ -90,7 +90,7 @@ def ankle_of(foot: FootPath, skeleton: Skeleton, side: int) -> Array:
 # legs are equally long as the toes leave.
 
 STEP = np.radians(0.25)  # between pitches that are tried
-TOGETHER = 0.05  # seconds between the feet; if one leaves earlier, the other one pushes alone
+JUMP_WINDOW = 0.05  # seconds between the feet; if one leaves earlier, the other one pushes alone
 
 
 def raised(feet: Feet, up: Array) -> Feet:
@@ -127,7 +127,7 @@ def _lifts(plan: Plan, start: float) -> tuple[float, float] | None:
     out = []
     for track in plan.feet:
         lifts = [m.lift for m in track.moves if isinstance(m, Jump) and m.lift <= start + 1e-6 < m.land]
-        if not lifts or start - lifts[-1] > TOGETHER:
+        if not lifts or start - lifts[-1] > JUMP_WINDOW:
             return None
         out.append(lifts[-1])
     return out[0], out[1]

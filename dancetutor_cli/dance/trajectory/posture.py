@@ -21,15 +21,15 @@ from dancetutor_cli.dance.trajectory.facing import (
     bent_down,
     chest_and_head,
     crossing_share,
-    head_held,
-    kept_back,
     leaned_across,
     leaning_share,
     leaning_tilt,
+    limit_head_yaw,
+    limit_to_bar,
     pelvis_yaw,
     reaching,
 )
-from dancetutor_cli.dance.trajectory.groove import Engaged, groove_of
+from dancetutor_cli.dance.trajectory.groove import Occupation, groove_of
 from dancetutor_cli.dance.trajectory.height import (
     HeightPath,
     HeightWish,
@@ -81,11 +81,11 @@ class Trajectory:
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class RoughBake:
     """What a rough bake has shown. trajectory : that it was of
 
     above : (n, 3), centre of mass minus root
-    turning : (n, 2) as of `balance.moved_by_turning`, or None if it is not known
+    turning : (n, 2) as of `balance.rotation_zmp_offset`, or None if it is not known
     deeper : (p,) how far each press of a palm drew the root below where it
     was wanted, metres, or None for none
     hips : (n, 2, 3), from the root to each hip, None: as of an upright pelvis
@@ -103,7 +103,9 @@ class Known:
     tightened: int = 0
 
 
-def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, known: Known | None = None) -> Trajectory:
+def body_trajectory(
+    plan: Plan, times: Array, feet: Feet, context: Context, known: RoughBake | None = None
+) -> Trajectory:
     """The body on evenly spaced `times` (n,), feet sampled at the same times; known : None in the first round."""
     settings = context.settings
     held = leaning_share(plan.grips, times, settings.bar)
@@ -114,7 +116,7 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     crouch = jump_crouch(plan, times, settings.jump)
     tempo = tempo_factor(plan, times, settings)
     waiting = waiting_at(plan, times, context)
-    engaged = Engaged(tempo, reached.sum(axis=1) + held + own, waiting.share)
+    engaged = Occupation(tempo, reached.sum(axis=1) + held + own, waiting.share)
     groove = groove_of(plan, times, engaged, context)
     leg = settings.body.leg - settings.body.stream_crouch * tempo - crouch
     bent = bent_down(plan.presses, None if known is None else known.deeper, times, settings.hands)
@@ -141,7 +143,7 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
     drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
     drop -= np.radians(settings.wait.lean) * waiting.shift / max(settings.wait.shift, 1e-6)
     chest += np.radians(settings.groove.twist) * groove.sway
-    head = head_held(head, chest, course.rate, settings)
+    head = limit_head_yaw(head, chest, course.rate, settings)
     drop += np.radians(settings.groove.lean) * groove.sway
     tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
     fold = np.radians(settings.jump.fold) * crouch + np.radians(settings.layers.beat_nod) * groove.beat
@@ -157,7 +159,7 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, know
 
 
 def _course(
-    plan: Plan, times: Array, feet: Feet, context: Context, known: Known | None
+    plan: Plan, times: Array, feet: Feet, context: Context, known: RoughBake | None
 ) -> tuple[Course, tuple[str, ...]]:
     """Where the body goes over the ground, and what of that had to be softened."""
     settings = context.settings
@@ -179,7 +181,7 @@ def _course(
     mass, swept = balanced_path(feet, pendulum, settings, 0 if known is None else known.tightened, plan.hand, shift)
     if context.bar is not None:
         nearer = settings.across.nearer * np.abs(crossing_share(plan.grips, times, settings.across))
-        mass = kept_back(mass, leaning_share(plan.grips, times, settings.bar), context.bar, settings.bar, nearer)
+        mass = limit_to_bar(mass, leaning_share(plan.grips, times, settings.bar), context.bar, settings.bar, nearer)
     return Course(times, mass, above, hips, yaw), (BALANCE,) if swept else ()
 
 
@@ -190,7 +192,7 @@ def _above_at_rest(skeleton: Skeleton, count: int) -> Array:
     return np.tile((mass[0] - skeleton.offsets[0]) * [0.0, 1.0, 0.0], (count, 1))
 
 
-def _pendulum(times: Array, known: Known | None, above: Array) -> Pendulum:
+def _pendulum(times: Array, known: RoughBake | None, above: Array) -> Pendulum:
     """The inverted pendulum that she is; standing still as long as the height of her centre of mass is not known."""
     offset = above[:, [0, 2]]
     if known is None:

@@ -53,7 +53,7 @@ def alternatives(
     layers = engine.layers(rows, forced_limbs(rows, overrides))
     ways = _Ways(engine, layers)
     paths = [path for path, _ in zip(ways.cheapest(), range(count), strict=False)]
-    plays = [play_of(rows, engine, engine.told(rows, engine.found(path))) for path in paths]
+    plays = [play_of(rows, engine, engine.with_details(rows, engine.path_along(path))) for path in paths]
     return tuple(_against(plays[0], play) for play in plays)
 
 

@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 
 from dancetutor_cli.feet.preset import Preset
-from dancetutor_cli.run.kernels.store import Kept, kernel_folder
+from dancetutor_cli.run.kernels.store import StoredCode, kernel_folder
 from dancetutor_cli.run.trust import read_file, use_folder, write_file
 
 VARIABLE = "DANCETUTOR_KERNELS"  # "python" or "compiled"; what it says holds for worker processes, too
@@ -36,7 +36,7 @@ def source_stamp() -> str:
 
 def is_compiled(preset: Preset) -> bool:
     """Whether a solve with this preset need not compile first; True where that cannot be known."""
-    return Kept(_HERE / "solvers.py", f"solve_{preset.model}", source_stamp()).is_there()
+    return StoredCode(_HERE / "solvers.py", f"solve_{preset.model}", source_stamp()).is_there()
 
 
 def is_interpreted() -> bool:
@@ -61,7 +61,7 @@ def interpret(presets: Iterable[Preset], size: Callable[[], int]) -> bool:
         before = int(read_file(note))
     except (OSError, ValueError):
         before = 0
-    if kernel_folder().kept and before > _OFTEN:
+    if kernel_folder().is_writable and before > _OFTEN:
         return False
     with suppress(OSError):
         if not use_folder(note.parent):

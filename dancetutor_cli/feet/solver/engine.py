@@ -15,8 +15,8 @@ from dancetutor_cli.feet.play import Rows
 from dancetutor_cli.feet.preset import Curve, Preset
 from dancetutor_cli.feet.solver import store
 from dancetutor_cli.feet.solver.jit import INTERPRETED
-from dancetutor_cli.feet.solver.solvers import TELL, solve_itg, solve_thesis
-from dancetutor_cli.feet.solver.store import Found, RowArrays, RowStates, empty_tables, grown
+from dancetutor_cli.feet.solver.solvers import EXPLAIN, solve_itg, solve_thesis
+from dancetutor_cli.feet.solver.store import RowArrays, RowStates, SolverPath, empty_tables, grown
 from dancetutor_cli.feet.solver.tables import EARLIER, FORCED, MOST_MOVES, TAPS, Making, Rules, geometry, moves
 from dancetutor_cli.feet.solver.techniques import limits, long_ways
 from dancetutor_cli.feet.solver.thesis_moves import UNPLAYED
@@ -86,7 +86,7 @@ class Engine:
 
     def cheapest(
         self, rows: Rows, forced: NDArray[np.int64] | None = None, margins: bool = False, *, told: bool = False
-    ) -> Found:
+    ) -> SolverPath:
         """The cheapest way through rows.
 
         Parameters
@@ -96,10 +96,10 @@ class Engine:
         told : whether to tell what each row costs and what happens in it
         """
         arrays, (n, c) = _arrays(rows, forced), rows.steps.shape
-        found, at_once = self._found(n, c, margins=margins), told and _nodes_of(n, c) <= _NODES_KEPT
-        found = self._to_be_told(found) if at_once else found
+        found, at_once = self._empty_path(n, c, margins=margins), told and _nodes_of(n, c) <= _NODES_KEPT
+        found = self._with_detail_arrays(found) if at_once else found
         self._run(arrays, found)  # of a long chart the nodes are gone before there is room for what it costs
-        return self.told(rows, found) if told and not at_once else found
+        return self.with_details(rows, found) if told and not at_once else found
 
     def first_without(self, rows: Rows, edits: NDArray[np.int64]) -> int:
         """Which of some edits is the first after which the cheapest way has no doublestep in a row; else their number.
@@ -108,8 +108,8 @@ class Engine:
         """
         self._start_anew_if_full()
         (n, c), arrays = rows.steps.shape, _arrays(rows, None)
-        found, nodes = self._found(n, c, margins=False)._replace(edit=edits), self._room(n, c)
-        return self._until_done(0, arrays, nodes, found)
+        found, nodes = self._empty_path(n, c, margins=False)._replace(edit=edits), self._room(n, c)
+        return self._run_to_end(0, arrays, nodes, found)
 
     def events(self, path: NDArray[np.int32]) -> NDArray[np.int64]:
         """What happens in the rows of a way given by its moves, (n,) bits of `EVENTS`."""
@@ -119,7 +119,7 @@ class Engine:
         self, rows: Rows, forced: NDArray[np.int64] | None = None
     ) -> tuple[RowArrays, RowStates, NDArray[np.int32]]:
         """All that the programme found out on the way through rows, to go on from it, and the moves of the way."""
-        arrays, found = _arrays(rows, forced), self._found(*rows.steps.shape, margins=False)
+        arrays, found = _arrays(rows, forced), self._empty_path(*rows.steps.shape, margins=False)
         nodes = self._run(arrays, found)
         return arrays, nodes._replace(node=nodes.node[: nodes.row[len(rows) + 1, store.FIRST]].copy()), found.move
 
@@ -152,24 +152,24 @@ class Engine:
     def go_on(self, arrays: RowArrays, nodes: RowStates) -> None:
         """Nodes of all rows but the first, for which they are filled in."""
         n, c = arrays.steps.shape
-        self._until_done(1, arrays, nodes, self._found(n, c, margins=False))
+        self._run_to_end(1, arrays, nodes, self._empty_path(n, c, margins=False))
 
     def layers(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> Layers:
         """Every state that the rows can end in, for a look at other ways than the cheapest."""
         arrays = _arrays(rows, forced)
-        nodes = self._run(arrays, self._found(*rows.steps.shape, margins=False))
+        nodes = self._run(arrays, self._empty_path(*rows.steps.shape, margins=False))
         t = self.tables
         numbers = [store.START, *t.transition[nodes.transition, store.TO_LAYER].tolist()]
         spans = {number: t.layer[number].tolist() for number in set(numbers)}
         states = {number: t.layer_state[first : first + size].tolist() for number, (first, size) in spans.items()}
         return Layers([states[number] for number in numbers], arrays.elapsed.tolist(), arrays.pattern.tolist(), t.pair)
 
-    def found(self, path: list[int]) -> Found:
+    def path_along(self, path: list[int]) -> SolverPath:
         """A way through rows, given by its moves; without margins."""
         move = np.array(path, dtype=np.int32)
         columns, action = np.arange(len(self.pad)), self.tables.wide[move, store.ACTION][:, None]
         code, nothing = action >> 3 * columns & 7, np.empty(0, dtype=np.int64)
-        return Found(
+        return SolverPath(
             move,
             np.where(code == UNPLAYED, Limb.UNPLAYED, code - 1).astype(np.int8),
             (action >> store.PART_SHIFT + 2 * columns & 3).astype(np.uint8),
@@ -178,13 +178,13 @@ class Engine:
             *self._untold,
         )
 
-    def told(self, rows: Rows, found: Found) -> Found:
+    def with_details(self, rows: Rows, found: SolverPath) -> SolverPath:
         """A way, and what it costs and what happens in each row."""
-        told = self._to_be_told(found)
-        self._call(_arrays(rows, None), TELL, _nodes(0, self._node), told)
+        told = self._with_detail_arrays(found)
+        self._call(_arrays(rows, None), EXPLAIN, _nodes(0, self._node), told)
         return told
 
-    def _to_be_told(self, found: Found) -> Found:
+    def _with_detail_arrays(self, found: SolverPath) -> SolverPath:
         n = len(found.move)
         return found._replace(
             events=np.empty(n, dtype=np.int32),
@@ -193,14 +193,14 @@ class Engine:
             cost=np.empty((n + 1, len(self.terms)), dtype=np.int32),
         )
 
-    def _call(self, arrays: RowArrays, start: int, nodes: RowStates, found: Found) -> tuple[int, int]:
+    def _call(self, arrays: RowArrays, start: int, nodes: RowStates, found: SolverPath) -> tuple[int, int]:
         with _wrapping():
             return self._solve(arrays, start, self.tables, nodes, self._making, found)
 
-    def _run(self, arrays: RowArrays, found: Found) -> RowStates:
+    def _run(self, arrays: RowArrays, found: SolverPath) -> RowStates:
         self._start_anew_if_full()
         nodes = self._room(*arrays.steps.shape)
-        self._until_done(0, arrays, nodes, found)
+        self._run_to_end(0, arrays, nodes, found)
         return nodes
 
     def _start_anew_if_full(self) -> None:
@@ -218,8 +218,8 @@ class Engine:
         facts = counts[store.FACTS_KNOWN] > store.FACTS_MASK // 2
         return bool(facts or counts[store.MOVES] > _MOST_MOVES_KEPT or counts[store.EDGES] > _MOST_EDGES_KEPT)
 
-    def _found(self, n: int, c: int, *, margins: bool) -> Found:
-        return Found(
+    def _empty_path(self, n: int, c: int, *, margins: bool) -> SolverPath:
+        return SolverPath(
             np.empty(n, dtype=np.int32),
             np.empty((n, c), dtype=np.int8),
             np.empty((n, c), dtype=np.uint8),
@@ -228,7 +228,7 @@ class Engine:
             *self._untold,
         )
 
-    def _until_done(self, start: int, arrays: RowArrays, nodes: RowStates, found: Found) -> int:
+    def _run_to_end(self, start: int, arrays: RowArrays, nodes: RowStates, found: SolverPath) -> int:
         """Run the kernel from a row, or an edit, on, and give it what it asks for; where it has ended."""
         wanted = -1
         while wanted != store.DONE:
@@ -301,7 +301,7 @@ class Layers:
 
 
 @lru_cache(maxsize=_MOST_ENGINES)
-def _kept(steps_type: str, preset: Preset, shape: bytes) -> list[Engine]:
+def _engine_pool(steps_type: str, preset: Preset, shape: bytes) -> list[Engine]:
     return []
 
 
@@ -322,7 +322,7 @@ _last: dict[int, tuple[Pad, Preset, Engine]] = {}
 
 def _engine(pad: Pad, preset: Preset) -> Engine:
     shape = pad.panels.tobytes() + np.array([*pad.centre, *pad.home, pad.reach]).tobytes() + pad.arrows.tobytes()
-    kept = _kept(pad.steps_type, preset, shape)
+    kept = _engine_pool(pad.steps_type, preset, shape)
     if not kept:
         kept.append(Engine(pad, preset))
     return kept[0]

@@ -48,7 +48,7 @@ _WIDE = 40  # 1/20 panels: feet farther apart than this are stretched
 
 
 @inner_kernel
-def held_by(s, foot, panels):  # type: ignore[no-untyped-def]
+def reserved_panels(s, foot, panels):  # type: ignore[no-untyped-def]
     """Panels that a foot is reserved for, as bits. panels : of `Geometry`"""
     held, place = s[LEFT_HELD + foot], s[foot]
     mask = 1 << panels[place, foot, 0] if held & 1 else 0
@@ -143,7 +143,7 @@ def _charge_step(before, foot, pressed, ended, terms, rules):  # type: ignore[no
         return _F_JACK, 0
     if not before[LAST] and pressed & ~stands:
         facts |= _F_AFTER_JUMP
-    if pressed & other and not pressed & held_by(before, 1 - foot, g.panels):
+    if pressed & other and not pressed & reserved_panels(before, 1 - foot, g.panels):
         for panel in range(len(g.arrow)):  # a bracket may take over two
             if pressed & other & 1 << panel:
                 events |= _SWITCH[g.arrow[panel]]

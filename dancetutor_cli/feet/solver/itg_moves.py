@@ -22,7 +22,7 @@ from dancetutor_cli.feet.solver.itg_costs import (
     charge_hand,  # fmt: skip
     charge_mines,  # fmt: skip
     charge_pose,  # fmt: skip
-    held_by,  # fmt: skip
+    reserved_panels,  # fmt: skip
 )
 from dancetutor_cli.feet.solver.jit import inner_kernel
 from dancetutor_cli.feet.solver.state import LAST, LEFT_AT, LEFT_HELD, LEFT_HOLDS, NUMBERS, RIGHT_AT, pack, unpack
@@ -53,7 +53,7 @@ BEFORE, AFTER, PRESS, PANELS, LEFT_WAYS, RIGHT_WAYS, LEFT_TO, RIGHT_TO = range(8
 Whole = int | np.int64  # what Python and numba call a whole number
 
 
-class _Asked(NamedTuple):
+class _ItgRow(NamedTuple):
     """What a row asks for.
 
     row : its packed masks; steps : panels to press; kept : those of them that are pressed by keeping them down
@@ -83,7 +83,7 @@ def _hold(s, foot, mask, panels):  # type: ignore[no-untyped-def]
 def _ways_of_foot(out, foot, steps, brackets, g):  # type: ignore[no-untyped-def]
     """What a foot can press of `steps`: panels, and its place then, into `out.scratch`. Returns in how many ways."""
     s, ways, to = out.scratch[BEFORE], out.scratch[LEFT_WAYS + foot], out.scratch[LEFT_TO + foot]
-    held = held_by(s, foot, g.panels)
+    held = reserved_panels(s, foot, g.panels)
     ways[0], to[0] = 0, s[foot]
     m, c = 1, g.place.shape[0]
     for p in range(c):
@@ -140,7 +140,7 @@ def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-d
         events |= happened
     holds, rolls = row >> HOLDS & _MASK, row >> ROLLS & _MASK
     for foot in range(2):
-        held = held_by(before, foot, g.panels)
+        held = reserved_panels(before, foot, g.panels)
         if switched >= 0:
             held = held & ~(1 << switched) if held >> switched & 1 else held | 1 << switched
         mine = g.mask[s[foot]]
@@ -295,11 +295,11 @@ def expand_itg(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
     steps = (row >> TAPS | row >> HOLDS | row >> ROLLS | row >> ROLL_TAPS) & _MASK
     released = row >> RELEASED & _MASK
     for foot in range(2):
-        _hold(before, foot, held_by(before, foot, g.panels) & ~released, g.panels)
+        _hold(before, foot, reserved_panels(before, foot, g.panels) & ~released, g.panels)
         held = before[LEFT_HOLDS + foot]
         if held and released >> held - 1 & 1:
             before[LEFT_HOLDS + foot] = 0
-        keepers[foot] = held_by(before, foot, g.panels)
+        keepers[foot] = reserved_panels(before, foot, g.panels)
     kept = steps & row >> ROLL_TAPS & (keepers[0] | keepers[1])  # virtual taps of rolls that a foot keeps down
     brackets, m = switches[0], 0
     for attempt in range(3):
@@ -308,7 +308,7 @@ def expand_itg(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
         elif attempt == 2:  # overrides nobody can follow
             brackets, forced = switches[0], forced & ~_FORCED
         if m == 0:
-            m = _feet(out, _Asked(row, steps, kept, forced), brackets, rules)
+            m = _feet(out, _ItgRow(row, steps, kept, forced), brackets, rules)
         if attempt == 0 and switches[1] and steps and steps & steps - 1 == 0 and not kept:
-            m = _holdswitches(out, m, _Asked(row, steps, kept, forced), rules)
+            m = _holdswitches(out, m, _ItgRow(row, steps, kept, forced), rules)
     return m

@@ -238,7 +238,7 @@ def trace(t, nodes, found):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel(inline="always")
-def tell(t, rows, rules, found):  # type: ignore[no-untyped-def]
+def explain_path(t, rows, rules, found):  # type: ignore[no-untyped-def]
     """Cost of every row of a path by term, what happens in it, and how the dancer stands after it."""
     moves, wide, terms, timed_key, keys, elapsed = t.move, t.wide, t.terms, t.timed_key, t.state_key, rows.elapsed
     path, cost, events, feet, facing = found.move, found.cost, found.events, found.feet, found.facing

@@ -16,7 +16,7 @@ from dancetutor_cli.feet.play import Play, Rows, StepKind, prepare
 from dancetutor_cli.feet.preset import Curve, Preset
 from dancetutor_cli.feet.solver import store
 from dancetutor_cli.feet.solver.engine import Engine, engine_for, whole_curve
-from dancetutor_cli.feet.solver.store import Found, RowArrays, RowStates
+from dancetutor_cli.feet.solver.store import RowArrays, RowStates, SolverPath
 from dancetutor_cli.feet.solver.techniques import EventNames
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] |
     return forced
 
 
-def play_of(rows: Rows, engine: Engine, found: Found) -> Play:
+def play_of(rows: Rows, engine: Engine, found: SolverPath) -> Play:
     """The play that a way through the rows is, of which the engine has told all."""
     return Play(
         rows=rows,
@@ -143,13 +143,13 @@ class OneTap:
         self._arrays, self._nodes, self._path = self._engine.solved(self._rows, self._forced(self._rows))
         self._era = self._engine.era
 
-    def moved(self, row: int, column: int, to: int) -> Outline:
+    def outline_with(self, row: int, column: int, to: int) -> Outline:
         """The way if the tap of a row and column were in another column, where no step or hold is."""
         if not self._engine.keeps(self._era):
             self._solve()
         n, asked = len(self._rows), 0
         if len(self._arrays.forced) or self._is_whole(row, column, to):
-            rows = moved_tap(self._rows, row, column, to)
+            rows = move_tap(self._rows, row, column, to)
             forced = self._forced(rows)
             if self._is_whole(row, column, to):
                 _, nodes, path = self._engine.solved(rows, forced)
@@ -246,7 +246,7 @@ class OneTap:
         return int((t.layer_state[first : first + size] == t.move[self._path[row], store.NEXT]).argmax())
 
 
-def moved_tap(rows: Rows, row: int, column: int, to: int) -> Rows:
+def move_tap(rows: Rows, row: int, column: int, to: int) -> Rows:
     """The rows with the tap of a row and column in another column."""
     steps = rows.steps.copy()
     steps[row, to], steps[row, column] = steps[row, column], StepKind.NONE

@@ -11,7 +11,7 @@ import numpy as np
 from dancetutor_cli.feet.solver import tables as columns
 from dancetutor_cli.feet.solver.itg_moves import expand_itg
 from dancetutor_cli.feet.solver.jit import inner_kernel, kernel
-from dancetutor_cli.feet.solver.kernel import advance, begin, margins, tell, trace, wait
+from dancetutor_cli.feet.solver.kernel import advance, begin, explain_path, margins, trace, wait
 from dancetutor_cli.feet.solver.state import PLACE_BITS
 from dancetutor_cli.feet.solver.store import (
     ACTION,  # fmt: skip
@@ -271,7 +271,7 @@ def explorer(rules: Any) -> Any:
 
 # The solver's kernels, one for each model: each finds the cheapest way through rows, and what it needs for that.
 
-TELL = -1  # instead of a row to start from
+EXPLAIN = -1  # instead of a row to start from
 DOUBLESTEP = 1 << NAMES.index("doublestep")
 explore: Any = None  # globals of each model's own; see `_way_finder` and `_solver`
 find_way: Any = None
@@ -330,7 +330,7 @@ def _solver(name: str, rules_of_model: Any) -> Any:
                 if wanted != DONE or not t.wide[found.move[edit[EDIT_OF]], EVENTS] & DOUBLESTEP:
                     return number, wanted
             return len(found.edit), DONE
-        if start == TELL:
+        if start == EXPLAIN:
             wait(rows)
         else:
             row, wanted = find_way(rows, start, t, nodes, making, found)
@@ -339,7 +339,7 @@ def _solver(name: str, rules_of_model: Any) -> Any:
             if wanted != DONE:
                 return row, wanted
         if len(found.events):
-            tell(t, rows, making.rules, found)
+            explain_path(t, rows, making.rules, found)
         return start, DONE
 
     own = FunctionType(solve.__code__, {**globals(), "find_way": _way_finder(rules_of_model)}, name)

@@ -132,7 +132,7 @@ class RowArrays(NamedTuple):
     second: NDArray[np.float64]
 
 
-class Found(NamedTuple):
+class SolverPath(NamedTuple):
     """The cheapest way, to be filled in. move : int32 (n,); limb : int8, part : uint8 (n, c)
 
     margin : int64, -1 no other way; ambiguity : uint8, see `Play`; (n,), or of length 0 if nobody wants to know

@@ -88,7 +88,7 @@ def _threshold(move: str, name: str) -> float:
 
 AWAY, BACK, ASIDE = "half-turn-away", "half-turn-back", "half-turn"
 HALF_TURNS = (AWAY, BACK, ASIDE)  # her back to the screen after it, before it, or neither
-_BESIDE = 90.0  # degrees; farther than that from the screen, her back is to it
+_SIDEWAYS = 90.0  # degrees; farther than that from the screen, her back is to it
 
 
 def half_turned(facing: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -106,5 +106,5 @@ def moves_and_turns(play: Play) -> list[tuple[str, ...]]:
 
 
 def _way(before: float, after: float) -> str:
-    away = [abs((facing + 180) % 360 - 180) > _BESIDE + EPSILON for facing in (before, after)]
+    away = [abs((facing + 180) % 360 - 180) > _SIDEWAYS + EPSILON for facing in (before, after)]
     return AWAY if away[1] else BACK if away[0] else ASIDE

@@ -59,7 +59,7 @@ _MASK = (1 << COLUMN_BITS) - 1
 Whole = int | np.int64  # what Python and numba call a whole number
 
 
-class _Asked(NamedTuple):
+class _ThesisRow(NamedTuple):
     """What a row asks for: panels to press as bits, how many they are, which of them are to be held, and limb codes of
     overrides (3 bits for each column, 0: any limb). The panels stand in scratch `PANELS`, too.
     """
@@ -310,5 +310,5 @@ def expand_thesis(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
         elif attempt == 2:  # overrides nobody can follow, such as one foot on two panels
             forced = np.int64(0)
         if m == 0:
-            m = _assign(out, _Asked(steps, n, holds, forced), _Limbs(usable, legs, hands, jack, allow), rules)
+            m = _assign(out, _ThesisRow(steps, n, holds, forced), _Limbs(usable, legs, hands, jack, allow), rules)
     return m

@@ -11,7 +11,7 @@ import numpy as np
 
 from dancetutor_cli.film.choices import Quality
 from dancetutor_cli.film.media import ffmpeg
-from dancetutor_cli.film.media.ffmpeg import FORMATS, PICTURES, FilmFormat, Joining
+from dancetutor_cli.film.media.ffmpeg import FORMATS, PICTURES, FilmFormat, JoinJob
 from dancetutor_cli.run.errors import FileError, UnavailableError
 
 if TYPE_CHECKING:
@@ -162,7 +162,7 @@ def join(segments: Sequence[Path], encoding: Encoding, sound: Path | None, work:
     listing.write_text("\n".join(["ffconcat version 1.0", *lines]) + "\n", encoding="utf-8")
     assert encoding.format.join is not None, "pictures are not joined"
     encoding.format.join(
-        Joining(listing, sound, work, output, encoding.size, encoding.fps, encoding.quality == "draft")
+        JoinJob(listing, sound, work, output, encoding.size, encoding.fps, encoding.quality == "draft")
     )
 
 

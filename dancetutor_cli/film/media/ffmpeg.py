@@ -20,7 +20,7 @@ from typing import IO, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.run.errors import DancetutorError, UnavailableError, UsageError, how_to_add
+from dancetutor_cli.run.errors import DancetutorError, UnavailableError, UsageError, install_command
 from dancetutor_cli.run.files import one_of, write_atomic
 from dancetutor_cli.run.pictures import read_palette, write_gif, write_webp
 from dancetutor_cli.run.reading import MEGABYTE, read_json
@@ -36,17 +36,17 @@ VARIABLE = "IMAGEIO_FFMPEG_EXE"
 NAME = "ffmpeg.exe" if os.name == "nt" else "ffmpeg"
 ENCODERS = ("libx264", "libx264rgb", "aac")
 FILTERS = ("rubberband", "palettegen", "paletteuse")
-MEND = f"Debian/Ubuntu: apt-get install ffmpeg; or {how_to_add('ffmpeg')}"
+MEND = f"Debian/Ubuntu: apt-get install ffmpeg; or {install_command('ffmpeg')}"
 _PATIENCE = 20.0  # seconds for an answer
 
 
 def ffmpeg_program() -> str:
     """Path of the ffmpeg to run. Raises UnavailableError, one line, if there is none."""
-    return _chosen(os.environ.get(VARIABLE), os.environ.get("PATH", os.defpath))
+    return _find_executable(os.environ.get(VARIABLE), os.environ.get("PATH", os.defpath))
 
 
 @cache
-def _chosen(named: str | None, path: str) -> str:
+def _find_executable(named: str | None, path: str) -> str:
     if named:
         return named
     systems = list(on_path(path))
@@ -73,7 +73,7 @@ def on_path(path: str) -> Iterator[Path]:
 
 def lacking(program: Path) -> list[str]:
     """What films need and an ffmpeg cannot: names of encoders and filters; kept in the user's cache."""
-    kept, key = _kept_in(), _fingerprint(program)
+    kept, key = _capability_file(), _fingerprint(program)
     with suppress(DancetutorError):
         found = read_json(kept, MEGABYTE) if kept else None
         if isinstance(found, dict) and found.get("key") == key and isinstance(found.get("lacking"), list):
@@ -85,7 +85,7 @@ def lacking(program: Path) -> list[str]:
     return missing
 
 
-def _kept_in() -> Path | None:
+def _capability_file() -> Path | None:
     folder = kept_folder("programs")
     return None if folder is None else folder / "ffmpeg.json"
 
@@ -246,7 +246,7 @@ def bare_start() -> None:
 # A new format is an entry of `FORMATS` with a function that joins segments; options and defaults follow.
 
 
-class Joining(NamedTuple):
+class JoinJob(NamedTuple):
     """What a film is joined of. listing : a list of segments for ffmpeg; sound : a WAV file or None
 
     work : folder for what that needs; output : the film, of `size` (width, height) and so many frames a second
@@ -278,7 +278,7 @@ class FilmFormat:
     largest : seconds of film after which the file is said to be very large
     """
 
-    join: Callable[[Joining], None] | None
+    join: Callable[[JoinJob], None] | None
     segment: str
     h264: bool = False
     has_sound: bool = False
@@ -287,7 +287,7 @@ class FilmFormat:
     largest: float = math.inf
 
 
-def _mp4(parts: Joining) -> None:
+def _mp4(parts: JoinJob) -> None:
     sound = () if parts.sound is None else (*INPUT_GUARD, "-i", local(parts.sound))
     coder = ("-aac_coder", "fast") if parts.quick else ()
     codec = ("-c:v", "copy", "-c:a", "aac", *coder, "-b:a", "192k", "-threads", "1")
@@ -295,7 +295,7 @@ def _mp4(parts: Joining) -> None:
     run(("-y", *parts.source, *sound, *codec, *tidy, local(parts.output)), "writing the film")
 
 
-def _gif(parts: Joining) -> None:
+def _gif(parts: JoinJob) -> None:
     """ffmpeg chooses the colours and dithers, `pictures` writes."""
     palette = parts.work / "palette.png"
     run(("-y", *parts.source, "-vf", "palettegen=stats_mode=diff", local(palette)), "choosing colours")
@@ -305,7 +305,7 @@ def _gif(parts: Joining) -> None:
     write_gif(parts.output, _frames(parts, images, "pal8"), colors, parts.fps)
 
 
-def _webp(parts: Joining) -> None:
+def _webp(parts: JoinJob) -> None:
     listed = ("-map", "0:v", "-c", "copy", "-f", "framecrc", "pipe:1")  # a line for each frame, below lines with a #
     with Process((*parts.source, *listed), "counting frames", read=True) as process:
         count = sum(not line.startswith(b"#") for line in process.read().splitlines())
@@ -313,7 +313,7 @@ def _webp(parts: Joining) -> None:
     write_webp(parts.output, _frames(parts, parts.source, "rgb24"), count, parts.fps)
 
 
-def _frames(parts: Joining, images: tuple[str, ...], pixels: str) -> Iterator[NDArray[np.uint8]]:
+def _frames(parts: JoinJob, images: tuple[str, ...], pixels: str) -> Iterator[NDArray[np.uint8]]:
     """What ffmpeg makes of the segments, frame by frame."""
     width, height = parts.size
     shape = (height, width) if pixels == "pal8" else (height, width, 3)

@@ -151,12 +151,12 @@ def _pass(plan: SoundPlan, one: Pass) -> Samples:
         edge = min(round(FADE * RATE), len(music))
         if begin > plan.shift:  # cut in the middle of the music
             music[:edge] *= np.linspace(0, 1, edge, dtype=np.float32)[:, None]
-        at = round(one.shown(begin) * RATE)
+        at = round(one.film_seconds(begin) * RATE)
         music = music[: count - at]
         track[at : at + len(music)] += music * (0.8 if plan.clicks else 1.0)
     for click in plan.clicks:
         if one.start <= click.second < one.end:
-            _add(track, click_sound(click.pitch) * click.gain, one.shown(click.second))
+            _add(track, click_sound(click.pitch) * click.gain, one.film_seconds(click.second))
     return track
 
 

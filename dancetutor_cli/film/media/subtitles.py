@@ -13,7 +13,7 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
 from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.notes import Cue
-from dancetutor_cli.film.words import HOLD, SAID_BY_A_BRACKET, WHO, filled, move_words
+from dancetutor_cli.film.words import HOLD, IMPLIED_BY_BRACKET, WHO, filled, move_words
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.yaml_files import load
@@ -64,7 +64,7 @@ def _crossovers(play: Play, words: Mapping[str, str]) -> Iterator[Cue]:
                 way = [name for name in _WAYS if name in play.moves[row] and name in words and not full]
                 name = way[0] if way else new.pop()
                 if (word := words.get(name)) and not {*HALF_TURNS}.intersection(turns[row]):
-                    yield Cue(float(second[row]), end, word, _who(play, row), name)
+                    yield Cue(float(second[row]), end, word, _limb_names(play, row), name)
             before |= {*now, "crossover-half"}
 
 
@@ -72,9 +72,9 @@ def _moments(play: Play, words: Mapping[str, str], pad: Pad, turned: bool) -> It
     """Moves of one row, each time they come."""
     named = set(words) - {*_CROSSED, *_WAYS, *_RUNS, HOLD}
     for row, names in enumerate(moves_and_turns(play)):
-        for name in named.intersection(names) - (SAID_BY_A_BRACKET if "bracket" in names else set()):
+        for name in named.intersection(names) - (IMPLIED_BY_BRACKET if "bracket" in names else set()):
             second = float(play.rows.second[row])
-            who = () if "{" in words[name] else _who(play, row)
+            who = () if "{" in words[name] else _limb_names(play, row)
             for said in filled(words[name], name, (play, row), pad, turned):
                 yield Cue(second, second, said, who, name)
 
@@ -90,7 +90,7 @@ def _holds(play: Play, timing: Timing, words: Mapping[str, str]) -> Iterator[Cue
         yield Cue(float(play.rows.second[r]), end, words[HOLD], who, HOLD)
 
 
-def _who(play: Play, row: int) -> tuple[str, ...]:
+def _limb_names(play: Play, row: int) -> tuple[str, ...]:
     """Who does a move of a row: everybody who steps in it, but of both feet it is no foot's move."""
     limbs = {limb for limb in play.limb[row].tolist() if 0 <= limb < len(WHO)}
     return () if {Limb.LEFT_FOOT, Limb.RIGHT_FOOT} <= limbs else tuple(WHO[limb] for limb in sorted(limbs))
@@ -175,7 +175,7 @@ def subtitles(cues: Sequence[Cue], clock: Clock, style: SubtitleStyle) -> str:
     shown: list[tuple[float, float, str]] = []
     begin = 0.0
     for one in clock.passes:
-        for line in _timed(_together(cues, one, begin, style), begin, begin + one.seconds, style):
+        for line in _timed(_merge_close_moves(cues, one, begin, style), begin, begin + one.seconds, style):
             text = line.text(style)
             if shown and shown[-1][2] == text and line.start - shown[-1][1] < _GAP:
                 shown[-1] = (shown[-1][0], line.end, text)
@@ -186,13 +186,13 @@ def subtitles(cues: Sequence[Cue], clock: Clock, style: SubtitleStyle) -> str:
     return "\n".join(blocks)
 
 
-def _together(cues: Sequence[Cue], one: Pass, begin: float, style: SubtitleStyle) -> list[_Line]:
+def _merge_close_moves(cues: Sequence[Cue], one: Pass, begin: float, style: SubtitleStyle) -> list[_Line]:
     """The moves that come in a run, which begins at `begin`; those too close to be read one by one in one line."""
     lines: list[_Line] = []
     for cue in cues:
         if not max(one.start, one.sound_from) <= cue.second < one.end:
             continue
-        first, last = (begin + one.shown(min(s, one.end)) for s in (cue.second, cue.end))
+        first, last = (begin + one.film_seconds(min(s, one.end)) for s in (cue.second, cue.end))
         first = max(begin, min(first, begin + one.seconds - style.stays))  # what comes last can be read, too
         if not lines or first >= lines[-1].first + style.shortest:
             lines.append(_Line(first, first, last))

@@ -24,7 +24,7 @@ CALL_LEAST = 0.75  # size of a call's letters that is preferred to fewer words,
 CALL_SMALL = 0.5  # and to more than two lines
 SHARES = np.arange(1.0, CALL_LEAST - 0.01, -0.05)  # of their size that are tried
 CALL_STAYS, CALL_FADES = 0.2, 0.06  # seconds that a call stays after its note; in which it goes: no ghost of it stands
-COUNTED = "starts in"  # said above the numbers of the count-in
+COUNT_IN_TEXT = "starts in"  # said above the numbers of the count-in
 
 
 class Runs:
@@ -41,7 +41,7 @@ class Runs:
         self.labels = [flag([text], 19 * scale, SOFT, face) for text in texts]
         counts = range(1, max(one.count for one in clock.passes) + 1)
         room, small = count[3] - count[1], min(20 * scale, 0.2 * (count[3] - count[1]))
-        (said,), small = fitted(COUNTED, small, 0.9 * (count[2] - count[0]), face, most=1)
+        (said,), small = fitted(COUNT_IN_TEXT, small, 0.9 * (count[2] - count[0]), face, most=1)
         self.counted = face.sprite(said, small, SOFT, weight=small / 80, shadow=small / 14)
         big = min(150 * scale, 0.8 * (room - self.counted.shape[0]))
         self.numbers = {n: face.sprite(str(n), big, WHITE, weight=big / 50, shadow=big / 30) for n in counts}
@@ -126,7 +126,7 @@ def _foot_colour(text: str) -> RGB | None:
     return limb_colours().by_limb[named[0]] if len(named) == 1 else None
 
 
-def _left(call: Callout, second: float) -> float:
+def _remaining_share(call: Callout, second: float) -> float:
     """How much is left of the time to the next move of a passage, 1 to 0; 0 from its last one on."""
     begin = call.begin
     for move in (call.second, *(move for move, *_ in call.further)):
@@ -142,7 +142,7 @@ class Calls:
     The words stand until the passage is over: one that goes on has its count beside it all the time.
     """
 
-    SHOWN = 2  # at a time, the nearest on top
+    MAX_LINES = 2  # at a time, the nearest on top
 
     def __init__(
         self, callouts: tuple[Callout, ...], box: PixelBox, scale: float, face: Typeface, style: HighwayStyle
@@ -158,14 +158,14 @@ class Calls:
         lines, size = _phrases(text, size, (width, height), self.face, tag)
         return flag(lines, size, self.style.callout[severity], self.face, _foot_colour(text))
 
-    def _shown(self, second: float) -> list[Callout]:
+    def _current_calls(self, second: float) -> list[Callout]:
         shown = np.flatnonzero((self._begins <= second) & (second < self._ends))
-        return [self.callouts[k] for k in shown[: self.SHOWN]]
+        return [self.callouts[k] for k in shown[: self.MAX_LINES]]
 
     def draw(self, frame: Frame, second: float) -> None:
         """Draw what goes on at `second`, and what comes next."""
         y = float(self.box[1])
-        for one in self._shown(second):
+        for one in self._current_calls(second):
             label = self._sprite(one.text, one.severity, one.tag)
             if y > self.box[1] and y + label.shape[0] > self.box[3]:
                 break  # it would cover what stands below; the tag beside the notes says it, too
@@ -174,7 +174,7 @@ class Calls:
             fade = min(1.0, (second - one.begin) / 0.12, (over - second) / CALL_FADES)
             blit(frame, label, x, round(y), fade)
             y += label.shape[0] + 4 * self.scale
-            share = _left(one, second)
+            share = _remaining_share(one, second)
             bar = (label.shape[1] - 8 * self.scale) * share
             edge = x + 4 * self.scale
             line = (edge, y, edge + bar, y + 4 * self.scale)

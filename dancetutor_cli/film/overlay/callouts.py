@@ -16,7 +16,7 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import MOVE
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
 from dancetutor_cli.film.notes import Callout
-from dancetutor_cli.film.words import MINE, SAID_BY_A_BRACKET, filled, short_words
+from dancetutor_cli.film.words import IMPLIED_BY_BRACKET, MINE, filled, short_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 JOIN = 2 * TICKS_PER_BEAT, 0.8  # moves that follow within so many ticks, or seconds, are called out together,
 REST = 1.2  # if there is not so long a rest before them, seconds, and no jump with uncrossed feet;
 LONGEST = 16 * TICKS_PER_BEAT, 7.5  # but nothing is called out for longer than four measures, or so many seconds
-APART = 0.4  # seconds between moves of one passage that have each its tag and its countdown
+MIN_GAP = 0.4  # seconds between moves of one passage that have each its tag and its countdown
 KINDS, LETTERS = 2, 42  # different moves in one call at most, and letters of these: more cannot be read in time
 _ORDER = ("move", "info", "warning", "error")
 _OF_PASSAGES, _PASSAGE = ("fast step", "unplayable"), 8 * TICKS_PER_BEAT  # one finding for so long (lint/rules)
@@ -62,7 +62,7 @@ class _Passage:
     weight: int = 0
     moves: list[tuple[int, str]] = field(default_factory=list)
 
-    def takes(self, tick: int, said: str, weight: int, told: _Told) -> bool:
+    def takes(self, tick: int, said: str, weight: int, told: _TickTable) -> bool:
         """Is a move at `tick` part of it?"""
         second = told.second
 
@@ -90,13 +90,13 @@ class _Passage:
         """Tick and tag of each other move that is well apart from the one before it."""
         found, before = [], self.first
         for tick, said in self.moves:
-            if second[tick] - second[before] >= APART:
+            if second[tick] - second[before] >= MIN_GAP:
                 found.append((tick, short_words(said)))
                 before = tick
         return found
 
 
-class _Told(NamedTuple):
+class _TickTable(NamedTuple):
     """second : of every tick that is asked for; jumps : ticks of jumps with uncrossed feet, ascending"""
 
     second: Mapping[int, float]
@@ -107,7 +107,7 @@ class _Told(NamedTuple):
         return bisect_right(self.jumps, since) < bisect_left(self.jumps, tick)
 
 
-class Called(NamedTuple):
+class CalloutSubject(NamedTuple):
     """What calls are about: a chart, the pad, and what the linter finds there, looked for when it is needed."""
 
     chart: Chart
@@ -116,7 +116,7 @@ class Called(NamedTuple):
 
 
 def callouts_of(
-    about: Called,
+    about: CalloutSubject,
     play: Play | None,
     style: CallStyle,
     scrolls: ScrollSegments,
@@ -140,7 +140,7 @@ def callouts_of(
     timing = about.chart.timing
     asked = sorted({tick for first, last, *_ in found for tick in (first, last)})
     seconds = dict(zip(asked, timing.seconds(np.array(asked, dtype=np.int64)).tolist(), strict=True))
-    told = _Told(seconds, [] if play is None else _jumps(play))
+    told = _TickTable(seconds, [] if play is None else _jumps(play))
     passages: list[_Passage] = []
     for first, last, said, weight in sorted(found):
         here = next((p for p in reversed(passages[-2:]) if p.takes(first, said, weight, told)), None)
@@ -152,11 +152,11 @@ def callouts_of(
         here.moves.append((first, said))
     ticks = np.array([(p.first, p.last) for p in passages], dtype=np.int64).reshape(-1, 2)
     starts, ends = timing.seconds(ticks[:, 0]), timing.seconds(ticks[:, 1])
-    beats = scrolls.shown(ticks[:, 0] / TICKS_PER_BEAT)
+    beats = scrolls.drawn_beats(ticks[:, 0] / TICKS_PER_BEAT)
 
     def further(passage: _Passage) -> Iterator[tuple[float, float, str]]:
         for tick, tag in passage.further(seconds):
-            yield seconds[tick], float(scrolls.shown(np.array([tick / TICKS_PER_BEAT]))[0]), tag
+            yield seconds[tick], float(scrolls.drawn_beats(np.array([tick / TICKS_PER_BEAT]))[0]), tag
 
     if style.ahead.in_beats:
         begins = timing.seconds(ticks[:, 0] - round(style.ahead.length * TICKS_PER_BEAT))
@@ -210,7 +210,7 @@ def _moves(
             crossed[now] = ticks[row]
         known |= {now, _CROSSED[-1]} if now else set()
         told = {n for n in names if n in words and n not in _CROSSED}
-        for name in sorted(told - SAID_BY_A_BRACKET if "bracket" in told else told):
+        for name in sorted(told - IMPLIED_BY_BRACKET if "bracket" in told else told):
             reason = f" ({why[ticks[row]]})" if name == MOVE and ticks[row] in why else ""
             for said in filled(words[name], name, (play, row), pad, style.turned):
                 yield ticks[row], ticks[row], said + reason, 0

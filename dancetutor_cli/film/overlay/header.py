@@ -22,7 +22,9 @@ from dancetutor_cli.film.picture import Frame
 
 # The song's words at the top left of the picture: title, artist, difficulty, who made the steps.
 
-BESIDE = 0.75  # of the room that a line lower down takes at most where she stands next to it: her shoulders are wider
+SHOULDER_SHARE = (
+    0.75  # of the room that a line lower down takes at most where she stands next to it: her shoulders are wider
+)
 LINE = 1.25  # height of a line, in sizes of its letters
 NARROWEST = 0.45  # of the room that lines have at least, wherever she is
 SUBTITLE = 0.68  # size of a subtitle that stands below its title, in the title's
@@ -103,7 +105,7 @@ class Header:
         self._add(badge, box[0] + 2 * scale, 6 * scale)
         if words.detail:
             x, size = box[0] + badge.shape[1] + 10 * scale, small * 0.85
-            end = self._right if room.share == 1 else box[0] + BESIDE * (self._right - box[0])
+            end = self._right if room.share == 1 else box[0] + SHOULDER_SHARE * (self._right - box[0])
             end = min(end, self._left + self._width(-badge.shape[0]))
             if face.width(words.detail, size) <= end - x:
                 ink = face.sprite(words.detail, size, SOFT, shadow=1.5 * scale)

@@ -74,7 +74,7 @@ class HighwayGeometry:
         return self.left + (self.lane_of(column) + 0.5) * self.lane - size / 2, y - size / 2
 
 
-def lane_beside(words: float, lane: float, box: tuple[int, int, int, int], columns: int) -> float:
+def lane_width_for_words(words: float, lane: float, box: tuple[int, int, int, int], columns: int) -> float:
     """The width of lanes beside which words so wide have room: `lane`, or less; the inverse of `tags_room`.
 
     words : pixels; lane : pixels that a lane has where there are none
@@ -96,7 +96,10 @@ def lane_beside(words: float, lane: float, box: tuple[int, int, int, int], colum
 MARK_SHARE, MARK_MOST = 0.04, 0.58  # an L or R is at least so many heights of the box, but at most so many lanes
 READ, READ_MOST = 16, 0.5  # pixels of a mark whose letter is 8 high, on diagonal arrows, too; at most so many lanes
 LEAST_SHARE, LEAST_MOST = 0.023, 0.36  # the same where notes are dense
-BESIDE, BESIDE_MOST = 0.25, 0.46  # lanes from the middle at which those stand then, and how large they are at most
+SIDE_OFFSET, SIDE_MAX_SIZE = (
+    0.25,
+    0.46,
+)  # lanes from the middle at which those stand then, and how large they are at most
 STEPS = 8  # sizes are found for so many spacings in each doubling
 
 
@@ -153,7 +156,7 @@ class Marks:
             return
         column, side, mine = int(self._notes.column[i]), int(places.side[i]), bool(self._on_mine[i])
         direction = None if mine else self.geometry.directions[column]
-        across, below = (side * BESIDE * self.geometry.lane, 0.0) if side else self.behind(direction)
+        across, below = (side * SIDE_OFFSET * self.geometry.lane, 0.0) if side else self.behind(direction)
         badge = self._sprite(size, -1 if gone or mine else max(int(self._notes.limb[i]), -1))
         x, top = self.geometry.corner(column, y, badge.shape[0])
         blit(frame, badge, x + across, top + below, 1.0, self.geometry.box[1::2])
@@ -196,7 +199,7 @@ class Marks:
             if not kept or y - along[kept[-1]] >= self.least:
                 kept.append(k)
         gaps = np.diff(along[kept], prepend=-np.inf, append=np.inf)
-        most = max(self.least, min(most, int(BESIDE_MOST * self.geometry.lane)))
+        most = max(self.least, min(most, int(SIDE_MAX_SIZE * self.geometry.lane)))
         out = np.zeros(len(along), np.int16)
         room = np.minimum(gaps[:-1], gaps[1:])
         if len(crosses):
@@ -220,7 +223,7 @@ class Marks:
 
 LETTERS, LEAST = 15.0, 10.4  # pixels of letters that room is left for: in a layout's default size, and in any
 LINES, MOST_LINES = 2, 4  # lines of a phrase; of all phrases, where there are commas
-SEEN = 4.0  # seconds before its row that a tag, or a note, may be in the picture
+LEAD_SECONDS = 4.0  # seconds before its row that a tag, or a note, may be in the picture
 LONG, LONG_APART = (
     20,
     1.2,
@@ -235,17 +238,17 @@ def letters(scale: float) -> float:
     return max(LETTERS * scale, LEAST)
 
 
-def seen(callouts: Iterable[Callout], passes: Iterable[Pass]) -> bool:
+def has_visible_callout(callouts: Iterable[Callout], passes: Iterable[Pass]) -> bool:
     """Does any of these stand beside the notes in one of these runs?"""
     begins = np.array([told.second for told in callouts])
-    return any(((one.start <= begins) & (begins <= one.end + SEEN)).any() for one in passes)
+    return any(((one.start <= begins) & (begins <= one.end + LEAD_SECONDS)).any() for one in passes)
 
 
-def limbs_seen(notes: NoteTrack, passes: Iterable[Pass]) -> set[int]:
+def visible_limbs(notes: NoteTrack, passes: Iterable[Pass]) -> set[int]:
     """Whose notes, `feet.play.Limb`, are in the picture in these runs: of a section not all of the song's."""
     here = np.zeros(len(notes.second), dtype=np.bool_)
     for one in passes:
-        here |= (one.start <= notes.end_second) & (notes.second <= one.end + SEEN)
+        here |= (one.start <= notes.end_second) & (notes.second <= one.end + LEAD_SECONDS)
     return {int(limb) for limb in np.unique(notes.limb[here]) if limb >= 0}
 
 
@@ -276,7 +279,7 @@ def row_tags(callouts: Iterable[Callout]) -> list[RowTag]:
     return kept
 
 
-def told(callouts: Iterable[Callout], words: Iterable[str]) -> set[str]:
+def callout_texts(callouts: Iterable[Callout], words: Iterable[str]) -> set[str]:
     """What may be said beside the notes: what is, and what always is the same, so that lanes of most films are alike.
 
     words : of moves, some with {who} and {places} to be filled in

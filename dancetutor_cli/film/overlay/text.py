@@ -25,7 +25,7 @@ from dancetutor_cli.run.reading import FONT_LIMIT, read_bytes
 
 # Fonts with many letters that systems bring, by file name, those that look most like the built-in one first, and for
 # each script one after the other: Latin, Greek and Cyrillic; Japanese; Korean; Chinese; signs.
-_KNOWN = (
+_SYSTEM_FONTS = (
     "segoeui.ttf", "NotoSans-Regular.ttf", "HelveticaNeue.ttc", "LiberationSans-Regular.ttf", "DejaVuSans.ttf",
     "arial.ttf", "Arial.ttf",
     "NotoSansCJK-Regular.ttc", "NotoSansCJKjp-Regular.otf", "NotoSansJP-Regular.ttf", "NotoSansJP-Regular.otf",
@@ -59,7 +59,7 @@ def _folders() -> list[Path]:
 @cache
 def system_fonts() -> tuple[str, ...]:
     """Files of the known fonts that this system has, in the order in which they are tried."""
-    rank = {name: place for place, name in reversed(list(enumerate(_KNOWN)))}
+    rank = {name: place for place, name in reversed(list(enumerate(_SYSTEM_FONTS)))}
     found: dict[int, str] = {}
     for folder in _folders():
         for where, below, names in os.walk(folder):

@@ -170,7 +170,7 @@ def parse(
     return free((a, b, c), (d, e, f), look, region)
 
 
-def seen_from_front(text: str, look: Look) -> bool:
+def is_front_view(text: str, look: Look) -> bool:
     """Does she face this camera, given as on the command line? Then her left is on the right of the picture."""
     if _is_name(text):
         about = _named(text, look)

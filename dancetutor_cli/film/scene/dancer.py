@@ -75,7 +75,7 @@ class Follow:
         else:
             camera, pans = scene.camera(name, size, region), np.zeros(count)
         aside = max(_ASIDE, 1.1 * float(np.abs(rest_vertices(scene.character)[:, 2]).max()))  # seen from her side
-        seen = np.array([_seen_at(scene, camera, size, one) + pans for one in across])
+        seen = np.array([_picture_x(scene, camera, size, one) + pans for one in across])
         pans = pans + _into_the_picture(seen, camera, size, aside)
         self.cut = _pad_cut(scene, camera, size, pans)
         self._pans = pans
@@ -104,11 +104,11 @@ def _along(scene: Scene, camera: Camera, size: tuple[int, int], across: Array) -
     reach = min((high[0] - low[0]) / 2 - 1.5 * PANEL, _reach_with_whole_pad(camera, size, low, high))
     # Clipped first: what is smoothed afterwards stays within the limits and has no corner at them.
     places = _smooth(np.clip(across, middle - reach, middle + reach), scene.look.follow.seconds)
-    there = _seen_at(scene, camera, size, np.append(places, middle))
+    there = _picture_x(scene, camera, size, np.append(places, middle))
     return camera, there[-1] - there[:-1]
 
 
-def _seen_at(scene: Scene, camera: Camera, size: tuple[int, int], across: Array) -> Array:
+def _picture_x(scene: Scene, camera: Camera, size: tuple[int, int], across: Array) -> Array:
     """Where places across the pad are in the picture, (n,), picture widths.
 
     Her height and depth do not move the camera: they are those of a point at waist height over the pad's middle.

@@ -114,7 +114,7 @@ OWN, SHARED = (
 
 
 @dataclass(frozen=True, slots=True)
-class Packed:
+class PackedMeshes:
     """All meshes of a character in one. v vertices, t triangles, m materials.
 
     positions, normals, hull : float32 (v, 3); `hull` is the normal averaged over vertices in one place, so that the
@@ -143,18 +143,18 @@ class Packed:
     skins: Skins
 
 
-def pack(character: Character) -> Packed:
+def pack(character: Character) -> PackedMeshes:
     """Put the meshes of a character together; UsageError if there is nothing to draw."""
     return _dancer() if character is load_dancer() else _packed(character)
 
 
 @cache
-def _dancer() -> Packed:
+def _dancer() -> PackedMeshes:
     """The project's own dancer, who is drawn most: once a process, and for workers before they are made."""
     return _packed(load_dancer())
 
 
-def _packed(character: Character) -> Packed:
+def _packed(character: Character) -> PackedMeshes:
     meshes = [m for m in character.meshes if len(m.triangles)]
     if not meshes:
         raise UsageError(f"character '{character.name}' has no triangles to draw")
@@ -172,7 +172,7 @@ def _packed(character: Character) -> Packed:
     uv = np.concatenate([m.uv for m in meshes]).astype(np.float32)
     sizes = [skins.pyramids[k][0].shape for k in skins.of_mesh]
     side = np.sqrt([h * w for h, w, _ in sizes]).astype(np.float32)
-    return Packed(
+    return PackedMeshes(
         positions=positions,
         normals=normals,
         hull=_welded(normals, place),

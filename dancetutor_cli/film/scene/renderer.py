@@ -73,14 +73,14 @@ def create(
     if not (16 <= size[0] <= 8192 and 16 <= size[1] <= 8192):
         raise UsageError(f"a picture of {size[0]}x{size[1]} pixels is not possible; 16 to 8192 each way")
     many = kind == "auto" and len(scene.character.skeleton.names) > MOST_JOINTS
-    if not many and chosen(kind) == "gl":
+    if not many and resolve_renderer(kind) == "gl":
         return _create_gl(scene, size, quality)
     from dancetutor_cli.film.scene.cpu.renderer import CpuRenderer
 
     return CpuRenderer(scene, size, quality)
 
 
-def chosen(kind: RendererKind) -> RendererKind:
+def resolve_renderer(kind: RendererKind) -> RendererKind:
     """The renderer that "auto" stands for here, or the one that is named."""
     if kind == "auto":
         return "gl" if _gpu() else "cpu"
@@ -113,7 +113,7 @@ _MARK_HEIGHT = 1.0  # a foot higher than this has no mark
 SHADOW_FADE = (0.25, 0.95)  # metres from her, on the floor, over which her shadow grows light
 NO_FOOT = -1.0
 _UNDER = 0.75  # panel widths from a panel's middle at which a sole may still press it
-BESIDE = 0.2  # of its ring that a foot keeps beside the panel that it presses: on it the ring is white
+RING_SHARE = 0.2  # of its ring that a foot keeps beside the panel that it presses: on it the ring is white
 PLANTED = (0.88, 0.95)  # nearness to the ground from which on a foot stands: 26 mm above it, and 11 mm
 
 
@@ -126,7 +126,7 @@ class Cast(NamedTuple):
     scale: float
 
 
-class Shown(Enum):
+class DancerVisibility(Enum):
     """How much of the dancer a frame shows."""
 
     NOTHING = 0
@@ -134,11 +134,11 @@ class Shown(Enum):
     ALL = 2
 
 
-def shown(state: FrameState) -> Shown:
+def dancer_visibility(state: FrameState) -> DancerVisibility:
     """How much of the dancer this frame shows."""
     if state.joints is None:
-        return Shown.NOTHING
-    return Shown.FEET if state.camera.feet_only else Shown.ALL
+        return DancerVisibility.NOTHING
+    return DancerVisibility.FEET if state.camera.feet_only else DancerVisibility.ALL
 
 
 def joints_of(scene: Scene, state: FrameState) -> Array:
@@ -295,7 +295,7 @@ def light_matrix(cast: Cast) -> Array:
     return out
 
 
-class Held(NamedTuple):
+class JointBoxes(NamedTuple):
     """What hangs on each joint: any pose of the skin lies within these boxes, without skinning it here.
 
     joint : int (k,), the joints that hold any; corners : (k, 8, 3), of the box around what one holds, binding pose
@@ -305,7 +305,7 @@ class Held(NamedTuple):
     corners: Array
 
 
-def held_by(positions: NDArray[Any], joints: NDArray[Any], weights: NDArray[Any]) -> Held:
+def joint_boxes(positions: NDArray[Any], joints: NDArray[Any], weights: NDArray[Any]) -> JointBoxes:
     """The boxes of a mesh (v, 3), whose vertices hang on joints (v, 4) by weights (v, 4) that sum to 1."""
     held = weights > 0
     owner, vertex = joints[held], np.nonzero(held)[0]
@@ -315,10 +315,10 @@ def held_by(positions: NDArray[Any], joints: NDArray[Any], weights: NDArray[Any]
     np.maximum.at(ends[1], owner, positions[vertex])
     joint = np.unique(owner)
     corner = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
-    return Held(joint, np.stack([ends[corner[:, k], joint[:, None], k] for k in range(3)], axis=-1))
+    return JointBoxes(joint, np.stack([ends[corner[:, k], joint[:, None], k] for k in range(3)], axis=-1))
 
 
-def places_of(held: Held, matrices: Array) -> Array:
+def places_of(held: JointBoxes, matrices: Array) -> Array:
     """World points (n, 3) whose hull holds the dancer. matrices : (j, 3, 4), binding pose to world"""
     turn = matrices[held.joint]
     return np.asarray(held.corners @ turn[:, :, :3].transpose(0, 2, 1) + turn[:, None, :, 3]).reshape(-1, 3)

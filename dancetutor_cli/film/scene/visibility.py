@@ -51,7 +51,7 @@ def _covered(place: Array, corners: Array) -> bool:
 
 # Where in the picture the dancer is, from her joints alone: which words she would stand behind.
 
-TOLD = ("skullbase", "_talocrural", "_metatarsal")  # the joints of head and feet, of a second dancer, too
+FACE_AND_FEET = ("skullbase", "_talocrural", "_metatarsal")  # the joints of head and feet, of a second dancer, too
 _SIGNS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=bool)
 
 
@@ -74,7 +74,7 @@ class Silhouette:
         corners = [np.where(_SIGNS, part.max(0), part.min(0)) for part in parts]
         self.corners = np.array(corners).reshape(len(self.joints), 8, 3)
         names = [character.skeleton.names[joint] for joint in self.joints]
-        self.told = np.array([k for k, name in enumerate(names) if name.endswith(TOLD)], dtype=np.int64)
+        self.told = np.array([k for k, name in enumerate(names) if name.endswith(FACE_AND_FEET)], dtype=np.int64)
 
     def behind(
         self, boxes: Sequence[tuple[float, float, float, float]], joints: Array, camera: Camera, size: tuple[int, int]
@@ -83,7 +83,7 @@ class Silhouette:
 
         joints : world matrices (j, 4, 4); size : (width, height) of the picture in pixels
         """
-        parts = self._seen(np.arange(len(self.joints)), joints, camera, size)
+        parts = self._picture_boxes(np.arange(len(self.joints)), joints, camera, size)
         return any(
             bool(((parts[:, 0] < b[2]) & (parts[:, 2] > b[0]) & (parts[:, 1] < b[3]) & (parts[:, 3] > b[1])).any())
             for b in boxes
@@ -91,9 +91,9 @@ class Silhouette:
 
     def heads_and_feet(self, joints: Array, camera: Camera, size: tuple[int, int]) -> Array:
         """Where these are: left, top, right and bottom of each part that is before the camera, (n, 4), pixels."""
-        return self._seen(self.told, joints, camera, size)
+        return self._picture_boxes(self.told, joints, camera, size)
 
-    def _seen(self, parts: NDArray[np.int64], joints: Array, camera: Camera, size: tuple[int, int]) -> Array:
+    def _picture_boxes(self, parts: NDArray[np.int64], joints: Array, camera: Camera, size: tuple[int, int]) -> Array:
         """Boxes in the picture around `parts`, indices of `self.joints`."""
         world = joints[self.joints[parts]]
         points = np.einsum("pij,pkj->pki", world[:, :3, :3], self.corners[parts]) + world[:, None, :3, 3]

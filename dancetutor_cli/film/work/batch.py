@@ -17,9 +17,9 @@ from dancetutor_cli.film.media.ffmpeg import PICTURES
 from dancetutor_cli.film.work import segments
 from dancetutor_cli.film.work.records import FilmRecord, FilmRecords, find_records, new_work_name, remove_work
 from dancetutor_cli.film.work.request import FilmRequest
-from dancetutor_cli.film.work.segments import FilmJob, FilmOutcome, Opened, render_segment
+from dancetutor_cli.film.work.segments import FilmJob, FilmOutcome, OpenedFilm, render_segment
 from dancetutor_cli.run.errors import DancetutorError, NoChartsError, UsageError
-from dancetutor_cli.run.pool import Finished, Task, Workers
+from dancetutor_cli.run.pool import FinishedWork, Task, Workers
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
@@ -188,7 +188,7 @@ class _Film:
     began: float
     record: FilmRecord
     work: str
-    opened: Opened | None = None
+    opened: OpenedFilm | None = None
     waiting: int = 0
     error: DancetutorError | None = None
 
@@ -213,7 +213,7 @@ class Batch:
         """Do it all. The order of outcomes depends on the workers; the films do not."""
         self._queue = deque(range(len(self.jobs)))
         self._fill()
-        for done in self.workers.done():
+        for done in self.workers.results():
             outcome = self._ended(done)
             self._fill()
             if outcome is not None:
@@ -222,7 +222,7 @@ class Batch:
     def _fill(self) -> None:
         """Open films until there is enough to do."""
         enough = self.ahead * self.workers.at_once()
-        while self._queue and sum(map(self._left, self._films.values())) < enough:
+        while self._queue and sum(map(self._segments_left, self._films.values())) < enough:
             number = self._queue.popleft()
             job, work = self.jobs[number], new_work_name()
             record = self.records.read(job.output)
@@ -236,10 +236,10 @@ class Batch:
         self.records.write(film.job.output, record)
 
     @staticmethod
-    def _left(film: _Film) -> int:
+    def _segments_left(film: _Film) -> int:
         return 1 if film.opened is None else film.waiting
 
-    def _ended(self, done: Finished) -> FilmOutcome | None:
+    def _ended(self, done: FinishedWork) -> FilmOutcome | None:
         kind, number = done.key[:2]
         film = self._films[number]
         if done.error is not None:
@@ -256,11 +256,11 @@ class Batch:
             self._keep(film, replace(film.record, folders=(), digests={}, size=done.result))
         return self._outcome(number, film)
 
-    def _after_open(self, number: int, film: _Film, done: Finished) -> FilmOutcome | None:
+    def _after_open(self, number: int, film: _Film, done: FinishedWork) -> FilmOutcome | None:
         if film.error is not None or done.result.skipped:
             film.opened = done.result
             return self._outcome(number, film)
-        opened: Opened = done.result
+        opened: OpenedFilm = done.result
         film.opened, film.waiting = opened, len(opened.missing)
         kept = {number: film.record.digests[number] for number in opened.finished}
         self._keep(film, FilmRecord(opened.key, (film.work,), kept))

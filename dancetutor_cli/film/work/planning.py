@@ -18,7 +18,7 @@ from dancetutor_cli.film.clock import whole_song
 from dancetutor_cli.film.media.sound import SoundPlan, clicks_of
 from dancetutor_cli.film.media.subtitles import cues_of, subtitle_words
 from dancetutor_cli.film.notes import OnMine, beat_lines, note_track, presses_of
-from dancetutor_cli.film.overlay.callouts import Called, CallStyle, callouts_of
+from dancetutor_cli.film.overlay.callouts import CalloutSubject, CallStyle, callouts_of
 from dancetutor_cli.film.overlay.captions import SongShape
 from dancetutor_cli.film.overlay.diagram import step_rows
 from dancetutor_cli.film.overlay.header import title_warnings, words_of
@@ -81,7 +81,9 @@ def film_dance(request: FilmRequest, subject: FilmSubject) -> FilmDance:
         dance = replace(request.dance, rates=tuple(rates))
         for rate in rates:
             performance = perform(solved, dance, rate)
-            motions[rate] = _given(request, performance) if request.motions else _cut(request, performance, clock)
+            motions[rate] = (
+                _file_motions(request, performance) if request.motions else _cut(request, performance, clock)
+            )
     told, on_mines = _mines(motions, list(zip(solved, plays, strict=True)), rates[-1])
     shown = play_without(play_without(play_of_all(solved, plays), quiet), after)  # rows of which nothing is left, too
     return FilmDance(solved, plays, shown, pad_of(solved), told, on_mines)
@@ -93,7 +95,7 @@ def _cut(request: FilmRequest, performance: Performance, clock: Clock) -> tuple[
     return tuple(shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True))
 
 
-def _given(request: FilmRequest, performance: Performance) -> tuple[Motion, ...]:
+def _file_motions(request: FilmRequest, performance: Performance) -> tuple[Motion, ...]:
     """The motions of files in place of the performance's own."""
     from dancetutor_cli.formats.npz import read_npz
 
@@ -110,7 +112,7 @@ def _mines(
 ) -> tuple[dict[float, tuple[Motion, ...]], tuple[OnMine, ...]]:
     """The motions, whose notes tell of mines that a foot is on, and these mines at the fastest rate."""
     from dancetutor_cli.dance.bake import mines_of
-    from dancetutor_cli.dance.quality.contact import feet_on_mines, told_mines
+    from dancetutor_cli.dance.quality.contact import feet_on_mines, mine_messages
 
     pad = pad_of([one for one, _ in plays])
     out: dict[float, tuple[Motion, ...]] = {}
@@ -123,7 +125,7 @@ def _mines(
             if len(plays) > 1:
                 mines += [0.0, *place_on(pad, one.chart, one.pad)]
             under = feet_on_mines(motion, mines)
-            told.append(replace(motion, notes=(*motion.notes, *told_mines(mines[under >= 0, 0]))))
+            told.append(replace(motion, notes=(*motion.notes, *mine_messages(mines[under >= 0, 0]))))
             if rate == fastest:
                 found += _on_mines(one, play, under, len(plays) > 1)
         out[rate] = tuple(told)
@@ -147,7 +149,7 @@ HIGH = "front-high"  # the camera of configs/picture.yaml for who hides her feet
 
 
 @dataclass(frozen=True, slots=True)
-class Prepared:
+class PreparedFilm:
     """A film's plan, its sound (None: silent), and warnings that the subject had not yet."""
 
     plan: FilmPlan
@@ -155,7 +157,7 @@ class Prepared:
     warnings: tuple[str, ...]
 
 
-def prepare(request: FilmRequest, subject: FilmSubject) -> Prepared:
+def prepare(request: FilmRequest, subject: FilmSubject) -> PreparedFilm:
     """Do everything dear that comes before the first frame. DancetutorError says in one line what is wrong."""
     from dancetutor_cli.character import dressed
 
@@ -172,7 +174,7 @@ def prepare(request: FilmRequest, subject: FilmSubject) -> Prepared:
     seconds = np.array([clock.at(k)[0] for k in range(clock.frames)])
     who = dressed(request.character, request.dance.gait)
     character, motions = _fitted(who, dance.motions, bool(request.motions))
-    look = _seen(request.look, character, pad)
+    look = _with_feet_camera(request.look, character, pad)
     plan = FilmPlan(
         look=look,
         clock=clock,
@@ -181,7 +183,7 @@ def prepare(request: FilmRequest, subject: FilmSubject) -> Prepared:
         notes=track,
         presses=presses,
         lines=beat_lines(chart, scrolls, clock.passes[-1].end),
-        beats=scrolls.shown(chart.timing.beats(seconds)),
+        beats=scrolls.drawn_beats(chart.timing.beats(seconds)),
         speeds=speeds.at(seconds),
         scroll_bpm=_scroll_bpm(chart, track, speeds),
         directions=pad.directions,
@@ -198,7 +200,7 @@ def prepare(request: FilmRequest, subject: FilmSubject) -> Prepared:
     clicks = clicks_of(practice, clock.passes[0], chart.timing, presses.start)
     sound = None if request.mute or request.background else SoundPlan(subject.music, request.sync, clicks, fade)
     notes = [note for rate, some in motions.items() for motion in some for note in _at_rate(rate, motion.notes)]
-    return Prepared(plan, sound, (*notes, *title_warnings(song, plan.words, request.look.font)))
+    return PreparedFilm(plan, sound, (*notes, *title_warnings(song, plan.words, request.look.font)))
 
 
 def _dancers(dance: FilmDance) -> list[tuple[Play, int]]:
@@ -213,7 +215,7 @@ def _scroll_bpm(chart: Chart, track: NoteTrack, speeds: SpeedSegments) -> float:
     return reading_bpm(seconds, track.beat[track.judged][first], speeds.at(seconds)) or fastest_bpm(chart)
 
 
-def _seen(look: FilmLook, character: Character | None, pad: Pad) -> FilmLook:
+def _with_feet_camera(look: FilmLook, character: Character | None, pad: Pad) -> FilmLook:
     """The look, with a camera that shows the feet of who hides them from behind, where no camera is asked for."""
     part = look.layout.dancer
     if character is None or part is None or look.camera is not None or look.layout.screen is not None:
@@ -235,8 +237,8 @@ def _callouts(dance: FilmDance, style: CallStyle, scrolls: ScrollSegments) -> tu
     return tuple(sorted([*both, *_mines_of_each(dance, style, scrolls)], key=lambda call: call.second))
 
 
-def _about(one: Solved) -> Called:
-    return Called(one.chart, one.pad, partial(_findings, one))
+def _about(one: Solved) -> CalloutSubject:
+    return CalloutSubject(one.chart, one.pad, partial(_findings, one))
 
 
 def _findings(one: Solved) -> tuple[Finding, ...]:

@@ -24,7 +24,7 @@ from dancetutor_cli.film.scene import renderer
 from dancetutor_cli.film.scene.camera import Camera
 from dancetutor_cli.film.scene.scene import PANEL, FrameState, Scene
 from dancetutor_cli.film.work import segments
-from dancetutor_cli.film.work.planning import Prepared
+from dancetutor_cli.film.work.planning import PreparedFilm
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.files import place_of
 from dancetutor_cli.run.pool import Task, Workers, open_workers
@@ -92,13 +92,13 @@ def _workers(jobs: int, progress: ProgressListener, kind: RendererKind) -> Itera
 
 
 def make_film(
-    prepare: Callable[[], Prepared],
+    prepare: Callable[[], PreparedFilm],
     encoding: Encoding,
     output: Path,
     jobs: int,
     progress: ProgressListener,
     renderer: RendererKind = "cpu",
-) -> Prepared:
+) -> PreparedFilm:
     """Make a film and put it at `output` (for "png": a folder of pictures).
 
     Parameters
@@ -121,7 +121,7 @@ def make_film(
         for part in parts:
             workers.submit(Task(part.number, segments.render_segment, (plan_file, part, encoding)))
         sound = segments.write_sound(prepared, encoding, folder)
-        for done in workers.done():
+        for done in workers.results():
             if done.error is not None:
                 raise done.error
         segments.finish(parts, encoding, sound, folder, output)

@@ -81,10 +81,10 @@ class FilmSubject:
     @property
     def chart(self) -> Chart:
         """The chart that the film shows."""
-        return self.choice.shown
+        return self.choice.dancer_chart
 
     @property
-    def written(self) -> float:
+    def chart_seconds(self) -> float:
         """Length of the chart as written, empty measures included, unless only a section is wanted; seconds."""
         if self.section:
             return 0.0
@@ -97,7 +97,7 @@ def look_up(request: FilmRequest) -> FilmSubject:
     if request.look.layout.dancer is not None:
         check_request(request.dance)
     choice = read_chart(request.dance, request.section)
-    song, chart = choice.song, choice.shown
+    song, chart = choice.song, choice.dancer_chart
     music, missing = (None, None) if request.mute else find_music(song, chart)
     instead = "the film ends after the last note" if request.background else "the film has claps on the steps instead"
     warnings = () if missing is None else (f"{missing}; {instead}",)
@@ -121,7 +121,7 @@ def _with_the_music(end: float, music: Path | None) -> tuple[float, float]:
 
 # What is neither danced nor shown: what comes before the step that a film counts to, and what follows a passage.
 
-SETTLED = 0.7  # seconds of the film before it begins from which on she makes no step: she stands when it does
+REST_SECONDS = 0.7  # seconds of the film before it begins from which on she makes no step: she stands when it does
 
 
 class Quiet(NamedTuple):
@@ -138,7 +138,7 @@ class Quiet(NamedTuple):
 def quiet_in(passes: Sequence[Pass]) -> Quiet | None:
     """While the runs of a film are counted in, which all begin at the same second; None without a count-in."""
     one = passes[0]
-    return Quiet(one.start - SETTLED * max(p.rate for p in passes), one.sound_from) if one.count else None
+    return Quiet(one.start - REST_SECONDS * max(p.rate for p in passes), one.sound_from) if one.count else None
 
 
 def quiet_after(passes: Sequence[Pass]) -> Quiet | None:
@@ -153,17 +153,17 @@ def play_without(play: Play, quiet: Quiet | None) -> Play:
     keep = ~quiet.has(play.rows.second)
     if keep.all() or not (play.limb[keep] >= 0).any():
         return play
-    rows = replace(play.rows, **_chosen(play.rows, keep))
+    rows = replace(play.rows, **_filter_arrays(play.rows, keep))
     moves = tuple(names for names, kept in zip(play.moves, keep.tolist(), strict=True) if kept)
-    return replace(play, rows=rows, moves=moves, **_chosen(play, keep))
+    return replace(play, rows=rows, moves=moves, **_filter_arrays(play, keep))
 
 
 def notes_without(track: NoteTrack, quiet: Quiet | None) -> NoteTrack:
     """The notes without those of that time."""
-    return track if quiet is None else replace(track, **_chosen(track, ~quiet.has(track.second)))
+    return track if quiet is None else replace(track, **_filter_arrays(track, ~quiet.has(track.second)))
 
 
-def _chosen(arrays: Any, keep: NDArray[np.bool_]) -> dict[str, Any]:
+def _filter_arrays(arrays: Any, keep: NDArray[np.bool_]) -> dict[str, Any]:
     """Of each array of a dataclass the entries to keep."""
     found = {field.name: getattr(arrays, field.name) for field in fields(arrays)}
     return {name: value[keep] for name, value in found.items() if isinstance(value, np.ndarray)}

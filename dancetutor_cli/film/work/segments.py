@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.film import Film
     from dancetutor_cli.film.picture import Frame
     from dancetutor_cli.film.plan import FilmPlan
-    from dancetutor_cli.film.work.planning import Prepared
+    from dancetutor_cli.film.work.planning import PreparedFilm
 
 
 # The pieces of work between a film's first and its last: draw and encode one of its segments.
@@ -98,7 +98,7 @@ def common_to_workers(kind: RendererKind) -> str:
     from dancetutor_cli.film.scene.cpu.shade import resolve
     from dancetutor_cli.run.kernels.compiling import is_kept
 
-    if renderer.chosen(kind) != "cpu":
+    if renderer.resolve_renderer(kind) != "cpu":
         from dancetutor_cli.film.scene.gl.available import gpu_device
 
         return "dancetutor_cli.film.film" if gpu_device() is not None else "dancetutor_cli.film.work.common_gl"
@@ -138,7 +138,7 @@ def render_segment(report: Report, plan: PlanFile, segment: Segment, encoding: E
     if encoding.target != PICTURES:
         part = segment.path.with_name(f".{segment.path.stem}.{uuid.uuid4().hex}{encoding.format.segment}")
     try:
-        encode_segment(_counted(film.frames(segment.first, segment.last), report), encoding, part, segment.first)
+        encode_segment(_report_frames(film.frames(segment.first, segment.last), report), encoding, part, segment.first)
         digest = ""
         if part != segment.path:
             digest = digest_of(part)
@@ -162,7 +162,7 @@ def frames_of(task: Task) -> int:
     return sum(part.last - part.first for part in task.arguments if isinstance(part, Segment))
 
 
-def _counted(frames: Iterator[Frame], report: Callable[[int], None]) -> Iterator[Frame]:
+def _report_frames(frames: Iterator[Frame], report: Callable[[int], None]) -> Iterator[Frame]:
     """Pass frames on, and tell every few of them."""
     waiting = 0
     for frame in frames:
@@ -189,7 +189,7 @@ class FilmJob:
 
 
 @dataclass(frozen=True, slots=True)
-class Opened:
+class OpenedFilm:
     """A film ready to be drawn, in `folder`. finished : numbers of segments of an earlier run; skipped : it is done."""
 
     key: str
@@ -234,7 +234,7 @@ class FilmOutcome:
         }
 
 
-def outcome(job: FilmJob, opened: Opened | None, error: DancetutorError | None, seconds: float) -> FilmOutcome:
+def outcome(job: FilmJob, opened: OpenedFilm | None, error: DancetutorError | None, seconds: float) -> FilmOutcome:
     """What became of a job."""
     if error is not None:
         return FilmOutcome(job, "failed", str(error), () if opened is None else opened.warnings, 0, seconds)
@@ -243,7 +243,7 @@ def outcome(job: FilmJob, opened: Opened | None, error: DancetutorError | None, 
     return FilmOutcome(job, status, None, opened.warnings, opened.frames, seconds)
 
 
-def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> Opened:
+def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> OpenedFilm:
     """Everything before the first frame. What an earlier run has left of the same film is used.
 
     earlier : what is kept of that run; work : name of the folder to make beside the output, for what is not finished
@@ -252,12 +252,12 @@ def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> O
 
     subject = look_up(job.request)
     frames = subject.clock.frames
-    if job.longest is not None and max(subject.clock.seconds, subject.written) > job.longest:
+    if job.longest is not None and max(subject.clock.seconds, subject.chart_seconds) > job.longest:
         raise FileError(job.request.path, f"{job.label}: too long for a batch; render it alone, or say --yes")
     key = film_key(job.request, subject, job.encoding)
     folder = job.output.parent / work
     if earlier.key == key and earlier.size is not None and earlier.size == size_of(job.output):
-        return Opened(key, folder, None, (), (), None, frames, subject.warnings, skipped=True)
+        return OpenedFilm(key, folder, None, (), (), None, frames, subject.warnings, skipped=True)
     from dancetutor_cli.film.work.planning import prepare
 
     prepared = prepare(job.request, subject)
@@ -267,7 +267,9 @@ def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> O
         left = [job.output.parent / name for name in earlier.folders if name != work]
         left += _new_folder(folder)
         if earlier.key == key and job.encoding.target != PICTURES:
-            finished = tuple(part.number for part in parts if _moved(part, left, earlier.digests.get(part.number)))
+            finished = tuple(
+                part.number for part in parts if _take_over_segment(part, left, earlier.digests.get(part.number))
+            )
         for old in left:
             remove_work(old)
         plan = write_plan(prepared.plan, folder / "plan.pickle")
@@ -277,7 +279,7 @@ def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> O
             remove_work(folder)
         raise FileError(job.output, f"cannot be written: {error.strerror or error}") from error
     warnings = (*subject.warnings, *prepared.warnings)
-    return Opened(key, folder, plan, parts, finished, sound, frames, warnings)
+    return OpenedFilm(key, folder, plan, parts, finished, sound, frames, warnings)
 
 
 def _new_folder(folder: Path) -> list[Path]:
@@ -295,7 +297,7 @@ def _new_folder(folder: Path) -> list[Path]:
         return [aside]
 
 
-def _moved(part: Segment, folders: list[Path], digest: str | None) -> bool:
+def _take_over_segment(part: Segment, folders: list[Path], digest: str | None) -> bool:
     """Whether a segment has been finished by an earlier run, in one of those folders; then it is in its place now."""
     return digest is not None and any(move_segment(old / part.path.name, part.path, digest) for old in folders)
 
@@ -308,7 +310,7 @@ def size_of(output: Path) -> int | None:
         return None
 
 
-def close_film(report: Report, job: FilmJob, opened: Opened, digests: dict[int, str]) -> int | None:
+def close_film(report: Report, job: FilmJob, opened: OpenedFilm, digests: dict[int, str]) -> int | None:
     """Join the segments, if they are as they were written, and put the film in its place; returns its size."""
     if job.encoding.target != PICTURES:
         for part in opened.parts:
@@ -319,7 +321,7 @@ def close_film(report: Report, job: FilmJob, opened: Opened, digests: dict[int, 
     return size_of(job.output)
 
 
-def write_sound(prepared: Prepared, encoding: Encoding, folder: Path) -> Path | None:
+def write_sound(prepared: PreparedFilm, encoding: Encoding, folder: Path) -> Path | None:
     """The sound track as a WAV file in `folder`; None for a silent film."""
     from dancetutor_cli.film.media import sound
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.rule import EPSILON, Happening, TimedRule
+from dancetutor_cli.lint.rule import EPSILON, Occurrence, TimedRule
 
 if TYPE_CHECKING:
     import numpy as np
@@ -58,7 +58,7 @@ class Crossover(TimedRule):
         """Whether the feet are never crossed."""
         return subject.feet is None or not subject.feet.crossed_runs()
 
-    def happens(self, subject: ChartSubject) -> Iterable[Happening]:
+    def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each step after which the feet are newly crossed."""
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, goes_on_the_other_foot
 
@@ -70,7 +70,7 @@ class Crossover(TimedRule):
             if goes_on_the_other_foot(subject, first, self.longest(subject)) or _walks_over(subject, first):
                 continue
             said = f"the feet cross here, or one doublesteps, in a chart of meter {subject.chart.meter}"
-            yield Happening(first, subject.pause(first), said)
+            yield Occurrence(first, subject.pause(first), said)
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
         """Whether a single step crosses on the way from one of two pads to the other."""

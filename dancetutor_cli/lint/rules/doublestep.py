@@ -74,7 +74,7 @@ class Doublestep(MoveRule):
         return [
             row for row in self.quick(subject, subject.feet.doublesteps() if subject.feet else ())
             if subject.pause(row) >= self.options["min_seconds"] and not any_foot_near(subject, row)
-            and not _danced_otherwise(subject, row, longest) and not _at_a_pause(subject, row)
+            and not _has_better_start(subject, row, longest) and not _at_a_pause(subject, row)
             and not (in_groups(subject, row) and fewest_crossed(subject, row, Freedom(longest)) == 0)
         ]  # fmt: skip
 
@@ -151,7 +151,7 @@ def any_foot_near(subject: ChartSubject, row: int) -> bool:
     return False
 
 
-def _danced_otherwise(subject: ChartSubject, row: int, quick: float) -> bool:
+def _has_better_start(subject: ChartSubject, row: int, quick: float) -> bool:
     """Whether people rather begin on the other foot before or after it, where there is time, or cross for a moment."""
     from dancetutor_cli.lint.other_foot import exchanged_facings, exchanged_is_uncrossed, segment, standing
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.feet.preset import Why
+from dancetutor_cli.feet.preset import DropReason
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.rule import EPSILON, ChartRule
 
@@ -19,7 +19,7 @@ _SIXTEENTH = 0.13  # seconds: 16ths at 115 BPM
 _HEEL_AND_TOE = 14  # meter of Pump charts from which one foot takes two neighbours with heel and toe
 _GRACE = 0.06  # seconds: two rows closer together are no 16ths
 _AS_ONE = 0.03  # seconds between two rows that look meant as one
-_TAPS_BESIDE = 13  # meter from which a foot that holds a panel taps a neighbour of it
+_NEIGHBOUR_TAP_METER = 13  # meter from which a foot that holds a panel taps a neighbour of it
 _QUICK = 20  # meter of charts that nobody plays to the last note
 _NEIGHBOUR = 1.5  # panel widths
 _NUMBERS = {3: "three", 4: "four"}
@@ -98,7 +98,7 @@ class FastStep(ChartRule):
         end = -math.inf
         known = [subject.beat(row) for row in sorted(told)]
         for row, column, why in sorted(subject.too_quick):
-            if why != Why.LEAP:
+            if why != DropReason.LEAP:
                 continue
             beat = subject.beat(row)
             if beat > end + _PASSAGE and not any(beat - _PASSAGE <= one <= beat for one in known):
@@ -169,14 +169,14 @@ def _let_go(subject: ChartSubject, before: int, row: int) -> bool:
     return bool(x >= -EPSILON)
 
 
-def _taps_beside(subject: ChartSubject, before: int, row: int) -> bool:
+def _can_tap_neighbour(subject: ChartSubject, before: int, row: int) -> bool:
     """Whether the other foot holds a panel and can tap one of two single steps that is beside it, uncrossed."""
     import numpy as np
 
     from dancetutor_cli.lint.other_foot import standing
 
     play, pad = subject.play, subject.pad
-    if play is None or pad is None or subject.chart.meter < _TAPS_BESIDE:
+    if play is None or pad is None or subject.chart.meter < _NEIGHBOUR_TAP_METER:
         return False
     if any((play.limb[one] >= 0).sum() != 1 for one in (before, row)):
         return False
@@ -204,7 +204,7 @@ def _free_foot_takes_it(subject: ChartSubject, row: int, max_speed: float) -> bo
     if play is None or pad is None or subject.feet is None or at < 2:
         return False
     before = int(rows[at - 1])
-    if _let_go(subject, before, row) or _taps_beside(subject, before, row):
+    if _let_go(subject, before, row) or _can_tap_neighbour(subject, before, row):
         return True
     if any((play.limb[one] >= 0).sum() != 1 or subject.feet.down[one] != 1 for one in (before, row)):
         return False

@@ -39,7 +39,7 @@ class Footswitch(MoveRule):
     name = "footswitch"
     move = "footswitch"
     times = "footswitch"
-    said = "a foot takes over the panel of the other: footswitch"
+    description = "a foot takes over the panel of the other: footswitch"
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Footswitches on one panel; what a bracket does beside it is DT210's."""

@@ -26,4 +26,4 @@ class Holdswitch(MoveRule):
     code = "DT211"
     name = "holdswitch"
     move = "holdswitch"
-    said = "the feet change on a held panel: holdswitch"
+    description = "the feet change on a held panel: holdswitch"

@@ -30,4 +30,4 @@ class JumpFootswitch(MoveRule):
     name = "jump-footswitch"
     move = "jump-footswitch"
     times = "jump-footswitch"
-    said = "a foot changes panels within this jump: jump footswitch"
+    description = "a foot changes panels within this jump: jump footswitch"

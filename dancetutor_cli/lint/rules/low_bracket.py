@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.rule import EPSILON, Happening, TimedRule
+from dancetutor_cli.lint.rule import EPSILON, Occurrence, TimedRule
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
@@ -47,7 +47,7 @@ class LowBracket(TimedRule):
         """Whether there is no bracket."""
         return not subject.has("bracket")
 
-    def happens(self, subject: ChartSubject) -> Iterable[Happening]:
+    def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each bracket in a chart of so low a meter."""
         meter, feet = subject.chart.meter, subject.feet
         if meter >= self.options["least_meter"] or self._quick_throughout(subject):
@@ -56,7 +56,7 @@ class LowBracket(TimedRule):
             if feet and feet.down[row] < 3 and not _jumped(subject, row):
                 pause = subject.pause(row)
                 said = f"two panels {1000 * pause:.0f} ms after a step, too quick for a jump: a bracket"
-                yield Happening(row, pause, f"{said} in a chart of meter {meter}")
+                yield Occurrence(row, pause, f"{said} in a chart of meter {meter}")
 
     def _quick_throughout(self, subject: ChartSubject) -> bool:
         """Whether so many steps are as quick that the players of this chart are no beginners."""

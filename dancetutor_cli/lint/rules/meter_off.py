@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from dancetutor_cli.lint.findings import Finding
-from dancetutor_cli.lint.rule import Played, SongRule
+from dancetutor_cli.lint.rule import RatedChart, SongRule
 
 
 class MeterOff(SongRule):
@@ -21,7 +21,7 @@ class MeterOff(SongRule):
     code = "DT509"
     name = "meter-off"
 
-    def check(self, chart: Played, charts: Sequence[Played]) -> Iterable[Finding]:
+    def check(self, chart: RatedChart, charts: Sequence[RatedChart]) -> Iterable[Finding]:
         """One finding if the meter is off."""
         estimate = chart.estimate
         off = estimate.meter - chart.meter

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.rule import EPSILON, Happening, TimedRule
+from dancetutor_cli.lint.rule import EPSILON, Occurrence, TimedRule
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
@@ -42,11 +42,11 @@ class MineUnderHold(TimedRule):
         """Whether there are no mines or no holds."""
         return subject.feet is None or not (subject.feet.has_mines and subject.feet.has_holds)
 
-    def happens(self, subject: ChartSubject) -> Iterable[Happening]:
+    def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each row with such a mine, with the time since the foot's step; none where it cannot leave at all."""
         told: set[int] = set()
-        for row, column, foot, seconds in subject.feet.mines_under_held() if subject.feet else ():
+        for row, column, foot, seconds in subject.feet.mines_under_pinned_feet() if subject.feet else ():
             message = f"a mine under the {('left', 'right')[foot]} foot, which a hold keeps from stepping aside"
             if row not in told and seconds <= self.longest(subject) + EPSILON:  # once for a row, not for each foot
                 told.add(row)
-                yield Happening(row, seconds, message, column)
+                yield Occurrence(row, seconds, message, column)

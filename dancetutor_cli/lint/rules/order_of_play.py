@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from dancetutor_cli.lint.findings import Finding
-from dancetutor_cli.lint.rule import Played, SongRule
+from dancetutor_cli.lint.rule import RatedChart, SongRule
 
 
 class OrderOfPlay(SongRule):
@@ -21,7 +21,7 @@ class OrderOfPlay(SongRule):
 
     _ORDER = ("Beginner", "Easy", "Medium", "Hard", "Challenge")
 
-    def check(self, chart: Played, charts: Sequence[Played]) -> Iterable[Finding]:
+    def check(self, chart: RatedChart, charts: Sequence[RatedChart]) -> Iterable[Finding]:
         """One finding for the hardest of the easier difficulties that plays harder."""
         if chart.difficulty not in self._ORDER:
             return

@@ -26,4 +26,4 @@ class Sideswitch(MoveRule):
     code = "DT208"
     name = "sideswitch"
     move = "sideswitch"
-    said = "a foot takes over a side panel from the other: sideswitch"
+    description = "a foot takes over a side panel from the other: sideswitch"

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.rule import EPSILON, Happening, MoveRule
+from dancetutor_cli.lint.rule import EPSILON, MoveRule, Occurrence
 from dancetutor_cli.lint.rules.fast_step import burst
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
 UNCROSSED = 90.0  # degrees that the body may be turned without the feet being crossed
-BESIDE = 140.0  # degrees: one foot is across the other, more beside it than before it
+SIDEWAYS = 140.0  # degrees: one foot is across the other, more beside it than before it
 _REST = 0.25  # seconds
 _MANY = 4  # spins that are the idea of a chart: one finding
 _TWISTS = 20  # meter of Pump charts whose players expect to turn
@@ -52,14 +52,14 @@ class Spin(MoveRule):
     code = "DT202"
     name = "spin"
     move = "spin"
-    said = "the pattern goes all the way round: a spin, or a doublestep to avoid it"
+    description = "the pattern goes all the way round: a spin, or a doublestep to avoid it"
     times = "spin"
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Spins; DT203 tells of those in a jump."""
         return [row for row in subject.rows_with(self.move) if not subject.is_jump(row)]
 
-    def happens(self, subject: ChartSubject) -> Iterable[Happening]:
+    def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each spin, with the longest time between steps since the feet were not crossed: who has time uncrosses."""
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed
 
@@ -74,7 +74,7 @@ class Spin(MoveRule):
             slowest = max(map(subject.pause, steps))
             if (
                 slowest > longest + EPSILON
-                or self._begun_otherwise(subject, row)
+                or self._has_uncrossed_start(subject, row)
                 or self._walks(subject, row)
                 or burst(subject, row)
             ):
@@ -82,9 +82,9 @@ class Spin(MoveRule):
             free = Freedom(longest, rest=_REST)
             if fewest_crossed(subject, row, free) <= self._after_pair(subject, row):
                 continue
-            yield Happening(row, slowest, self.said)
+            yield Occurrence(row, slowest, self.description)
 
-    def _begun_otherwise(self, subject: ChartSubject, row: int) -> bool:
+    def _has_uncrossed_start(self, subject: ChartSubject, row: int) -> bool:
         """Whether the steps around the spin, or those up to the rest before it, go uncrossed on the other foot."""
         from dancetutor_cli.lint.other_foot import exchanged_is_uncrossed, goes_on_the_other_foot, segment
 
@@ -115,7 +115,7 @@ class Spin(MoveRule):
         twisted = subject.pad is not None and len(subject.pad) > _ONE_RING
         return all((twisted and not _goes_round(subject, row)) or _between_mines(subject, row) for row in rows)
 
-    def passages(self, found: list[Happening], subject: ChartSubject) -> Iterable[list[Happening]]:
+    def passages(self, found: list[Occurrence], subject: ChartSubject) -> Iterable[list[Occurrence]]:
         """Each spin, or all of a chart that is made of them."""
         return [found] if len(found) > _MANY else [[one] for one in found]
 
@@ -126,7 +126,7 @@ class Spin(MoveRule):
         play, pad = subject.play, subject.pad
         if play is None or pad is None or row == 0:
             return False
-        beside = max(abs(play.facing[row - 1]), abs(play.facing[row])) >= BESIDE
+        beside = max(abs(play.facing[row - 1]), abs(play.facing[row])) >= SIDEWAYS
         return bool(beside and np.ptp(pad.panels[:, 0]) > ONE_PAD)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.rule import Happening, TimedRule
+from dancetutor_cli.lint.rule import Occurrence, TimedRule
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
@@ -36,11 +36,11 @@ class SwitchJack(TimedRule):
     code = "DT214"
     name = "switch-jack"
 
-    def happens(self, subject: ChartSubject) -> Iterable[Happening]:
+    def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each run, at the first step for which the feet change; how quick it is says the slowest step in it."""
         least = max(self.options["min_rows"], 2)
         for rows, limbs in subject.feet.switching_runs(least, self.longest(subject)) if subject.feet else ():
             if limbs[0] != limbs[-1]:  # otherwise who jacks them all comes out on the right foot
                 change = next(at for at in range(1, len(rows)) if limbs[at] != limbs[at - 1])
                 said = f"the feet change in {len(rows)} quick steps on one panel: footswitch or jack?"
-                yield Happening(rows[change], max(map(subject.pause, rows[1:])), said)
+                yield Occurrence(rows[change], max(map(subject.pause, rows[1:])), said)

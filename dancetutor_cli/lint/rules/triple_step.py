@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.rule import Happening, TimedRule
+from dancetutor_cli.lint.rule import Occurrence, TimedRule
 from dancetutor_cli.lint.rules.doublestep import Doublestep, any_foot_near
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class TripleStep(TimedRule):
     times = "doublestep"
     slowest = Doublestep.slowest
 
-    def happens(self, subject: ChartSubject) -> Iterable[Happening]:
+    def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each third step that is quick enough: where a run begins depends on that."""
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, led_by_a_jack
 
@@ -53,4 +53,4 @@ class TripleStep(TimedRule):
             in_turn = led_by_a_jack(subject, row) and fewest_crossed(subject, row, free) == 0
             if in_turn or any_foot_near(subject, row):
                 continue
-            yield Happening(row, seconds, f"the {subject.foot_name(row)} foot steps three times in a row")
+            yield Occurrence(row, seconds, f"the {subject.foot_name(row)} foot steps three times in a row")

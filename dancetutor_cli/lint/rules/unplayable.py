@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.feet.preset import HAND, Why
+from dancetutor_cli.feet.preset import HAND, DropReason
 from dancetutor_cli.lint.rule import MoveRule
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class Unplayable(MoveRule):
         gimmick = subject.chart.meter == _GIMMICK or any(subject.pause(row) < _SLIP for row in rows)
         return gimmick or not any(subject.unplayed(row) for row in rows)
 
-    def told(self, subject: ChartSubject, rows: list[int]) -> int:
+    def representative(self, subject: ChartSubject, rows: list[int]) -> int:
         """The first with a step that no limb is left for: a hand in a hurry beside it is the lesser fault."""
         return next((place for place, row in enumerate(rows) if subject.unplayed(row)), 0)
 
@@ -70,4 +70,4 @@ class Unplayable(MoveRule):
 
 def _hands(subject: ChartSubject) -> set[int]:
     """Rows in which a hand would have to be down again at once."""
-    return {row for row, _, why in subject.too_quick if why == Why.HAND}
+    return {row for row, _, why in subject.too_quick if why == DropReason.HAND}

@@ -25,7 +25,7 @@ from llvmlite import binding
 
 from dancetutor_cli.run.kernels import target
 from dancetutor_cli.run.kernels.native import INNER_KERNELS, RESULTS, MachineCode
-from dancetutor_cli.run.kernels.store import Kept
+from dancetutor_cli.run.kernels.store import StoredCode
 from dancetutor_cli.run.reading import PACKAGE
 
 _ASKS_FOR_BLAS = "numba.np.arraymath"  # the module of numba that imports scipy.linalg, once
@@ -124,7 +124,7 @@ class _KeptOverloads:
 
     def __init__(self, function: Any) -> None:
         source = Path(function.__code__.co_filename)
-        self.kept = Kept(source, function.__name__, stamp_of(source))
+        self.kept = StoredCode(source, function.__name__, stamp_of(source))
         cells = [cell.cell_contents for cell in function.__closure__ or ()]
         self._function = f"{function.__qualname__} {function.__code__.co_firstlineno} {_dumps(cells).hex()}"
 
@@ -255,10 +255,10 @@ _CONSTANT = re.compile(r"\b[A-Z][A-Z0-9_]+\b")
 @cache
 def stamp_of(source: Path) -> str:
     """A digest of a module with kernels and of what else of the package they may be made of."""
-    return hashlib.sha256(b"".join(path.read_bytes() for path in made_of(source))).hexdigest()
+    return hashlib.sha256(b"".join(path.read_bytes() for path in source_modules(source))).hexdigest()
 
 
-def made_of(source: Path, package: Path = PACKAGE) -> list[Path]:
+def source_modules(source: Path, package: Path = PACKAGE) -> list[Path]:
     """The modules whose code is in a module's kernels: its own, those whose kernels or constants it has, and theirs."""
     found, new = {source.resolve()}, [source.resolve()]
     while new:

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.run.errors import DancetutorError
-from dancetutor_cli.run.kernels.store import Kept
+from dancetutor_cli.run.kernels.store import StoredCode
 
 RESULTS = 2  # places for what a kernel gives, before its arguments
 _OBJECT_FILES = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\x64\x86", b"\x64\xaa")  # what those of the systems start with
@@ -51,7 +51,7 @@ class MachineCode(NamedTuple):
     data: bytes
 
 
-class Loaded(NamedTuple):
+class LoadedCode(NamedTuple):
     """Machine code that can be called. kinds : of its arguments in order; engine : LLVM's, which holds it"""
 
     kinds: tuple[Kind, ...]
@@ -69,8 +69,8 @@ class Kernel:
         """stamp : a digest of the function's source and of what goes into it; results : how many it gives."""
         self.function = function
         self._stamp, self._results = stamp, results
-        self._last: Loaded | None = None
-        self._loaded: dict[str, Loaded | None] = {}
+        self._last: LoadedCode | None = None
+        self._loaded: dict[str, LoadedCode | None] = {}
         self._lock = Lock()
 
     def __call__(self, *args: Any) -> Any:
@@ -99,7 +99,7 @@ class Kernel:
     def _error(self, cause: object) -> DancetutorError:
         return DancetutorError(f"the kernel {self.function.__qualname__} raised an exception ({cause})")
 
-    def _loaded_for(self, args: tuple[Any, ...], arguments: list[Any]) -> Loaded | None:
+    def _loaded_for(self, args: tuple[Any, ...], arguments: list[Any]) -> LoadedCode | None:
         """Machine code for such arguments, fetched or made; None if there can be none."""
         try:
             kinds = tuple(map(_kind, arguments))
@@ -107,18 +107,18 @@ class Kernel:
             return None
         name = " ".join("i" if kind is None else f"{kind[0].str}{kind[1]}" for kind in kinds)
         if name not in self._loaded:
-            self._loaded[name] = self._fetched(name, kinds) or self._made(name, kinds, args)
+            self._loaded[name] = self._fetch(name, kinds) or self._compile(name, kinds, args)
         return self._loaded[name]
 
-    def _fetched(self, name: str, kinds: tuple[Kind, ...]) -> Loaded | None:
-        for body in self._kept().read(name):
+    def _fetch(self, name: str, kinds: tuple[Kind, ...]) -> LoadedCode | None:
+        for body in self._stored_code().read(name):
             with suppress(Exception):  # whatever LLVM raises of what was made on another system
                 line, _, data = body.partition(b"\n")
                 entry, needs = json.loads(line)
                 return _load(MachineCode(entry, needs, data), kinds)
         return None
 
-    def _made(self, name: str, kinds: tuple[Kind, ...], args: tuple[Any, ...]) -> Loaded | None:
+    def _compile(self, name: str, kinds: tuple[Kind, ...], args: tuple[Any, ...]) -> LoadedCode | None:
         try:
             from dancetutor_cli.run.kernels.compiling import machine_code
 
@@ -126,11 +126,11 @@ class Kernel:
             loaded = _load(code, kinds)
         except Exception:  # whatever numba and LLVM raise
             return None
-        self._kept().write(name, json.dumps(code[:-1]).encode() + b"\n" + code.data)
+        self._stored_code().write(name, json.dumps(code[:-1]).encode() + b"\n" + code.data)
         return loaded
 
-    def _kept(self) -> Kept:
-        return Kept(Path(self.function.__code__.co_filename), self.function.__name__, self._stamp())
+    def _stored_code(self) -> StoredCode:
+        return StoredCode(Path(self.function.__code__.co_filename), self.function.__name__, self._stamp())
 
 
 def _open(arguments: Iterable[Any], into: list[Any]) -> None:
@@ -152,7 +152,7 @@ def _kind(argument: Any) -> Kind:
     return np.dtype(argument.dtype.str), argument.ndim
 
 
-def _words(arguments: list[Any], loaded: Loaded | None) -> NDArray[np.int64] | None:
+def _words(arguments: list[Any], loaded: LoadedCode | None) -> NDArray[np.int64] | None:
     """What machine code gets; None if it is for other arguments, or one is too large or does not lie in a row."""
     words = [0] * RESULTS
     try:
@@ -182,7 +182,7 @@ def _address_to_read(array: NDArray[Any]) -> int:
     return array.ctypes.data
 
 
-def _load(code: MachineCode, kinds: tuple[Kind, ...]) -> Loaded:
+def _load(code: MachineCode, kinds: tuple[Kind, ...]) -> LoadedCode:
     """Hand an object file to LLVM. ImportError if this process lacks what it needs."""
     from llvmlite import binding
 
@@ -198,4 +198,4 @@ def _load(code: MachineCode, kinds: tuple[Kind, ...]) -> Loaded:
     address = engine.get_function_address(code.entry)
     if not address:
         raise ImportError(f"no function {code.entry}")
-    return Loaded(kinds, _prototype(address), engine)  # other threads of Python wait, as with numba
+    return LoadedCode(kinds, _prototype(address), engine)  # other threads of Python wait, as with numba

@@ -42,12 +42,12 @@ VARIABLE = "NUMBA_CACHE_DIR"  # numba's own name for a folder of the user's choi
 class KernelFolder:
     """Where new kernels go. root : a folder, or None: beside the modules, in their `__pycache__`
 
-    kept : False if nothing can be written anywhere, so that each run compiles again
+    is_writable : False if nothing can be written anywhere, so that each run compiles again
     fault : why the usual place is not used, in words for people; "" if it is
     """
 
     root: Path | None
-    kept: bool = True
+    is_writable: bool = True
     fault: str = ""
 
     def of_module(self, source: Path) -> Path:
@@ -59,7 +59,7 @@ class KernelFolder:
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
+class StoredCode:
     """The kept machine code of a function. source : its module's file; stamp : a digest of the code it is made of."""
 
     source: Path
@@ -72,7 +72,7 @@ class Kept:
             with suppress(OSError):
                 data = read_file(folder / self._name(kinds))
                 if (
-                    data[CHECKSUM:HEAD] == self._made_of()
+                    data[CHECKSUM:HEAD] == self._source_digest()
                     and hashlib.sha256(data[CHECKSUM:]).digest() == data[:CHECKSUM]
                 ):
                     yield data[HEAD:]
@@ -81,22 +81,22 @@ class Kept:
         """Keep something, if there is a place for it; on a full disk the kernel is there, only not kept."""
         folder = kernel_folder().of_module(self.source)
         with suppress(OSError):
-            if kernel_folder().kept and not use_folder(folder):
-                data = self._made_of() + body
+            if kernel_folder().is_writable and not use_folder(folder):
+                data = self._source_digest() + body
                 write_file(folder / self._name(kinds), hashlib.sha256(data).digest() + data)
 
     def is_there(self) -> bool:
         """Whether anything is kept for the code as it is now, for whichever kinds; True if that cannot be known."""
         try:
             return any(
-                _head_of(path) == self._made_of()
+                _head_of(path) == self._source_digest()
                 for folder in places_of(self.source)
                 for path in folder.glob(f"{self.source.stem}.{self.function}.*{SUFFIX}")
             )
         except OSError:
             return True
 
-    def _made_of(self) -> bytes:
+    def _source_digest(self) -> bytes:
         return bytes.fromhex(self.stamp) + maker()
 
     def _name(self, kinds: str) -> str:

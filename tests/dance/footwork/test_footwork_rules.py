@@ -100,9 +100,9 @@ def test_a_foot_stays_up_from_its_mines_to_a_jump_where_the_other_one_was_up_bet
     danced, own = play([(1.0, {0: L}), (1.5, {3: R}), (2.78, {1: L, 2: R})]), context()
     left, right = Footing.at_home(own, 0).feet
     over = Hover(2.50, 2.69, pair(left.ball), 0.0, (0.1, 0.2, 0.0, 0.0), 0.06)
-    left = left.moved(over, left.ball, left.yaw)
+    left = left.with_move(over, left.ball, left.yaw)
     up = replace(over, lift=2.33, land=2.86, target=pair(right.ball))
-    right = replace(right.moved(up, right.ball, 0.0), evading=Evading(2.5, 2.69, right.ball, 0.0))
+    right = replace(right.with_move(up, right.ball, 0.0), evading=Evading(2.5, 2.69, right.ball, 0.0))
     footing = replace(Footing.at_home(own, 0), feet=(left, right))
     row = Row(danced, own, 2, 2.78, pressed_by(danced, 2), 0.5)
     stepped, stayed = (foot.moves[-1] for foot in jump(row, footing).footing.feet)

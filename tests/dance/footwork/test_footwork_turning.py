@@ -85,7 +85,7 @@ def test_a_heel_does_not_drop_in_no_time() -> None:
     foot = footing.feet[0]
     there = (0.3, 0.1), 0.2, (0.2, 0.4, 0.15, 0.0)
     for move in (Step(1.0, 1.2, *there, 0.05), Pivot(1.2 + FREE_WINDOW, 1.4, *there), Step(1.41, 1.6, *there, 0.05)):
-        foot = foot.moved(move, foot.ball, foot.yaw)
+        foot = foot.with_move(move, foot.ball, foot.yaw)
     times = np.linspace(1.19, 1.43, 2401)
     path = foot_path(foot.track(), times, SETTINGS)
     assert SETTINGS.step.heel_stays > 0.01

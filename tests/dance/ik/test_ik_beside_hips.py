@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dancetutor_cli.dance.ik.hands import Hips, beside_hips
+from dancetutor_cli.dance.ik.hands import Hips, hip_clearance
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.quaternion import UP
 from dancetutor_cli.dance.settings import default_settings
@@ -21,7 +21,7 @@ def given_way(*wrists: tuple[float, float, float], turn: float = 0.0) -> np.ndar
     both = np.stack([np.array(wrists), np.array(wrists) * [-1.0, 1.0, 1.0]], axis=1)
     way = quat.rotate(
         quat.conjugate(turned)[:, None],
-        beside_hips(hips.place[:, None] + quat.rotate(turned[:, None], both), hips, ARMS),
+        hip_clearance(hips.place[:, None] + quat.rotate(turned[:, None], both), hips, ARMS),
     )
     assert way[:, 1] == pytest.approx(way[:, 0] * [-1.0, 1.0, 1.0])  # the right one does as in a mirror
     return way[:, 0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dancetutor_cli.dance.ik.hands import HALF_HAND, HAND, beside_legs
+from dancetutor_cli.dance.ik.hands import HALF_HAND, HAND, leg_clearance
 from dancetutor_cli.dance.ik.knees import Legs
 from dancetutor_cli.dance.rig.limbs import KNEE, THIGH, depth
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
@@ -29,7 +29,7 @@ def given_way(*wrists: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarr
     shoulders = np.tile([[0.18, 1.2, 0.0], [-0.18, 1.2, 0.0]], (len(wrists), 1, 1))
     elbows = np.tile([[0.22, -0.25, -0.9], [-0.22, -0.25, -0.9]], (len(wrists), 1, 1))
     legs = squatting(len(wrists))
-    out = both + beside_legs(both, shoulders, elbows, legs, SKELETON, ROOM)
+    out = both + leg_clearance(both, shoulders, elbows, legs, SKELETON, ROOM)
     assert out[:, 1] == pytest.approx(out[:, 0] * MIRROR)  # the right one does as in a mirror
     middle = out[:, 0] - shoulders[:, 0]
     down = middle / np.linalg.norm(middle, axis=1, keepdims=True)

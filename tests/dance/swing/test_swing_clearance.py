@@ -10,7 +10,7 @@ from bake_plays import context
 
 from dancetutor_cli.dance.clearance import SHARES, Way, bend, detour, lag, over, swung, travelled
 from dancetutor_cli.dance.context import HALF_PANEL, Spot, ball_of, middle_of
-from dancetutor_cli.dance.footwork.foothold import beside, pose
+from dancetutor_cli.dance.footwork.foothold import pose, resolve_overlap
 from dancetutor_cli.dance.footwork.footing import Footing
 from dancetutor_cli.dance.plan import Bulge
 from dancetutor_cli.dance.quality.posture import FOOT_RADIUS
@@ -44,7 +44,7 @@ def test_a_footswitch_leaves_both_shoes_their_room(yaw: float) -> None:
     left, right = footing.feet
     left = replace(left, ball=ball_of(panel, yaw), yaw=float(yaw))
     footing = footing.with_foot(left)
-    ball, turned = beside(footing, right, Spot(panel, np.full(2, 0.116)), left.ball, yaw, pose(footing, left))
+    ball, turned = resolve_overlap(footing, right, Spot(panel, np.full(2, 0.116)), left.ball, yaw, pose(footing, left))
     shoes = [
         line_points(middle_of(b, footing.toes(f, y)), footing.toes(f, y))
         for f, b, y in ((left, left.ball, left.yaw), (right, ball, turned))
@@ -103,7 +103,9 @@ def test_a_landing_foot_keeps_off_a_neighbour_panel_with_a_mine() -> None:
     left, right = footing.feet
     right = replace(right, ball=np.array([0.5, 0.3]))
     footing = footing.with_foot(right)
-    ball, yaw = beside(footing, left, Spot(panel, np.full(2, 0.1)), np.array([0.05, 0.09]), 0.6, pose(footing, right))
+    ball, yaw = resolve_overlap(
+        footing, left, Spot(panel, np.full(2, 0.1)), np.array([0.05, 0.09]), 0.6, pose(footing, right)
+    )
     toes = footing.toes(left, yaw)
     heel = ball - 0.165 * np.array([np.sin(toes), np.cos(toes)])
     assert min(heel[0], ball[0]) > 0.03  # half a sole from the edge at x = 0

@@ -8,7 +8,7 @@ from bake_plays import Event, L, R, chart, pad, play, stream
 
 from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.clearance import SHARES, Way, detour, travelled, wrung
-from dancetutor_cli.dance.ik.knees import Hung, knees_apart
+from dancetutor_cli.dance.ik.knees import Hung, part_knees
 from dancetutor_cli.dance.quality.figures import body_of
 from dancetutor_cli.dance.quality.posture import limb_depths
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
@@ -67,7 +67,7 @@ def test_knees_that_meet_give_way_and_others_stay() -> None:
     inward = np.array([[-0.45, 0.0, 1.0], [0.45, 0.0, 1.0]])
     poles = np.stack([np.tile([0.0, 0.0, 1.0], (2, 1)), inward, inward])
     turned = np.tile([1.0, 0.0, 0.0, 0.0], (3, 1))
-    given = knees_apart(skeleton, Hung(pelvis, turned, ankles), poles, SETTINGS.knees)
+    given = part_knees(skeleton, Hung(pelvis, turned, ankles), poles, SETTINGS.knees)
     np.testing.assert_array_equal(given[0], poles[0])
     for frame in (1, 2):
         assert given[frame, 0, 0] > poles[frame, 0, 0] + 0.02 and given[frame, 1, 0] < poles[frame, 1, 0] - 0.02

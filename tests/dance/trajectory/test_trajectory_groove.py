@@ -15,7 +15,7 @@ from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.quality.figures import Body, body_of
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-from dancetutor_cli.dance.trajectory.groove import Engaged, Groove, groove_of, repeated
+from dancetutor_cli.dance.trajectory.groove import Groove, Occupation, groove_of, repeated
 
 BEATS = tuple(np.arange(0.0, 20.0, 0.5))
 TIMES = np.arange(0.0, 12.0, 1.0 / 240.0)
@@ -38,7 +38,7 @@ def heard(groove: bool = True) -> Context:
 
 
 def groove(events: list[Event], tempo: float = 0.0, busy: float = 0.0, waits: float = 0.0) -> Groove:
-    engaged = Engaged(STILL + tempo, STILL + busy, STILL + waits)
+    engaged = Occupation(STILL + tempo, STILL + busy, STILL + waits)
     return groove_of(plan_of(chart().timing, play(events), pad()), TIMES, engaged, heard())
 
 
@@ -76,7 +76,7 @@ def test_there_is_none_in_streams_with_busy_hands_or_in_waits(other: dict[str, f
 def test_the_mirror_image_sways_the_other_way() -> None:
     events = jack(0.25)
     image = plan_of(chart().timing, mirrored_play(play(events), SINGLE), pad())
-    other = groove_of(image, TIMES, Engaged(STILL, STILL, STILL), heard())
+    other = groove_of(image, TIMES, Occupation(STILL, STILL, STILL), heard())
     np.testing.assert_allclose(other.sway, -groove(events).sway, atol=1e-12)
     np.testing.assert_allclose(other.sink, groove(events).sink, atol=1e-12)
 

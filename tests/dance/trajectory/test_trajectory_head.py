@@ -8,7 +8,7 @@ import pytest
 from dancetutor_cli.dance.plan import FootTrack, Plan
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.dance.smoothing import smooth
-from dancetutor_cli.dance.trajectory.facing import chest_and_head, head_held
+from dancetutor_cli.dance.trajectory.facing import chest_and_head, limit_head_yaw
 from dancetutor_cli.dance.trajectory.legs import Course
 
 SETTINGS = default_settings()
@@ -47,7 +47,7 @@ def test_turned_aside_she_looks_at_the_screen() -> None:
 def test_a_chest_that_turns_against_quick_legs_whips_no_neck() -> None:
     """The head's own turns and the chest's add up; the neck's limit is kept on the chest as it finally is."""
     chest = np.radians(30.0) * np.sin(2 * np.pi * 3.0 * TIMES) * (TIMES > 2.0) * (TIMES < 4.0)
-    neck = head_held(np.zeros(len(TIMES)), chest, 240.0, SETTINGS) - chest
+    neck = limit_head_yaw(np.zeros(len(TIMES)), chest, 240.0, SETTINGS) - chest
     assert np.degrees(np.abs(np.diff(chest)).max()) * 240 > 560.0 > SETTINGS.look.head_rate * 1.15
     assert np.degrees(np.abs(np.diff(neck)).max()) * 240 <= SETTINGS.look.head_rate * 1.15
     assert np.degrees(np.abs(neck).max()) <= SETTINGS.look.head_limit
@@ -55,4 +55,4 @@ def test_a_chest_that_turns_against_quick_legs_whips_no_neck() -> None:
 
 def test_a_neck_that_is_slow_enough_keeps_the_head_still() -> None:
     chest = np.radians(15.0) * np.sin(2 * np.pi * TIMES)
-    assert np.abs(head_held(np.zeros(len(TIMES)), chest, 240.0, SETTINGS)).max() == 0.0
+    assert np.abs(limit_head_yaw(np.zeros(len(TIMES)), chest, 240.0, SETTINGS)).max() == 0.0

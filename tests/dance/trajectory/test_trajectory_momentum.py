@@ -9,7 +9,13 @@ from dancetutor_cli.dance.foot_path import FootPath
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import GRAVITY, centre_of_mass, mass_points, world_transforms
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-from dancetutor_cli.dance.trajectory.balance import AGAINST, FARTHEST, against_turning, moved_by_turning, support_of
+from dancetutor_cli.dance.trajectory.balance import (
+    AGAINST,
+    FARTHEST,
+    counter_rotation_zmp,
+    rotation_zmp_offset,
+    support_of,
+)
 
 RATE = 240.0
 
@@ -51,7 +57,7 @@ def test_the_whole_bodys_point_is_the_masss_and_what_turning_adds() -> None:
     mass = centre_of_mass(skeleton, positions, world)
     a = accelerations(mass)
     point = (mass - mass[:, 1:2] * a / (a[:, 1:2] + GRAVITY))[:, [0, 2]]
-    moved = moved_by_turning(skeleton, positions, world, RATE)
+    moved = rotation_zmp_offset(skeleton, positions, world, RATE)
     middle = slice(240, 480)
     assert np.abs((whole - point)[middle]).max() > 0.03  # or nothing is shown
     np.testing.assert_allclose(moved[middle], (whole - point)[middle], atol=0.001)
@@ -67,7 +73,7 @@ def test_the_own_point_stays_within_the_soles(down: tuple[bool, bool]) -> None:
     ]
     support = support_of((feet[0], feet[1]), np.radians(1.2))
     turning = rng.normal(0.0, 0.1, (n, 2))
-    best = against_turning(support, turning)
+    best = counter_rotation_zmp(support, turning)
     along = np.einsum("nda,na->nd", support.across, best)
     assert (along > support.low).all()
     assert (along < support.high).all()
@@ -84,5 +90,5 @@ def test_little_is_made_up_for_wholly() -> None:
     feet = [FootPath(np.tile([x, 0.0, 0.0], (3, 1)), zeros, zeros, down, zeros) for x in (0.2, -0.2)]
     turning = np.array([[0.02, 0.0], [0.0, -0.02], [0.0, 0.0]])
     support = support_of((feet[0], feet[1]), np.radians(1.2))
-    np.testing.assert_allclose(against_turning(support, turning), support.middle - turning, atol=1e-12)
+    np.testing.assert_allclose(counter_rotation_zmp(support, turning), support.middle - turning, atol=1e-12)
     assert 0.0 < AGAINST < 1.0

@@ -10,14 +10,14 @@ import pytest
 
 from dancetutor_cli.film.media import ffmpeg as chooser
 from dancetutor_cli.film.media.ffmpeg import ENCODERS, FILTERS, VARIABLE, ffmpeg_program, lacking
-from dancetutor_cli.run.errors import UnavailableError, how_to_add
+from dancetutor_cli.run.errors import UnavailableError, install_command
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="a shell script stands in for ffmpeg")
 
 
 @pytest.fixture(autouse=True)
 def fresh(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    chooser._chosen.cache_clear()
+    chooser._find_executable.cache_clear()
     monkeypatch.delenv(VARIABLE, raising=False)
     monkeypatch.setenv("DANCETUTOR_CACHE", str(tmp_path / "cache"))
 
@@ -36,7 +36,7 @@ def test_the_systems_is_taken_where_it_can_all(tmp_path: Path, monkeypatch: pyte
     whole = program(tmp_path / "bin", *ENCODERS, *FILTERS)
     monkeypatch.setenv("PATH", f"{tmp_path / 'none'}:{whole.parent}:/usr/bin:/bin")
     assert ffmpeg_program() == str(whole)
-    chooser._chosen.cache_clear()
+    chooser._find_executable.cache_clear()
     assert ffmpeg_program() == str(whole)
     assert (whole.parent / "asked").read_text().count("asked") == 2, "encoders and filters, once"
     program(tmp_path / "bin", "aac")  # an update
@@ -49,7 +49,7 @@ def test_one_that_cannot_all_is_second_choice(tmp_path: Path, monkeypatch: pytes
     whole = program(tmp_path / "whole", *ENCODERS, *FILTERS)
     monkeypatch.setenv("PATH", f"{poor.parent}:{whole.parent}:/usr/bin:/bin")
     assert ffmpeg_program() == str(whole)
-    chooser._chosen.cache_clear()
+    chooser._find_executable.cache_clear()
     monkeypatch.setenv("PATH", f"{poor.parent}:/bin")
     monkeypatch.setattr(chooser, "on_path", lambda path: iter([poor]))
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
@@ -60,7 +60,7 @@ def test_none_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     with pytest.raises(
-        UnavailableError, match=f"^no ffmpeg found; .*apt-get install ffmpeg; or {how_to_add('ffmpeg')}$"
+        UnavailableError, match=f"^no ffmpeg found; .*apt-get install ffmpeg; or {install_command('ffmpeg')}$"
     ):
         ffmpeg_program()
 

@@ -13,7 +13,7 @@ from dancetutor_cli.feet import load_pad
 from dancetutor_cli.feet.solver.techniques import half_turned
 from dancetutor_cli.film.choices import Ahead, parse_ahead
 from dancetutor_cli.film.notes import Callout
-from dancetutor_cli.film.overlay.callouts import Called, CallStyle, _reasons, callouts_of
+from dancetutor_cli.film.overlay.callouts import CalloutSubject, CallStyle, _reasons, callouts_of
 from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.film.scroll import parse_segments
 from dancetutor_cli.run.errors import UsageError
@@ -48,7 +48,7 @@ def subject(*rows: tuple[float, tuple[str, ...], dict[int, int], dict[int, int]]
 def called(what: Any, found: Iterable[Any] = (), **how: Any) -> tuple[Callout, ...]:
     """found : by the linter"""
     style = CallStyle(WORDS, how.pop("ahead", Ahead(SECOND)), **how)
-    return callouts_of(Called(what.chart, what.pad, lambda: found), what.play, style, parse_segments(""))
+    return callouts_of(CalloutSubject(what.chart, what.pad, lambda: found), what.play, style, parse_segments(""))
 
 
 def moves(*beats_and_names: tuple[float, str]) -> Any:

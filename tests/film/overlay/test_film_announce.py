@@ -12,7 +12,7 @@ from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.layout import PixelBox, layout_names, load_layout
 from dancetutor_cli.film.notes import Callout
 from dancetutor_cli.film.overlay import announce
-from dancetutor_cli.film.overlay.announce import CALL_STAYS, Calls, Runs, _foot_colour, _left, _phrases
+from dancetutor_cli.film.overlay.announce import CALL_STAYS, Calls, Runs, _foot_colour, _phrases, _remaining_share
 from dancetutor_cli.film.overlay.sprites import highway_style
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import Frame
@@ -118,7 +118,14 @@ def test_words_stand_in_the_middle_of_their_label(lines: list[str]) -> None:
 
 def test_the_time_left_is_that_to_the_next_move_of_a_passage() -> None:
     call = Callout(5.0, 10.0, "crossover ×2", "move", 4.0, 7.0, "crossover ×2", ((7.0, 14.0, "crossover"),))
-    assert [_left(call, second) for second in (4.0, 4.5, 5.0, 6.0, 7.0, 7.1)] == [1.0, 0.5, 1.0, 0.5, 0.0, 0.0]
+    assert [_remaining_share(call, second) for second in (4.0, 4.5, 5.0, 6.0, 7.0, 7.1)] == [
+        1.0,
+        0.5,
+        1.0,
+        0.5,
+        0.0,
+        0.0,
+    ]
 
 
 @pytest.mark.parametrize("name", ["side-by-side", "dancer", "vertical", "practice", "television"])

@@ -10,7 +10,7 @@ import renderers_scene as rs
 
 from dancetutor_cli.film.scene import renderer
 from dancetutor_cli.film.scene.gl import available
-from dancetutor_cli.film.scene.renderer import BESIDE, feet_on_floor
+from dancetutor_cli.film.scene.renderer import RING_SHARE, feet_on_floor
 from dancetutor_cli.film.scene.scene import PANEL, foot_marks
 from dancetutor_cli.run.errors import UnavailableError
 
@@ -61,4 +61,4 @@ def test_only_the_limb_that_presses_says_so():
     high = state.joints.copy()
     high[:, 1, 3] += 0.05
     assert feet_on_floor(scene, replace(state, joints=high))[1, PRESSED] == 0
-    assert 0 < BESIDE < 0.5
+    assert 0 < RING_SHARE < 0.5

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dancetutor_cli.film.layout import load_layout
-from dancetutor_cli.film.scene.camera import Camera, free, parse, preset, seen_from_front, with_pan_range
+from dancetutor_cli.film.scene.camera import Camera, free, is_front_view, parse, preset, with_pan_range
 from dancetutor_cli.film.scene.look import default_look, read_look
 from dancetutor_cli.run.errors import FileError, UsageError
 from dancetutor_cli.run.reading import config_path
@@ -86,7 +86,7 @@ def test_three_quarter_stands_near(steps, least):
 )  # fmt: skip
 def test_who_sees_her_face_sees_the_pad_turned(text, turned):
     """Arrows turn with the pad where, and only where, her left panel is on the right of the picture."""
-    assert seen_from_front(text, LOOK) == turned
+    assert is_front_view(text, LOOK) == turned
     camera = parse(text, PAD, (1280, 720), LOOK)
     left, right = camera.project(np.array([[0.28, 0.0, 0.0], [-0.28, 0.0, 0.0]]), (1280, 720))[:, 0]
     if abs(left - right) > 100:

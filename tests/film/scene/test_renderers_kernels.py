@@ -14,7 +14,7 @@ from dancetutor_cli.film.scene.cpu.raster import (
     DEPTH_UNIT,
     FRONT,
     SNAP,
-    Bound,
+    SkinnedVertices,
     empty_canvas,
     fill,
     note_least,
@@ -133,7 +133,7 @@ def test_skin_is_linear_blending():
     index = rng.integers(0, joints, (count, 4)).astype(np.int32)
     matrices = rng.normal(size=(joints, 3, 4))
     world = np.empty((count, 9))
-    skin(Bound(positions, normals, hull, index, weights), matrices, world)
+    skin(SkinnedVertices(positions, normals, hull, index, weights), matrices, world)
     blended = np.einsum("vk,vkrc->vrc", weights, matrices[index])
     np.testing.assert_allclose(
         world[:, :3], np.einsum("vrc,vc->vr", blended, np.column_stack([positions, np.ones(count)])), rtol=1e-9

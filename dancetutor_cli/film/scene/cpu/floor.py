@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.film.scene.cpu.raster import kernel
 from dancetutor_cli.film.scene.cpu.standing import SEVERAL, TILE, quantise
-from dancetutor_cli.film.scene.renderer import BESIDE, PLANTED, SHADOW_FADE, Cast
+from dancetutor_cli.film.scene.renderer import PLANTED, RING_SHARE, SHADOW_FADE, Cast
 from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
 Array = NDArray[np.float64]
@@ -256,7 +256,7 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
                         ):
                             light = lit[p] * feet[f, 10]
                         if light <= 0.0:
-                            band *= 1.0 - (1.0 - BESIDE) * feet[f, 10]
+                            band *= 1.0 - (1.0 - RING_SHARE) * feet[f, 10]
                         if band > ring:
                             ring, owner, pressed = band, f, light
                     if keep >= 1.0 and shine <= 0.0 and ring <= 0.0:

@@ -42,7 +42,7 @@ def toon_numbers(toon: ToonLook, cast: bool) -> F32:
 
 
 class Surface(NamedTuple):
-    """What does not change of the triangles' look; see `geometry.Packed` and `geometry.Skins.flat`."""
+    """What does not change of the triangles' look; see `geometry.PackedMeshes` and `geometry.Skins.flat`."""
 
     uv: F32
     above: F32

@@ -46,8 +46,8 @@ _FOLD = 0.35  # and where normals look at the viewer more than this, skin in a f
 _AWAY = -0.85  # cosine to the viewer; a back turned away more than this cannot show beside the front
 
 
-class Bound(NamedTuple):
-    """Vertices as they are bound to joints; see `geometry.Packed`."""
+class SkinnedVertices(NamedTuple):
+    """Vertices as they are bound to joints; see `geometry.PackedMeshes`."""
 
     positions: NDArray[np.float32]
     normals: NDArray[np.float32]

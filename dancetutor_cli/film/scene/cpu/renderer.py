@@ -14,7 +14,7 @@ from dancetutor_cli.film.scene.cpu.fragments import PER_METRE, Light, Surface, t
 from dancetutor_cli.film.scene.cpu.raster import (
     BACK,
     FRONT,
-    Bound,
+    SkinnedVertices,
     View,
     empty_canvas,
     extent,
@@ -26,14 +26,15 @@ from dancetutor_cli.film.scene.cpu.raster import (
     project_light,
     skin,
 )
-from dancetutor_cli.film.scene.cpu.shade import Drawn, empty_room, light_vertices, resolve
+from dancetutor_cli.film.scene.cpu.shade import RasterResult, empty_room, light_vertices, resolve
 from dancetutor_cli.film.scene.cpu.standing import Background, draw_background
 from dancetutor_cli.film.scene.geometry import pack
 from dancetutor_cli.film.scene.renderer import (
     SAMPLES,
     SHADOW_MAP,
     Cast,
-    Shown,
+    DancerVisibility,
+    dancer_visibility,
     feet_on_floor,
     ground_box,
     joints_of,
@@ -41,7 +42,6 @@ from dancetutor_cli.film.scene.renderer import (
     pixels_per_metre,
     place_cast,
     shadow_middles,
-    shown,
     skin_matrices,
 )
 from dancetutor_cli.film.scene.scene import SOLE_RADIUS, FrameState, Scene, check_state
@@ -60,7 +60,7 @@ class CpuRenderer:
         self._map = SHADOW_MAP[quality]
         self._mesh = pack(scene.character)
         mesh = self._mesh
-        self._bound = Bound(mesh.positions, mesh.normals, mesh.hull, mesh.joints, mesh.weights)
+        self._bound = SkinnedVertices(mesh.positions, mesh.normals, mesh.hull, mesh.joints, mesh.weights)
         self._surface = Surface(mesh.uv, mesh.above, mesh.material, mesh.patch, mesh.density, *mesh.skins.flat())
         self._toon = toon_numbers(scene.look.toon, self._map > 0)
         count = len(self._mesh.positions)
@@ -88,7 +88,11 @@ class CpuRenderer:
         matrices = skin_matrices(self._scene, joints)
         skin(self._bound, matrices, self._world)
         cast = place_cast(self._scene, camera, joints, self._map)
-        count = {Shown.NOTHING: 0, Shown.FEET: mesh.feet, Shown.ALL: len(mesh.triangles)}[shown(state)]
+        count = {
+            DancerVisibility.NOTHING: 0,
+            DancerVisibility.FEET: mesh.feet,
+            DancerVisibility.ALL: len(mesh.triangles),
+        }[dancer_visibility(state)]
         triangles = mesh.triangles[:count]
         shadow = self._draw_shadow(triangles, cast, shadow_middles(self._scene, joints))
         self._draw_ground(state, background, shift, shadow)
@@ -142,5 +146,5 @@ class CpuRenderer:
         fill(self._hull, triangles, BACK, len(triangles), self._canvas)
         light_vertices(self._world, self._points, self._surface, eye, cast, self._vertex)
         self._toon[PER_METRE] = per_metre
-        drawn, light = Drawn(self._canvas, triangles), Light(self._vertex, self._shadow, self._toon)
+        drawn, light = RasterResult(self._canvas, triangles), Light(self._vertex, self._shadow, self._toon)
         resolve(self._out, self._samples, drawn, self._surface, light, self._room)

@@ -40,7 +40,7 @@ _ROW, _COLUMN = 16, 0xFFFF  # where a pixel's number has its row and its column:
 OFF_SURFACE = (0.012, 0.006)  # metres along normal and light: a surface must not shadow itself
 
 
-class Drawn(NamedTuple):
+class RasterResult(NamedTuple):
     """What `raster.fill` has drawn of which triangles; numbers from their count on are outline."""
 
     canvas: Canvas
@@ -144,7 +144,7 @@ def _put(out: Any, pixels: int, count: int, room: Any) -> None:  # pragma: no co
 def resolve(out: Any, samples: int, drawn: Any, surface: Any, light: Any, room: Any) -> None:  # pragma: no cover
     """Put the samples on the picture and forget them: nothing is left on the canvas.
 
-    drawn : `Drawn`; surface : `Surface`; light : `Light`; room : `Room`
+    drawn : `RasterResult`; surface : `Surface`; light : `Light`; room : `Room`
     One colour serves all samples of a pixel that see the same piece of surface at about the same depth.
     """
     nearest, spans, triangles = drawn.canvas.nearest, drawn.canvas.spans, drawn.triangles

@@ -31,7 +31,7 @@ class Place(NamedTuple):
     footprint: Array
 
 
-class Painted(NamedTuple):
+class SurfaceColours(NamedTuple):
     """What places look like. colour : (n, 3), 0..1; takes : how much of shadows; panel : int32 (n,), column or -1
 
     glow, white : (n,), of a fully lit panel
@@ -90,7 +90,7 @@ def _line(x: Array, tile: float, half: float, footprint: Array) -> Array:
     return np.asarray(_cover((half - d) / footprint) * np.minimum(1.0, 2.0 * half / footprint))
 
 
-def _floor(place: Place, palette: Array) -> Painted:
+def _floor(place: Place, palette: Array) -> SurfaceColours:
     x, z, footprint = place.x, place.z, place.footprint
     px, pz, tile = palette[13, 0], palette[13, 1], palette[12, 0]
     half_x, half_z, pool = palette[13, 2], palette[13, 3], palette[12, 1]
@@ -101,7 +101,7 @@ def _floor(place: Place, palette: Array) -> Painted:
     line = np.maximum(_line(x - px - half_x, tile, 0.007, footprint), _line(z - pz - half_z, tile, 0.007, footprint))
     colour = _mix(palette, 1, 0, light)
     colour = colour + (palette[2, :3] - colour) * (line * light)[:, None]
-    return Painted(colour, 1.0, *_unlit(len(x)))
+    return SurfaceColours(colour, 1.0, *_unlit(len(x)))
 
 
 def arrow_distance(a: Any, b: Any) -> Any:
@@ -112,7 +112,7 @@ def arrow_distance(a: Any, b: Any) -> Any:
     return np.minimum(head, shaft)
 
 
-def _pad(place: Place, paints: Paints) -> Painted:
+def _pad(place: Place, paints: Paints) -> SurfaceColours:
     palette, panel, arrow = paints.palette, paints.panel, paints.arrow
     size = palette[12, 2]
     across, deep = (palette[14, 0] - place.x) / size, (place.z - palette[14, 1]) / size
@@ -132,10 +132,10 @@ def _pad(place: Place, paints: Paints) -> Painted:
     glow, white = inside * np.maximum(0.72, np.maximum(border, sign)), np.maximum(0.62 * sign, 0.35 * border)
     blank = column < 0
     colour = np.where(blank[:, None], _mix(palette, 10, 9, inside), colour)
-    return Painted(colour, 1.0, column, np.where(blank, 0.0, glow), np.where(blank, 0.0, white))
+    return SurfaceColours(colour, 1.0, column, np.where(blank, 0.0, glow), np.where(blank, 0.0, white))
 
 
-def _wall(place: Place, palette: Array) -> Painted:
+def _wall(place: Place, palette: Array) -> SurfaceColours:
     """A lamp at the foot of each part, whose light is wide and has no edge farther up: the song's words stand there."""
     u, v = place.u, place.v
     core, beam = u / (0.03 + 0.5 * v), u / (0.16 + 1.1 * v)
@@ -144,7 +144,7 @@ def _wall(place: Place, palette: Array) -> Painted:
     high = _smooth(0.012, 0.06, v) * (1.0 - _smooth(0.05, 0.5, v))
     light = 0.9 * core * core * lamp + 0.34 * beam * high
     colour = _mix(palette, 3, 4, _smooth(0.0, 0.6, v)) + palette[5, :3] * light[:, None]
-    return Painted(colour, 0.0, *_unlit(len(u)))
+    return SurfaceColours(colour, 0.0, *_unlit(len(u)))
 
 
 def _unlit(count: int) -> tuple[NDArray[np.int32], Array, Array]:
@@ -152,7 +152,7 @@ def _unlit(count: int) -> tuple[NDArray[np.int32], Array, Array]:
     return np.full(count, -1, np.int32), np.zeros(count), np.zeros(count)
 
 
-def surface(kind: int, place: Place, paints: Paints) -> Painted:
+def surface(kind: int, place: Place, paints: Paints) -> SurfaceColours:
     """What a kind of surface (`scene.SurfaceKind`) looks like at some places of it."""
     palette = paints.palette
     if kind == SurfaceKind.FLOOR:
@@ -161,4 +161,4 @@ def surface(kind: int, place: Place, paints: Paints) -> Painted:
         return _pad(place, paints)
     if kind == SurfaceKind.WALL:
         return _wall(place, palette)
-    return Painted(np.tile(palette[7, :3], (len(place.x), 1)), 0.0, *_unlit(len(place.x)))
+    return SurfaceColours(np.tile(palette[7, :3], (len(place.x), 1)), 0.0, *_unlit(len(place.x)))

@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from dancetutor_cli.run.errors import UnavailableError, how_to_add
+from dancetutor_cli.run.errors import UnavailableError, install_command
 
 # What OpenGL is here, found with ctypes alone: before any OpenGL package is imported, whose errors nobody can read.
 
 MISSING = "No OpenGL found. Debian/Ubuntu: apt-get install libegl1 libgl1. Or use --renderer cpu."
-NO_PACKAGE = f"The OpenGL renderer is not installed. {how_to_add('gl')}. Or use --renderer cpu."
+NO_PACKAGE = f"The OpenGL renderer is not installed. {install_command('gl')}. Or use --renderer cpu."
 _EGL_EXTENSIONS = 0x3055
 _PLATFORM_DEVICE = 0x313F
 _SOFTWARE = b"EGL_MESA_device_software"

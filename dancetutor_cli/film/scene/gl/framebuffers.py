@@ -244,7 +244,7 @@ class Patches:
 # Import only after `available.load_pyrender`.
 
 
-class Standing:
+class StandingTarget:
     """What `cpu.standing.Background` holds, for the shader ground.frag; `target` has the picture to copy.
 
     tiles : what squares of it hold, for `patches`; has_ground : bool (t, u), which of them hold any

@@ -13,9 +13,9 @@ from OpenGL.GL import shaders as gl_shaders
 from pyrender.primitive import Primitive
 from pyrender.shader_program import ShaderProgram, ShaderProgramCache
 
-from dancetutor_cli.film.scene.geometry import Packed
+from dancetutor_cli.film.scene.geometry import PackedMeshes
 from dancetutor_cli.film.scene.gl.available import SHADERS
-from dancetutor_cli.film.scene.renderer import Shown
+from dancetutor_cli.film.scene.renderer import DancerVisibility
 
 # pyrender's shader programs with the project's shaders, uniforms that are found once, and errors that are heard.
 #
@@ -152,7 +152,7 @@ _FLOAT = 4  # bytes
 class SkinnedPrimitive(Primitive):  # type: ignore[misc]
     """All triangles of one material; attributes in the order of shaders/skinned.vert."""
 
-    def __init__(self, mesh: Packed, material: int) -> None:
+    def __init__(self, mesh: PackedMeshes, material: int) -> None:
         super().__init__(mesh.positions, normals=mesh.normals, texcoord_0=mesh.uv)
         ours = mesh.material[mesh.triangles[:, 0]] == material
         self._triangles = np.ascontiguousarray(mesh.triangles[ours], dtype=np.uint32)
@@ -186,8 +186,12 @@ class SkinnedPrimitive(Primitive):  # type: ignore[misc]
         GL.glBufferData(GL.GL_ELEMENT_ARRAY_BUFFER, self._triangles.nbytes, self._triangles, GL.GL_STATIC_DRAW)
         GL.glBindVertexArray(0)
 
-    def draw(self, part: Shown) -> None:
+    def draw(self, part: DancerVisibility) -> None:
         """Draw it, or the part of it that is shown, with the current program."""
         self._bind()
-        count = {Shown.NOTHING: 0, Shown.FEET: 3 * self._feet, Shown.ALL: self._triangles.size}[part]
+        count = {
+            DancerVisibility.NOTHING: 0,
+            DancerVisibility.FEET: 3 * self._feet,
+            DancerVisibility.ALL: self._triangles.size,
+        }[part]
         GL.glDrawElements(GL.GL_TRIANGLES, count, GL.GL_UNSIGNED_INT, ctypes.c_void_p(0))

@@ -21,7 +21,7 @@ from dancetutor_cli.film.scene.geometry import pack
 from dancetutor_cli.film.scene.gl.available import gpu_device
 from dancetutor_cli.film.scene.gl.framebuffers import (
     Patches,
-    Standing,
+    StandingTarget,
     Target,
     is_lit,
     pyramid,
@@ -43,16 +43,17 @@ from dancetutor_cli.film.scene.gl.programs import (
 )
 from dancetutor_cli.film.scene.look import LightLook
 from dancetutor_cli.film.scene.renderer import (
-    BESIDE,
     MOST_JOINTS,
+    RING_SHARE,
     SAMPLES,
     SHADOW_FADE,
     SHADOW_MAP,
     Cast,
-    Shown,
+    DancerVisibility,
     camera_matrix,
+    dancer_visibility,
     feet_on_floor,
-    held_by,
+    joint_boxes,
     joints_of,
     light_matrix,
     panel_lights,
@@ -61,7 +62,6 @@ from dancetutor_cli.film.scene.renderer import (
     place_cast,
     places_of,
     shadow_middles,
-    shown,
     skin_matrices,
     within,
 )
@@ -81,7 +81,7 @@ class _Her(NamedTuple):
     cast, light : where her shadow map is, and its matrix (4, 4)
     """
 
-    part: Shown
+    part: DancerVisibility
     joints: Array
     places: Array
     cast: Cast
@@ -120,14 +120,14 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             primitive = SkinnedPrimitive(mesh, number)
             primitive._add_to_context()
             self._primitives.append((primitive, self._skins[skin], tint, limbs if limb else 0.0))
-        self._held = held_by(mesh.positions, mesh.joints, mesh.weights)
+        self._held = joint_boxes(mesh.positions, mesh.joints, mesh.weights)
         self._map = Target((SHADOW_MAP[quality] or 1,) * 2, colour=False)
         fine = (self._fine * self._size[0], self._fine * self._size[1])
         self._drawn = Target(fine, self._samples, depth=True)
         self._whole = Target(fine) if self._samples else self._drawn
         smooth(self._whole.texture)
         self._picture = Target(self._size)
-        self._standing: tuple[Camera, Standing] | None = None
+        self._standing: tuple[Camera, StandingTarget] | None = None
         self._patches = Patches()
         self._lights = texture(np.zeros((1, max(scene.panels, 1), 4), np.float32))
         self._joints = int(GL.glGenBuffers(1))
@@ -145,7 +145,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         joints = joints_of(self._scene, state)
         cast = place_cast(self._scene, camera, joints, SHADOW_MAP[self._quality])
         skin = skin_matrices(self._scene, joints)
-        her = _Her(shown(state), joints, places_of(self._held, skin), cast, light_matrix(cast))
+        her = _Her(dancer_visibility(state), joints, places_of(self._held, skin), cast, light_matrix(cast))
         matrices = np.zeros((MOST_JOINTS, 3, 4), np.float32)
         matrices[: len(joints)] = skin
         GL.glBindBuffer(GL.GL_UNIFORM_BUFFER, self._joints)
@@ -169,12 +169,12 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             self._platform.delete_context()
             self._platform = None
 
-    def _stage(self, camera: Camera) -> Standing:
+    def _stage(self, camera: Camera) -> StandingTarget:
         key = replace(camera, pan=0.0)
         if self._standing is None or self._standing[0] != key:
             if self._standing is not None:
                 self._standing[1].delete()
-            self._standing = (key, Standing(self._scene, key, self._size, max(2, SAMPLES[self._quality])))
+            self._standing = (key, StandingTarget(self._scene, key, self._size, max(2, SAMPLES[self._quality])))
         return self._standing[1]
 
     def _draw_shadow(self, her: _Her) -> None:
@@ -194,7 +194,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         GL.glUniformBlockBinding(program.number, GL.glGetUniformBlockIndex(program.number, "Joints"), 0)
         return program
 
-    def _draw_ground(self, state: FrameState, standing: Standing, shift: int, her: _Her) -> None:
+    def _draw_ground(self, state: FrameState, standing: StandingTarget, shift: int, her: _Her) -> None:
         look = self._scene.look
         lit, colour = panel_lights(self._scene, state)
         refill(self._lights, np.column_stack([colour / 255.0, lit]).astype(np.float32)[None])
@@ -220,7 +220,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             radius=SOLE_RADIUS,
             foot=feet[:, :4],
             foot_state=feet[:, [4, 5, 9, 10]],
-            beside=BESIDE,
+            beside=RING_SHARE,
             foot_colour=feet[:, 6:9] / 255.0,
             shadow=_SHADOW_UNIT,
             **{name: unit for unit, name in enumerate(units)},
