@@ -16,6 +16,7 @@ import hashlib
 import math
 import re
 from collections.abc import Iterator
+from functools import lru_cache
 
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.names import is_lights
@@ -88,6 +89,7 @@ def _fewest(rows: list[bytes], empty: bytes) -> list[bytes]:
     return rows
 
 
+@lru_cache(maxsize=64)
 def normalised_bpms(text: str) -> str:
     """The pairs of a #BPMS, beat and BPM with three decimals: "0.000=120.000,4.000=60.500"; others are left out."""
     pairs = (entry.partition("=") for entry in text.split(","))

@@ -34,7 +34,7 @@ def _is_formula(cell: str) -> bool:
 _OLD = "##["
 _ENDS = "\n\r\v\f\x1c-\x1e\x85\u2028\u2029"  # of lines, for whoever reads a log
 _AT_START = re.compile(rf"(^|[{_ENDS}])(\s*):(?=:)")
-_LAST_LINE = re.compile(f"[^{_ENDS}]*\\Z")
+_END_CHARACTERS = "\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029"
 
 
 def without_commands(text: str, *, from_start: bool = True) -> str:
@@ -76,9 +76,8 @@ class GuardedText(io.TextIOWrapper):
         self._remember(text)
 
     def _remember(self, text: str) -> None:
-        last = _LAST_LINE.search(text)
-        assert last is not None
-        self._blank = (self._blank or last.start() > 0) and not last[0].strip()
+        begin = max(map(text.rfind, _END_CHARACTERS)) + 1  # of the last line
+        self._blank = (self._blank or begin > 0) and not text[begin:].strip()
 
 
 def write_command(stream: IO[str], text: str) -> None:
