@@ -57,7 +57,7 @@ DIRECTLY = "print(twice(3))"
 AS_WORK = """from dancetutor_cli.run.pool import Task, open_workers
     workers = open_workers(1, print)
     workers.submit(Task(1, lambda report: twice(3)))
-    print(*workers.done())"""
+    print(*workers.results())"""
 
 
 @pytest.mark.skipif(os.name == "nt", reason="sends SIGINT to one process, which Windows cannot")

@@ -163,7 +163,7 @@ def test_workers_and_their_server_hear_of_no_ctrl_c_from_their_start(tmp_path: P
         f"workers = open_workers(2, lambda key, n: None, {common!r})\n"
         "workers.submit(Task(1, hears))\n"
         "workers.submit(Task(2, hears))\n"
-        "print(*[done.result for done in workers.done()], hears(None))\n"
+        "print(*[done.result for done in workers.results()], hears(None))\n"
         "workers.close()\n"
     )
     path = os.pathsep.join([str(Path(__file__).parents[2]), str(tmp_path)])
@@ -180,7 +180,7 @@ def test_no_module_of_the_folder_one_stands_in_is_run(tmp_path: Path, common: st
         "from tests.jobs.test_film_pool import double, open_workers, Task\n"
         f"workers = open_workers(2, print, {common!r})\n"
         "workers.submit(Task(1, double, (1,)))\n"
-        "assert [done.result for done in workers.done()] == [2]\n"
+        "assert [done.result for done in workers.results()] == [2]\n"
         "workers.close()\n"
     )
     root = str(Path(__file__).parents[2])
@@ -201,7 +201,7 @@ def test_a_shared_module_that_raises_leaves_no_traceback(tmp_path: Path) -> None
         "workers = open_workers(2, lambda key, n: None, 'broken')\n"
         "workers.submit(Task(1, double, (1,)))\n"
         "workers.submit(Task(2, fetch, ('broken',)))\n"
-        "for done in sorted(workers.done(), key=lambda done: done.key):\n"
+        "for done in sorted(workers.results(), key=lambda done: done.key):\n"
         "    print(done.result, done.error)\n"
         "workers.close()\n"
     )
