@@ -159,7 +159,9 @@ def exists(name: str) -> bool:
 def test_modules_and_functions_that_the_pages_name_exist(name: str) -> None:
     words = re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", PAGES[name], flags=re.S))
     paths = [word for word in words if re.fullmatch(r"[\w/]+\.py", word)]
-    files = [path for folder in ("dancetutor_cli", "tests", "tools") for path in (ROOT / folder).rglob("*.py")]
+    files = [
+        path for folder in ("dancetutor_cli", "tests", "tools", "research") for path in (ROOT / folder).rglob("*.py")
+    ]
     there = {
         path.relative_to(base).as_posix() for base in (ROOT, PACKAGE) for path in files if path.is_relative_to(base)
     }
