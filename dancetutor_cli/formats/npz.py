@@ -74,6 +74,7 @@ _LET_GO = {
     "column": Field("integer", ("k",), 0, 1000, required=False),
     "why": Field("integer", ("k",), min(DropReason), max(DropReason), required=False),
 }
+_ATTRIBUTES = {"why": "reason"}  # of a note that is let go, where they are not called as in the file
 FIELDS: Mapping[str, Field] = {
     "schema": Field("integer", (), 0, _INDEX),
     "names": Field("string", ("j",)),
@@ -112,7 +113,7 @@ def write_npz(path: Path, motion: Motion) -> None:
         arrays |= _bar_arrays(motion.bar, motion.grips)
     if motion.let_go:
         for name in _LET_GO:
-            column = [getattr(one, name) for one in motion.let_go]
+            column = [getattr(one, _ATTRIBUTES.get(name, name)) for one in motion.let_go]
             arrays[f"let_go_{name}"] = np.array(column, dtype=_TYPES.get(name, "i1"))
     if motion.ground is not None:
         arrays["ground"] = np.array([*motion.ground.low, *motion.ground.high, motion.ground.drop])

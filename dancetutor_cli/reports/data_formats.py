@@ -78,12 +78,12 @@ def _chart_texts(chart: ChartResult, before: str) -> Iterator[str]:
         "difficulty": chart.difficulty,
         "meter": chart.meter,
         "description": chart.description,
-        "hash": chart.hash,
         "cost": chart.cost,
     }
     tail = {
         "findings": [finding_object(finding) for finding in chart.findings],
         "preset": chart.preset,
+        "hash": chart.hash,
         "doublesteps": [_cause_object(cause) for cause in chart.causes or ()],
         "ambiguous": [{"beat": beat, "kind": kind} for beat, kind in chart.ambiguous or ()],
         "plays_like": None if chart.estimate is None else _estimate_object(chart.estimate),

@@ -225,7 +225,7 @@ def test_other_formats_say_which_was_used(song: Path) -> None:
     table = csv.DictReader(io.StringIO(run(song, "--format", "csv")))
     assert [row["preset"] for row in table] == BY_PAD
     text = run(song)
-    assert "\ndance-single Easy 3  preset itg\n" in text and "\npump-double Hard 9  preset pump\n" in text
+    assert "\ndance-single Easy 3  preset itg  hash " in text and "\npump-double Hard 9  preset pump  hash " in text
     assert "\ndance-single Easy 3  preset 'pump' was made for pump pads, not for" in run(song, "--preset", "pump")
 
 

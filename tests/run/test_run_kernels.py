@@ -153,7 +153,7 @@ def test_a_command_runs_with_nothing_to_write_to(tmp_path: Path) -> None:
     code = (
         "from pathlib import Path; from dancetutor_cli.run.kernels import store as k\n"
         "k.use_folder = lambda folder: 'cannot be written'; k.temporary_folder = lambda name: None\n"
-        "import some_kernels; print(some_kernels.double(4), k.kernel_folder().kept)"
+        "import some_kernels; print(some_kernels.double(4), k.kernel_folder().is_writable)"
     )
     ran = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
     assert (ran.returncode, ran.stdout, ran.stderr) == (0, "8 False\n", "")
