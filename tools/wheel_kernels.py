@@ -11,18 +11,17 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
 from importlib.metadata import distribution
 from pathlib import Path
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-INSIDE = "dancetutor_cli/_data/kernels"
+SUFFIX = ".kernel"  # as `dancetutor_cli.run.kernels.store` has it
 
 
 class KernelsHook(BuildHookInterface):  # type: ignore[type-arg]
-    """Adds the kernels that `dancetutor warmup` compiles, below the folders of their modules."""
+    """Adds the kernels that `dancetutor warmup` compiles, beside their modules, where an installation keeps its own."""
 
     PLUGIN_NAME = "custom"
 
@@ -31,9 +30,9 @@ class KernelsHook(BuildHookInterface):  # type: ignore[type-arg]
         if version == "editable":
             return
         self._folder = tempfile.TemporaryDirectory()
-        out = Path(self._folder.name) / "kernels"
-        compile_into(out, Path(self.root))
-        build_data["force_include"][str(out)] = INSIDE
+        source = compiled_copy(Path(self.root), Path(self._folder.name).resolve())
+        for kernel in source.rglob(f"*{SUFFIX}"):
+            build_data["force_include"][str(kernel)] = kernel.relative_to(source).as_posix()
         build_data["pure_python"] = False
         build_data["tag"] = tag()
 
@@ -43,39 +42,21 @@ class KernelsHook(BuildHookInterface):  # type: ignore[type-arg]
             self._folder.cleanup()
 
 
-def compile_into(out: Path, root: Path) -> None:
-    """Compile the kernels of the checkout `root` into folders below `out` that are named as their modules' folders."""
+def compiled_copy(root: Path, folder: Path) -> Path:
+    """A copy of the checkout `root` in a folder, with its kernels beside the modules."""
     sys.path.insert(0, str(root))  # of this checkout, whatever is installed
-    from dancetutor_cli.run.kernels.store import MADE_BY, SUFFIX
-    from dancetutor_cli.run.kernels.target import LEVEL, fits_shipped, maker_in_words
+    from dancetutor_cli.run.kernels.target import is_portable
 
-    if not fits_shipped():
+    if not is_portable():
         sys.exit("kernels for others are compiled on a processor with AVX2, and without settings of numba's")
-    with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder).resolve()  # as the modules there are told where they are: kernels are kept by that
-        source, cache = place / "source", place / "cache"
-        for name in ("dancetutor_cli", "configs", "charts"):  # a copy: what is kept beside the modules would be fetched
-            shutil.copytree(root / name, source / name, ignore=shutil.ignore_patterns("__pycache__", "_data"))
-        kept = {key: value for key, value in os.environ.items() if not key.startswith(("NUMBA_", "DANCETUTOR_"))}
-        own = {"NUMBA_CACHE_DIR": str(cache), "DANCETUTOR_KERNELS": "compiled", "PYTHONPATH": str(source)}
-        command = [sys.executable, "-m", "dancetutor_cli", "warmup", "--quiet"]
-        subprocess.run(command, env=kept | own, cwd=source, check=True)
-        for made, where in _folders(cache, source / "dancetutor_cli"):
-            (out / where).mkdir(parents=True)
-            for file in sorted(made.iterdir()):
-                if file.suffix == SUFFIX:
-                    shutil.copyfile(file, out / where / file.name)
-    (out / MADE_BY).write_text(f"{maker_in_words()}, {LEVEL}\n", "utf-8")
-
-
-def _folders(cache: Path, package: Path) -> Iterator[tuple[Path, Path]]:
-    """Each folder of a cache, with the folder of the package whose kernels it has."""
-    from dancetutor_cli.run.kernels.store import KernelFolder
-
-    for room in (package, *sorted(path for path in package.rglob("*") if path.is_dir())):
-        made = KernelFolder(cache).of_module(room / "module.py")
-        if made.is_dir():
-            yield made, room.relative_to(package)
+    source = folder / "source"
+    for name in ("dancetutor_cli", "configs", "charts"):
+        shutil.copytree(root / name, source / name, ignore=shutil.ignore_patterns("__pycache__", "_data"))
+    kept = {key: value for key, value in os.environ.items() if not key.startswith(("NUMBA_", "DANCETUTOR_"))}
+    command = [sys.executable, "-m", "dancetutor_cli", "warmup", "--quiet"]
+    environment = kept | {"DANCETUTOR_KERNELS": "compiled", "PYTHONPATH": str(source)}
+    subprocess.run(command, env=environment, cwd=source, check=True)
+    return source
 
 
 def tag() -> str:

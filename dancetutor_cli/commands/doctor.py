@@ -130,44 +130,29 @@ def _rubberband() -> Check:
 
 
 def _cache() -> Check:
-    from dancetutor_cli.run.kernels.store import VARIABLE, came_compiled, kernel_folder, kernels_in, shipped_root
+    from dancetutor_cli.run.kernels.store import VARIABLE, count_kernels, kernel_folder
     from dancetutor_cli.run.reading import PACKAGE
 
-    folder, came = kernel_folder(), shipped_root()
-    shipped = set(kernels_in(came))
-    kept_in = folder.root or PACKAGE
-    here = {kept_in: set(kernels_in(kept_in)) - shipped}
-    here.setdefault(PACKAGE, set(kernels_in(PACKAGE)) - shipped - here[kept_in])
-    used = len(shipped) if came_compiled() else 0
-    found = [f"{_kernels(used)} came compiled"] if used else []
-    found += [f"{_kernels(len(paths))} compiled here, in {place}" for place, paths in here.items() if paths]
-    found = found or [_NOTHING]
+    folder = kernel_folder()
+    target = folder.root or PACKAGE
+    counts = {place: count_kernels(place) for place in dict.fromkeys((target, PACKAGE))}
+    usable = {place: fitting for place, (fitting, _) in counts.items() if fitting}
+    lines = [f"{_kernels(count)} in {place}" for place, count in usable.items()] or [_NOTHING]
     if not folder.is_writable:
-        found.append("and none can be kept")
-    elif not here[kept_in]:
-        found.append(f"new ones go into {kept_in}")
-    message = ", ".join(found)
-    if shipped and not used:
-        message = f"those of the package are for {_compiler_description(came)}: not used; {message}"
+        lines.append("and none can be kept")
+    elif target not in usable:
+        lines.append(f"new ones go into {target}")
+    if other := sum(others for _, others in counts.values()):
+        lines.append(f"{_kernels(other)} for another version of Python, numba or llvmlite: not used")
+    message = ", ".join(lines)
     if folder.fault:
         mend = f"set {VARIABLE} to a folder that can be written, then dancetutor warmup"
         return Check("numba cache", "without", f"{folder.fault}; {message}", mend)
-    there = bool(used or any(here.values()))
-    return Check("numba cache", "ok" if there else "without", message, "" if there else "dancetutor warmup")
+    return Check("numba cache", "ok" if usable else "without", message, "" if usable else "dancetutor warmup")
 
 
 def _kernels(count: int) -> str:
     return f"{count} kernel{'' if count == 1 else 's'}"
-
-
-def _compiler_description(shipped: Path) -> str:
-    """What compiled the kernels of the package, in words."""
-    from dancetutor_cli.run.kernels.store import MADE_BY
-
-    try:
-        return " ".join((shipped / MADE_BY).read_text("utf-8").split())
-    except (OSError, UnicodeDecodeError):
-        return "another machine"
 
 
 def _font() -> Check:

@@ -36,15 +36,15 @@ def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = No
     That they cannot be kept in the usual place is said everywhere: each run may take a minute longer for it.
     """
     from dancetutor_cli.feet.solver.compiled import interpret, is_compiled
-    from dancetutor_cli.run.kernels.store import VARIABLE, came_compiled, kernel_folder
+    from dancetutor_cli.run.kernels.store import VARIABLE, kernel_folder
 
     presets = list(choice.candidates())
     if size is not None and interpret(presets, size):
         if VARIABLE in os.environ and not quiet and (fault := kernel_folder().fault):
             click.echo(f"note: {fault}", err=True)
         return
-    folder = kernel_folder()
-    if folder.fault and not quiet and not came_compiled():
+    folder, is_ready = kernel_folder(), all(is_compiled(preset) for preset in presets)
+    if folder.fault and not quiet and not is_ready:
         where = (
             f"compiled kernels are kept in {folder.root or 'the installation'}"
             if folder.is_writable
@@ -53,7 +53,7 @@ def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = No
         click.echo(f"note: {folder.fault}: {where}", err=True)
     if quiet or not sys.stderr.isatty():
         return
-    if not all(is_compiled(preset) for preset in presets):
+    if not is_ready:
         click.echo("compiling the solver's kernels (once; `dancetutor warmup` does it ahead) ...", err=True)
 
 

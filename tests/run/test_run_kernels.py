@@ -18,7 +18,7 @@ from dancetutor_cli.commands.doctor import _cache
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.lint.configuration import PresetChoice
 from dancetutor_cli.run import trust
-from dancetutor_cli.run.kernels import compiling, store
+from dancetutor_cli.run.kernels import compiling, store, target
 
 MODULE = """
 from dancetutor_cli.run.kernels.compiling import njit
@@ -48,12 +48,13 @@ def nowhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("TMPDIR", str(tmp_path / "tmp"))
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "tmp"))
     monkeypatch.setattr(trust, "_TEMPORARY", ())
+    monkeypatch.setattr("dancetutor_cli.feet.solver.compiled.is_compiled", lambda preset: False)
     (tmp_path / "tmp").mkdir()
     return tmp_path / "tmp"
 
 
 def test_a_read_only_installation_and_home_leave_a_temporary_folder(
-    nowhere: Path, capsys: pytest.CaptureFixture[str]
+    nowhere: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = store.kernel_folder()
     assert folder.is_writable and folder.root is not None and folder.root.parent == nowhere
@@ -62,6 +63,9 @@ def test_a_read_only_installation_and_home_leave_a_temporary_folder(
     announce_compiling(PresetChoice())
     (line,) = capsys.readouterr().err.splitlines()
     assert str(folder.root) in line and "cannot be written" in line
+    monkeypatch.setattr("dancetutor_cli.feet.solver.compiled.is_compiled", lambda preset: True)
+    announce_compiling(PresetChoice())
+    assert capsys.readouterr().err == ""  # nothing is compiled
     check = _cache()
     assert check.state == "without" and "cannot be written" in check.message and "NUMBA_CACHE_DIR" in check.mend
 
@@ -171,13 +175,13 @@ def test_a_kernel_is_compiled_again_when_what_it_is_made_of_changes(tmp_path: Pa
     ):
         found = {
             path.relative_to(tmp_path / "p").as_posix()
-            for path in compiling.source_modules(tmp_path / "p" / source, tmp_path / "p")
+            for path in store.source_modules(tmp_path / "p" / source, tmp_path / "p")
         }
         assert found >= {source, *others}
     source = tmp_path / "p" / "dance" / "physics" / "hair.py"
-    before = compiling.stamp_of.__wrapped__(source)
+    before = store.source_digest.__wrapped__(source)
     source.write_text(source.read_text("utf-8") + "# more\n", "utf-8")
-    assert compiling.stamp_of.__wrapped__(source) != before
+    assert store.source_digest.__wrapped__(source) != before
 
 
 def _kernels(tree: ast.AST) -> Iterator[tuple[ast.FunctionDef, bool]]:
@@ -240,7 +244,7 @@ def test_it_is_known_whether_a_kernel_is_kept(tmp_path: Path, monkeypatch: pytes
     kernel(3)
     assert compiling.is_kept(kernel) and compiling.is_kept(loaded(module).double)
     module.write_text(MODULE.replace("2 *", "3 *"), "utf-8")
-    compiling.stamp_of.cache_clear()
+    store.source_digest.cache_clear()
     assert not compiling.is_kept(loaded(module).double)
 
 
@@ -269,8 +273,9 @@ def test_doctor_counts_the_kernels_of_each_place(tmp_path: Path, monkeypatch: py
     monkeypatch.setattr("dancetutor_cli.run.reading.PACKAGE", package)
     monkeypatch.setattr(store, "PACKAGE", package)
     monkeypatch.setattr(store, "kernel_folder", lambda: store.KernelFolder(mine, True, ""))
+    head = bytes(2 * store.CHECKSUM) + target.maker()
     for name in ("a.f.1.kernel", "a.f.2.kernel", "b.f.1.kernel"):
-        (package / name).touch()
-    assert _cache().message == f"2 kernels compiled here, in {package}, new ones go into {mine}"
-    (mine / "c.f.1.kernel").touch()
-    assert _cache().message == f"1 kernel compiled here, in {mine}, 2 kernels compiled here, in {package}"
+        (package / name).write_bytes(head)
+    assert _cache().message == f"2 kernels in {package}, new ones go into {mine}"
+    (mine / "c.f.1.kernel").write_bytes(head)
+    assert _cache().message == f"1 kernel in {mine}, 2 kernels in {package}"

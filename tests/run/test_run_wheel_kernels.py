@@ -19,8 +19,6 @@ from hatchling.builders.wheel import WheelBuilder
 from module_file import loaded
 
 from dancetutor_cli.commands.doctor import _cache
-from dancetutor_cli.commands.first_run import announce_compiling
-from dancetutor_cli.lint.configuration import PresetChoice
 from dancetutor_cli.run.kernels import compiling, store, target
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -32,13 +30,13 @@ def double(x):
     return 2 * x
 """
 able = pytest.mark.skipif(
-    not target.fits_shipped(), reason="this processor, or a setting of numba's, has kernels of its own"
+    not target.is_portable(), reason="this processor, or a setting of numba's, has kernels of its own"
 )
 
 
 def hits(path: Path) -> bool:
     """Whether a module's kernel was fetched; that it counts right in any case."""
-    for cached in (compiling.stamp_of, target.maker):
+    for cached in (store.source_digest, target.maker):
         cached.cache_clear()
     module = loaded(path)
     assert module.double(4) == 8
@@ -53,15 +51,18 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     source = package / "room" / "some_kernels.py"
     source.write_text(MODULE, "utf-8")
     monkeypatch.setattr(store, "PACKAGE", package)
+    monkeypatch.setattr("dancetutor_cli.run.reading.PACKAGE", package)
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "build"))
     assert not hits(source)
-    came = package / "_data" / "kernels" / "room"
-    shutil.copytree(store.kernel_folder().of_module(source), came)
-    (came.parent / store.MADE_BY).write_text("numba 0.1,\nPython 3", "utf-8")
+    shutil.copytree(store.kernel_folder().of_module(source), came(package))
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "mine"))
     yield package
-    for cached in (compiling.stamp_of, target.maker):
+    for cached in (store.source_digest, target.maker):
         cached.cache_clear()
+
+
+def came(package: Path) -> Path:
+    return package / "room" / "__pycache__"
 
 
 def source_of(package: Path) -> Path:
@@ -76,19 +77,14 @@ def mine(package: Path) -> list[Path]:
 def test_what_came_is_fetched_and_nothing_is_written(package: Path) -> None:
     assert hits(source_of(package)) and mine(package) == []
     assert compiling.is_kept(loaded(source_of(package)).double)
-    assert store.came_compiled()
-    assert _cache().state == "ok" and _cache().message.startswith("1 kernel came compiled, ")
+    assert _cache().state == "ok" and _cache().message.startswith(f"1 kernel in {package}, ")
 
 
 @able
-def test_what_came_serves_where_nothing_can_be_kept(
-    package: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_came_serves_where_nothing_can_be_kept(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(store, "_use_folder", lambda *_: "cannot be written")
     monkeypatch.setattr(store, "temporary_folder", lambda name: None)
     assert not store.kernel_folder().is_writable and hits(source_of(package))
-    announce_compiling(PresetChoice())
-    assert capsys.readouterr().err == ""
 
 
 def other_maker(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -114,27 +110,21 @@ def other_processor(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def flipped(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for path in (package / "_data" / "kernels").rglob("*.kernel"):
+    for path in came(package).glob("*.kernel"):
         data = bytearray(path.read_bytes())
         data[len(data) // 2] ^= 1
         path.write_bytes(data)
 
 
 def cut(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for path in (package / "_data" / "kernels").rglob("*.kernel"):
+    for path in came(package).glob("*.kernel"):
         path.write_bytes(path.read_bytes()[:-1])
-
-
-def a_strangers_folder(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is not below the package is never looked at for kernels that came with it."""
-    monkeypatch.setattr(store, "PACKAGE", package / "other")
-    shutil.copytree(package / "_data", package / "other" / "_data")
 
 
 @able
 @pytest.mark.parametrize(
     "spoil",
-    [other_maker, other_python, other_code, other_settings, flipped, cut, a_strangers_folder],
+    [other_maker, other_python, other_code, other_settings, flipped, cut],
 )
 def test_what_does_not_fit_is_compiled_here_without_a_word(
     spoil: Callable[[Path, pytest.MonkeyPatch], None],
@@ -159,10 +149,10 @@ def test_what_is_compiled_for_another_processor_than_its_key_says_is_not_kept(
 
 
 @able
-def test_doctor_says_what_those_kernels_were_made_by(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_doctor_says_that_kernels_are_for_others(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(target, "_version", lambda name: "0.1")
     target.maker.cache_clear()
-    assert _cache().message.startswith("those of the package are for numba 0.1, Python 3: not used; ")
+    assert _cache().message.endswith("1 kernel for another version of Python, numba or llvmlite: not used")
 
 
 @able
@@ -172,7 +162,7 @@ def test_kernels_are_for_a_portable_processor_unless_one_is_named(said: dict[str
     code = (
         "from dancetutor_cli.run.kernels import compiling, target\n"
         "from numba.core.registry import cpu_target\n"
-        "print(target.fits_shipped(), *cpu_target.target_context.codegen().magic_tuple()[1:])"
+        "print(target.is_portable(), *cpu_target.target_context.codegen().magic_tuple()[1:])"
     )
     told = subprocess.run(
         [sys.executable, "-c", code], env=plain | said, cwd=ROOT, check=True, capture_output=True, text=True
@@ -225,10 +215,8 @@ def test_a_platform_wheel_brings_its_kernels(tmp_path: Path, monkeypatch: pytest
     site = tmp_path / "site"
     with zipfile.ZipFile(wheel) as file:
         file.extractall(site)
-    came = [path.relative_to(site).as_posix() for path in site.rglob("*.kernel")]
-    assert {Path(one).parent.as_posix() for one in came} == {"dancetutor_cli/_data/kernels/dance/rig"} and len(
-        came
-    ) == 1
+    brought = [path.relative_to(site).as_posix() for path in site.rglob("*.kernel")]
+    assert [Path(one).parent.as_posix() for one in brought] == ["dancetutor_cli/dance/rig/__pycache__"]
     said = next(site.glob("*.dist-info/WHEEL")).read_text("utf-8")
     assert "Root-Is-Purelib: false" in said
     plain = {key: value for key, value in os.environ.items() if not key.startswith("NUMBA_")}

@@ -6,11 +6,9 @@ same code: only what is so much work that compiling pays, now or in runs like th
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from functools import cache
 from pathlib import Path
 
 from dancetutor_cli.feet.preset import Preset
@@ -19,24 +17,14 @@ from dancetutor_cli.run.trust import read_file, use_folder, write_file
 
 VARIABLE = "DANCETUTOR_KERNELS"  # "python" or "compiled"; what it says holds for worker processes, too
 _HERE = Path(__file__).parent
-_SOURCES = (
-    "itg_costs", "itg_moves", "kernel", "solvers", "state", "store", "tables", "thesis_moves",
-    "vocabulary",
-)  # fmt: skip
 _TINY = 12_000  # bytes of chart files that Python solves at once: nothing is ever compiled for these
 _SMALL = 120_000  # bytes of chart files that Python solves in less than half the time that compiling takes
 _OFTEN = 1_000_000  # bytes that Python has solved in all, after which compiling would have paid
 
 
-@cache
-def source_stamp() -> str:
-    """A digest of the kernels' code: what is compiled holds as long as this does, also in a newer version."""
-    return hashlib.sha256(b"".join((_HERE / f"{name}.py").read_bytes() for name in _SOURCES)).hexdigest()
-
-
 def is_compiled(preset: Preset) -> bool:
     """Whether a solve with this preset need not compile first; True where that cannot be known."""
-    return StoredCode(_HERE / "solvers.py", f"solve_{preset.model}", source_stamp()).is_there()
+    return StoredCode(_HERE / "solvers.py", f"solve_{preset.model}").is_there()
 
 
 def is_interpreted() -> bool:

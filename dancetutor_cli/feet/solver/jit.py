@@ -10,7 +10,7 @@ import os
 from collections.abc import Callable
 from typing import Any
 
-from dancetutor_cli.feet.solver.compiled import is_interpreted, source_stamp
+from dancetutor_cli.feet.solver.compiled import is_interpreted
 from dancetutor_cli.run.kernels import native
 
 INTERPRETED = is_interpreted() or os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
@@ -25,4 +25,4 @@ def inner_kernel(function: Any = None, **options: Any) -> Any:
 
 def kernel(function: Any, results: int = 0) -> Callable[..., Any]:
     """A kernel that Python calls. results : how many whole numbers it gives"""
-    return function if INTERPRETED else native.Kernel(function, source_stamp, results)
+    return function if INTERPRETED else native.Kernel(function, results)

@@ -6,9 +6,7 @@ numba gives up where it finds no folder that it can write, and where a file that
 
 from __future__ import annotations
 
-import hashlib
 import pickle
-import re
 import sys
 import warnings
 from collections.abc import Callable, Iterator
@@ -26,21 +24,22 @@ from llvmlite import binding
 from dancetutor_cli.run.kernels import target
 from dancetutor_cli.run.kernels.native import INNER_KERNELS, RESULTS, MachineCode
 from dancetutor_cli.run.kernels.store import StoredCode
-from dancetutor_cli.run.reading import PACKAGE
 
-_ASKS_FOR_BLAS = "numba.np.arraymath"  # the module of numba that imports scipy.linalg, once
+_ASKS_FOR_BLAS = "numba.np.arraymath"  # the module of numba that imports the next one, once, for a third of a second
+_BLAS = "scipy.linalg"  # for what no kernel uses
 
 
 @contextmanager
 def without_module(name: str) -> Iterator[None]:
     """In here there is no module of a name to import, whether it has been imported before or not."""
-    module = sys.modules.get(name)
+    missing = object()
+    module: Any = sys.modules.get(name, missing)
     sys.modules[name] = None  # type: ignore[assignment]  # the import system reads it as "there is none"
     try:
         yield
     finally:
         del sys.modules[name]
-        if module is not None:
+        if module is not missing:
             sys.modules[name] = module
 
 
@@ -66,32 +65,31 @@ _plain: Any = numba.njit  # what it says of its options has not all that are use
 target.pin(_core.config)
 
 
-@contextmanager
-def _without_scipy() -> Iterator[None]:
-    """numba imports `scipy.linalg`, for a third of a second, to see whether there is BLAS for what no kernel uses."""
-    if "scipy.linalg" in sys.modules or _ASKS_FOR_BLAS in sys.modules:
-        yield
-        return
-    with without_module("scipy.linalg"):
-        yield
+def _njit(
+    function: Callable[..., Any] | None = None, *, cache: bool = False, counted: bool = True, **options: Any
+) -> Any:
+    """`numba.njit`. cache : keep the kernel in `store`
 
-
-def _njit(function: Callable[..., Any] | None = None, **options: Any) -> Any:
-    """`numba.njit`; with `cache=True` the kernel is kept in `store`."""
+    counted : False for a kernel that makes no arrays and only looks at those it is given: references to them are not
+        counted. numba counts one up and down wherever an array is taken out of a tuple or handed on, by a call each,
+        also inside of loops: in the solver's rules that took half of the time.
+    """
     if function is None:
-        return lambda later: _njit(later, **options)
-    is_kept = options.pop("cache", False)
+        return lambda later: _njit(later, cache=cache, counted=counted, **options)
+    if not counted:
+        options["_nrt"] = False
     compiled = _plain(no_cfunc_wrapper=True, **options)(function)  # that one is for ctypes
-    if is_kept:
+    if cache:
         compiled._cache = _KeptOverloads(function)
     return compiled
 
 
-if TYPE_CHECKING:
-    from numba import njit as njit  # a kernel has the types that it says, as with numba's own
+F = TypeVar("F")
+if TYPE_CHECKING:  # a kernel has the types that it says, as with numba's own
+
+    def njit(**options: Any) -> Callable[[F], F]: ...
 else:
     njit = _njit
-F = TypeVar("F")
 
 
 def inner_kernel(function: F) -> F:
@@ -103,20 +101,6 @@ def inner_kernel(function: F) -> F:
     return made
 
 
-def uncounted(function: Callable[..., Any] | None = None, **options: Any) -> Any:
-    """`njit` for a kernel that makes no arrays and only looks at those it is given: references to them are not counted.
-
-    numba counts one up and down wherever an array is taken out of a tuple or handed on, by a call each, also inside of
-    loops: in the solver's rules that took half of the time.
-    """
-    if function is None:
-        return lambda later: uncounted(later, **options)
-    try:
-        return _njit(function, _nrt=False, **options)
-    except (KeyError, TypeError):  # the option may go
-        return _njit(function, **options)
-
-
 class _KeptOverloads:
     """What a function of numba's asks for what is kept of it, in place of numba's own files."""
 
@@ -124,7 +108,7 @@ class _KeptOverloads:
 
     def __init__(self, function: Any) -> None:
         source = Path(function.__code__.co_filename)
-        self.kept = StoredCode(source, function.__name__, stamp_of(source))
+        self.kept = StoredCode(source, function.__name__)
         cells = [cell.cell_contents for cell in function.__closure__ or ()]
         self._function = f"{function.__qualname__} {function.__code__.co_firstlineno} {_dumps(cells).hex()}"
 
@@ -134,7 +118,7 @@ class _KeptOverloads:
         To gather that takes a process a sixth of a second, and where something must be compiled numba does it then.
         """
         _runtime.initialize(context)
-        with _without_scipy():
+        with without_module(_BLAS):
             if _is_for_target(context.codegen()):
                 for body in self.kept.read(f"{self._function} {signature}"):
                     try:
@@ -164,10 +148,10 @@ def is_kept(kernel: Any) -> bool:
 
 def machine_code(function: FunctionType, args: tuple[Any, ...], results: int) -> MachineCode:
     """Compile a kernel for arguments like these, as `native` calls it."""
-    with _without_scipy():
+    with without_module(_BLAS):
         import_module(_ASKS_FOR_BLAS)
     names: dict[str, Any] = {"array_at": _array_at, "int64": np.int64}
-    names["kernel"] = uncounted(function, no_cpython_wrapper=True)
+    names["kernel"] = _njit(function, counted=False, no_cpython_wrapper=True)
     places = count(RESULTS)
     call = f"kernel({', '.join(_expression(one, places, names) for one in args)})"
     given = f"{', '.join(f'words[{n}]' for n in range(results))} = " if results else ""
@@ -178,7 +162,7 @@ def machine_code(function: FunctionType, args: tuple[Any, ...], results: int) ->
     ]
     exec("\n".join(lines), names)
     signature = (_types.int64,)
-    compiled = uncounted(names["entry"], no_cpython_wrapper=True)
+    compiled = _njit(names["entry"], counted=False, no_cpython_wrapper=True)
     with _inner_kernels(function):
         compiled.compile(signature)
     module = binding.parse_assembly(compiled.inspect_llvm(signature))
@@ -243,32 +227,4 @@ def _inner_kernels(caller: FunctionType) -> Iterator[None]:
 
 @cache
 def _of_inner_kernel(function: FunctionType) -> Any:
-    return uncounted(function, **INNER_KERNELS[function])
-
-
-_KERNEL = re.compile(r"njit|@kernel\b|@inner_kernel\b|\buncounted\b")  # the middle two are `film.scene.cpu.raster`
-_IMPORT = re.compile(r"^from dancetutor_cli\.([\w.]+) import (\([^)]*\)|.*)", re.MULTILINE)
-_WORD = re.compile(r"\w+")
-_CONSTANT = re.compile(r"\b[A-Z][A-Z0-9_]+\b")
-
-
-@cache
-def stamp_of(source: Path) -> str:
-    """A digest of a module with kernels and of what else of the package they may be made of."""
-    return hashlib.sha256(b"".join(path.read_bytes() for path in source_modules(source))).hexdigest()
-
-
-def source_modules(source: Path, package: Path = PACKAGE) -> list[Path]:
-    """The modules whose code is in a module's kernels: its own, those whose kernels or constants it has, and theirs."""
-    found, new = {source.resolve()}, [source.resolve()]
-    while new:
-        for name, names in _IMPORT.findall(new.pop().read_text("utf-8")):
-            room = package / name.replace(".", "/")
-            modules = [room.with_suffix(".py"), *(room / f"{word}.py" for word in _WORD.findall(names))]
-            for path in modules:
-                if path in found or name.startswith("run.") or not path.is_file():
-                    continue
-                if _CONSTANT.search(names) or _KERNEL.search(path.read_text("utf-8")):
-                    found.add(path)
-                    new.append(path)
-    return sorted(found)
+    return _njit(function, counted=False, **INNER_KERNELS[function])

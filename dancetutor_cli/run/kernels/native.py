@@ -31,7 +31,7 @@ _address = ctypes.addressof
 _Unused: Any = ctypes.c_void_p * 2  # where a kernel puts what it gives (nothing), and numba an exception's number
 _prototype: Any = ctypes.PYFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
 
-INNER_KERNELS: dict[FunctionType, dict[str, Any]] = {}  # those that kernels call, with options for `uncounted`
+INNER_KERNELS: dict[FunctionType, dict[str, Any]] = {}  # those that kernels call, with numba's options
 F = TypeVar("F", bound=Callable[..., Any])
 Kind = tuple[np.dtype[Any], int] | None  # of an array: its numbers and dimensions, row by row; None: a whole number
 
@@ -65,10 +65,10 @@ class Kernel:
     It gives nothing, a whole number, or a tuple of two.
     """
 
-    def __init__(self, function: FunctionType, stamp: Callable[[], str], results: int = 0) -> None:
-        """stamp : a digest of the function's source and of what goes into it; results : how many it gives."""
-        self.function = function
-        self._stamp, self._results = stamp, results
+    def __init__(self, function: FunctionType, results: int = 0) -> None:
+        """results : how many whole numbers it gives."""
+        self.function, self._results = function, results
+        self._stored_code = StoredCode(Path(function.__code__.co_filename), function.__name__)
         self._last: LoadedCode | None = None
         self._loaded: dict[str, LoadedCode | None] = {}
         self._lock = Lock()
@@ -111,7 +111,7 @@ class Kernel:
         return self._loaded[name]
 
     def _fetch(self, name: str, kinds: tuple[Kind, ...]) -> LoadedCode | None:
-        for body in self._stored_code().read(name):
+        for body in self._stored_code.read(name):
             with suppress(Exception):  # whatever LLVM raises of what was made on another system
                 line, _, data = body.partition(b"\n")
                 entry, needs = json.loads(line)
@@ -126,11 +126,8 @@ class Kernel:
             loaded = _load(code, kinds)
         except Exception:  # whatever numba and LLVM raise
             return None
-        self._stored_code().write(name, json.dumps(code[:-1]).encode() + b"\n" + code.data)
+        self._stored_code.write(name, json.dumps(code[:-1]).encode() + b"\n" + code.data)
         return loaded
-
-    def _stored_code(self) -> StoredCode:
-        return StoredCode(Path(self.function.__code__.co_filename), self.function.__name__, self._stamp())
 
 
 def _open(arguments: Iterable[Any], into: list[Any]) -> None:

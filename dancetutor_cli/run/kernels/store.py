@@ -2,7 +2,7 @@
 
 Beside the modules where that can be written, else in the user's cache, else in a temporary folder of the user's own:
 compiling takes the better part of a minute, and an installation may be read-only and its user without a home. Only
-places that `run.trust` lets pass are read or written. What came compiled with the package lies in `_data/kernels`.
+places that `run.trust` lets pass are read or written. A wheel may bring kernels, beside the modules as well.
 
 A file holds one kernel for one kind of arguments. It begins with the SHA-256 of all that follows (a cut or damaged file
 is none), the digest of the source that it was made of, and the digest of what made it, for which processor.
@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import suppress
@@ -19,7 +20,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from dancetutor_cli.run.kernels.target import fits_shipped, maker
+from dancetutor_cli.run.kernels.target import maker
 from dancetutor_cli.run.reading import PACKAGE
 from dancetutor_cli.run.trust import (
     TREES,
@@ -34,8 +35,11 @@ from dancetutor_cli.run.trust import (
 CHECKSUM = 32  # bytes of SHA-256
 HEAD = 3 * CHECKSUM
 SUFFIX = ".kernel"
-MADE_BY = "made_by.txt"  # beside the kernels that came with the package: by what, for people
 VARIABLE = "NUMBA_CACHE_DIR"  # numba's own name for a folder of the user's choice
+_KERNEL = re.compile(r"njit|@kernel\b|@inner_kernel\b")
+_IMPORT = re.compile(r"^from dancetutor_cli\.([\w.]+) import (\([^)]*\)|.*)", re.MULTILINE)
+_WORD = re.compile(r"\w+")
+_CONSTANT = re.compile(r"\b[A-Z][A-Z0-9_]+\b")
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,11 +64,10 @@ class KernelFolder:
 
 @dataclass(frozen=True, slots=True)
 class StoredCode:
-    """The kept machine code of a function. source : its module's file; stamp : a digest of the code it is made of."""
+    """The kept machine code of a function. source : its module's file"""
 
     source: Path
     function: str
-    stamp: str
 
     def read(self, kinds: str) -> Iterator[bytes]:
         """What is kept for some kinds of arguments, in the likeliest place first."""
@@ -97,7 +100,7 @@ class StoredCode:
             return True
 
     def _source_digest(self) -> bytes:
-        return bytes.fromhex(self.stamp) + maker()
+        return source_digest(self.source) + maker()
 
     def _name(self, kinds: str) -> str:
         digest = hashlib.sha256(kinds.encode()).hexdigest()[:16]
@@ -125,8 +128,6 @@ def places_of(source: Path) -> Iterator[Path]:
     place = kernel_folder().of_module(source)
     if not fault_of(place):
         yield place
-    if shipped := shipped_folder(source):
-        yield shipped
 
 
 def _roots() -> Iterator[tuple[Path | None, str]]:
@@ -141,30 +142,11 @@ def _roots() -> Iterator[tuple[Path | None, str]]:
         yield Path(os.path.realpath(users)) / "kernels", f"the user's cache ({users})"
 
 
-def shipped_folder(source: Path) -> Path | None:
-    """Where kernels of a module lie that came compiled with the package; None if none fits here. Only read."""
-    folder = source.resolve().parent
-    if not folder.is_relative_to(PACKAGE) or not shipped_root().is_dir() or not fits_shipped():
-        return None
-    shipped = shipped_root() / folder.relative_to(PACKAGE)
-    return None if fault_of(shipped) else shipped
-
-
-def shipped_root() -> Path:
-    """The folder of all kernels that came compiled with the package, if they did."""
-    return PACKAGE / "_data" / "kernels"
-
-
-def came_compiled() -> bool:
-    """Whether the package brought kernels that are used here, of whichever code."""
-    if shipped_folder(PACKAGE / "x.py") is None:
-        return False
-    return any(_head_of(path)[CHECKSUM:] == maker() for path in kernels_in(shipped_root()))
-
-
-def kernels_in(folder: Path) -> Iterator[Path]:
-    """One file for each kernel that is kept in a folder and below it."""
-    yield from {(path.parent, *path.name.split(".")[:2]): path for path in folder.rglob(f"*{SUFFIX}")}.values()
+def count_kernels(folder: Path) -> tuple[int, int]:
+    """How many kernels a folder and those below it hold that fit here, and how many that something else compiled."""
+    kernels = {(path.parent, *path.name.split(".")[:2]): path for path in folder.rglob(f"*{SUFFIX}")}
+    fits = [_head_of(path)[CHECKSUM:] == maker() for path in kernels.values()]
+    return sum(fits), len(fits) - sum(fits)
 
 
 @cache
@@ -178,3 +160,25 @@ def _head_of(file: Path) -> bytes:
         return read_file(file)[CHECKSUM:HEAD]
     except OSError:
         return b""
+
+
+@cache
+def source_digest(source: Path) -> bytes:
+    """A digest of a module with kernels and of what else of the package they may be made of."""
+    return hashlib.sha256(b"".join(path.read_bytes() for path in source_modules(source))).digest()
+
+
+def source_modules(source: Path, package: Path = PACKAGE) -> list[Path]:
+    """The modules whose code is in a module's kernels: its own, those whose kernels or constants it has, and theirs."""
+    found, new = {source.resolve()}, [source.resolve()]
+    while new:
+        for name, names in _IMPORT.findall(new.pop().read_text("utf-8")):
+            room = package / name.replace(".", "/")
+            modules = [room.with_suffix(".py"), *(room / f"{word}.py" for word in _WORD.findall(names))]
+            for path in modules:
+                if path in found or name.startswith("run.") or not path.is_file():
+                    continue
+                if _CONSTANT.search(names) or _KERNEL.search(path.read_text("utf-8")):
+                    found.add(path)
+                    new.append(path)
+    return sorted(found)

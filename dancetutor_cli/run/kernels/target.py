@@ -13,6 +13,8 @@ import platform
 import sys
 from functools import cache
 from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 COMPILERS = ("numba", "llvmlite")
@@ -52,21 +54,17 @@ def processor() -> tuple[str, str]:
     return (binding.get_host_cpu_name() if name is None else name), features
 
 
-def fits_shipped() -> bool:
-    """Whether this process compiles as those kernels were compiled that come with the package."""
+def is_portable() -> bool:
+    """Whether what this process compiles fits others: the portable processor, and no settings of numba's."""
     return not _settings() and processor() == _PORTABLE
 
 
 @cache
 def maker() -> bytes:
     """A digest of what makes machine code of a kernel's source, and for which processor. What differs is not read."""
-    words = f"{_FORM}, {maker_in_words()}, {processor()}, {_settings()}, {sys.platform}"
+    versions = [(name, _version(name)) for name in COMPILERS]
+    words = repr((_FORM, versions, sys.implementation.cache_tag, processor(), _settings(), sys.platform))
     return hashlib.sha256(words.encode()).digest()
-
-
-def maker_in_words() -> str:
-    """What compiles here; all of this must be the same where it is used."""
-    return ", ".join([*(f"{name} {_version(name)}" for name in COMPILERS), f"Python {sys.implementation.cache_tag}"])
 
 
 def _settings() -> dict[str, str]:
@@ -74,21 +72,11 @@ def _settings() -> dict[str, str]:
 
 
 def _version(name: str) -> str:
-    """The version of a compiler; by the name of what pip leaves beside it, if that is clear: to ask takes longer."""
-    import importlib.util
-
-    spec = importlib.util.find_spec(name)
-    if spec is not None and spec.origin is not None:
-        beside = os.listdir(os.path.dirname(os.path.dirname(spec.origin)))  # noqa: PTH120, PTH208
-        found = [one for one in beside if one.startswith(f"{name}-") and one.endswith(".dist-info")]
-        if len(found) == 1:
-            return found[0].removeprefix(f"{name}-").removesuffix(".dist-info")
-    from importlib import metadata
-
-    try:
-        return metadata.version(name)
-    except metadata.PackageNotFoundError:  # a program that was frozen into one file
-        return str(import_module(name).__version__)
+    """The version of a compiler, by the name of what pip leaves beside it if that is clear: an import takes longer."""
+    spec = find_spec(name)
+    beside = Path(spec.origin).parents[1].glob(f"{name}-*.dist-info") if spec and spec.origin else ()
+    versions = [path.stem.removeprefix(f"{name}-") for path in beside]
+    return versions[0] if len(versions) == 1 else str(import_module(name).__version__)
 
 
 @cache

@@ -2,33 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.run.kernels.compiling import float32, njit, uint64, uncounted
+from dancetutor_cli.run.kernels.compiling import float32, njit, uint64
 
-# How the dear kernels are compiled: without counting references to arrays (`compiling.uncounted`).
-#
-# `shade.resolve` takes a quarter less time so. A division by nothing is no error in them: looking for that keeps
-# loops from being done several rounds at once.
+# How the dear kernels are compiled: without counting references to arrays, by which `shade.resolve` takes a quarter
+# less time. A division by 0 is no error in them: looking for that keeps loops from being done several rounds at once.
 
-F = TypeVar("F", bound=Callable[..., Any])
-
-
-def kernel(function: F) -> F:
-    """A kept kernel, without reference counts where this version of numba can leave them out."""
-    made: F = uncounted(function, cache=True, error_model="numpy")
-    return made
-
-
-def inner_kernel(function: F) -> F:
-    """The same, one that only kernels call; see `compiling.inner_kernel`."""
-    made: F = uncounted(function, error_model="numpy", no_cpython_wrapper=True)
-    return made
-
+kernel = njit(cache=True, counted=False, error_model="numpy")
+inner_kernel = njit(counted=False, error_model="numpy", no_cpython_wrapper=True)  # only kernels call it
 
 # Vertices and triangles: skinning, projection, and filling depth and triangle numbers.
 #
