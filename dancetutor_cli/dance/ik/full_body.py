@@ -335,7 +335,13 @@ class Poses(NamedTuple):
 
 
 def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.4) -> Poses:
-    """Solve all frames.
+    """Solve all frames, each on its own.
+
+    Root: moved until |ankle - hip| <= reach for both legs, by projections onto the two balls in turn. Torso: FABRIK
+    over its three bones (Aristidou and Lasenby, *FABRIK*, 2011). Limbs: two bones of lengths a, b over the distance d,
+    bent in the plane of the knee's or the elbow's direction by the law of cosines; the angle between the bones has
+
+        cos(gamma) = (a^2 + b^2 - d^2) / (2 a b) ,    |a - b| <= d <= a + b
 
     Parameters
     ----------

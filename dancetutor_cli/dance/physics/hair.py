@@ -248,7 +248,10 @@ def _limited(
 
 @njit(cache=True)
 def _simulate(anchors: Anchors, bones: Array, braid: _Braid, settle: int, state: Array, out: Array) -> None:
-    """Fill out (n, 5, 3). settle : steps of hanging still before the first one; 0: go on from where `state` is.
+    """Verlet's step  p+ = p + (p - p-) exp(-c dt) - g dt^2 , then constraints in turn (Müller and others 2007): each
+    bone keeps its length, no point lies in a capsule, none swings farther or faster than the braid's limits.
+
+    Fill out (n, 5, 3). settle : steps of hanging still before the first one; 0: go on from where `state` is.
 
     state : (2, 5, 3), points, and those before by which they move on; out[0] is there already when it goes on
     """

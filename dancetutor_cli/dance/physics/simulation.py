@@ -68,7 +68,12 @@ _JOINTS = {
 
 
 def follow(values: Array, rate: float, follower: Follower) -> Array:
-    """What a path (f, d), evenly sampled at `rate`, becomes behind the follower, at rest in the first frame."""
+    """What a path x (f, d), evenly sampled at `rate`, becomes behind the follower, at rest in the first frame.
+
+        y + k1 y' + k2 y'' = x + k3 x' ,    k1 = 2 z / w ,  k2 = 1 / w^2 ,  k3 = r z / w ,  w = 2 pi f
+
+    with f, z, r of `Follower`; d/dt becomes 2 rate (1 - q) / (1 + q), q a delay by one frame (Tustin's bilinear rule).
+    """
     omega = 2 * np.pi * follower.frequency
     k1, k2 = 2 * follower.damping / omega, 1.0 / omega**2
     k3 = follower.response * follower.damping / omega
@@ -135,7 +140,12 @@ class Ragdoll:
 def simulate(
     ragdoll: Ragdoll, rotations: Array, root: Array, start: float, actors: Sequence[Actor] = ()
 ) -> tuple[Array, Array]:
-    """Let the ragdoll follow.
+    """Let the ragdoll follow: M(q) q'' + c(q, q') = J^T f + tau, in steps of the engine, with on each point
+
+        f = kp (x_target - x) + kd (x_target' - x') ,    kp = m (2 pi w)^2 ,  kd = 2 z m 2 pi w
+
+    x : the point on its body, x_target : on the input; m, w, z : mass, frequency and damping of `style.Spring` (the
+    second thesis, chapter 4); tau : springs and dampers of joints, gravity, contacts and the style's forces.
 
     Parameters
     ----------

@@ -186,6 +186,17 @@ def balanced_path(
 ) -> tuple[Array, bool]:
     """Path (n, 2) of the centre of mass over the ground, and whether its limits were softened, as in `qp.Solution`.
 
+    The body is a cart on a table (Kajita and others 2003): with x the centre of mass over the ground, y its height and
+    g gravity the zero-moment point is  z = x - y / (y'' + g) x'' . On nodes k
+
+        minimise    sum_k w_k |z_k - m_k|^2  +  s^6 sum_k |d3(x - o)/dt3|_k^2
+        subject to  low_k <= n_k . z_k <= high_k     the soles that stand, side by side with normal n
+                    near_k <= x_k - o_k <= far_k     what both legs can reach
+                    x''_k = 0                        in flight (a term of large weight)
+
+    m : the middle of the support; w : `middle_weight`, `foot_weight`; o : from the pelvis to the centre of mass; s :
+    `smooth`, seconds. Both coordinates are unknowns of one programme, for edges of soles lie aslant.
+
     Parameters
     ----------
     feet : at the pendulum's times

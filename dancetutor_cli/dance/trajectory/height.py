@@ -180,7 +180,20 @@ class HeightWish:
 
 
 def height_path(wish: HeightWish, flights: Array, body: BodySettings) -> HeightPath:
-    """Solve the programme. flights : (k, 2) of take-off and landing, seconds, in order; body : settings"""
+    """Height h of the centre of mass, as one quadratic programme on nodes k that are uneven in time.
+
+        minimise    sum_k c_k (h_k - target_k)^2  +  s^6 sum_k |d3(h - above)/dt3|_k^2
+        subject to  f_least <= 1 + h''_k / g <= f_most     force on the ground, in body weights
+                    h_k <= highest_k                       what legs can reach
+                    h''_k = -g                             in flight (a term of large weight)
+
+    c : 1, `firm` at take-offs and landings, little in flight; s : `height_smooth`, seconds; f : `least_force` and
+    `most_force`. `quadratic.solve_surely` solves it, and softens limits that contradict each other.
+
+    Parameters
+    ----------
+    flights : (k, 2) of take-off and landing, seconds, in order; body : settings
+    """
     times = wish.times
     flights = flights[(flights[:, 0] > times[0] + 0.05) & (flights[:, 1] < times[-1] - 0.05)]
     flights = _separate_flights(flights)
