@@ -24,8 +24,9 @@ from meter_data import Labelled, labelled, sorted_out
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from dancetutor_cli.lint.meter_model import Curve, Feature, MeterModel, Scale, model_of
-from dancetutor_cli.lint.meters import _TAGS, MeteredChart, on_scale, scales_of, sized
+from dancetutor_cli.lint.meter.estimate import _TAGS, MeteredChart, on_scale, scales_of, sized
+from dancetutor_cli.lint.meter.features import Feature
+from dancetutor_cli.lint.meter.model import Curve, MeterModel, Scale, model_of
 from dancetutor_cli.run.reading import config_path
 
 Floats = NDArray[np.float64]

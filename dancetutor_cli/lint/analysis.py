@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.density import Density
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.feet.preset import Preset
-    from dancetutor_cli.lint.meters import Meters
+    from dancetutor_cli.lint.meter.estimate import Meters
     from dancetutor_cli.lint.subject import ChartSubject
 
 
@@ -235,7 +235,7 @@ class _File:
         except FileError as error:
             self._failed = _unreadable(task, error)
         else:
-            from dancetutor_cli.lint.meters import Meters
+            from dancetutor_cli.lint.meter.estimate import Meters
 
             self._selected = task.selection.charts(self._song)
             self._meters = Meters(self._song, task.settings)

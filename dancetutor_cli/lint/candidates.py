@@ -15,7 +15,7 @@ from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.solver.techniques import half_turned
 from dancetutor_cli.lint.findings import TECH_COUNTS
-from dancetutor_cli.lint.meter_model import Feature, features_of
+from dancetutor_cli.lint.meter.features import Feature, features_of
 from dancetutor_cli.lint.plays import ALL_KINDS, Plays
 
 # Technical steps of plays, counted as ITGmania counts them, so that the numbers can be laid beside the game's.
@@ -196,7 +196,7 @@ class Candidates:
         self._features: dict[tuple[tuple[Feature, ...], float], list[list[float]]] = {}
 
     def features(self, number: int, wanted: Sequence[Feature], rate: float) -> list[float]:
-        """What the meter of one of the plays is estimated from, see `lint.meter_model`."""
+        """What the meter of one of the plays is estimated from, see `lint.meter.features`."""
         asked = tuple(wanted), rate
         if asked not in self._features:
             self._features[asked] = features_of(self.plays.plays, wanted, rate)

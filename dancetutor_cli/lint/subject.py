@@ -25,7 +25,7 @@ from dancetutor_cli.lint.note_questions import Notes, PlacedChart
 from dancetutor_cli.lint.other_foot import Beginnings
 
 if TYPE_CHECKING:
-    from dancetutor_cli.lint.meters import MeteredChart
+    from dancetutor_cli.lint.meter.estimate import MeteredChart
 
 
 # Charts that are looked at together, so that what rules ask of one is answered for all of them at once.
@@ -122,7 +122,7 @@ class ChartSubject(PlacedChart):
 
     def sized(self, rate: float = 1.0) -> MeteredChart | None:
         """The chart's meters on every scale, for music that plays so fast; None without a play or a model."""
-        from dancetutor_cli.lint.meters import size
+        from dancetutor_cli.lint.meter.estimate import size
 
         if self.play is None:
             return None

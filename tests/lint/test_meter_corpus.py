@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from dancetutor_cli.lint.meter_model import model_for
-from dancetutor_cli.lint.meters import on_scale, scales_of, sized
+from dancetutor_cli.lint.meter.estimate import on_scale, scales_of, sized
+from dancetutor_cli.lint.meter.model import model_for
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "research"))
 from meter_data import Labelled, labelled, sorted_out

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.lint.meter_model import load_model
+from dancetutor_cli.lint.meter.model import load_model
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import config_path
 

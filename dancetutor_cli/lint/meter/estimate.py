@@ -9,7 +9,8 @@ from functools import cache
 
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.lint.findings import AUTO, Estimate, Finding
-from dancetutor_cli.lint.meter_model import Feature, MeterModel, Scale, model_for
+from dancetutor_cli.lint.meter.features import Feature
+from dancetutor_cli.lint.meter.model import MeterModel, Scale, model_for
 from dancetutor_cli.lint.rule import RatedChart, SongRule, all_rules
 from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.lint.subject import ChartSubject
