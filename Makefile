@@ -22,7 +22,7 @@ help:
 	@echo "make bench   measure speed; print a table"
 	@echo "make motion-report  the quality of the motion on sections of COUNT=100 charts; a table in build/"
 	@echo "make fit     fit the presets itg and pump to labelled feet; the table of all sets, by method"
-	@echo "make fit-meter  fit the meters of configs/meter/ to the charts in CHARTS=folder; the table of songs not seen"
+	@echo "make fit-meter  fit configs/meter/ to the charts in CHARTS=folder, configs/score.yaml to TIERS=table; songs not seen"
 	@echo "make setup   only set up $(VENV)"
 	@echo "make character  build the dancer and the mannequin of the package again, byte for byte"
 	@echo "make page-tools  TypeScript and axe for the tests of the practice page, with npm"
@@ -89,9 +89,9 @@ kill-test: setup-dev
 fit: setup-dev
 	@$(BIN)/python research/fit_weights.py $(FIT_ARGS)
 
-# CHARTS: a folder of charts whose meters are to be learned
+# CHARTS: a folder of charts whose meters are to be learned; TIERS: a table of how hard some of them are to score on
 fit-meter: setup-dev
-	@$(BIN)/python research/fit_meter.py $(CHARTS) $(FIT_ARGS)
+	@$(BIN)/python research/fit_meter.py $(CHARTS) $(if $(TIERS),--tiers $(TIERS)) $(FIT_ARGS)
 
 COUNT ?= 100
 motion-report: setup-dev

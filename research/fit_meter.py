@@ -1,7 +1,8 @@
 """Fits the meters of configs/meter/ to the charts of a folder, and shows how far they miss on songs not seen.
 
-fit_meter.py FOLDER             the tables by pad, and configs/meter/*.yaml are written (`make fit-meter`)
-fit_meter.py FOLDER --dry-run   the tables alone
+fit_meter.py FOLDER --tiers CSV   the tables by pad; configs/meter/*.yaml and configs/score.yaml are written (`make
+                                  fit-meter`); score_fit.py says how the second is made
+fit_meter.py FOLDER --dry-run     the tables alone
 
 Every curve only rises: coefficients of its pieces are 0 or more. Files do not say which scale they are numbered on, but
 for a tag: a file belongs to the scale that misses its charts least (and so on in turns with the fit). What is judged is
@@ -13,24 +14,27 @@ from __future__ import annotations
 import argparse
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import score_fit
 import yaml
 from meter_data import Labelled, labelled, sorted_out
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from dancetutor_cli.lint.meter.estimate import _TAGS, MeteredChart, on_scale, scales_of, sized
+from dancetutor_cli.lint.meter.estimate import _TAGS, MeteredChart, level_of, on_scale, scales_of, sized
 from dancetutor_cli.lint.meter.features import Feature
-from dancetutor_cli.lint.meter.model import Curve, MeterModel, Scale, model_of
+from dancetutor_cli.lint.meter.model import Curve, MeterModel, Scale, model_for, model_of
+from dancetutor_cli.lint.meter.score import Level
 from dancetutor_cli.run.reading import config_path
 
 Floats = NDArray[np.float64]
 TARGET = config_path("meter")
+SCORES = config_path("score.yaml")
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 FOLDS, TURNS, ROUNDS = 10, 5, 12
 PULL = 1.0  # towards 0, of a piece scaled to deviation 1
@@ -322,11 +326,15 @@ def yaml_of(pad: str, model: MeterModel) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
+    parser.add_argument(
+        "--tiers", type=Path, metavar="CSV", help="tiers of charts of the folder: fits their scores too"
+    )
     parser.add_argument("--dry-run", action="store_true", help="write nothing")
     parser.add_argument("--worst", type=int, default=0, metavar="N", help="print the N worst misses of each pad")
     given = parser.parse_args()
+    every = labelled(given.folder, WANTED)
     for pad, names in PADS.items():
-        charts = [one for one in labelled_once(given.folder) if one.steps_type.replace("half", "") == pad]
+        charts = [one for one in every if not one.again and one.steps_type.replace("half", "") == pad]
         parted = list(sorted_out(charts))
         reasons = Counter(reason for _, reason in parted)
         used = [one for one, reason in parted if not reason]
@@ -350,16 +358,38 @@ def main() -> None:
             path = TARGET / f"{pad}.yaml"
             path.write_text(yaml_of(pad, Fit(used, names).model(intervals, alone)), encoding="utf-8")
             print(f"  written: {path.name}")
+    if given.tiers:
+        fit_scores(every, given.folder, given.tiers, given.dry_run)
+    else:
+        print("scores: not fitted, since no --tiers names the tiers of a community")
 
 
-_CHARTS: list[Labelled] = []
+def fit_scores(every: Sequence[Labelled], folder: Path, tiers: Path, dry_run: bool) -> None:
+    """Print how many pairs of songs not seen come out right, and write configs/score.yaml."""
+    charts = score_fit.rated(every, folder, tiers)
+    levels = levels_by_label(every)
+    lines, (below, above) = score_fit.report(charts, lambda one: levels[one.chart])
+    print("\n".join(lines))
+    if not dry_run:
+        model = replace(score_fit.fitted(charts, score_fit.pull_of(charts, 0)), below=below, above=above)
+        SCORES.write_text(score_fit.yaml_of(model, charts), encoding="utf-8")
+        print(f"  written: {SCORES.name}")
 
 
-def labelled_once(folder: Path) -> list[Labelled]:
-    """The charts of the folder, solved once."""
-    if not _CHARTS:
-        _CHARTS.extend(labelled(folder, WANTED))
-    return _CHARTS
+def levels_by_label(charts: Sequence[Labelled]) -> dict[Labelled, Level]:
+    """The level of each chart as in use: by its label, on the scale that its file is found to be numbered on."""
+    files: dict[tuple[str, str], list[Labelled]] = defaultdict(list)
+    for one in charts:
+        files[one.file, one.steps_type].append(one)
+    out = {}
+    for (_, steps_type), of_file in files.items():
+        model = model_for(steps_type)
+        if model is not None and len(model.scales) > 1:
+            places = [WANTED.index(feature) for feature in model.features]
+            rows = [sized(model, [one.values[n] for n in places], (one.meter, one.difficulty)) for one in of_file]
+            for one, this, (scale, known) in zip(of_file, rows, scales_of(rows, of_file[0].tag), strict=True):
+                out[one] = level_of(this, scale, known)
+    return out
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from dancetutor_cli.chart import find_files
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.lint.analysis import solved
 from dancetutor_cli.lint.meter.features import Feature, features
+from dancetutor_cli.lint.meter.oddities import Oddities
 from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.run.errors import DancetutorError
 
@@ -24,7 +25,11 @@ DENSE_ONE = 2.0  # rows a second that no chart of meter 1 has
 
 @dataclass(frozen=True)
 class Labelled:
-    """One chart with its meter. family : the same for all files of a song; values : of the features asked for"""
+    """One chart with its meter. family : the same for all files of a song; values : of the features asked for
+
+    oddities : what it is scored by, None on a pad without a model of meters; again : whether it equals one before in
+    notes and meter
+    """
 
     file: str
     tag: str
@@ -35,6 +40,8 @@ class Labelled:
     rows: int
     seconds: float
     values: tuple[float, ...]
+    oddities: Oddities | None = None
+    again: bool = False
 
     @property
     def density(self) -> float:
@@ -43,7 +50,7 @@ class Labelled:
 
 
 def labelled(folder: Path, wanted: Iterable[Feature]) -> list[Labelled]:
-    """Every chart below a folder that differs from the others in notes or meter."""
+    """Every chart below a folder."""
     wanted, run = list(wanted), LintRun(LintRequest(config="default"))
     seen: set[tuple[str, int, bytes, bytes]] = set()
     families = Families()
@@ -60,13 +67,12 @@ def labelled(folder: Path, wanted: Iterable[Feature]) -> list[Labelled]:
             if play is None or not subject.row_count or chart.player:  # a couple's meter is for both players
                 continue
             key = (chart.steps_type, chart.meter, play.rows.steps.tobytes(), play.rows.second.round(2).tobytes())
-            if key in seen:
-                continue
-            seen.add(key)
             one = Labelled(
                 str(path), song.tags.get("METERTYPE", ""), "", chart.steps_type, chart.difficulty, chart.meter,
                 len(subject.step_rows), subject.seconds_played(), tuple(features(play, wanted)),
+                subject.oddities(), key in seen,
             )  # fmt: skip
+            seen.add(key)
             songs.append((one, families.add(song.title, path)))
     return [replace(one, family=families.root(member)) for one, member in songs]
 

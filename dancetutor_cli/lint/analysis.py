@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.density import Density
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.feet.preset import Preset
-    from dancetutor_cli.lint.meter.estimate import Meters
+    from dancetutor_cli.lint.meter.song import MeterReport, Meters
     from dancetutor_cli.lint.subject import ChartSubject
 
 
@@ -235,7 +235,7 @@ class _File:
         except FileError as error:
             self._failed = _unreadable(task, error)
         else:
-            from dancetutor_cli.lint.meter.estimate import Meters
+            from dancetutor_cli.lint.meter.song import Meters
 
             self._selected = task.selection.charts(self._song)
             self._meters = Meters(self._song, task.settings)
@@ -274,12 +274,11 @@ class _File:
         for subject in _others(self._song, self._selected, task, self._meters):
             self._meters.add(subject, task.rate)
         told = self._meters.reports(task.meter_scale)
-        return tuple(
-            replace(chart, estimate=told[chart.index].estimate, findings=told[chart.index].among(chart.findings))
-            if chart.index in told
-            else chart
-            for chart in self._charts
-        )
+        return tuple(_with_report(chart, told[chart.index]) if chart.index in told else chart for chart in self._charts)
+
+
+def _with_report(chart: ChartResult, told: MeterReport) -> ChartResult:
+    return replace(chart, estimate=told.estimate, score=told.score, findings=told.among(chart.findings))
 
 
 def _others(song: Song, selected: tuple[Chart, ...], task: AnalyzeTask, meters: Meters) -> Iterator[ChartSubject]:

@@ -16,6 +16,7 @@ from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.solver.techniques import half_turned
 from dancetutor_cli.lint.findings import TECH_COUNTS
 from dancetutor_cli.lint.meter.features import Feature, features_of
+from dancetutor_cli.lint.meter.oddities import played_oddities
 from dancetutor_cli.lint.plays import ALL_KINDS, Plays
 
 # Technical steps of plays, counted as ITGmania counts them, so that the numbers can be laid beside the game's.
@@ -201,6 +202,12 @@ class Candidates:
         if asked not in self._features:
             self._features[asked] = features_of(self.plays.plays, wanted, rate)
         return self._features[asked][number]
+
+    @cached_property
+    def oddities(self) -> list[list[float]]:
+        """What each play is scored by, see `lint.meter.oddities`."""
+        found: list[list[float]] = played_oddities(self.plays).tolist()
+        return found
 
     @cached_property
     def crossed_runs(self) -> list[list[tuple[int, int]]]:

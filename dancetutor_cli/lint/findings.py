@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from operator import attrgetter
 from typing import Any, NamedTuple
@@ -158,14 +158,11 @@ class Estimate:
     @property
     def bill(self) -> str:
         """For people: "11.4: streams +3.1, crossovers +0.6, rest +0.2"."""
-        return f"{self.meter:.1f}: {', '.join(self._descriptions())}"
+        return _bill(self.meter, self.terms, 1)
 
     def most(self, count: int) -> str:
         """The same with so many terms at most."""
-        return f"{self.meter:.1f}: {', '.join(self._descriptions()[:count])}"
-
-    def _descriptions(self) -> list[str]:
-        return [f"{name} {meters:+.1f}" for name, meters in self.terms if round(abs(meters), 1) > 0]
+        return _bill(self.meter, self.terms, 1, count)
 
     @property
     def span(self) -> str:
@@ -173,3 +170,36 @@ class Estimate:
         rate = "" if self.rate == 1.0 else f" at rate {self.rate:g}"
         guess = "" if self.is_scale_known else ", a guess: nothing tells the scale"
         return f"{self.low:.1f} to {self.high:.1f} on the scale {self.scale}{rate}{guess}"
+
+
+@dataclass(frozen=True, slots=True)
+class ScoreEstimate:
+    """How hard a chart is to score on, in levels of DDR: 14.0 is the easiest 14, 14.95 the hardest.
+
+    low, high : 80 of 100 tiers lie between; terms : ("level", that of the label, and half a level or so), then
+    (name, levels) of what adds to it, the largest first and what takes away last, then "rest"; their sum is `meter`
+    """
+
+    meter: float
+    low: float
+    high: float
+    terms: tuple[tuple[str, float], ...]
+
+    @property
+    def bill(self) -> str:
+        """For people: "14.62: level 14.41, rhythm +0.21"."""
+        (name, level), *terms = self.terms
+        return _bill(self.meter, terms, 2, first=(f"{name} {level:.2f}",))
+
+    @property
+    def span(self) -> str:
+        """For people: "14.35 to 14.89"."""
+        return f"{self.low:.2f} to {self.high:.2f}"
+
+
+def _bill(
+    meter: float, terms: Sequence[tuple[str, float]], digits: int, most: int | None = None, first: tuple[str, ...] = ()
+) -> str:
+    """A number and what adds up to it, without what rounds to nothing."""
+    told = [f"{name} {value:+.{digits}f}" for name, value in terms if round(abs(value), digits) > 0]
+    return f"{meter:.{digits}f}: {', '.join([*first, *told][:most])}"

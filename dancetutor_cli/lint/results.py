@@ -9,7 +9,16 @@ from dataclasses import dataclass, fields, replace
 from operator import attrgetter
 from typing import Any
 
-from dancetutor_cli.lint.findings import AlternativeResult, Cause, DifferentRun, Estimate, ExcerptRow, Figures, Finding
+from dancetutor_cli.lint.findings import (
+    AlternativeResult,
+    Cause,
+    DifferentRun,
+    Estimate,
+    ExcerptRow,
+    Figures,
+    Finding,
+    ScoreEstimate,
+)
 
 # What `analyze` knows about a file after the work is done: plain data that pickles and turns into JSON.
 #
@@ -27,6 +36,7 @@ class ChartResult:
     player : of a chart for several whose part this is, from 1, else 0
     hash : by which leaderboards know the chart, see `chart.hash`; None where none does
     estimate : how hard it plays; None for a pad without a model of meters
+    score : how hard it is to score on; None for a pad on which nobody has rated charts
     preset : name of the cost preset, None without a pad; mismatch : a line if it was made for other pads, else None
     """
 
@@ -51,6 +61,7 @@ class ChartResult:
     estimate: Estimate | None = None
     player: int = 0
     hash: str | None = None
+    score: ScoreEstimate | None = None
 
     @property
     def label(self) -> str:
@@ -99,9 +110,9 @@ def _no_infos(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
 # Nothing of what is read can run: of JSON come numbers and texts, and what is made of them are this module's own
 # classes. Values stand in lists, in the order of the fields, for there are thousands of findings in a pack.
 
-_HEAD = b"dancetutor result 3\n"  # another number whenever the form below changes
+_HEAD = b"dancetutor result 4\n"  # another number whenever the form below changes
 _DIGEST = 32  # bytes of SHA-256
-_CLASSES = (FileResult, ChartResult, Finding, Figures, AlternativeResult, DifferentRun, Cause, Estimate)
+_CLASSES = (FileResult, ChartResult, Finding, Figures, AlternativeResult, DifferentRun, Cause, Estimate, ScoreEstimate)
 _VALUES = {kind: attrgetter(*(field.name for field in fields(kind))) for kind in _CLASSES}
 _CHART_FIELDS = tuple(field.name for field in fields(ChartResult))
 _EXCERPT = [field.name for field in fields(Finding)].index("excerpt")
@@ -157,6 +168,9 @@ def _chart(values: list[Any]) -> ChartResult:
     if given["estimate"] is not None:
         meter, low, high, scale, known, terms, rate = given["estimate"]
         given["estimate"] = Estimate(meter, low, high, scale, known, tuple(map(tuple, terms)), rate)
+    if given["score"] is not None:
+        meter, low, high, terms = given["score"]
+        given["score"] = ScoreEstimate(meter, low, high, tuple(map(tuple, terms)))
     return ChartResult(**given)
 
 

@@ -26,6 +26,7 @@ from dancetutor_cli.lint.other_foot import Beginnings
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.meter.estimate import MeteredChart
+    from dancetutor_cli.lint.meter.oddities import Oddities
 
 
 # Charts that are looked at together, so that what rules ask of one is answered for all of them at once.
@@ -129,6 +130,15 @@ class ChartSubject(PlacedChart):
         candidates, number = self.shared
         ask = partial(candidates.features, number)
         return size(self.chart.steps_type, (self.chart.meter, self.chart.difficulty), ask, rate)
+
+    def oddities(self) -> Oddities:
+        """What the chart is scored by; for charts with a play."""
+        from dancetutor_cli.lint.meter.oddities import Oddities, timing_oddities
+
+        assert self.play is not None
+        candidates, number = self.shared
+        timing = timing_oddities(self.chart.timing, self.play.rows.tick[self.step_rows])
+        return Oddities((*candidates.oddities[number], *timing.numbers), timing)
 
     @property
     def row_count(self) -> int:

@@ -174,8 +174,9 @@ def _counts(chart: ChartResult) -> str:
     moves = ("doublestep", "crossover-full", "spin", "bracket", "hand")
     counted = [f"{chart.counts[move]} {move}" for move in moves if chart.counts.get(move)]
     rows = f"{chart.row_count} rows" if chart.playable else "no pad"
-    plays = [f"plays like {chart.estimate.meter:.1f}"] if chart.estimate else []
-    return f"{safe(chart.label)}: {', '.join([*plays, rows, *counted])}" + (f"; {' and '.join(words)}" if words else "")
+    likes = [f"plays like {chart.estimate.meter:.1f}"] if chart.estimate else []
+    likes += [f"scores like {chart.score.meter:.2f}"] if chart.score else []
+    return f"{safe(chart.label)}: {', '.join([*likes, rows, *counted])}" + (f"; {' and '.join(words)}" if words else "")
 
 
 def _sum(entries: list[_Entry]) -> int:

@@ -10,7 +10,7 @@ from dataclasses import asdict
 from typing import IO, Any
 
 import dancetutor_cli
-from dancetutor_cli.lint.findings import TECH_COUNTS, Cause, Estimate, Finding
+from dancetutor_cli.lint.findings import TECH_COUNTS, Cause, Estimate, Finding, ScoreEstimate
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.reports.code_formats import entries, relative
 from dancetutor_cli.reports.formats import Tally
@@ -87,6 +87,7 @@ def _chart_texts(chart: ChartResult, before: str) -> Iterator[str]:
         "doublesteps": [_cause_object(cause) for cause in chart.causes or ()],
         "ambiguous": [{"beat": beat, "kind": kind} for beat, kind in chart.ambiguous or ()],
         "plays_like": None if chart.estimate is None else _estimate_object(chart.estimate),
+        "scores_like": None if chart.score is None else _score_object(chart.score),
         **({} if chart.alternatives is None else {"alternatives": [asdict(other) for other in chart.alternatives]}),
     }
     yield f'{before}{{{_members(head)}, "rows": '
@@ -115,6 +116,16 @@ def _estimate_object(estimate: Estimate) -> dict[str, Any]:
         "scale_known": estimate.is_scale_known,
         "rate": estimate.rate,
         "terms": {name: round(meters, 2) for name, meters in estimate.terms},
+    }
+
+
+def _score_object(score: ScoreEstimate) -> dict[str, Any]:
+    """How hard a chart is to score on, rounded to thousandths of a level: the steps of tiers are 0.05."""
+    return {
+        "meter": round(score.meter, 3),
+        "low": round(score.low, 3),
+        "high": round(score.high, 3),
+        "terms": {name: round(levels, 3) for name, levels in score.terms},
     }
 
 
@@ -246,6 +257,7 @@ def _line(path: str, title: str, artist: str, chart: ChartResult | None) -> Mapp
         **_estimated(chart),
         "player": (chart.player or "") if chart else "",
         "hash": (chart.hash or "") if chart else "",
+        **_scored(chart),
     }
 
 
@@ -258,4 +270,15 @@ def _estimated(chart: ChartResult | None) -> Mapping[str, Any]:
         "plays_high": round(told.high, 2) if told else "",
         "meter_scale": told.scale if told else "",
         "bill": "; ".join(f"{name} {meters:.2f}" for name, meters in told.terms) if told else "",
+    }
+
+
+def _scored(chart: ChartResult | None) -> Mapping[str, Any]:
+    """How hard it is to score on; empty where nobody has rated charts of the pad."""
+    told = chart.score if chart else None
+    return {
+        "scores_like": round(told.meter, 3) if told else "",
+        "scores_low": round(told.low, 3) if told else "",
+        "scores_high": round(told.high, 3) if told else "",
+        "score_bill": "; ".join(f"{name} {levels:.3f}" for name, levels in told.terms) if told else "",
     }

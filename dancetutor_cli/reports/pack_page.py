@@ -249,18 +249,19 @@ def _list(title: str, said: Iterable[str]) -> str:
 
 
 def _table(charts: Iterable[PackChart]) -> str:
-    names = ("meter", "plays like", "rows", "rows/s", *TECHNIQUES)
+    names = ("meter", "plays like", "scores like", "rows", "rows/s", *TECHNIQUES)
     head = '<th class="t">song</th><th class="t">chart</th>' + "".join(f"<th>{name}</th>" for name in names)
     rows = []
     for one in charts:
         chart, figures, told = one.result, one.result.figures, one.result.estimate
         off = told is not None and told.is_scale_known and abs(told.meter - chart.meter) >= _OFF
         plays = f"<td{' class=off' if off else ''}>{told.meter:.1f}</td>" if told else "<td></td>"
+        scores = f"<td>{chart.score.meter:.2f}</td>" if chart.score else "<td></td>"
         cells = [str(chart.row_count), f"{figures.nps_mean:.1f}" if figures else ""]
         cells += [str(one.rows_of(technique) or "") for technique in TECHNIQUES]
         rows.append(
             f'<tr><td class="t" title="{escape(one.file)}">{escape(one.song)}</td>'
             f'<td class="t">{escape(safe(chart.steps_type))} {escape(safe(chart.difficulty))}</td>'
-            f"<td>{chart.meter}</td>{plays}{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>"
+            f"<td>{chart.meter}</td>{plays}{scores}{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>"
         )
     return f'<h2>All charts</h2><div class="wide"><table><tr>{head}</tr>{"".join(rows)}</table></div>'

@@ -171,6 +171,8 @@ class TextReport:
             self._stream.write(chart_table(chart, self._terminal))
             if chart.estimate is not None:
                 self._line(f"plays like {chart.estimate.bill}", self._paint(f"  ({chart.estimate.span})", "dim"))
+            if chart.score is not None:
+                self._line(f"scores like {chart.score.bill}", self._paint(f"  ({chart.score.span})", "dim"))
             self._alternatives(chart)
             self._forced(chart)
         for finding in chart.findings:

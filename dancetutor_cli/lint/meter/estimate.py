@@ -1,21 +1,14 @@
-"""The estimated meter of a chart with its bill, and the charts of a song together on the scale they are numbered on."""
+"""The estimated meter of a chart with its bill, on the scale that its song is numbered on; and its level of DDR."""
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 
-from dancetutor_cli.chart.model import Song
-from dancetutor_cli.lint.findings import AUTO, Estimate, Finding
+from dancetutor_cli.lint.findings import AUTO, Estimate
 from dancetutor_cli.lint.meter.features import Feature
 from dancetutor_cli.lint.meter.model import MeterModel, Scale, model_for
-from dancetutor_cli.lint.rule import RatedChart, SongRule, all_rules
-from dancetutor_cli.lint.rule_settings import Settings
-from dancetutor_cli.lint.subject import ChartSubject
-
-# The estimated meter of a chart with its bill, on the scale that its song is numbered on.
+from dancetutor_cli.lint.meter.score import Level
 
 # What the tag #METERTYPE says -> the scale. "DDR" stands for the old one of 1 to 10, and for others: not trusted.
 _TAGS = {"ITG": "itg", "DDR X": "ddr"}
@@ -136,77 +129,24 @@ def on_scale(one: MeteredChart, name: str, known: bool, *, faster: bool = True) 
     return Estimate(meter, low, high, scale.name, known, (*billed, ("rest", rest)), one.rate if faster else 1.0)
 
 
-# How hard the charts of a song play, all together: each needs the others to know the scale they are numbered on.
+# The level of DDR that a chart has, by its label: what its score is estimated from.
+
+_LEVELS = "ddr"
+_BELIEVED = 3.0  # meters between a label and the estimate; of a label that is further off only so much is heard
 
 
-@dataclass(frozen=True, slots=True)
-class MeterReport:
-    """What is told of one chart: its estimate, and findings of the rules about a song's meters."""
+def level_of(one: MeteredChart, scale: str, known: bool) -> Level:
+    """The level, from the label by the scale that it is on; where that is a guess, by the one that fits it best.
 
-    estimate: Estimate
-    findings: tuple[Finding, ...]
-
-    def among(self, others: tuple[Finding, ...]) -> tuple[Finding, ...]:
-        """These findings and others of the chart in the order of lines."""
-        if not self.findings:
-            return others
-        return tuple(sorted((*self.findings, *others), key=lambda f: (f.line or 0, f.beat or 0.0, f.rule)))
-
-
-class Meters:
-    """Takes the charts of a song as they are solved; then tells of all."""
-
-    def __init__(self, song: Song, settings: Settings) -> None:
-        self._song, self._settings = song, settings
-        self._sized: dict[str, list[tuple[int, MeteredChart]]] = defaultdict(list)
-
-    def add(self, subject: ChartSubject, rate: float = 1.0) -> None:
-        """Take note of a chart, if its pad has a model of meters and it has steps."""
-        chart = subject.chart
-        if subject.play is None or not len(subject.step_rows) or chart.player:  # a meter is for both players
-            return
-        found = subject.sized(rate)
-        if found is not None:
-            self._sized[chart.steps_type].append((chart.index, found))
-
-    def ask_for_others(self, scale: str = AUTO) -> frozenset[str]:
-        """Steps types of which the song's other charts have to tell the scale, for nothing else does."""
-        if scale != AUTO or says_scale(self._song.tags.get("METERTYPE", "")):
-            return frozenset()
-        return frozenset(kind for kind, of_pad in self._sized.items() if len(of_pad[0][1].on) > 1)
-
-    def reports(self, scale: str = AUTO) -> dict[int, MeterReport]:
-        """Index of the chart -> what is told of it."""
-        out: dict[int, MeterReport] = {}
-        for of_pad in self._sized.values():
-            one_pad = [sized for _, sized in of_pad]
-            scales = scales_of(one_pad, self._song.tags.get("METERTYPE", ""), scale)
-            usual = [
-                on_scale(one, name, known, faster=False) for one, (name, known) in zip(one_pad, scales, strict=True)
-            ]
-            here = [self._played(index, estimate) for (index, _), estimate in zip(of_pad, usual, strict=True)]
-            sure = [one for one in here if one.estimate.is_scale_known]  # nothing is said where the scale is a guess
-            for (index, one), played in zip(of_pad, here, strict=True):
-                at_1 = played.estimate
-                estimate = at_1 if one.rate == 1.0 else on_scale(one, at_1.scale, at_1.is_scale_known)
-                out[index] = MeterReport(estimate, self._findings(played, sure) if at_1.is_scale_known else ())
-        return out
-
-    def _played(self, index: int, estimate: Estimate) -> RatedChart:
-        """A chart as the rules see it."""
-        chart = self._song.charts[index]
-        place = {"line": chart.line, "column": 1, "chart": index}
-        return RatedChart(chart.steps_type, chart.difficulty, chart.meter, chart.label, estimate, place)
-
-    def _findings(self, here: RatedChart, charts: list[RatedChart]) -> tuple[Finding, ...]:
-        rules = self._settings.for_chart(self._song.path, here.steps_type, here.difficulty, here.meter)
-        found: list[Finding] = []
-        for code, rule in _rules().items():
-            if code in rules:
-                found += rule(rules[code]).check(here, charts)
-        return tuple(found)
-
-
-@cache
-def _rules() -> Mapping[str, type[SongRule]]:
-    return {code: rule for code, rule in all_rules().items() if issubclass(rule, SongRule)}
+    one : of a pad that has the scale ddr. A label of 0 is none, so that the estimate alone tells.
+    """
+    on = one.on
+    label = scale if known else min(on, key=lambda name: abs(on[name] - one.label))
+    off = min(max(one.label - on[label], -_BELIEVED), _BELIEVED) if one.label > 0 else 0.0
+    at = next(n for n, of in enumerate(one.model.scales) if of.name == _LEVELS)
+    faster = sum(one.played[at].values()) - sum(one.terms[at].values())
+    meter = on[_LEVELS] + off
+    if label == _LEVELS and one.label > 0:
+        return Level(meter + faster)
+    low, high = _interval(one.model.scales[at], meter)
+    return Level(meter + faster, meter - low, high - meter)

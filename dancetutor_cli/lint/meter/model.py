@@ -106,7 +106,7 @@ def load_model(path: Path) -> MeterModel:
     if not isinstance(scales, dict) or not scales:
         raise FileError(path, "'scales' must be a mapping of names to scales", 1)
     found = tuple(_scale(source, name) for name in scales)
-    alone = _numbers(source, ("alone",), source.data.get("alone"), 2)
+    alone = numbers_at(source, ("alone",), source.data.get("alone"), 2)
     curves = [curve for scale in found for curves in scale.terms.values() for curve in curves]
     return model_of(found, (alone[0], alone[1]), tuple(dict.fromkeys(curve.feature for curve in curves)))
 
@@ -137,11 +137,11 @@ def _scale(source: MarkedYaml, name: str) -> Scale:
         raise source.error((*keys, "terms"), "'terms' must be a mapping of names to lists of curves")
     source.only((*keys, "interval"), ("up_to", "below", "above"))
     interval = said["interval"]
-    up_to = _numbers(source, (*keys, "interval", "up_to"), interval.get("up_to"), None)
+    up_to = numbers_at(source, (*keys, "interval", "up_to"), interval.get("up_to"), None)
     below, above = (
-        _numbers(source, (*keys, "interval", side), interval.get(side), len(up_to) + 1) for side in ("below", "above")
+        numbers_at(source, (*keys, "interval", side), interval.get(side), len(up_to) + 1) for side in ("below", "above")
     )
-    start, charts = _numbers(source, keys, [said.get("start"), said.get("charts")], 2)
+    start, charts = numbers_at(source, keys, [said.get("start"), said.get("charts")], 2)
     curves = {
         term: tuple(_curve(source, (*keys, "terms", term, n), one) for n, one in enumerate(listed))
         for term, listed in terms.items()
@@ -154,13 +154,13 @@ def _curve(source: MarkedYaml, keys: tuple[str | int, ...], said: Any) -> Curve:
         raise source.error(keys, "a curve has the keys of, seconds, how, at, meters")
     if said["of"] not in THINGS or said["how"] not in HOWS:
         raise source.error(keys, f"'of' is one of {', '.join(THINGS)}; 'how' one of {', '.join(HOWS)}")
-    at = _numbers(source, keys, said["at"], None)
-    meters = _numbers(source, keys, said["meters"], len(at))
+    at = numbers_at(source, keys, said["at"], None)
+    meters = numbers_at(source, keys, said["meters"], len(at))
     if len(at) < 2 or any(b <= a for a, b in pairwise(at)):
         raise source.error(keys, "'at' must have two numbers or more, each above the one before")
     if any(b < a for a, b in pairwise(meters)):
         raise source.error(keys, "'meters' must not fall: what is played faster is never easier")
-    seconds = _numbers(source, keys, [said["seconds"]], 1)[0]
+    seconds = numbers_at(source, keys, [said["seconds"]], 1)[0]
     if seconds < 0 or (seconds == 0) != (said["how"] == "count"):
         raise source.error(keys, "'seconds' must be above 0, and 0 for a count")
     if said["how"] != "mean" and said["of"] != "steps":
@@ -168,7 +168,7 @@ def _curve(source: MarkedYaml, keys: tuple[str | int, ...], said: Any) -> Curve:
     return Curve(Feature(said["of"], seconds, said["how"]), at, meters)
 
 
-def _numbers(source: MarkedYaml, keys: tuple[str | int, ...], given: Any, length: int | None) -> tuple[float, ...]:
+def numbers_at(source: MarkedYaml, keys: tuple[str | int, ...], given: Any, length: int | None) -> tuple[float, ...]:
     """A list of numbers, of this length if one is asked for."""
     right = isinstance(given, Sequence) and all(isinstance(x, int | float) and not isinstance(x, bool) for x in given)
     if not right or (length is not None and len(given) != length):

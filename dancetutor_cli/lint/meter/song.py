@@ -1,0 +1,110 @@
+"""How hard the charts of a song play, and are to score on, all together: each needs the others to know its scale."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+
+from dancetutor_cli.chart.model import Song
+from dancetutor_cli.lint.findings import AUTO, Estimate, Finding, ScoreEstimate
+from dancetutor_cli.lint.meter.estimate import MeteredChart, level_of, on_scale, says_scale, scales_of
+from dancetutor_cli.lint.meter.oddities import Oddities
+from dancetutor_cli.lint.meter.score import score_model_for
+from dancetutor_cli.lint.rule import RatedChart, SongRule, all_rules
+from dancetutor_cli.lint.rule_settings import Settings
+from dancetutor_cli.lint.subject import ChartSubject
+
+
+@dataclass(frozen=True, slots=True)
+class MeterReport:
+    """What is told of one chart: its estimates, and findings of the rules about a song's meters."""
+
+    estimate: Estimate
+    score: ScoreEstimate | None
+    findings: tuple[Finding, ...]
+
+    def among(self, others: tuple[Finding, ...]) -> tuple[Finding, ...]:
+        """These findings and others of the chart in the order of lines."""
+        if not self.findings:
+            return others
+        return tuple(sorted((*self.findings, *others), key=lambda f: (f.line or 0, f.beat or 0.0, f.rule)))
+
+
+@dataclass(frozen=True, slots=True)
+class _SongChart:
+    """A chart that waits for the others of its song. oddities : None on a pad where nobody has rated charts"""
+
+    index: int
+    sized: MeteredChart
+    oddities: Oddities | None
+
+
+class Meters:
+    """Takes the charts of a song as they are solved; then tells of all."""
+
+    def __init__(self, song: Song, settings: Settings) -> None:
+        self._song, self._settings = song, settings
+        self._sized: dict[str, list[_SongChart]] = defaultdict(list)
+
+    def add(self, subject: ChartSubject, rate: float = 1.0) -> None:
+        """Take note of a chart, if its pad has a model of meters and it has steps."""
+        chart = subject.chart
+        if subject.play is None or not len(subject.step_rows) or chart.player:  # a meter is for both players
+            return
+        found = subject.sized(rate)
+        if found is not None:
+            oddities = subject.oddities() if score_model_for(chart.steps_type) else None
+            self._sized[chart.steps_type].append(_SongChart(chart.index, found, oddities))
+
+    def ask_for_others(self, scale: str = AUTO) -> frozenset[str]:
+        """Steps types of which the song's other charts have to tell the scale, for nothing else does."""
+        if scale != AUTO or says_scale(self._song.tags.get("METERTYPE", "")):
+            return frozenset()
+        return frozenset(kind for kind, of_pad in self._sized.items() if len(of_pad[0].sized.on) > 1)
+
+    def reports(self, scale: str = AUTO) -> dict[int, MeterReport]:
+        """Index of the chart -> what is told of it."""
+        out: dict[int, MeterReport] = {}
+        for steps_type, of_pad in self._sized.items():
+            one_pad = [one.sized for one in of_pad]
+            scales = scales_of(one_pad, self._song.tags.get("METERTYPE", ""), scale)
+            usual = [
+                on_scale(one, name, known, faster=False) for one, (name, known) in zip(one_pad, scales, strict=True)
+            ]
+            here = [self._played(one.index, estimate) for one, estimate in zip(of_pad, usual, strict=True)]
+            sure = [one for one in here if one.estimate.is_scale_known]  # nothing is said where the scale is a guess
+            for one, played in zip(of_pad, here, strict=True):
+                at_1 = played.estimate
+                told = at_1 if one.sized.rate == 1.0 else on_scale(one.sized, at_1.scale, at_1.is_scale_known)
+                findings = self._findings(played, sure) if at_1.is_scale_known else ()
+                out[one.index] = MeterReport(told, _score(steps_type, one, at_1), findings)
+        return out
+
+    def _played(self, index: int, estimate: Estimate) -> RatedChart:
+        """A chart as the rules see it."""
+        chart = self._song.charts[index]
+        place = {"line": chart.line, "column": 1, "chart": index}
+        return RatedChart(chart.steps_type, chart.difficulty, chart.meter, chart.label, estimate, place)
+
+    def _findings(self, here: RatedChart, charts: list[RatedChart]) -> tuple[Finding, ...]:
+        rules = self._settings.for_chart(self._song.path, here.steps_type, here.difficulty, here.meter)
+        found: list[Finding] = []
+        for code, rule in _rules().items():
+            if code in rules:
+                found += rule(rules[code]).check(here, charts)
+        return tuple(found)
+
+
+def _score(steps_type: str, one: _SongChart, estimate: Estimate) -> ScoreEstimate | None:
+    """How hard it is to score on, by the scale that the estimate of its meter is on."""
+    model = score_model_for(steps_type)
+    if model is None or one.oddities is None:
+        return None
+    return model.estimate(steps_type, level_of(one.sized, estimate.scale, estimate.is_scale_known), one.oddities)
+
+
+@cache
+def _rules() -> Mapping[str, type[SongRule]]:
+    return {code: rule for code, rule in all_rules().items() if issubclass(rule, SongRule)}
