@@ -26,7 +26,16 @@ from meter_data import Labelled, labelled, sorted_out
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from dancetutor_cli.lint.meter.estimate import _TAGS, MeteredChart, level_of, on_scale, scales_of, sized
+from dancetutor_cli.lint.meter.estimate import (
+    TAGGED,
+    MeteredChart,
+    label_scales_of,
+    level_of,
+    on_scale,
+    scales_of,
+    sized,
+    tagged_scale,
+)
 from dancetutor_cli.lint.meter.features import Feature
 from dancetutor_cli.lint.meter.model import Curve, MeterModel, Scale, model_for, model_of
 from dancetutor_cli.lint.meter.score import Level
@@ -59,6 +68,7 @@ ABOUT = {
     "low": "a pack's own numbers, lower than both: 1 Beginner, 2 Easy, 3 Medium, 4 Hard, up to 9",
     "pump": "Pump It Up since Fiesta: 1 to 28",
 }
+MOST = {"ddr": 20.0, "low": 10.0, "pump": 30.0}  # where a scale ends
 PADS = {
     "dance-single": ("itg", "ddr", "low"),
     "dance-double": ("itg", "ddr"),
@@ -69,11 +79,12 @@ HEAD = """\
 # How hard {pad} plays: meters that terms add up to, see docs/meter.md. By research/fit_meter.py from {charts} charts.
 # of: what is counted; seconds, how: in so many seconds before each row, the mean of all rows, or what 98 in 100 rows
 # do not exceed (count: of the whole chart). at, meters: the curve, which only rises. interval: 80 of 100 labels lie
-# between the estimate less `below` and plus `above`, by bands that end at `up_to`. alone: where no scale is told.
+# between the estimate less `below` and plus `above`, by bands that end at `up_to`. alone: where no scale is told. most:
+# where the scale ends.
 """
 HIGH = 30
 COLOURS = {"itg": "#2d6cc0", "ddr": "#c0542d", "low": "#3c8a4a"}
-SIZE, MARGIN, MOST = 420, 40, 20  # of the picture, pixels; the last meter that it shows
+SIZE, MARGIN, LAST = 420, 40, 20  # of the picture, pixels; the last meter that it shows
 
 
 @dataclass(frozen=True)
@@ -142,14 +153,18 @@ class Fit:
             on = np.array([of[one.file] for one in charts])
             self.found = [solve(pieces[on == k], meters[on == k]) for k in range(len(names))]
             self.counts = [int((on == k).sum()) for k in range(len(names))]
-            misses = np.stack([np.abs(pieces @ one - meters) for one in self.found])
+            most = [MOST.get(name, np.inf) for name in names]
+            misses = np.stack(
+                [np.abs(np.minimum(pieces @ one, top) - meters) for one, top in zip(self.found, most, strict=True)]
+            )
             for file, rows in files.items():
-                told = _TAGS.get(charts[rows[0]].tag.upper())
-                of[file] = self.names.index(told) if told in names else int(misses[:, rows].sum(axis=1).argmin())
+                told = tagged_scale(charts[rows[0]].tag)
+                off_tag = [TAGGED if told in names and name != told else 0.0 for name in names]
+                of[file] = int((misses[:, rows].sum(axis=1) + off_tag).argmin())
 
     def _first(self, charts: Sequence[Labelled], rows: Sequence[int]) -> int:
         """Where to begin: by how high the meters of a file are for its density."""
-        told = _TAGS.get(charts[rows[0]].tag.upper())
+        told = tagged_scale(charts[rows[0]].tag)
         if told in self.names:
             return self.names.index(told)
         high = float(np.mean([charts[n].meter / (1 + 2.1 * charts[n].density) for n in rows]))
@@ -173,7 +188,9 @@ class Fit:
                 if curves:
                     terms[term] = tuple(curves)
             interval = intervals.get(name, ((), (9.0,), (9.0,)))
-            scales.append(Scale(name, ABOUT[name], charts, round(float(found[0]), 2), terms, *interval))
+            scales.append(
+                Scale(name, ABOUT[name], charts, round(float(found[0]), 2), terms, *interval, MOST.get(name, np.inf))
+            )
         return model_of(tuple(scales), alone, WANTED)
 
 
@@ -280,20 +297,20 @@ def picture(out: Sequence[Judged], names: Sequence[str]) -> str:
     """Estimates of songs not seen against labels: a dot for each chart, moved a little where many share a label."""
 
     def at(meter: float) -> float:
-        return MARGIN + meter * (SIZE - 2 * MARGIN) / MOST
+        return MARGIN + meter * (SIZE - 2 * MARGIN) / LAST
 
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {SIZE} {SIZE}" font-family="sans-serif" font-size="12">',
         f'<rect width="{SIZE}" height="{SIZE}" fill="white"/>',
-        f'<path d="M{at(0)} {SIZE - at(0)}L{at(MOST)} {SIZE - at(MOST)}" stroke="#888"/>',
+        f'<path d="M{at(0)} {SIZE - at(0)}L{at(LAST)} {SIZE - at(LAST)}" stroke="#888"/>',
     ]
-    for meter in range(0, MOST + 1, 5):
+    for meter in range(0, LAST + 1, 5):
         lines.append(f'<text x="{at(meter):.0f}" y="{SIZE - 22}" text-anchor="middle">{meter}</text>')
         lines.append(f'<text x="{MARGIN - 12}" y="{SIZE - at(meter) + 4:.0f}" text-anchor="end">{meter}</text>')
     random = np.random.default_rng(0)
     for one in out:
         x, y = at(one.chart.meter + random.uniform(-0.3, 0.3)), SIZE - at(one.estimate)
-        if one.chart.meter <= MOST and one.estimate <= MOST:
+        if one.chart.meter <= LAST and one.estimate <= LAST:
             lines.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="1.8" fill="{COLOURS[one.scale]}" fill-opacity="0.6"/>')
     for n, name in enumerate(names):
         lines.append(f'<text x="{MARGIN + 10}" y="{30 + 16 * n}" fill="{COLOURS[name]}">scale {name}</text>')
@@ -308,7 +325,10 @@ def yaml_of(pad: str, model: MeterModel) -> str:
     lines = [HEAD.format(pad=pad, charts=sum(scale.charts for scale in model.scales)), "scales:\n"]
     for scale in model.scales:
         lines.append(f"  {scale.name}:\n    about: {yaml.safe_dump(scale.about, width=200).splitlines()[0]}\n")
-        lines.append(f"    charts: {scale.charts}\n    start: {scale.start:g}\n    terms:\n")
+        lines.append(f"    charts: {scale.charts}\n    start: {scale.start:g}\n")
+        if np.isfinite(scale.most):
+            lines.append(f"    most: {scale.most:g}\n")
+        lines.append("    terms:\n")
         for term, curves in scale.terms.items():
             lines.append(f"      {term}:\n")
             for curve in curves:
@@ -387,8 +407,8 @@ def levels_by_label(charts: Sequence[Labelled]) -> dict[Labelled, Level]:
         if model is not None and len(model.scales) > 1:
             places = [WANTED.index(feature) for feature in model.features]
             rows = [sized(model, [one.values[n] for n in places], (one.meter, one.difficulty)) for one in of_file]
-            for one, this, (scale, known) in zip(of_file, rows, scales_of(rows, of_file[0].tag), strict=True):
-                out[one] = level_of(this, scale, known)
+            for one, this, scale in zip(of_file, rows, label_scales_of(rows, of_file[0].tag), strict=True):
+                out[one] = level_of(this, scale)
     return out
 
 

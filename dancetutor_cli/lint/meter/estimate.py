@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from dancetutor_cli.lint.findings import AUTO, Estimate
+from dancetutor_cli.lint.findings import AUTO, SCALES, Estimate
 from dancetutor_cli.lint.meter.features import Feature
 from dancetutor_cli.lint.meter.model import MeterModel, Scale, model_for
 from dancetutor_cli.lint.meter.score import Level
 
-# What the tag #METERTYPE says -> the scale. "DDR" stands for the old one of 1 to 10, and for others: not trusted.
-_TAGS = {"ITG": "itg", "DDR X": "ddr"}
-_UNUSUAL = 0.5  # meters that a scale other than the usual one has to fit better by, over all charts of a song
 _WORTH = 0.1  # meters that a term has to add to stand on the bill; less goes into its "rest"
-_FEWEST = 2  # other charts of a song that tell its scale surely
 Ask = Callable[[Sequence[Feature], float], Sequence[float]]  # the features of a play, at a rate
 
 
@@ -52,67 +48,118 @@ def size(steps_type: str, label: tuple[int, str], ask: Ask, rate: float = 1.0) -
 def sized(model: MeterModel, values: Sequence[float], label: tuple[int, str]) -> MeteredChart:
     """The same by the features of `model.wanted`."""
     terms = model.terms(values)
-    on = {scale.name: scale.start + sum(of.values()) for scale, of in zip(model.scales, terms, strict=True)}
+    on = {scale.name: scale.meter(of) for scale, of in zip(model.scales, terms, strict=True)}
     return MeteredChart(model, *label, on, terms, terms)
 
 
-def _interval(scale: Scale, meter: float) -> tuple[float, float]:
-    band = sum(meter > end for end in scale.up_to)
-    return max(meter - scale.below[band], 0.0), meter + scale.above[band]
+# The scale that the charts of a song are numbered on.
+
+# What the tag #METERTYPE says -> the scale. "DDR" stands for the old one of 1 to 10, and for others: it says nothing.
+_TAGS = {"ITG": "itg", "DDR X": "ddr"}
+TAGGED = 3.0  # meters that all labels together have to be nearer to another scale than the tag's: some tags are wrong
+_UNUSUAL = 0.5  # the same for the usual scale, where there is no tag
+_MOST = 3.0  # meters that a label is missed by; more counts as this, for it may be a joke
+_FEWEST = 2  # other charts of a song that tell its scale surely
+_GUEST = 1 / 3  # what the label of another chart says of the scale of an Edit, which may be a guest's
 
 
-def says_scale(tag: str) -> bool:
-    """Whether a value of #METERTYPE names a scale."""
-    return tag.strip().upper() in _TAGS
+def tagged_scale(tag: str) -> str | None:
+    """The scale that a value of #METERTYPE names."""
+    return _TAGS.get(tag.strip().upper())
 
 
 def scales_of(charts: Sequence[MeteredChart], tag: str = "", said: str = AUTO) -> list[tuple[str, bool]]:
     """The scale of each of a song's charts for one pad, and whether it is known.
 
-    What the user or #METERTYPE says; else the scale on which the labels of the other charts are missed least, of which
-    it takes two. A chart's own label is not asked: that is what the estimate is for.
+    What the user says; else the scale on which the labels of the other charts are missed least, of which it takes two,
+    unless a tag speaks for another. A chart's own label is not asked, that is what the estimate is for; but where the
+    scale is a guess: with fewer others and no tag, and of an Edit, which may be numbered unlike its song.
     """
     if charts and len(charts[0].on) == 1:
         return [(next(iter(charts[0].on)), True)] * len(charts)
     if said != AUTO:
         return [(said, True)] * len(charts)
-    if says_scale(tag):
-        return [(_TAGS[tag.strip().upper()], True)] * len(charts)
-    all_, main = _Misses(), _Misses()
-    tells = [one.difficulty != "Edit" and one.label > 0 for one in charts]  # an Edit may be a guest's
-    for one, told in zip(charts, tells, strict=True):
-        all_.add(one, 1)
-        if told:
-            main.add(one, 1)
-    return [
-        (main if main.count > told else all_).best_without(one, told or main.count <= told)
-        for one, told in zip(charts, tells, strict=True)
-    ]
+    usual = tagged_scale(tag)
+    main, edits = _votes(charts)
+    return [_scale_of(one, main, edits, usual) for one in charts]
+
+
+def label_scales_of(charts: Sequence[MeteredChart], tag: str = "", said: str = AUTO) -> list[str]:
+    """The scale that each chart's label is on: that of all labels of the song, its own among them; an Edit's own."""
+    if said != AUTO or (charts and len(charts[0].on) == 1):
+        return [name for name, _ in scales_of(charts, tag, said)]
+    main, edits = _votes(charts)
+    of_song = (main if main.count else edits).best(tagged_scale(tag))
+    own = scales_of(charts, tag)
+    return [name if _is_guests(one) else of_song for one, (name, _) in zip(charts, own, strict=True)]
+
+
+def _is_guests(one: MeteredChart) -> bool:
+    return one.difficulty == "Edit"
+
+
+def _votes(charts: Sequence[MeteredChart]) -> tuple[_Misses, _Misses]:
+    """Those of the charts, and those of Edits; a label of 0 is none."""
+    main, edits = _Misses(), _Misses()
+    for one in charts:
+        if one.label > 0:
+            (edits if _is_guests(one) else main).add(one)
+    return main, edits
+
+
+def _scale_of(one: MeteredChart, main: _Misses, edits: _Misses, tagged: str | None) -> tuple[str, bool]:
+    """The scale of a chart that is among those that have voted."""
+    others = main if _is_guests(one) or not one.label else main.without(one)
+    if not others.count:
+        others = edits.without(one) if _is_guests(one) and one.label else edits
+    known = not _is_guests(one) and (tagged is not None or others.count >= _FEWEST)
+    return others.best(tagged, None if known or not one.label else one), known
 
 
 class _Misses:
-    """How far the labels of some charts are from the estimates on each scale."""
+    """How far the labels of some charts are from the estimates on each scale, in meters."""
 
-    def __init__(self) -> None:
-        self.count = 0
-        self._by: dict[str, float] = {}
+    def __init__(self, count: int = 0, by: Mapping[str, float] | None = None) -> None:
+        self.count = count
+        self._by = dict(by or {})
 
-    def add(self, one: MeteredChart, times: int) -> None:
+    def add(self, one: MeteredChart, times: int = 1) -> None:
         """Count a chart in, or with -1 out."""
         self.count += times
         for name, meter in one.on.items():
-            self._by[name] = self._by.get(name, 0.0) + times * abs(meter - one.label)
+            self._by[name] = self._by.get(name, 0.0) + times * min(abs(meter - one.label), _MOST)
 
-    def best_without(self, one: MeteredChart, is_in: bool) -> tuple[str, bool]:
-        """The scale that fits the others best, the usual one unless another does clearly; whether they are enough."""
-        usual = next(iter(one.on))
-        if is_in:
-            self.add(one, -1)
-        found = min(one.on, key=lambda name: self._by.get(name, 0.0) + (_UNUSUAL if name != usual else 0.0))
-        count = self.count
-        if is_in:
-            self.add(one, 1)
-        return (found, count >= _FEWEST) if count else (usual, False)
+    def without(self, one: MeteredChart) -> _Misses:
+        """The same without a chart that is in it."""
+        out = _Misses(self.count, self._by)
+        out.add(one, -1)
+        return out
+
+    def best(self, tagged: str | None, guess: MeteredChart | None = None) -> str:
+        """The scale that fits best, that of the tag or the usual one unless another does clearly.
+
+        guess : a chart of which the scale is a guess, so that its own label counts in full
+        """
+        names = list(self._by) if guess is None else list(guess.on)
+        if not names:
+            return tagged or next(iter(SCALES[1:]))
+        usual = tagged if tagged in names else names[0]
+        margin = TAGGED if tagged in names else _UNUSUAL
+        weight = _GUEST if guess is not None and _is_guests(guess) else 1.0
+
+        def missed(name: str) -> float:
+            own = 0.0 if guess is None else abs(guess.on[name] - guess.label)
+            return weight * self._by.get(name, 0.0) + own + (margin if name != usual else 0.0)
+
+        return min(names, key=missed)
+
+
+# The estimate.
+
+
+def _interval(scale: Scale, meter: float) -> tuple[float, float]:
+    band = sum(meter > end for end in scale.up_to)
+    return max(meter - scale.below[band], 0.0), min(meter + scale.above[band], scale.most)
 
 
 def on_scale(one: MeteredChart, name: str, known: bool, *, faster: bool = True) -> Estimate:
@@ -120,12 +167,12 @@ def on_scale(one: MeteredChart, name: str, known: bool, *, faster: bool = True) 
     model = one.model
     number = next((n for n, scale in enumerate(model.scales) if scale.name == name), 0)
     scale, terms = model.scales[number], (one.played if faster else one.terms)[number]
-    meter = scale.start + sum(terms.values())
+    meter = scale.meter(terms)
     billed = sorted(((term, value) for term, value in terms.items() if value >= _WORTH), key=lambda bill: -bill[1])
     rest = meter - sum(value for _, value in billed)
     low, high = _interval(scale, meter)
     if not known:
-        low, high = min(low, max(meter - model.alone[0], 0.0)), max(high, meter + model.alone[1])
+        low, high = min(low, max(meter - model.alone[0], 0.0)), max(high, min(meter + model.alone[1], scale.most))
     return Estimate(meter, low, high, scale.name, known, (*billed, ("rest", rest)), one.rate if faster else 1.0)
 
 
@@ -135,18 +182,17 @@ _LEVELS = "ddr"
 _BELIEVED = 3.0  # meters between a label and the estimate; of a label that is further off only so much is heard
 
 
-def level_of(one: MeteredChart, scale: str, known: bool) -> Level:
-    """The level, from the label by the scale that it is on; where that is a guess, by the one that fits it best.
+def level_of(one: MeteredChart, scale: str) -> Level:
+    """The level, from the label by the scale that it is on; that of a label of 0, which is none, by the estimate alone.
 
-    one : of a pad that has the scale ddr. A label of 0 is none, so that the estimate alone tells.
+    one : of a pad that has the scale ddr
     """
     on = one.on
-    label = scale if known else min(on, key=lambda name: abs(on[name] - one.label))
-    off = min(max(one.label - on[label], -_BELIEVED), _BELIEVED) if one.label > 0 else 0.0
+    off = min(max(one.label - on[scale], -_BELIEVED), _BELIEVED) if one.label > 0 else 0.0
     at = next(n for n, of in enumerate(one.model.scales) if of.name == _LEVELS)
-    faster = sum(one.played[at].values()) - sum(one.terms[at].values())
+    faster = one.model.scales[at].meter(one.played[at]) - on[_LEVELS]
     meter = on[_LEVELS] + off
-    if label == _LEVELS and one.label > 0:
+    if scale == _LEVELS and one.label > 0:
         return Level(meter + faster)
     low, high = _interval(one.model.scales[at], meter)
     return Level(meter + faster, meter - low, high - meter)

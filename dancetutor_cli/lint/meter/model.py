@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -43,6 +44,7 @@ class Scale:
     start : meter of a chart that asks for nothing; terms : name -> its curves, whose meters are added
     up_to : estimate at which each band of the interval ends, one less than there are bands
     below, above : of each band, how far under and over the estimate 80 of 100 labels lie
+    most : the highest meter that its charts have: where a scale ends, so do estimates; endless where it does not
     """
 
     name: str
@@ -53,6 +55,11 @@ class Scale:
     up_to: tuple[float, ...]
     below: tuple[float, ...]
     above: tuple[float, ...]
+    most: float = math.inf
+
+    def meter(self, terms: Mapping[str, float]) -> float:
+        """The estimate of a chart of which the terms add so much."""
+        return min(self.start + sum(terms.values()), self.most)
 
 
 class _Pieces(NamedTuple):
@@ -130,7 +137,7 @@ def model_of(scales: tuple[Scale, ...], alone: tuple[float, float], wanted: tupl
 
 def _scale(source: MarkedYaml, name: str) -> Scale:
     keys = ("scales", name)
-    source.only(keys, ("about", "charts", "start", "terms", "interval"))
+    source.only(keys, ("about", "charts", "start", "most", "terms", "interval"))
     said = source.data["scales"][name]
     terms = said.get("terms")
     if not isinstance(terms, dict) or not terms:
@@ -142,11 +149,12 @@ def _scale(source: MarkedYaml, name: str) -> Scale:
         numbers_at(source, (*keys, "interval", side), interval.get(side), len(up_to) + 1) for side in ("below", "above")
     )
     start, charts = numbers_at(source, keys, [said.get("start"), said.get("charts")], 2)
+    most = numbers_at(source, keys, [said["most"]], 1)[0] if "most" in said else math.inf
     curves = {
         term: tuple(_curve(source, (*keys, "terms", term, n), one) for n, one in enumerate(listed))
         for term, listed in terms.items()
     }
-    return Scale(name, str(said.get("about", "")), int(charts), start, curves, up_to, below, above)
+    return Scale(name, str(said.get("about", "")), int(charts), start, curves, up_to, below, above, most)
 
 
 def _curve(source: MarkedYaml, keys: tuple[str | int, ...], said: Any) -> Curve:

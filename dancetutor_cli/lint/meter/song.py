@@ -9,7 +9,7 @@ from functools import cache
 
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.lint.findings import AUTO, Estimate, Finding, ScoreEstimate
-from dancetutor_cli.lint.meter.estimate import MeteredChart, level_of, on_scale, says_scale, scales_of
+from dancetutor_cli.lint.meter.estimate import MeteredChart, label_scales_of, level_of, on_scale, scales_of
 from dancetutor_cli.lint.meter.oddities import Oddities
 from dancetutor_cli.lint.meter.score import score_model_for
 from dancetutor_cli.lint.rule import RatedChart, SongRule, all_rules
@@ -60,26 +60,28 @@ class Meters:
 
     def ask_for_others(self, scale: str = AUTO) -> frozenset[str]:
         """Steps types of which the song's other charts have to tell the scale, for nothing else does."""
-        if scale != AUTO or says_scale(self._song.tags.get("METERTYPE", "")):
+        if scale != AUTO:
             return frozenset()
         return frozenset(kind for kind, of_pad in self._sized.items() if len(of_pad[0].sized.on) > 1)
 
     def reports(self, scale: str = AUTO) -> dict[int, MeterReport]:
         """Index of the chart -> what is told of it."""
         out: dict[int, MeterReport] = {}
+        tag = self._song.tags.get("METERTYPE", "")
         for steps_type, of_pad in self._sized.items():
             one_pad = [one.sized for one in of_pad]
-            scales = scales_of(one_pad, self._song.tags.get("METERTYPE", ""), scale)
+            scales = scales_of(one_pad, tag, scale)
             usual = [
                 on_scale(one, name, known, faster=False) for one, (name, known) in zip(one_pad, scales, strict=True)
             ]
             here = [self._played(one.index, estimate) for one, estimate in zip(of_pad, usual, strict=True)]
             sure = [one for one in here if one.estimate.is_scale_known]  # nothing is said where the scale is a guess
-            for one, played in zip(of_pad, here, strict=True):
+            labels = label_scales_of(one_pad, tag, scale)
+            for one, played, label_scale in zip(of_pad, here, labels, strict=True):
                 at_1 = played.estimate
                 told = at_1 if one.sized.rate == 1.0 else on_scale(one.sized, at_1.scale, at_1.is_scale_known)
                 findings = self._findings(played, sure) if at_1.is_scale_known else ()
-                out[one.index] = MeterReport(told, _score(steps_type, one, at_1), findings)
+                out[one.index] = MeterReport(told, _score(steps_type, one, label_scale), findings)
         return out
 
     def _played(self, index: int, estimate: Estimate) -> RatedChart:
@@ -97,12 +99,12 @@ class Meters:
         return tuple(found)
 
 
-def _score(steps_type: str, one: _SongChart, estimate: Estimate) -> ScoreEstimate | None:
-    """How hard it is to score on, by the scale that the estimate of its meter is on."""
+def _score(steps_type: str, one: _SongChart, label_scale: str) -> ScoreEstimate | None:
+    """How hard it is to score on, by the scale that its label is on."""
     model = score_model_for(steps_type)
     if model is None or one.oddities is None:
         return None
-    return model.estimate(steps_type, level_of(one.sized, estimate.scale, estimate.is_scale_known), one.oddities)
+    return model.estimate(steps_type, level_of(one.sized, label_scale), one.oddities)
 
 
 @cache
