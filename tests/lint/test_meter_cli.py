@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 import sys
 from io import StringIO
+from itertools import pairwise
 
 import pytest
 from click.testing import CliRunner
@@ -35,7 +37,40 @@ def test_text_tells_the_bill() -> None:
 
 def test_the_brief_form_tells_the_number_alone() -> None:
     assert "plays like" in printed("--brief")
+    assert "scores like" in printed("--brief")
     assert "streams +" not in printed("--brief", "--select", "DT501")
+
+
+def test_text_tells_what_a_chart_scores_like_beneath_what_it_plays_like() -> None:
+    lines = printed("--full").splitlines()
+    plays = [n for n, line in enumerate(lines) if line.startswith("plays like")]
+    assert all(re.match(r"scores like \d+\.\d\d: level \d+\.\d\d, .*\(\d", lines[n + 1]) for n in plays)
+
+
+def test_json_and_csv_tell_the_same_score_and_its_bill_adds_up() -> None:
+    charts = json.loads(printed("--format", "json"))["files"][0]["charts"]
+    lines = list(csv.DictReader(StringIO(printed("--format", "csv"))))
+    for chart, line in zip(charts, lines, strict=True):
+        told = chart["scores_like"]
+        assert set(told) == {"meter", "low", "high", "terms"}
+        assert sum(told["terms"].values()) == pytest.approx(told["meter"], abs=0.01)
+        assert told["low"] < told["meter"] < told["high"]
+        assert [float(line[name]) for name in ("scores_like", "scores_low", "scores_high")] == pytest.approx(
+            [told["meter"], told["low"], told["high"]]
+        )
+        assert line["score_bill"].startswith(f"level {told['terms']['level']:.3f}; ")
+
+
+def test_faster_never_scores_easier_and_the_scale_is_heard() -> None:
+    found = []
+    for words in (("--rate", "0.7"), (), ("--rate", "1.01"), ("--rate", "1.4")):
+        charts = json.loads(printed("--format", "json", *words))["files"][0]["charts"]
+        found.append([chart["scores_like"]["meter"] for chart in charts])
+    assert all(b >= a for slow, fast in pairwise(found) for a, b in zip(slow, fast, strict=True))
+    assert found[0] != found[-1]
+    ddr = json.loads(printed("--format", "json", "--meter-scale", "ddr"))["files"][0]["charts"]
+    for chart in ddr:
+        assert abs(chart["scores_like"]["terms"]["level"] - chart["meter"] - 0.4) < 0.1  # the label is the level
 
 
 def test_json_and_csv_tell_the_same() -> None:
@@ -64,13 +99,14 @@ def test_a_chart_plays_like_the_same_whatever_is_asked_for() -> None:
     whole = json.loads(printed("--format", "json"))["files"][0]["charts"]
     for index in (0, 3, 4):
         (alone,) = json.loads(printed("--format", "json", "--index", str(index)))["files"][0]["charts"]
-        assert alone["plays_like"] == whole[index]["plays_like"] and alone["findings"] == whole[index]["findings"]
+        assert alone["plays_like"] == whole[index]["plays_like"] and alone["scores_like"] == whole[index]["scores_like"]
+        assert alone["findings"] == whole[index]["findings"]
 
 
 def test_a_kept_result_has_its_estimates() -> None:
     configuration = load_configuration(None)
     result = analyze_file(AnalyzeTask(DEMO, choice_of(None, configuration), Selection(), configuration.settings))
-    assert all(chart.estimate is not None for chart in result.charts)
+    assert all(chart.estimate is not None and chart.score is not None for chart in result.charts)
     assert from_bytes(to_bytes(result, "k"), "k") == result
 
 

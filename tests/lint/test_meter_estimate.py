@@ -12,7 +12,7 @@ import pytest
 from dancetutor_cli.chart import load, parse
 from dancetutor_cli.feet import Play, load_preset
 from dancetutor_cli.lint.findings import Estimate
-from dancetutor_cli.lint.meter.estimate import MeteredChart, on_scale, scales_of, size
+from dancetutor_cli.lint.meter.estimate import MeteredChart, label_scales_of, on_scale, scales_of, size
 from dancetutor_cli.lint.meter.features import features
 from dancetutor_cli.lint.meter.model import model_for
 from dancetutor_cli.lint.subject import solved_chart
@@ -87,28 +87,61 @@ def sized(label: int, difficulty: str = "Hard", **on: float) -> MeteredChart:
     return MeteredChart(model, label, difficulty, on, (), ())
 
 
+ON = {"itg": 9.0, "ddr": 13.0, "low": 5.0}
+
+
 def test_the_scale_is_that_of_the_others() -> None:
-    on = {"itg": 9.0, "ddr": 13.0, "low": 5.0}
-    assert scales_of([sized(13, **on)] * 3) == [("ddr", True)] * 3
-    assert scales_of([sized(9, **on), sized(13, **on), sized(13, **on)])[0] == ("ddr", True)  # not by its own label
-    assert scales_of([sized(5, **on), sized(5, **on)])[0] == ("low", False)  # one other chart is a guess
-    assert scales_of([sized(13, **on)]) == [("itg", False)]
+    assert scales_of([sized(13, **ON)] * 3) == [("ddr", True)] * 3
+    assert scales_of([sized(9, **ON), sized(13, **ON), sized(13, **ON)])[0] == ("ddr", True)  # not by its own label
     assert scales_of([]) == []
 
 
-def test_the_scale_is_what_is_said() -> None:
-    on = {"itg": 9.0, "ddr": 13.0, "low": 5.0}
-    charts = [sized(9, **on)] * 3
-    assert scales_of(charts, tag="DDR X") == [("ddr", True)] * 3
-    assert scales_of(charts, tag="ddr x ", said="low") == [("low", True)] * 3
-    assert scales_of(charts, tag="DDR") == [("itg", True)] * 3  # means two things, so it is not heard
+def test_where_the_scale_is_a_guess_the_charts_own_label_is_heard() -> None:
+    assert scales_of([sized(5, **ON), sized(5, **ON)])[0] == ("low", False)  # one other chart is a guess
+    assert scales_of([sized(13, **ON)]) == [("ddr", False)]
+    assert scales_of([sized(0, **ON)]) == [("itg", False)]  # no label
 
 
-def test_an_edit_does_not_tell_the_scale_of_the_others() -> None:
-    on = {"itg": 9.0, "ddr": 13.0, "low": 5.0}
-    charts = [sized(9, **on), sized(9, **on), sized(30, "Edit", **on), sized(30, "Edit", **on)]
-    assert scales_of(charts)[0] == ("itg", False)
-    assert scales_of(charts)[2] == ("itg", True)
+def test_one_wild_label_does_not_outvote_the_others() -> None:
+    charts = [sized(9, **ON), sized(9, **ON), sized(9, **ON), sized(99, **ON)]
+    assert scales_of(charts)[:3] == [("itg", True)] * 3
+
+
+def test_the_scale_is_what_the_user_says() -> None:
+    assert scales_of([sized(9, **ON)] * 3, tag="ddr x ", said="low") == [("low", True)] * 3
+    assert scales_of([sized(9, **ON)] * 3, tag="DDR") == [("itg", True)] * 3  # means two things, so it is not heard
+
+
+def test_a_tag_is_heard_unless_all_labels_speak_against_it() -> None:
+    between = [sized(11, **ON)] * 3
+    assert scales_of(between, tag="DDR X") == [("ddr", True)] * 3
+    assert scales_of(between, tag="ITG") == [("itg", True)] * 3
+    assert scales_of([sized(9, **ON)] * 3, tag="DDR X") == [("itg", True)] * 3
+    assert scales_of([sized(9, **ON)], tag="DDR X") == [("ddr", True)]
+
+
+def test_an_edit_does_not_tell_the_scale_of_the_others_nor_they_its() -> None:
+    charts = [sized(9, **ON), sized(9, **ON), sized(14, "Edit", **ON), sized(14, "Edit", **ON)]
+    assert scales_of(charts)[:2] == [("itg", False)] * 2
+    assert scales_of(charts)[2] == ("ddr", False)  # a guest's number, told by itself
+
+
+def test_the_label_of_a_chart_is_on_the_scale_of_all_of_them() -> None:
+    charts = [sized(9, **ON), sized(13, **ON), sized(13, **ON)]
+    assert label_scales_of(charts) == ["ddr"] * 3
+    assert label_scales_of([*charts, sized(5, "Edit", **ON)])[3] == "low"
+    assert label_scales_of(charts, said="low") == ["low"] * 3
+
+
+def test_a_scale_ends() -> None:
+    """The fastest chart that there can be is a 20 of DDR; and the bill says what that takes away."""
+    fast = stream(["1000", "0100", "0010", "0001"], bpm=900)
+    told = {scale: estimated(fast, scale=scale) for scale in ("itg", "ddr", "low")}
+    assert (told["ddr"].meter, told["ddr"].high) == (20.0, 20.0)
+    assert told["low"].meter == 10.0
+    assert told["itg"].meter > 20.0
+    assert sum(meters for _, meters in told["low"].terms) == pytest.approx(10.0)
+    assert dict(told["low"].terms)["rest"] < 0
 
 
 def test_what_nothing_tells_the_scale_of_has_a_wider_interval() -> None:

@@ -66,6 +66,12 @@ def test_what_is_wrong_is_named_with_its_line(tmp_path: Path, right: str, wrong:
     assert error.value.line == line
 
 
+def test_a_scale_may_end(tmp_path: Path) -> None:
+    scale = load_model(model_of(tmp_path, GOOD.replace("start: 1", "start: 1\n    most: 2"))).scales[0]
+    assert [scale.meter({"streams": x}) for x in (0.5, 1.0, 7.0)] == [1.5, 2.0, 2.0]
+    assert load_model(model_of(tmp_path, GOOD)).scales[0].meter({"streams": 7.0}) == 8.0
+
+
 def test_a_model_without_scales_is_none(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="'scales'"):
         load_model(model_of(tmp_path, "alone: [1, 1]\n"))
