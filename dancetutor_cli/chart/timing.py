@@ -80,7 +80,7 @@ class Timing:
 
     def bpm_at(self, tick: int) -> float:
         """BPM in force at a tick; a change on the tick counts, the first BPM reaches back before beat 0."""
-        starts, values = self._bpm_values
+        starts, values = self.tempos
         return values[max(bisect_right(starts, tick) - 1, 0)]
 
     def judged(self, ticks: NDArray[np.int64]) -> NDArray[np.bool_]:
@@ -140,7 +140,8 @@ class Timing:
         return _Knots(self)
 
     @cached_property
-    def _bpm_values(self) -> tuple[list[int], list[float]]:
+    def tempos(self) -> tuple[list[int], list[float]]:
+        """The ticks at which a BPM begins, and the BPMs."""
         return [tick for tick, _ in self.bpms], [float(value) for _, value in self.bpms]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from dancetutor_cli.lint.findings import AUTO, SCALES, Estimate
+from dancetutor_cli.lint.findings import AUTO, Estimate
 from dancetutor_cli.lint.meter.features import Feature
 from dancetutor_cli.lint.meter.model import MeterModel, Scale, model_for
 from dancetutor_cli.lint.meter.score import Level
@@ -57,7 +57,7 @@ def sized(model: MeterModel, values: Sequence[float], label: tuple[int, str]) ->
 # What the tag #METERTYPE says -> the scale. "DDR" stands for the old one of 1 to 10, and for others: it says nothing.
 _TAGS = {"ITG": "itg", "DDR X": "ddr"}
 TAGGED = 3.0  # meters that all labels together have to be nearer to another scale than the tag's: some tags are wrong
-_UNUSUAL = 0.5  # the same for the usual scale, where there is no tag
+_CLEAR = 1.0  # meters by which one scale has to fit them better than any other; else it is a guess
 _MOST = 3.0  # meters that a label is missed by; more counts as this, for it may be a joke
 _FEWEST = 2  # other charts of a song that tell its scale surely
 _GUEST = 1 / 3  # what the label of another chart says of the scale of an Edit, which may be a guest's
@@ -71,17 +71,16 @@ def tagged_scale(tag: str) -> str | None:
 def scales_of(charts: Sequence[MeteredChart], tag: str = "", said: str = AUTO) -> list[tuple[str, bool]]:
     """The scale of each of a song's charts for one pad, and whether it is known.
 
-    What the user says; else the scale on which the labels of the other charts are missed least, of which it takes two,
-    unless a tag speaks for another. A chart's own label is not asked, that is what the estimate is for; but where the
-    scale is a guess: with fewer others and no tag, and of an Edit, which may be numbered unlike its song.
+    What the user says; else the scale on which the labels of the other charts are missed least, clearly, of which it
+    takes two, unless a tag speaks for another. A chart's own label is not asked, that is what the estimate is for; but
+    where the scale is a guess: for lack of that, and of an Edit, which may be numbered unlike its song.
     """
     if charts and len(charts[0].on) == 1:
         return [(next(iter(charts[0].on)), True)] * len(charts)
     if said != AUTO:
         return [(said, True)] * len(charts)
-    usual = tagged_scale(tag)
     main, edits = _votes(charts)
-    return [_scale_of(one, main, edits, usual) for one in charts]
+    return [_scale_of(one, main, edits, tagged_scale(tag)) for one in charts]
 
 
 def label_scales_of(charts: Sequence[MeteredChart], tag: str = "", said: str = AUTO) -> list[str]:
@@ -89,9 +88,13 @@ def label_scales_of(charts: Sequence[MeteredChart], tag: str = "", said: str = A
     if said != AUTO or (charts and len(charts[0].on) == 1):
         return [name for name, _ in scales_of(charts, tag, said)]
     main, edits = _votes(charts)
-    of_song = (main if main.count else edits).best(tagged_scale(tag))
-    own = scales_of(charts, tag)
-    return [name if _is_guests(one) else of_song for one, (name, _) in zip(charts, own, strict=True)]
+    tagged = tagged_scale(tag)
+    found = []
+    for one in charts:
+        missed = (main if main.count else edits).by_scale(one, tagged)
+        of_song = min(missed, key=missed.__getitem__)
+        found.append(_scale_of(one, main, edits, tagged)[0] if _is_guests(one) else of_song)
+    return found
 
 
 def _is_guests(one: MeteredChart) -> bool:
@@ -108,12 +111,18 @@ def _votes(charts: Sequence[MeteredChart]) -> tuple[_Misses, _Misses]:
 
 
 def _scale_of(one: MeteredChart, main: _Misses, edits: _Misses, tagged: str | None) -> tuple[str, bool]:
-    """The scale of a chart that is among those that have voted."""
+    """The scale of a chart that is among those that have voted, and whether it is known."""
     others = main if _is_guests(one) or not one.label else main.without(one)
     if not others.count:
         others = edits.without(one) if _is_guests(one) and one.label else edits
-    known = not _is_guests(one) and (tagged is not None or others.count >= _FEWEST)
-    return others.best(tagged, None if known or not one.label else one), known
+    missed = others.by_scale(one, tagged)
+    best, *rest = sorted(missed.values())
+    enough = tagged is not None or others.count >= _FEWEST
+    known = enough and not _is_guests(one) and (not rest or rest[0] - best >= _CLEAR)
+    if not known and one.label:
+        weight = _GUEST if _is_guests(one) else 1.0
+        missed = {name: weight * missed[name] + abs(meter - one.label) for name, meter in one.on.items()}
+    return min(missed, key=missed.__getitem__), known
 
 
 class _Misses:
@@ -135,23 +144,10 @@ class _Misses:
         out.add(one, -1)
         return out
 
-    def best(self, tagged: str | None, guess: MeteredChart | None = None) -> str:
-        """The scale that fits best, that of the tag or the usual one unless another does clearly.
-
-        guess : a chart of which the scale is a guess, so that its own label counts in full
-        """
-        names = list(self._by) if guess is None else list(guess.on)
-        if not names:
-            return tagged or next(iter(SCALES[1:]))
-        usual = tagged if tagged in names else names[0]
-        margin = TAGGED if tagged in names else _UNUSUAL
-        weight = _GUEST if guess is not None and _is_guests(guess) else 1.0
-
-        def missed(name: str) -> float:
-            own = 0.0 if guess is None else abs(guess.on[name] - guess.label)
-            return weight * self._by.get(name, 0.0) + own + (margin if name != usual else 0.0)
-
-        return min(names, key=missed)
+    def by_scale(self, one: MeteredChart, tagged: str | None) -> dict[str, float]:
+        """Each scale of a chart's pad, the usual one first; those that a tag does not name fit so much worse."""
+        worse = TAGGED if tagged in one.on else 0.0
+        return {name: self._by.get(name, 0.0) + (worse if name != tagged else 0.0) for name in one.on}
 
 
 # The estimate.

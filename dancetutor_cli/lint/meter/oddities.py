@@ -107,17 +107,20 @@ def timing_oddities(timing: Timing, tick: NDArray[np.int64]) -> TimingOddities:
     A change counts where a row is played at another tempo than the row before. Rows are sorted by octaves from the
     middle row's tempo; of the shares p of what is found there, `tempos` is the entropy -sum p ln p (Shannon 1948).
     """
-    if len(tick) < 2 or (len(timing.bpms) == 1 and not timing.stops and not timing.delays):
+    if len(tick) < 2:
         return TimingOddities()
     first, last = int(tick[0]), int(tick[-1])
-    stops = sum(first <= at <= last and seconds > _STOP for of in (timing.stops, timing.delays) for at, seconds in of)
-    if len(timing.bpms) == 1:
+    stops = sum(
+        first <= at <= last and float(value) > _STOP for of in (timing.stops, timing.delays) for at, value in of
+    )
+    starts, bpms = timing.tempos
+    if len(bpms) == 1:
         return TimingOddities(stops)
-    starts = np.array([at for at, _ in timing.bpms])
-    octaves = np.log2([float(bpm) for _, bpm in timing.bpms])[
-        np.maximum(starts.searchsorted(tick, side="right") - 1, 0)
-    ]
-    _, counts = np.unique(np.rint((octaves - np.median(octaves)) / _SAME_TEMPO), return_counts=True)
-    shares = counts / len(tick)
-    changes = int((np.abs(np.diff(octaves)) > _CHANGE).sum())
-    return TimingOddities(stops, changes, float(-(shares * np.log(shares)).sum()))
+    octaves = np.log2(bpms)[np.maximum(np.array(starts).searchsorted(tick, side="right") - 1, 0)]
+    near = np.rint((octaves - np.median(octaves)) / _SAME_TEMPO).astype(np.int64)
+    if near.min() == near.max():  # most files with several BPMs: the tempo of a recording
+        tempos = 0.0
+    else:
+        shares = np.unique(near, return_counts=True)[1] / len(tick)
+        tempos = float(-(shares * np.log(shares)).sum())
+    return TimingOddities(stops, int((np.abs(octaves[1:] - octaves[:-1]) > _CHANGE).sum()), tempos)

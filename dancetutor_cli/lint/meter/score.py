@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -9,15 +10,13 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from dancetutor_cli.lint.findings import ScoreEstimate
 from dancetutor_cli.lint.meter.model import numbers_at
 from dancetutor_cli.lint.meter.oddities import ODDITIES, TIMED, Oddities
 from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.yaml_files import MarkedYaml, read
 
-_CHANGES = "changes"  # what stops and changes of tempo share
+_CHANGES = "timing changes"  # the term that stops and changes of tempo share
 _WORTH = 0.02  # levels that a term has to add to stand on the bill; less goes into its "rest"
 
 
@@ -62,20 +61,26 @@ class ScoreModel:
     def added(self, steps_type: str, level: float, oddities: Oddities) -> dict[str, float]:
         """Levels that each term adds. Stops and changes of tempo share theirs by how many there are of each."""
         found: dict[str, float] = {}
-        usual = self.usual[steps_type]
+        usual, (before, after, part) = self.usual[steps_type], self._place(level)
         for term, weights in self.terms.items():
             sum_ = 0.0
             for one in weights:
                 x = min(max(oddities.numbers[_PLACE[one.of]], one.low), one.high)
-                at_level = float(np.interp(level, self.levels, usual[one.of])) if one.of in usual else 0.0
-                sum_ += one.weight * (x - at_level)
-            if any(one.of == _CHANGES for one in weights):
+                row = usual.get(one.of)
+                sum_ += one.weight * (x if row is None else x - (row[before] + part * (row[after] - row[before])))
+            if term == _CHANGES:
                 stops, changes = oddities.timing.stops, oddities.timing.changes
                 each = sum_ / max(stops + changes, 1)
                 found["timing stops"], found["timing tempo changes"] = each * stops, each * changes
             else:
                 found[term] = sum_
         return found
+
+    def _place(self, level: float) -> tuple[int, int, float]:
+        """The two of `levels` that a level lies between, and how far along: `np.interp` takes longer for so few."""
+        after = min(max(bisect(self.levels, level), 1), len(self.levels) - 1)
+        low, high = self.levels[after - 1], self.levels[after]
+        return after - 1, after, min(max((level - low) / (high - low), 0.0), 1.0)
 
     def estimate(self, steps_type: str, level: Level, oddities: Oddities) -> ScoreEstimate:
         """The number with its bill. steps_type : one of those in `start`"""
