@@ -193,8 +193,8 @@ class ScoreEstimate:
 
     @property
     def span(self) -> str:
-        """For people: "14.35 to 14.89"."""
-        return f"{self.low:.2f} to {self.high:.2f}"
+        """For people: "14.35 to 14.89 on the scale ddr"."""
+        return f"{self.low:.2f} to {self.high:.2f} on the scale ddr"
 
 
 def _bill(

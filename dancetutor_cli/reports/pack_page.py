@@ -249,7 +249,7 @@ def _list(title: str, said: Iterable[str]) -> str:
 
 
 def _table(charts: Iterable[PackChart]) -> str:
-    names = ("meter", "plays like", "scores like", "rows", "rows/s", *TECHNIQUES)
+    names = ("meter", "plays like", "scores like (ddr)", "rows", "rows/s", *TECHNIQUES)
     head = '<th class="t">song</th><th class="t">chart</th>' + "".join(f"<th>{name}</th>" for name in names)
     rows = []
     for one in charts:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
@@ -131,6 +132,7 @@ def test_the_html_is_one_file_and_what_people_wrote_is_text(pack: Path, tmp_path
     assert "http://" not in text and "https://" not in text
     assert "default-src 'none'" in text
     assert text.count("<figure>") == 5
+    assert re.search(r"<th>scores like \(ddr\)</th>.*<td>\d+\.\d</td><td>\d+\.\d\d</td>", text)
     for said in ("no dance-single Hard: lacks", "no music: two", "OUTFOX", "&lt;script&gt;"):
         assert said in text
 
