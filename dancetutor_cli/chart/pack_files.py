@@ -4,30 +4,21 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, ClassVar
 
 from dancetutor_cli.chart import names
 from dancetutor_cli.run.errors import FileError, did_you_mean
 from dancetutor_cli.run.files import SONG_SUFFIXES
 from dancetutor_cli.run.reading import CHART_LIMIT, SETTINGS_LIMIT, leads_out, read_bytes, shown_key
+from dancetutor_cli.run.schema import SEVERAL, Entries, Parsed, Texts
 
 # dancetutor.yaml: where it is looked for, which charts an entry of it is about, and what is wrong in it.
 
 FILE_NAME = "dancetutor.yaml"
-_WHEN_KEYS = ("path", "steps-type", "difficulty", "meter")
-
-
-class SettingError(Exception):
-    """Something wrong at a key path inside a file."""
-
-    def __init__(self, keys: Sequence[str | int], message: str) -> None:
-        super().__init__(message)
-        self.keys = tuple(keys)
-        self.message = message
 
 
 def find_settings_file(start: Path) -> Path | None:
@@ -96,61 +87,51 @@ class Condition:
         )
 
 
-def condition_of(when: Any, folder: Path, place: tuple[str | int, ...]) -> Condition:
-    """What `when` of an entry says; SettingError at its key if that is nothing. folder : of the file"""
-    if not isinstance(when, Mapping) or not when:
-        raise SettingError(place, f"this needs 'when' with one or more of {', '.join(_WHEN_KEYS)}")
-    check_keys(when, _WHEN_KEYS, place)
-    return Condition(
-        root=str(folder.absolute()),
-        paths=tuple(texts_of(when, "path")),
-        steps_types=tuple(_steps_type(text, (*place, "steps-type")) for text in texts_of(when, "steps-type")),
-        difficulties=tuple(_difficulty(text, (*place, "difficulty")) for text in texts_of(when, "difficulty")),
-        meters=_meters(when["meter"], (*place, "meter")) if "meter" in when else None,
-    )
-
-
-def _steps_type(text: str, place: tuple[str | int, ...]) -> str:
+def _steps_type(text: Any) -> str:
     """A steps type or a shell pattern of such, that fits one at least."""
-    pattern = names.steps_type(text)
+    pattern = names.steps_type(str(text))
     if not any(fnmatchcase(known, pattern) for known in names.COLUMNS):
         near = did_you_mean(pattern, names.COLUMNS)
         there = ", ".join(sorted({f"{known.partition('-')[0]}-*" for known in names.COLUMNS}))
-        raise SettingError(place, f"'{shown_key(text)}' is no steps type{near}; there are {there}")
+        raise ValueError(f"'{shown_key(text)}' is no steps type{near}; there are {there}")
     return pattern
 
 
-def _difficulty(text: str, place: tuple[str | int, ...]) -> str:
+def _difficulty(text: Any) -> str:
     """A difficulty under today's name; old ones ("Heavy", "Oni") are known as everywhere."""
-    name, known = names.difficulty(text, "", 0, old=True)
+    name, known = names.difficulty(str(text), "", 0, old=True)
     if not known:
-        near, there = did_you_mean(text, names.DIFFICULTIES), ", ".join(names.DIFFICULTIES)
-        raise SettingError(place, f"'{shown_key(text)}' is no difficulty{near}; there are {there}")
+        near, there = did_you_mean(str(text), names.DIFFICULTIES), ", ".join(names.DIFFICULTIES)
+        raise ValueError(f"'{shown_key(text)}' is no difficulty{near}; there are {there}")
     return name.lower()
 
 
-def _meters(value: Any, place: tuple[str | int, ...]) -> tuple[int, int]:
+def _meters(value: Any) -> tuple[int, int]:
     """A meter, or a range written "1-7", "8-" or "-7"."""
     low, dash, high = str(value).partition("-")
     try:
         return int(low or 0), int(high or 1_000_000) if dash else int(low)
     except ValueError:
-        raise SettingError(place, f'"{value}" is no range of meters; write 8, "1-7", "8-" or "-7"') from None
+        raise ValueError(f'"{shown_key(value)}" is no range of meters; write 8, "1-7", "8-" or "-7"') from None
 
 
-def texts_of(data: Mapping[str, Any], key: str) -> list[str]:
-    """A value that may be one text or a list of them; empty where there is none."""
-    value = data.get(key)
-    if value is None:
-        return []
-    return [str(entry) for entry in value] if isinstance(value, list) else [str(value)]
+@dataclass(eq=False, repr=False)
+class _WhenKeys:
+    """What `when` of an entry may say; each one value or a list, as in `Condition`."""
+
+    HYPHENS: ClassVar[bool] = True
+    path: Texts = ()
+    steps_type: Annotated[tuple[Annotated[str, Parsed(_steps_type)], ...], SEVERAL] = ()
+    difficulty: Annotated[tuple[Annotated[str, Parsed(_difficulty)], ...], SEVERAL] = ()
+    meter: Annotated[tuple[int, int], Parsed(_meters, "a meter or a range of them")] | None = None
 
 
-def check_keys(data: Mapping[str, Any], known: Sequence[str], place: tuple[str | int, ...]) -> None:
-    """Raise unless every key is one of `known`; the error names them."""
-    for key in data:
-        if key not in known:
-            raise SettingError((*place, str(key)), f"there is no '{shown_key(key)}' here; there are {', '.join(known)}")
+When = Annotated[_WhenKeys, Entries(1)]
+
+
+def condition_of(when: When, folder: Path) -> Condition:
+    """When an entry holds. folder : of the file, which its paths are relative to"""
+    return Condition(str(folder.absolute()), when.path, when.steps_type, when.difficulty, when.meter)
 
 
 # The one list of files in which people say whose foot it is: for the solver, for caches and for films.

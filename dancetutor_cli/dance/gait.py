@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,12 +17,11 @@ from dancetutor_cli.dance.plan import Plan, Route
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import half_hips
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-from dancetutor_cli.dance.settings import numbers
 from dancetutor_cli.dance.settings_feet import WalkSettings
 from dancetutor_cli.dance.smoothing import smooth
-from dancetutor_cli.run.errors import UsageError, did_you_mean
-from dancetutor_cli.run.reading import config_path
-from dancetutor_cli.run.yaml_files import read
+from dancetutor_cli.dance.units import Degrees, Metres, Seconds
+from dancetutor_cli.run.reading import config_names, named_file
+from dancetutor_cli.run.yaml_files import load
 
 Array = NDArray[np.float64]
 STANCE = 0.6  # part of a cycle that a foot stands
@@ -33,18 +31,18 @@ STANCE = 0.6  # part of a cycle that a foot stands
 class Gait:
     """A way to walk: a cycle of two steps, from one landing of the left foot to the next; see `configs/gaits`."""
 
-    period: float
-    stride: float
-    height: float
-    push_pitch: float
-    heel_pitch: float
-    hip_drop: float
-    pelvis_yaw: float
-    chest_yaw: float
-    hips: float
-    arch: float
-    arms: float
-    plant: float
+    period: Seconds
+    stride: Metres
+    height: Metres
+    push_pitch: Degrees
+    heel_pitch: Degrees
+    hip_drop: Degrees
+    pelvis_yaw: Degrees
+    chest_yaw: Degrees
+    hips: Degrees
+    arch: Degrees
+    arms: Metres
+    plant: Metres
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +101,15 @@ def blended(slow: Gait, quick: Gait, share: float) -> Gait:
 
 def gait_names() -> list[str]:
     """The gaits that the program comes with."""
-    return sorted(path.stem for path in config_path("gaits").glob("*.yaml"))
+    return config_names("gaits")
+
+
+@dataclass(frozen=True, slots=True)
+class _Gaits:
+    """A file of `configs/gaits`."""
+
+    slow: Gait
+    quick: Gait
 
 
 @cache
@@ -112,13 +118,8 @@ def load_gait(name: str) -> tuple[Gait, Gait]:
 
     Raises UsageError for a name that there is not, FileError with the line for a file that is wrong.
     """
-    path = config_path(f"gaits/{name}.yaml") if name in gait_names() else Path(name)
-    if path.suffix.lower() not in (".yaml", ".yml") and not path.is_file():
-        near = did_you_mean(name, gait_names())
-        raise UsageError(f"there is no gait '{name}'{near}; there are: {', '.join(gait_names())}, or give a .yaml file")
-    source = read(path)
-    source.only((), ("slow", "quick"))
-    return numbers(source, "slow", Gait), numbers(source, "quick", Gait)
+    gaits = load(named_file("gaits", name), _Gaits)
+    return gaits.slow, gaits.quick
 
 
 def walking(walks: tuple[Route, ...], times: Array, settings: WalkSettings) -> GaitPose | None:

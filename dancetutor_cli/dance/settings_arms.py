@@ -4,167 +4,169 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from dancetutor_cli.dance.units import Degrees, DegreesPerSecond, Metres, MetresPerSecond, PerSecond, Ratio, Seconds
+
 
 @dataclass(frozen=True, slots=True)
 class HandSettings:
     """How a hand comes down on a panel."""
 
-    reach_down: float
-    press: float
-    pelvis: float
-    bend: float
-    bend_aside: float
-    turn_from: float
-    turn_most: float
-    bend_time: float
-    lowest: float
-    slap: float
-    follow_in: float
-    follow_out: float
-    slap_time: float
-    look_from: float
-    held: float
+    reach_down: Seconds
+    press: Seconds
+    pelvis: Metres
+    bend: Degrees
+    bend_aside: Degrees
+    turn_from: Degrees
+    turn_most: Degrees
+    bend_time: Seconds
+    lowest: Metres
+    slap: MetresPerSecond
+    follow_in: Seconds
+    follow_out: Seconds
+    slap_time: Seconds
+    look_from: Metres
+    held: Seconds
 
 
 @dataclass(frozen=True, slots=True)
 class ArmSettings:
     """Where free hands hang and how they swing."""
 
-    swing: float
-    out: float
-    forward: float
-    down: float
-    stream_up: float
-    stream_back: float
-    stream_out: float
-    stream_wander: float
-    unlike: float
-    loose: float
-    loose_time: float
-    step: float
-    step_effort: float
-    jump: float
-    jump_up: float
-    wander: float
-    cancel: float
-    twist: float
-    lowest: float
-    lag: float
-    bend_hang: float
-    effort: float
-    turn_time: float
-    turn_late: float
-    turn_easy: float
-    turn_quick: float
-    drawn_in: float
-    drawn_back: float
-    quick: float
-    quicker: float
-    hold_back: float
-    held_back: float
-    clear_aside: float
-    clear_ahead: float
-    aside_from: float
-    aside_full: float
-    aside_out: float
-    hips_clear: float
-    hips_half: float
-    hips_high: float
-    hips_ease: float
-    legs_room: float
-    twist_slowest: float
-    twist_fastest: float
-    wander_slow: float
-    wander_quick: float
-    wander_share: float
-    wander_behind: float
-    wander_quick_behind: float
-    askew: float
-    swing_most: float
-    swing_time: float
-    swing_up: float
-    elbow_out: float
-    bend_elbow_out: float
-    elbow_down: float
-    elbow_back: float
-    bend_from: float
-    bend_full: float
-    bend_out: float
-    bend_ahead: float
-    own_pad: float
-    own_pad_ahead: float
+    swing: Ratio
+    out: Metres
+    forward: Metres
+    down: Metres
+    stream_up: Metres
+    stream_back: Metres
+    stream_out: Metres
+    stream_wander: Metres
+    unlike: Ratio
+    loose: Metres
+    loose_time: Seconds
+    step: Metres
+    step_effort: Ratio
+    jump: Metres
+    jump_up: Metres
+    wander: Metres
+    cancel: Ratio
+    twist: Degrees
+    lowest: Metres
+    lag: Metres
+    bend_hang: Ratio
+    effort: Seconds
+    turn_time: Seconds
+    turn_late: Degrees
+    turn_easy: DegreesPerSecond
+    turn_quick: DegreesPerSecond
+    drawn_in: Metres
+    drawn_back: Ratio
+    quick: MetresPerSecond
+    quicker: MetresPerSecond
+    hold_back: Seconds
+    held_back: Metres
+    clear_aside: Metres
+    clear_ahead: Metres
+    aside_from: Degrees
+    aside_full: Degrees
+    aside_out: Metres
+    hips_clear: Metres
+    hips_half: Metres
+    hips_high: Metres
+    hips_ease: Metres
+    legs_room: Metres
+    twist_slowest: Seconds
+    twist_fastest: Seconds
+    wander_slow: Seconds
+    wander_quick: Seconds
+    wander_share: Ratio
+    wander_behind: Ratio
+    wander_quick_behind: Ratio
+    askew: Ratio
+    swing_most: Metres
+    swing_time: Seconds
+    swing_up: Ratio
+    elbow_out: Ratio
+    bend_elbow_out: Ratio
+    elbow_down: Ratio
+    elbow_back: Ratio
+    bend_from: Degrees
+    bend_full: Degrees
+    bend_out: Metres
+    bend_ahead: Metres
+    own_pad: Metres
+    own_pad_ahead: Ratio
 
 
 @dataclass(frozen=True, slots=True)
 class FingerSettings:
     """How far fingers are bent."""
 
-    rest: float
-    rest_middle: float
-    fist: float
-    fist_middle: float
-    bar: float
-    bar_middle: float
-    flat: float
-    flat_middle: float
-    wander: float
-    wander_time: float
-    behind: float
+    rest: Degrees
+    rest_middle: Degrees
+    fist: Degrees
+    fist_middle: Degrees
+    bar: Degrees
+    bar_middle: Degrees
+    flat: Degrees
+    flat_middle: Degrees
+    wander: Degrees
+    wander_time: Seconds
+    behind: Ratio
 
 
 @dataclass(frozen=True, slots=True)
 class BarSettings:
     """The bar behind the dancer, and how she holds it."""
 
-    height: float
-    behind: float
-    radius: float
-    posts: float
-    apart: float
-    nearer: float
-    phrase_least: float
-    phrase_most: float
-    one_slow: float
-    one_quick: float
-    quick: float
-    turned: float
-    dip: float
-    forward: float
-    soft: float
-    lean_back: float
-    knees: float
-    stream_crouch: float
-    square: float
-    let_go: float
-    reach_time: float
-    shortest: float
-    from_end: float
-    elbows_in: float
-    lift: float
-    leave: float
-    early: float
-    comfort: float
-    place_time: float
-    inward: float
+    height: Metres
+    behind: Metres
+    radius: Metres
+    posts: Metres
+    apart: Metres
+    nearer: Metres
+    phrase_least: Seconds
+    phrase_most: Seconds
+    one_slow: Ratio
+    one_quick: Ratio
+    quick: PerSecond
+    turned: Degrees
+    dip: Degrees
+    forward: Metres
+    soft: Metres
+    lean_back: Degrees
+    knees: Metres
+    stream_crouch: Metres
+    square: Ratio
+    let_go: Metres
+    reach_time: Seconds
+    shortest: Seconds
+    from_end: Metres
+    elbows_in: Ratio
+    lift: Metres
+    leave: Seconds
+    early: Seconds
+    comfort: Degrees
+    place_time: Seconds
+    inward: Metres
 
 
 @dataclass(frozen=True, slots=True)
 class AcrossSettings:
     """Turns in which the far hand crosses over before her to the bar."""
 
-    turned: float
-    past: float
-    settle: float
-    shortest: float
-    often: float
-    both: float
-    ahead: float
-    near: float
-    facing: float
-    twist: float
-    lean: float
-    nearer: float
-    ease: float
-    early: float
-    free_out: float
-    free_back: float
+    turned: Degrees
+    past: Degrees
+    settle: Seconds
+    shortest: Seconds
+    often: Ratio
+    both: Ratio
+    ahead: Metres
+    near: Metres
+    facing: Degrees
+    twist: Degrees
+    lean: Degrees
+    nearer: Metres
+    ease: Seconds
+    early: Seconds
+    free_out: Metres
+    free_back: Metres

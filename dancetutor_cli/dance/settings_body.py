@@ -4,246 +4,256 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from dancetutor_cli.dance.units import (
+    Degrees,
+    DegreesPerSecond,
+    Metres,
+    MetresPerSecondSquared,
+    PerSecond,
+    Ratio,
+    Seconds,
+)
+
 
 @dataclass(frozen=True, slots=True)
 class BodySettings:
     """How the body rides on the feet."""
 
-    leg: float
-    stream_crouch: float
-    soft_reach: float
-    reach: float
-    turn_to_feet: float
-    step_rise: float
-    lean: float
-    stream_lean: float
-    smooth: float
-    foot_weight: float
-    middle_weight: float
-    middle_weight_fast: float
-    height_smooth: float
-    least_force: float
-    most_force: float
-    lean_time: float
-    pelvis_lean: float
-    pelvis_bend: float
-    deep_bend: float
-    stream_time: float
-    farthest: float
-    heel_carries: float
+    leg: Metres
+    stream_crouch: Metres
+    soft_reach: Metres
+    reach: Metres
+    turn_to_feet: Ratio
+    step_rise: Ratio
+    lean: Degrees
+    stream_lean: Degrees
+    smooth: Seconds
+    foot_weight: Ratio
+    middle_weight: Ratio
+    middle_weight_fast: Ratio
+    height_smooth: Seconds
+    least_force: Ratio
+    most_force: Ratio
+    lean_time: Seconds
+    pelvis_lean: Ratio
+    pelvis_bend: Ratio
+    deep_bend: Degrees
+    stream_time: Seconds
+    farthest: Metres
+    heel_carries: Degrees
 
 
 @dataclass(frozen=True, slots=True)
 class KneeSettings:
     """Where knees point."""
 
-    to_toes: float
-    out: float
-    most: float
-    straddle: float
-    straddle_most: float
-    straddle_out: float
-    give: float
-    room: float
+    to_toes: Ratio
+    out: Degrees
+    most: Degrees
+    straddle: Degrees
+    straddle_most: Degrees
+    straddle_out: Degrees
+    give: Degrees
+    room: Metres
 
 
 @dataclass(frozen=True, slots=True)
 class LookSettings:
     """Where she looks and how far each part may turn."""
 
-    torso_limit: float
-    head_limit: float
-    head_rate: float
-    eyes_limit: float
-    eyes_give_up: float
-    away_from: float
-    away_to: float
-    head_leads: float
-    head_lead: float
-    torso_weight: float
-    head_weight: float
-    eyes_weight: float
-    distance: float
-    height: float
-    wrung: float
-    neck_share: float
-    neck_easy: float
-    neck_room: float
-    head_tilt: float
-    bent_tilt: float
-    bent_yaw: float
-    bent_from: float
-    bent_to: float
-    chin: float
+    torso_limit: Degrees
+    head_limit: Degrees
+    head_rate: DegreesPerSecond
+    eyes_limit: Degrees
+    eyes_give_up: Degrees
+    away_from: Degrees
+    away_to: Degrees
+    head_leads: Seconds
+    head_lead: Degrees
+    torso_weight: Ratio
+    head_weight: Ratio
+    eyes_weight: Ratio
+    distance: Metres
+    height: Metres
+    wrung: Degrees
+    neck_share: Ratio
+    neck_easy: Degrees
+    neck_room: Degrees
+    head_tilt: Ratio
+    bent_tilt: Ratio
+    bent_yaw: Ratio
+    bent_from: Degrees
+    bent_to: Degrees
+    chin: Degrees
 
 
 @dataclass(frozen=True, slots=True)
 class GlanceSettings:
     """Glances away from the screen where there is time."""
 
-    every: float
-    lasts: float
-    yaw: float
-    pitch: float
-    tilt: float
-    turn: float
-    eyes: float
-    eyes_ahead: float
-    quick: float
-    slow: float
-    around: float
-    hand: float
-    jump: float
-    neck_room: float
-    eyes_room: float
+    every: Seconds
+    lasts: Seconds
+    yaw: Degrees
+    pitch: Degrees
+    tilt: Degrees
+    turn: Seconds
+    eyes: Degrees
+    eyes_ahead: Seconds
+    quick: Seconds
+    slow: Seconds
+    around: Seconds
+    hand: Seconds
+    jump: Seconds
+    neck_room: Degrees
+    eyes_room: Degrees
 
 
 @dataclass(frozen=True, slots=True)
 class InertiaSettings:
     """How chest and hands overshoot."""
 
-    chest_frequency: float
-    chest_damping: float
-    hand_frequency: float
-    hand_damping: float
-    pelvis_turn: float
-    chest_turn: float
-    head_turn: float
+    chest_frequency: PerSecond
+    chest_damping: Ratio
+    hand_frequency: PerSecond
+    hand_damping: Ratio
+    pelvis_turn: Seconds
+    chest_turn: Seconds
+    head_turn: Seconds
 
 
 @dataclass(frozen=True, slots=True)
 class LayerSettings:
     """Small movements on top."""
 
-    breath_time: float
-    breath_shoulders: float
-    breath_nod: float
-    head_bob: float
-    shoulder_drop: float
-    sway: float
-    sway_time: float
-    bounce: float
-    beat_nod: float
-    wrists: float
-    blink_time: float
-    beat_shortest: float
-    beat_width: float
-    beat_fade: float
-    wrist_time: float
-    wrist_wave: float
-    wrist_unlike: float
-    wrist_behind: float
-    sway_quick: float
-    sway_quick_time: float
-    blink: float
-    laugh_after: float
-    laugh_rise: float
+    breath_time: Seconds
+    breath_shoulders: Degrees
+    breath_nod: Degrees
+    head_bob: Degrees
+    shoulder_drop: Degrees
+    sway: Metres
+    sway_time: Seconds
+    bounce: Metres
+    beat_nod: Degrees
+    wrists: Degrees
+    blink_time: Seconds
+    beat_shortest: Seconds
+    beat_width: Seconds
+    beat_fade: Ratio
+    wrist_time: Seconds
+    wrist_wave: Ratio
+    wrist_unlike: Ratio
+    wrist_behind: Ratio
+    sway_quick: Ratio
+    sway_quick_time: Ratio
+    blink: Seconds
+    laugh_after: Seconds
+    laugh_rise: Seconds
 
 
 @dataclass(frozen=True, slots=True)
 class GrooveSettings:
     """How her trunk and head take part in jacks and slow steps."""
 
-    around: float
-    ease: float
-    mostly: float
-    jack: float
-    steps: float
-    shortest: float
-    stays: float
-    lean: float
-    twist: float
-    nod: float
-    shrug: float
-    hands: float
-    deeper: float
+    around: Seconds
+    ease: Seconds
+    mostly: Ratio
+    jack: Ratio
+    steps: Ratio
+    shortest: Seconds
+    stays: Ratio
+    lean: Degrees
+    twist: Degrees
+    nod: Degrees
+    shrug: Degrees
+    hands: Metres
+    deeper: Ratio
 
 
 @dataclass(frozen=True, slots=True)
 class HairSettings:
     """The braid."""
 
-    rate: float
-    gravity: float
-    damping: float
-    stiffness: float
-    head_radius: float
-    back_radius: float
-    shoulder_radius: float
-    upper_arm_radius: float
-    forearm_radius: float
-    rubbing: float
-    fastest: float
-    struck: float
-    highest: float
-    droop: float
+    rate: PerSecond
+    gravity: MetresPerSecondSquared
+    damping: PerSecond
+    stiffness: Ratio
+    head_radius: Metres
+    back_radius: Metres
+    shoulder_radius: Metres
+    upper_arm_radius: Metres
+    forearm_radius: Metres
+    rubbing: PerSecond
+    fastest: DegreesPerSecond
+    struck: Ratio
+    highest: Degrees
+    droop: Ratio
 
 
 @dataclass(frozen=True, slots=True)
 class WaitSettings:
     """What she does while she waits."""
 
-    after: float
-    begin: float
-    ready: float
-    ease: float
-    shift: float
-    onto: float
-    shift_time: float
-    stays: float
-    lean: float
-    turn: float
-    turn_time: float
-    held_from: float
-    held_up: float
-    held_ahead: float
-    every: float
-    lasts: float
-    shakes: float
-    flap: float
-    lower: float
-    aside: float
-    trembling: float
-    swing: float
-    swing_time: float
-    shrug: float
-    neck: float
-    heel: float
-    stretch: float
-    stretch_other: float
-    stretch_out: float
-    stretch_up: float
-    pump_time: float
-    pump_up: float
-    pump_ahead: float
-    pump: float
+    after: Seconds
+    begin: Seconds
+    ready: Seconds
+    ease: Seconds
+    shift: Metres
+    onto: Ratio
+    shift_time: Seconds
+    stays: Ratio
+    lean: Degrees
+    turn: Degrees
+    turn_time: Seconds
+    held_from: Ratio
+    held_up: Metres
+    held_ahead: Metres
+    every: Seconds
+    lasts: Seconds
+    shakes: PerSecond
+    flap: Degrees
+    lower: Metres
+    aside: Metres
+    trembling: Metres
+    swing: Metres
+    swing_time: Seconds
+    shrug: Degrees
+    neck: Degrees
+    heel: Degrees
+    stretch: Degrees
+    stretch_other: Ratio
+    stretch_out: Metres
+    stretch_up: Metres
+    pump_time: Seconds
+    pump_up: Metres
+    pump_ahead: Metres
+    pump: Metres
 
 
 @dataclass(frozen=True, slots=True)
 class LooseSettings:
     """How she shakes out her legs while she waits."""
 
-    least: float
-    pause: float
-    ready: float
-    share: float
-    both: float
-    every: float
-    between: float
-    up: float
-    shortest: float
-    longest: float
-    height: float
-    inward: float
-    behind: float
-    rate: float
-    far: float
-    hangs: float
-    flap: float
+    least: Seconds
+    pause: Seconds
+    ready: Seconds
+    share: Ratio
+    both: Ratio
+    every: Seconds
+    between: Seconds
+    up: Seconds
+    shortest: Seconds
+    longest: Seconds
+    height: Metres
+    inward: Metres
+    behind: Metres
+    rate: PerSecond
+    far: Metres
+    hangs: Degrees
+    flap: Degrees
 
 
 @dataclass(frozen=True, slots=True)
 class SamplingSettings:
     """Rates of the bake."""
 
-    work_rate: float
+    work_rate: PerSecond

@@ -9,9 +9,9 @@ from enum import IntEnum
 from functools import cache
 from pathlib import Path
 
-from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import config_path
-from dancetutor_cli.run.yaml_files import read
+from dancetutor_cli.run.schema import RGB, Share
+from dancetutor_cli.run.yaml_files import load
 
 # The limbs of a dancer, as every room names them.
 
@@ -130,8 +130,6 @@ def _printable(character: str) -> str:
 
 # The colours that mean left foot, right foot and the hands, everywhere in the program (configs/colours.yaml).
 
-RGB = tuple[int, int, int]
-
 
 @dataclass(frozen=True, slots=True)
 class LimbColours:
@@ -162,7 +160,7 @@ class PartnerColours:
 
     hues: tuple[float, float]
     turn: float
-    least: float
+    least: Share
     tint: RGB
 
 
@@ -171,13 +169,17 @@ def hex_colour(rgb: RGB) -> str:
     return "#{:02x}{:02x}{:02x}".format(*rgb)
 
 
+@dataclass(frozen=True, slots=True)
+class _Colours:
+    """configs/colours.yaml."""
+
+    limbs: LimbColours
+    partner: PartnerColours
+
+
 def read_limb_colours(path: Path) -> LimbColours:
     """Read and check the colours of one file; FileError names what is wrong and which names exist."""
-    limbs = read(path).data.get("limbs")
-    names = [field.name for field in fields(LimbColours)]
-    if not isinstance(limbs, dict) or sorted(map(str, limbs)) != sorted(names):
-        raise FileError(path, f"'limbs' must give a colour for each of: {', '.join(names)}")
-    return LimbColours(*(_rgb(path, f"limbs.{name}", limbs[name]) for name in names))
+    return load(path, _Colours).limbs
 
 
 @cache
@@ -189,20 +191,4 @@ def limb_colours() -> LimbColours:
 @cache
 def partner_colours() -> PartnerColours:
     """What configs/colours.yaml says about the second of two dancers; FileError names what is wrong."""
-    path = config_path("colours.yaml")
-    said = read(path).data.get("partner")
-    try:
-        if not isinstance(said, dict):
-            raise TypeError
-        first, last = map(float, said["hues"])
-        return PartnerColours(
-            (first, last), float(said["turn"]), float(said["least"]), _rgb(path, "tint", said["tint"])
-        )
-    except (KeyError, TypeError, ValueError) as error:
-        raise FileError(path, "'partner' must give hues (two degrees), turn (degrees), least (0 to 1), tint") from error
-
-
-def _rgb(path: Path, name: str, value: object) -> RGB:
-    if not isinstance(value, str) or not re.fullmatch(r"#[0-9a-fA-F]{6}", value):
-        raise FileError(path, f'{name}: {value!r} is not a colour; write it as "#rrggbb"')
-    return int(value[1:3], 16), int(value[3:5], 16), int(value[5:7], 16)
+    return load(config_path("colours.yaml"), _Colours).partner

@@ -6,18 +6,18 @@ import math
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.run.reading import config_path
-from dancetutor_cli.run.yaml_files import MarkedYaml, read
+from dancetutor_cli.run.schema import Entries, MarkedYaml, Meaning, Text, convert
+from dancetutor_cli.run.yaml_files import read
 
 MAX_PANELS = 10  # a row of the solver packs into 64 bits
 SQUARE = 3  # panels
 HOME_WIDTH = 0.25  # a foot on no panel stands so far beside the centre (docs/cost-model.md)
-_KEYS = ("panels", "centre", "home", "reach")
 
 
 @dataclass(frozen=True)
@@ -92,59 +92,42 @@ def load_pad(steps_type: str, path: Path | None = None) -> Pad | None:
     return load_pads(path or config_path("pads.yaml")).get(steps_type.lower())
 
 
+_Panel = Annotated[tuple[Text, float, float, tuple[float, float]], Meaning("a panel, [name, x, y, [arrow x, arrow y]]")]
+
+
+@dataclass(frozen=True, slots=True)
+class _PadEntry:
+    """A pad in the file. panels : name, x, y, and where the arrow points; home : names of two of them"""
+
+    panels: Annotated[tuple[_Panel, ...], Entries(2, MAX_PANELS)]
+    centre: tuple[float, float]
+    home: tuple[Text, Text]
+    reach: float
+
+
 @cache
 def load_pads(path: Path) -> dict[str, Pad]:
     """Every pad of a file in the form of configs/pads.yaml, by steps type. Raises FileError."""
     source = read(path)
-    return {str(name).lower(): _pad(source, str(name)) for name in source.data}
+    return {name.lower(): _pad(source, name, pad) for name, pad in convert(source, dict[Text, _PadEntry]).items()}
 
 
-def _pad(source: MarkedYaml, steps_type: str) -> Pad:
-    source.only((steps_type,), _KEYS)
-    data = source.data[steps_type]
-    for key in _KEYS:
-        if key not in data:
-            raise source.error((steps_type,), f"{steps_type}: key '{key}' is missing")
-    names, places, arrows = _panels(source, steps_type, data["panels"])
-    home = data["home"]
-    if not isinstance(home, list) or len(home) != 2 or home[0] == home[1] or not all(h in names for h in home):
-        raise source.error(
-            (steps_type, "home"), f"{steps_type}: 'home' must be two different panels of {', '.join(names)}"
-        )
+def _pad(source: MarkedYaml, steps_type: str, pad: _PadEntry) -> Pad:
+    names = tuple(name for name, *_ in pad.panels)
+    places = [place for _, *place, _ in pad.panels]
+    for number, (name, place) in enumerate(zip(names, places, strict=True)):
+        if names.index(name) != number or places.index(place) != number:
+            keys = (steps_type, "panels", number)
+            raise source.error(keys, f"{steps_type}: two panels have the same name or place ({name})")
+    if pad.home[0] == pad.home[1] or not set(pad.home) <= set(names):
+        there = ", ".join(names)
+        raise source.error((steps_type, "home"), f"{steps_type}: 'home' must be two different panels of {there}")
     return Pad(
         steps_type=steps_type.lower(),
         names=names,
         panels=np.array(places),
-        arrows=np.array(arrows),
-        centre=_pair(source, (steps_type, "centre"), data["centre"]),
-        home=(names.index(home[0]), names.index(home[1])),
-        reach=_number(source, (steps_type, "reach"), data["reach"]),
+        arrows=np.array([arrow for *_, arrow in pad.panels]),
+        centre=pad.centre,
+        home=(names.index(pad.home[0]), names.index(pad.home[1])),
+        reach=pad.reach,
     )
-
-
-def _panels(source: MarkedYaml, steps_type: str, data: Any) -> tuple[tuple[str, ...], list[Any], list[Any]]:
-    if not isinstance(data, list) or not 2 <= len(data) <= MAX_PANELS:
-        raise source.error((steps_type, "panels"), f"{steps_type}: 'panels' must be a list of 2 to {MAX_PANELS} panels")
-    names, places, arrows = [], [], []
-    for number, entry in enumerate(data):
-        keys = (steps_type, "panels", number)
-        if not isinstance(entry, list) or len(entry) != 4:
-            raise source.error(keys, f"{steps_type}: a panel is [name, x, y, [arrow x, arrow y]]")
-        names.append(str(entry[0]))
-        places.append((_number(source, keys, entry[1]), _number(source, keys, entry[2])))
-        arrows.append(_pair(source, keys, entry[3]))
-        if names.index(names[-1]) != number or places.index(places[-1]) != number:
-            raise source.error(keys, f"{steps_type}: two panels have the same name or place ({names[-1]})")
-    return tuple(names), places, arrows
-
-
-def _pair(source: MarkedYaml, keys: tuple[str | int, ...], value: Any) -> tuple[float, float]:
-    if not isinstance(value, list) or len(value) != 2:
-        raise source.error(keys, f"{keys[0]}: {value!r} must be [x, y]")
-    return _number(source, keys, value[0]), _number(source, keys, value[1])
-
-
-def _number(source: MarkedYaml, keys: tuple[str | int, ...], value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise source.error(keys, f"{keys[0]}: {value!r} must be a number")
-    return float(value)

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, ClassVar
 
 from dancetutor_cli.chart.names import COLUMNS
 from dancetutor_cli.feet.solver.vocabulary import MODELS, MOST_MS
-from dancetutor_cli.run.errors import UsageError, did_you_mean
-from dancetutor_cli.run.reading import config_path, is_regular, leads_out
-from dancetutor_cli.run.yaml_files import MarkedYaml, read
+from dancetutor_cli.run.errors import did_you_mean
+from dancetutor_cli.run.reading import config_names, config_path, is_regular, leads_out, named_file, shown_key
+from dancetutor_cli.run.schema import Bounds, Entries, MarkedYaml, Meaning, Names, Parsed, Text, convert
+from dancetutor_cli.run.yaml_files import read
 
 # Why no person plays a note, and how quick is too quick. Needs no numpy: the linter's rules name these.
 
@@ -34,8 +35,7 @@ class DropReason(IntEnum):
 DEFAULT_PRESET = "itg"
 _DEFAULTS = {"pump": "pump"}  # by the first word of the steps type; DEFAULT_PRESET for all others
 MAX_WEIGHT = 1_000_000
-_KEYS = ("extends", "model", "pads", "roll-window", "switches", "weights", "curves", "confidence")
-
+_WORDS = tuple(sorted({name.partition("-")[0] for name in COLUMNS}))
 Curve = tuple[tuple[int, int], ...]  # (milliseconds, cost), by milliseconds
 
 
@@ -96,7 +96,7 @@ class Preset:
 
 def preset_names() -> list[str]:
     """Names of the presets that come with the program."""
-    return sorted(path.stem for path in config_path("presets").glob("*.yaml"))
+    return config_names("presets")
 
 
 def default_preset(steps_type: str) -> str:
@@ -104,22 +104,52 @@ def default_preset(steps_type: str) -> str:
     return _DEFAULTS.get(steps_type.lower().partition("-")[0], DEFAULT_PRESET)
 
 
+def _pad(name: Any) -> str:
+    """A steps type, or the first word of some."""
+    if name not in _WORDS and name not in COLUMNS:
+        near = did_you_mean(str(name), (*_WORDS, *COLUMNS))
+        raise ValueError(f"'{shown_key(name)}' is no steps type{near}; their first words are: {', '.join(_WORDS)}")
+    return str(name)
+
+
+_PADS = "a list of steps types or their first words, as [dance]"
+_Weight = Annotated[int, Bounds(0, MAX_WEIGHT)]
+_Knots = Annotated[
+    dict[Annotated[int, Bounds(0, MOST_MS, "milliseconds")], _Weight],
+    Entries(1),
+    Meaning("a mapping of milliseconds to costs, as {100: 500, 300: 0}"),
+]
+_Confidence = Annotated[
+    dict[_Weight, Annotated[int, Bounds(0, 1000, "tenths of a per cent")]],
+    Entries(1),
+    Meaning("a mapping of margins to tenths of a per cent, as {100: 500, 300: 900}"),
+]
+
+
+@dataclass(eq=False, repr=False)
+class _PresetFile:
+    """What a preset's file may say; the names of switches, weights and curves are those of its model."""
+
+    HYPHENS: ClassVar[bool] = True
+    extends: Text | None = None
+    model: Annotated[str, Names(tuple(MODELS))] | None = None
+    pads: Annotated[tuple[Annotated[str, Parsed(_pad)], ...], Meaning(_PADS)] | None = None
+    roll_window: Annotated[float, Bounds(0, 10, "seconds", above=True)] | None = None
+    switches: dict[str, bool] = field(default_factory=dict)
+    weights: dict[str, _Weight] = field(default_factory=dict)
+    curves: dict[str, _Knots] = field(default_factory=dict)
+    confidence: _Confidence = field(default_factory=dict)
+
+
 def load_preset(name_or_path: str | Path, *, confined: bool = False) -> Preset:
     """A preset by name, or from a YAML file of one's own.
 
     confined : a file may only extend what comes with the program or lies in its own folder: it may be a stranger's
 
-    A file may say `extends: NAME` and then only what differs. Raises UsageError for an unknown preset, key or value,
-    with file, line and the names that exist; FileError if the file cannot be read.
+    A file may say `extends: NAME` and then only what differs. Raises UsageError for a preset that there is not;
+    FileError for a file that cannot be read, or with an unknown key or value, with its line and the names that exist.
     """
-    text = str(name_or_path)
-    if text in preset_names():
-        return _load(config_path(f"presets/{text}.yaml"), (), confined)
-    path = Path(name_or_path)
-    if path.suffix.lower() in (".yaml", ".yml") or is_regular(path):
-        return _load(path, (), confined)
-    near = did_you_mean(text, preset_names())
-    raise UsageError(f"there is no preset '{text}'{near}; there are: {', '.join(preset_names())}, or give a .yaml file")
+    return _load(named_file("presets", name_or_path), (), confined)
 
 
 @cache
@@ -129,132 +159,50 @@ def _read(path: Path) -> MarkedYaml:
 
 def _load(path: Path, seen: tuple[Path, ...], confined: bool) -> Preset:
     source = _read(path) if path.is_relative_to(config_path("presets")) else read(path)
-    _only(source, (), _KEYS)
-    base = _base(source, (*seen, path.absolute()), confined)
-    model_name = str(source.data.get("model", base.model if base else ""))
-    if model_name not in MODELS:
-        raise _wrong(source, ("model",), f"'model' must be one of {', '.join(MODELS)}, or extend a preset")
-    if base is not None and base.model != model_name:
-        raise _wrong(source, ("model",), f"'model' is '{model_name}', but the preset it extends has '{base.model}'")
-    model = MODELS[model_name]
+    file = convert(source, _PresetFile)
+    base = None if file.extends is None else _base(source, file.extends, (*seen, path.absolute()), confined)
+    model = file.model or (base.model if base else None)
+    if model is None:
+        raise source.error((), f"model is missing: one of {', '.join(MODELS)}; or extend a preset")
+    if base is not None and base.model != model:
+        raise source.error(("model",), f"model is '{model}', but the preset it extends has '{base.model}'")
+    window = file.roll_window if file.roll_window is not None else base.roll_window if base else None
+    if window is None:
+        raise source.error((), "roll-window is missing: seconds that a roll may go unpressed")
     return Preset(
         name=path.stem,
-        model=model_name,
-        roll_window=_roll_window(source, base),
-        switches=_values(source, "switches", model.switches, dict(base.switches) if base else {}),
-        weights=_values(source, "weights", model.weights, dict(base.weights) if base else {}),
-        curves=_curves(source, model.curves, dict(base.curves) if base else {}),
-        pads=_pads(source, base),
-        confidence=_confidence(source),
+        model=model,
+        roll_window=window,
+        switches=_values(source, "switches", file.switches, model, base),
+        weights=_values(source, "weights", file.weights, model, base),
+        curves=_values(source, "curves", {k: tuple(sorted(v.items())) for k, v in file.curves.items()}, model, base),
+        pads=file.pads if file.pads is not None else base.pads if base else (),
+        # not taken over from the preset that is extended: other weights are right less or more often
+        confidence=tuple(sorted(file.confidence.items())),
     )
 
 
-def _base(source: MarkedYaml, seen: tuple[Path, ...], confined: bool) -> Preset | None:
-    name = source.data.get("extends")
-    if name is None:
-        return None
-    beside = source.path.parent / str(name)
+def _base(source: MarkedYaml, name: str, seen: tuple[Path, ...], confined: bool) -> Preset:
+    beside = source.path.parent / name
     path = config_path(f"presets/{name}.yaml") if name in preset_names() else beside
     if path.absolute() in seen:
-        raise _wrong(source, ("extends",), f"'{name}' extends itself")
+        raise source.error(("extends",), f"'{name}' extends itself")
     if confined and path == beside and leads_out(path, source.path.parent):
-        raise _wrong(source, ("extends",), "'extends' leads out of the folder of this file; put it beside it")
+        raise source.error(("extends",), "'extends' leads out of the folder of this file; put it beside it")
     if not is_regular(path):
-        raise _wrong(
-            source, ("extends",), f"there is no preset '{name}'; there are: {', '.join(preset_names())}, or name a file"
-        )
+        there = ", ".join(preset_names())
+        raise source.error(("extends",), f"there is no preset '{name}'; there are: {there}, or name a file")
     return _load(path, seen, confined)
 
 
 def _values(
-    source: MarkedYaml, group: str, known: tuple[str, ...], base: dict[str, Any]
+    source: MarkedYaml, group: str, given: Mapping[str, Any], model: str, base: Preset | None
 ) -> tuple[tuple[str, Any], ...]:
-    data = source.data.get(group) or {}
-    if data:
-        _only(source, (group,), known)
+    """Switches, weights or curves in the order of the model: those given, else those of the preset it extends."""
+    known: tuple[str, ...] = getattr(MODELS[model], group)
+    source.check_names((group,), given, known)
+    values = {**dict(getattr(base, group) if base else ()), **given}
     for name in known:
-        if name not in data and name not in base:
-            raise _wrong(source, (group,), f"'{group}' lacks '{name}'")
-    for name, value in data.items():
-        if group == "switches":
-            if not isinstance(value, bool):
-                raise _wrong(source, (group, name), f"'{name}' must be true or false, not {value!r}")
-        elif isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= MAX_WEIGHT:
-            raise _wrong(
-                source, (group, name), f"'{name}' must be a whole number from 0 to {MAX_WEIGHT}, not {value!r}"
-            )
-    return tuple((name, data.get(name, base.get(name))) for name in known)
-
-
-def _pads(source: MarkedYaml, base: Preset | None) -> tuple[str, ...]:
-    value = source.data.get("pads", list(base.pads) if base else [])
-    words = sorted({name.partition("-")[0] for name in COLUMNS})
-    if not isinstance(value, list):
-        raise _wrong(source, ("pads",), "'pads' must be a list of steps types or their first words, as [dance]")
-    for number, name in enumerate(value):
-        if name not in words and name not in COLUMNS:
-            near = did_you_mean(str(name), (*words, *COLUMNS))
-            raise _wrong(
-                source, ("pads", number), f"'{name}' is no steps type{near}; their first words are: {', '.join(words)}"
-            )
-    return tuple(value)
-
-
-def _curves(source: MarkedYaml, known: tuple[str, ...], base: dict[str, Curve]) -> tuple[tuple[str, Curve], ...]:
-    data = source.data.get("curves") or {}
-    if data:
-        _only(source, ("curves",), known)
-    for name in known:
-        if name not in data and name not in base:
-            raise _wrong(source, ("curves",), f"'curves' lacks '{name}'")
-    return tuple((name, _curve(source, name, data[name]) if name in data else base[name]) for name in known)
-
-
-def _curve(source: MarkedYaml, name: str, data: Any) -> Curve:
-    return _knots(source, ("curves", name), data, ("milliseconds", MOST_MS), ("costs", MAX_WEIGHT))
-
-
-def _confidence(source: MarkedYaml) -> Curve:
-    """Not taken over from the preset that is extended: other weights are right less or more often."""
-    if "confidence" not in source.data:
-        return ()
-    return _knots(source, ("confidence",), source.data["confidence"], ("margins", MAX_WEIGHT), ("tenths", 1000))
-
-
-def _knots(source: MarkedYaml, keys: tuple[str, ...], data: Any, across: tuple[str, int], up: tuple[str, int]) -> Curve:
-    """A mapping of whole numbers to whole numbers; `across`, `up` : what they are called, and the largest."""
-    name = keys[-1]
-    if not isinstance(data, dict) or not data:
-        raise _wrong(source, keys, f"'{name}' must be a mapping of {across[0]} to {up[0]}, as {{100: 500, 300: 0}}")
-    for group, (what, most) in ((data.keys(), across), (data.values(), up)):
-        for value in group:
-            if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= most:
-                raise _wrong(
-                    source, keys, f"'{name}': {what} must be whole numbers from 0 to {most}, not {value!r:.40}"
-                )
-    return tuple(sorted(data.items()))
-
-
-def _roll_window(source: MarkedYaml, base: Preset | None) -> float:
-    value = source.data.get("roll-window", base.roll_window if base else None)
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 < value <= 10:
-        raise _wrong(
-            source, ("roll-window",), f"'roll-window' must be seconds, more than 0 and at most 10, not {value!r}"
-        )
-    return float(value)
-
-
-def _only(source: MarkedYaml, keys: tuple[str | int, ...], known: tuple[str, ...]) -> None:
-    inside: Any = source.data
-    for key in keys:
-        inside = inside[key]
-    if not isinstance(inside, dict):
-        raise _wrong(source, keys, f"'{keys[-1]}' must be a mapping of names to values")
-    for key in inside:
-        if key not in known:
-            where = f" in '{keys[-1]}'" if keys else ""
-            raise _wrong(source, (*keys, key), f"unknown key '{key}'{where}; there are: {', '.join(known) or 'none'}")
-
-
-def _wrong(source: MarkedYaml, keys: tuple[str | int, ...], message: str) -> UsageError:
-    return UsageError(str(source.error(keys, message)))
+        if name not in values:
+            raise source.error((group,), f"{group}.{name} is missing")
+    return tuple((name, values[name]) for name in known)

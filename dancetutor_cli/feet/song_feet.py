@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind, Song
 from dancetutor_cli.chart.pack_files import (
     FILE_NAME,
     Condition,
-    SettingError,
-    check_keys,
+    When,
     check_not_a_link_out,
     condition_of,
-    texts_of,
+    find_settings_file,
 )
 from dancetutor_cli.feet.limbs import LETTERS, MEANING, UNKNOWN, Limb, Part
 from dancetutor_cli.feet.overrides import CellOverride, FeetProblem, Ignores, Overrides
-from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.reading import shown_key
+from dancetutor_cli.run.schema import MarkedYaml, Parsed, Texts, convert
 from dancetutor_cli.run.yaml_files import read
 
 # Feet and silenced findings from `feet` in dancetutor.yaml.
@@ -30,19 +30,35 @@ from dancetutor_cli.run.yaml_files import read
 #     steps: {16: L, 16.5: R, 17: LR}            # beat: a letter for each note, left to right, as in {dt1 ...}
 #     ignore: {24: doublestep, 25.5: [DT202]}    # beat: rules whose findings are not wanted there
 
-_KEYS = ("when", "steps", "ignore")
 _STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
 _TOES = {Limb.LEFT_FOOT: "l", Limb.RIGHT_FOOT: "r"}
-Place = tuple[str | int, ...]
+
+
+def _tick(beat: Any) -> int:
+    if isinstance(beat, bool) or not isinstance(beat, int | float) or not 0 <= beat < 1e6:
+        raise ValueError(f"'{shown_key(beat)}' is no beat; write a number such as 16 or 16.5")
+    return round(beat * TICKS_PER_BEAT)
+
+
+def _letters(value: Any) -> str:
+    letters = str(value)
+    wrong = [letter for letter in letters if letter not in LETTERS]
+    if wrong or not letters:
+        known = f"{', '.join(MEANING)}, or {UNKNOWN} for any"
+        raise ValueError(f"'{shown_key(wrong[0] if wrong else '')}' is no limb; there are {known}")
+    return letters
+
+
+_Tick = Annotated[int, Parsed(_tick)]  # written as a beat
 
 
 @dataclass(frozen=True, slots=True)
 class FeetEntry:
-    """One entry of `feet`. steps : {tick: letters}; ignore : {tick: rules, as they are written}"""
+    """An entry of `feet`. steps : {tick: letters}; ignore : {tick: rules, as they are written}"""
 
-    when: Condition
-    steps: Mapping[int, str]
-    ignore: Mapping[int, frozenset[str]]
+    when: When
+    steps: dict[_Tick, Annotated[str, Parsed(_letters)]] = field(default_factory=dict)
+    ignore: dict[_Tick, Texts] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +78,7 @@ def read_settings(song: Song, chart: Chart, path: Path | None) -> SettingsFeet:
     said: list[CellOverride] = []
     problems: list[FeetProblem] = []
     ignores: dict[int, frozenset[str]] = {}
-    for entry in _entries(path, status.st_mtime_ns, status.st_size):
-        when = entry.when
+    for when, entry in _entries(path, status.st_mtime_ns, status.st_size):
         if not (
             when.holds_for_path(song.path) and when.holds_for_chart(chart.steps_type, chart.difficulty, chart.meter)
         ):
@@ -73,57 +88,21 @@ def read_settings(song: Song, chart: Chart, path: Path | None) -> SettingsFeet:
             said += [one for one in found if isinstance(one, CellOverride)]
             problems += [one for one in found if isinstance(one, FeetProblem)]
         for tick, rules in entry.ignore.items():
-            ignores[tick] = ignores.get(tick, frozenset()) | rules
+            ignores[tick] = ignores.get(tick, frozenset()).union(rules)
     return SettingsFeet(tuple(said), ignores, tuple(problems))
 
 
 @lru_cache(maxsize=8)
-def _entries(path: Path, _time: int, _size: int) -> tuple[FeetEntry, ...]:
+def _entries(path: Path, _time: int, _size: int) -> tuple[tuple[Condition, FeetEntry], ...]:
     check_not_a_link_out(path)
-    source = read(path)
-    try:
-        return tuple(entries_of(source.data, path.parent))
-    except SettingError as error:
-        raise FileError(path, error.message, source.error(error.keys, "").line) from None
+    return tuple((condition_of(entry.when, path.parent), entry) for entry in entries_of(read(path)))
 
 
-def entries_of(data: Mapping[str, Any], folder: Path) -> Iterator[FeetEntry]:
-    """The entries of `feet`, checked; SettingError says at which key something is wrong, and names what there is."""
-    listed = data.get("feet") or []
-    if not isinstance(listed, list):
-        raise SettingError(("feet",), "'feet' is a list")
-    for number, entry in enumerate(listed):
-        place: Place = ("feet", number)
-        if not isinstance(entry, Mapping):
-            raise SettingError(place, f"an entry of 'feet' is a mapping of {', '.join(_KEYS)}")
-        check_keys(entry, _KEYS, place)
-        steps = {tick: _letters(value, at) for tick, value, at in _by_beat(entry.get("steps"), (*place, "steps"))}
-        ignore = {
-            tick: frozenset(texts_of({"rules": value}, "rules"))
-            for tick, value, _ in _by_beat(entry.get("ignore"), (*place, "ignore"))
-        }
-        yield FeetEntry(condition_of(entry.get("when"), folder, (*place, "when")), steps, ignore)
-
-
-def _by_beat(value: Any, place: Place) -> Iterator[tuple[int, Any, Place]]:
-    if value is None:
-        return
-    if not isinstance(value, Mapping):
-        raise SettingError(place, f"'{place[-1]}' is a mapping of beats")
-    for beat, told in value.items():
-        at = (*place, str(beat))
-        if isinstance(beat, bool) or not isinstance(beat, int | float) or not 0 <= beat < 1e6:
-            raise SettingError(at, f"'{beat}' is no beat; write a number such as 16 or 16.5")
-        yield round(beat * TICKS_PER_BEAT), told, at
-
-
-def _letters(value: Any, place: Place) -> str:
-    letters = str(value)
-    wrong = [letter for letter in letters if letter not in LETTERS]
-    if wrong or not letters:
-        known = f"{', '.join(MEANING)}, or {UNKNOWN} for any"
-        raise SettingError(place, f"'{wrong[0] if wrong else ''}' is no limb; there are {known}")
-    return letters
+def entries_of(source: MarkedYaml) -> tuple[FeetEntry, ...]:
+    """The entries of `feet` in a dancetutor.yaml, checked; FileError names the line and what there is."""
+    if source.data.get("feet") is None:
+        return ()
+    return convert(source, tuple[FeetEntry, ...], ("feet",))
 
 
 def _parse_letters(chart: Chart, tick: int, letters: str) -> Iterator[CellOverride | FeetProblem]:
@@ -156,7 +135,6 @@ class SongFeet:
     """Everything people said about the feet of a song's charts; where it may stand is looked up once for all."""
 
     def __init__(self, song: Song) -> None:
-        from dancetutor_cli.chart.pack_files import find_settings_file
         from dancetutor_cli.feet.sme import editor_file
 
         self._song = song

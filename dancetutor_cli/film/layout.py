@@ -4,17 +4,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 from dancetutor_cli.film.choices import LEAST_SIDE, MOST_SIDE, Ahead, Quality, RendererKind
 from dancetutor_cli.film.scroll import Scroll, parse_scroll
-from dancetutor_cli.run.errors import FileError, UsageError, did_you_mean
-from dancetutor_cli.run.reading import config_path
-from dancetutor_cli.run.yaml_files import Box, load
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.reading import config_names, named_file
+from dancetutor_cli.run.schema import Bounds, Box, Entries, Share
+from dancetutor_cli.run.yaml_files import load
 
 # Layouts: where dancer, notes and words stand in the picture; read from configs/layouts/*.yaml.
 
 PixelBox = tuple[int, int, int, int]
 WIDE_PAD = 5  # more columns than this take the layout's `wide` boxes
+_Side = Annotated[int, Bounds(LEAST_SIDE, MOST_SIDE, "pixels")]
+_Room = Annotated[float, Bounds(-100, 100, "metres")]
+_ScreenSide = Annotated[float, Bounds(0.05, 100, "metres")]
+_Larger = Annotated[float, Bounds(0.1, 10)]
+_Rate = Annotated[float, Bounds(0.25, 2)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +41,8 @@ class HighwayPart:
     """
 
     box: Box
-    lane: float
-    receptor: float = 0.135
+    lane: Annotated[float, Bounds(4, 1000, "pixels")]
+    receptor: Share = 0.135
     scroll: str = "M480"
     down: bool = False
     tags: bool = True
@@ -46,7 +53,7 @@ class TextBox:
     """A place for words. box : share of the picture; text : how much larger than usual they are."""
 
     box: Box
-    text: float = 1.0
+    text: _Larger = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,17 +69,17 @@ class HeaderPart:
     """The song's words. room : share of the box's width that they may take, beside her head."""
 
     box: Box
-    text: float = 1.0
-    room: float = 1.0
+    text: _Larger = 1.0
+    room: Annotated[float, Bounds(0.05, 1)] = 1.0
 
 
 @dataclass(frozen=True, slots=True)
 class ScreenPart:
     """A screen in the room, which shows the highway. centre : world, metres; size : metres; pixels : its picture."""
 
-    centre: tuple[float, float, float]
-    size: tuple[float, float]
-    pixels: tuple[int, int]
+    centre: tuple[_Room, _Room, _Room]
+    size: tuple[_ScreenSide, _ScreenSide]
+    pixels: tuple[_Side, _Side]
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,15 +87,15 @@ class NextPart:
     """Small pads with the next rows. box : share of the picture; count : how many."""
 
     box: Box
-    count: int = 3
+    count: Annotated[int, Bounds(1, 12)] = 3
 
 
 @dataclass(frozen=True, slots=True)
 class PracticePart:
     """How a layout runs where nothing else is asked for. rates : speeds in turn; count_in : beats."""
 
-    rates: tuple[float, ...] = (1.0,)
-    count_in: int = 0
+    rates: Annotated[tuple[_Rate, ...], Entries(1)] = (1.0,)
+    count_in: Annotated[int, Bounds(0, 16, "beats")] = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +115,7 @@ class WideBoxes:
     count: Box | None = None
     feet: Box | None = None
     next: Box | None = None
-    lanes: float | None = None
+    lanes: Annotated[float, Bounds(0.1, 1)] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +126,7 @@ class Layout:
     not said; count : the numbers of the count-in, in the middle of the picture if not said
     """
 
-    size: tuple[int, int]
+    size: tuple[_Side, _Side]
     dancer: DancerPart | None = None
     highway: HighwayPart | None = None
     header: HeaderPart | None = None
@@ -178,20 +185,12 @@ def overlap(a: PixelBox, b: PixelBox) -> bool:
 
 def layout_names() -> list[str]:
     """The layouts there are."""
-    return sorted(p.stem for p in config_path("layouts").glob("*.yaml"))
+    return config_names("layouts")
 
 
 def load_layout(name: str) -> Layout:
     """A layout by name, or from a YAML file of the user's. UsageError lists the names there are."""
-    if name in layout_names():
-        return _checked(config_path("layouts") / f"{name}.yaml")
-    if name.endswith((".yaml", ".yml")):
-        return _checked(Path(name))
-    near = did_you_mean(name, layout_names())
-    raise UsageError(f"unknown layout '{name}'{near}; there are: {', '.join(layout_names())}, or give a .yaml file")
-
-
-def _checked(path: Path) -> Layout:
+    path = named_file("layouts", name)
     layout = load(path, Layout)
     if layout.dancer is None and layout.highway is None:
         raise FileError(path, "a layout needs a dancer, a highway or both")
@@ -199,58 +198,9 @@ def _checked(path: Path) -> Layout:
         raise FileError(path, "a screen stands in the dancer's room and shows the highway: it needs both")
     if layout.feet is not None and layout.dancer is None:
         raise FileError(path, "feet need a dancer, whose feet they are")
-    _check_numbers(path, layout)
-    for name in ("dancer", "highway", "header", "calls", "runs", "count", "legend", "progress", "feet", "next"):
-        part, other = getattr(layout, name), getattr(layout.wide, name, None)
-        inner = layout.dancer.region if name == "dancer" and layout.dancer is not None else None
-        other_inner = layout.wide.region if name == "dancer" and layout.wide is not None else None
-        for where, box in (
-            (f"{name}.region", inner),
-            ("wide.region", other_inner),
-            (f"{name}.box", part and part.box),
-            (f"wide.{name}", other),
-        ):
-            if box is not None and not _inside(box):
-                raise FileError(path, f"{where}: left, top, right, bottom must be shares 0 to 1 in rising order")
+    if layout.highway is not None:
+        parse_scroll(layout.highway.scroll)
     return layout
-
-
-def _check_numbers(path: Path, layout: Layout) -> None:
-    """Refuse numbers with which nothing can be drawn; FileError names the first."""
-    high, screen = layout.highway, layout.screen
-    sides = [("size", layout.size), *([("screen.pixels", screen.pixels)] if screen else [])]
-    for where, pair in sides:
-        if not all(LEAST_SIDE <= side <= MOST_SIDE for side in pair):
-            raise FileError(path, f"{where}: {pair[0]}x{pair[1]} is not possible; {LEAST_SIDE} to {MOST_SIDE} pixels")
-    parts = (layout.header, layout.calls, layout.runs, layout.count, layout.legend, layout.progress)
-    names = ("header", "calls", "runs", "count", "legend", "progress")
-    ranges: list[tuple[str, float, float, float]] = [
-        (f"{name}.text", part.text, 0.1, 10) for name, part in zip(names, parts, strict=True) if part is not None
-    ]
-    if high is not None:
-        ranges += [("highway.lane", high.lane, 4, 1000), ("highway.receptor", high.receptor, 0, 1)]
-        parse_scroll(high.scroll)
-    if layout.header is not None:
-        ranges.append(("header.room", layout.header.room, 0.05, 1))
-    if layout.wide is not None and layout.wide.lanes is not None:
-        ranges.append(("wide.lanes", layout.wide.lanes, 0.1, 1))
-    if screen is not None:
-        ranges += [("screen.size", side, 0.05, 100) for side in screen.size]
-        ranges += [("screen.centre", side, -100, 100) for side in screen.centre]
-    if layout.next is not None:
-        ranges.append(("next.count", layout.next.count, 1, 12))
-    if layout.practice is not None:
-        ranges += [("practice.rates", rate, 0.25, 2) for rate in layout.practice.rates]
-        ranges += [("practice.count_in", layout.practice.count_in, 0, 16)]
-        if not layout.practice.rates:
-            raise FileError(path, "practice.rates: name one speed or more")
-    for where, value, least, most in ranges:
-        if not least <= value <= most:
-            raise FileError(path, f"{where} must be from {least:g} to {most:g}, not {value:g}")
-
-
-def _inside(box: Box) -> bool:
-    return 0 <= box[0] < box[2] <= 1 and 0 <= box[1] < box[3] <= 1
 
 
 # How a film is to look, as asked for on the command line; light, so that wrong wishes are refused at once.

@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from dancetutor_cli.chart.pack_files import (
+    FILE_NAME,
     Condition,
-    SettingError,
-    check_keys,
+    When,
     check_not_a_link_out,
     condition_of,
-    texts_of,
+    find_settings_file,
 )
-from dancetutor_cli.feet.preset import DEFAULT_PRESET, Preset, default_preset, load_preset
+from dancetutor_cli.feet.preset import DEFAULT_PRESET, Preset, default_preset, load_preset, preset_names
 from dancetutor_cli.lint.rule import matching, named_singly
-from dancetutor_cli.lint.rule_settings import Layer, Settings, layer_of, resolve_name
+from dancetutor_cli.lint.rule_settings import Layer, RulesKeys, Settings, layer_of, resolve_name
 from dancetutor_cli.run.errors import FileError, UsageError, did_you_mean
-from dancetutor_cli.run.reading import config_path, is_regular, leads_out, shown_key
-from dancetutor_cli.run.yaml_files import MarkedYaml, parse_value, read
+from dancetutor_cli.run.reading import config_names, config_path, is_regular, leads_out, shown_key
+from dancetutor_cli.run.schema import Bounds, Keys, MarkedYaml, Names, Text, Texts, convert
+from dancetutor_cli.run.yaml_files import parse_value, read
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
@@ -31,22 +32,31 @@ if TYPE_CHECKING:
 # Reads dancetutor.yaml and configs/lint/*.yaml into `Settings`; what they say wrongly is named with its line.
 
 FAIL_ON = ("error", "warning", "never")
-_TOP_KEYS = (
-    "extends",
-    "preset",
-    "fail-on",
-    "baseline",
-    "stream-rows",
-    "sure-feet",
-    "coin-toss",
-    "select",
-    "ignore",
-    "rules",
-    "overrides",
-    "feet",
-)
 _MOST_EXTENDED = 16
-_OVERRIDE_KEYS = ("when", "preset", "select", "ignore", "rules")
+
+
+@dataclass(eq=False, repr=False, kw_only=True)
+class _Override(RulesKeys):
+    """An entry of `overrides`."""
+
+    when: When
+    preset: Text | None = None
+
+
+@dataclass(eq=False, repr=False)
+class _ConfigurationFile(RulesKeys):
+    """What a configuration file may say; `feet` are checked by those who read them."""
+
+    HYPHENS: ClassVar[bool] = True
+    extends: Texts = ()
+    preset: Text | None = None
+    fail_on: Annotated[str, Names(FAIL_ON)] | None = None
+    baseline: Text | None = None
+    stream_rows: Annotated[int, Bounds(1, 192, "rows in a measure")] | None = None
+    sure_feet: Annotated[float, Bounds(0, 100, "per cent")] | None = None
+    coin_toss: Annotated[int, Bounds(0, 1000)] | None = None
+    overrides: tuple[_Override, ...] = ()
+    feet: Any = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,9 +107,9 @@ def with_assignments(configuration: Configuration, assignments: Iterable[str]) -
         rule, dot, option = key.partition(".")
         data = {"rules": {rule: {option: parsed}}} if dot else {key: parsed}
         try:
-            configuration = _apply(configuration, data, Path.cwd(), confined=False)
-        except SettingError as fault:
-            raise UsageError(f"--set {text}: {fault.message}") from None
+            configuration = _apply(configuration, MarkedYaml(Path.cwd() / FILE_NAME, data, {}), confined=False)
+        except FileError as error:
+            raise UsageError(f"--set {text}: {error.message}") from None
     return configuration
 
 
@@ -124,7 +134,7 @@ def _located(source: str | Path) -> Path:
         return path
     named = config_path(f"lint/{source}.yaml")
     if not named.is_file():
-        names = ", ".join(sorted(entry.stem for entry in config_path("lint").glob("*.yaml")))
+        names = ", ".join(config_names("lint"))
         raise UsageError(f"there is no lint configuration '{source}'; there are: {names}, or give a file")
     return named
 
@@ -134,23 +144,18 @@ def _extend(base: Configuration, path: Path, seen: tuple[Path, ...], *, confined
     here = (*seen, path.resolve())
     if len(here) > _MOST_EXTENDED:
         raise FileError(path, f"extends more than {_MOST_EXTENDED} files one after the other")
-    data = dict(source.data)
-    for name in texts_of(data, "extends"):
+    for name in convert(source, Texts, ("extends",)) if source.data.get("extends") else ():
         extended = _extended(source, name)
         if extended.resolve() in here:
             raise source.error(("extends",), "extends itself")
         base = _extend(base, extended, here, confined=confined)
-    data.pop("extends", None)
-    try:
-        return replace(_apply(base, data, path.parent, confined=confined), sources=(*base.sources, path))
-    except SettingError as fault:
-        raise source.error(fault.keys, fault.message) from None
+    return replace(_apply(base, source, confined=confined), sources=(*base.sources, path))
 
 
 def _extended(source: MarkedYaml, name: str) -> Path:
     """What `extends` names: a configuration of the program's, or a file in the folder of this one or below it."""
     folder = source.path.parent
-    names = sorted(entry.stem for entry in config_path("lint").glob("*.yaml"))
+    names = config_names("lint")
     if name in names and not is_regular(folder / name):
         return config_path(f"lint/{name}.yaml")
     if leads_out(folder / name, folder):
@@ -163,80 +168,52 @@ def _extended(source: MarkedYaml, name: str) -> Path:
     return folder / name
 
 
-def _apply(base: Configuration, data: Mapping[str, Any], folder: Path, *, confined: bool) -> Configuration:
-    check_keys(data, _TOP_KEYS, ())
-    settings = base.settings.with_layer(layer_of(data, Condition(), ()))
+def _apply(base: Configuration, source: MarkedYaml, *, confined: bool) -> Configuration:
+    """What a file says, on top of `base`. confined : it stays in its folder"""
+    file, folder = convert(source, _ConfigurationFile), source.path.parent
+    settings = base.settings.with_layer(layer_of(source, file, Condition(), ()))
     preset, overridden = base.preset, base.overridden
-    if data.get("preset") is not None:  # of all charts: what the extended file says about some of them is over
-        preset, overridden = _preset(data["preset"], folder, ("preset",)), ()
-    for number, entry in enumerate(_list(data, "overrides")):
-        place = ("overrides", number)
-        if not isinstance(entry, Mapping):
-            raise SettingError(place, f"an override is a mapping of {', '.join(_OVERRIDE_KEYS)}")
-        check_keys(entry, _OVERRIDE_KEYS, place)
-        when = condition_of(entry.get("when"), folder, (*place, "when"))
-        settings = settings.with_layer(layer_of(entry, when, place))
-        if entry.get("preset") is not None:
-            overridden = (*overridden, (when, _preset(entry["preset"], folder, (*place, "preset"))))
-    if data.get("feet"):
-        _check_feet(data, folder)
-    fail_on = data.get("fail-on", base.fail_on)
-    if fail_on is not None and fail_on not in FAIL_ON:
-        raise SettingError(("fail-on",), f"'fail-on' is one of {', '.join(FAIL_ON)}")
-    baseline = folder / str(data["baseline"]) if data.get("baseline") else base.baseline
-    if confined and data.get("baseline") and leads_out(folder / str(data["baseline"]), folder):
+    if file.preset is not None:  # of all charts: what the extended file says about some of them is over
+        preset, overridden = _preset(source, file.preset, ("preset",)), ()
+    for number, entry in enumerate(file.overrides):
+        place, when = ("overrides", number), condition_of(entry.when, folder)
+        settings = settings.with_layer(layer_of(source, entry, when, place))
+        if entry.preset is not None:
+            overridden = (*overridden, (when, _preset(source, entry.preset, (*place, "preset"))))
+    if file.feet:
+        _check_feet(source)
+    if confined and file.baseline and leads_out(folder / file.baseline, folder):
         why = "'baseline' leads out of the folder of this file; put it beside it, or name it with --baseline"
-        raise SettingError(("baseline",), why)
-    stream_rows = data.get("stream-rows", settings.stream_rows)
-    if isinstance(stream_rows, bool) or not isinstance(stream_rows, int) or not 1 <= stream_rows <= 192:
-        raise SettingError(("stream-rows",), "'stream-rows' is a number of rows in a measure, for example 16")
-    settings = replace(
-        settings, stream_rows=stream_rows,
-        sure_feet=_number(data, "sure-feet", settings.sure_feet, 100),
-        coin_toss=int(_number(data, "coin-toss", settings.coin_toss, 1000)),
-    )  # fmt: skip
-    return Configuration(settings, base.sources, preset, overridden, fail_on, baseline)
+        raise source.error(("baseline",), why)
+    numbers = {name: getattr(file, name) for name in ("stream_rows", "sure_feet", "coin_toss")}
+    settings = replace(settings, **{name: value for name, value in numbers.items() if value is not None})
+    baseline = folder / file.baseline if file.baseline else base.baseline
+    return Configuration(settings, base.sources, preset, overridden, file.fail_on or base.fail_on, baseline)
 
 
-def _preset(value: Any, folder: Path, place: tuple[str | int, ...]) -> str:
+def _preset(source: MarkedYaml, name: str, place: Keys) -> str:
     """A preset's name, or the path of its file, which lies in the folder of the configuration or below it."""
-    from dancetutor_cli.feet import preset_names
-
-    name = str(value)
     if name in preset_names():
         return name
+    folder = source.path.parent
     path = folder / name
     if leads_out(path, folder):
-        raise SettingError(place, "'preset' leads out of the folder of this file; put the preset beside it")
+        raise source.error(place, "'preset' leads out of the folder of this file; put the preset beside it")
     if path.suffix.lower() not in (".yaml", ".yml") and not is_regular(path):
         there, near = ", ".join(preset_names()), did_you_mean(name, preset_names())
-        raise SettingError(
+        raise source.error(
             place, f"there is no preset '{shown_key(name)}'{near}; there are: {there}, or name a .yaml file"
         )
     return str(path)
 
 
-def _check_feet(data: Mapping[str, Any], folder: Path) -> None:
+def _check_feet(source: MarkedYaml) -> None:
     """What `feet` says is read where feet are found; here it is only checked, for it knows no rules."""
     from dancetutor_cli.feet.song_feet import entries_of
 
-    for number, entry in enumerate(entries_of(data, folder)):
+    for number, entry in enumerate(entries_of(source)):
         for rule in {rule for rules in entry.ignore.values() for rule in rules}:
-            resolve_name(matching, rule, ("feet", number, "ignore"))
-
-
-def _number(data: Mapping[str, Any], key: str, before: float, most: float) -> float:
-    value = data.get(key, before)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value <= most:
-        raise SettingError((key,), f"'{key}' is a number from 0 to {most:g}")
-    return float(value)
-
-
-def _list(data: Mapping[str, Any], key: str) -> list[Any]:
-    value = data.get(key) or []
-    if not isinstance(value, list):
-        raise SettingError((key,), f"'{key}' is a list")
-    return value
+            resolve_name(source, matching, rule, ("feet", number, "ignore"))
 
 
 # Which cost preset a chart is solved with: the one place that decides it, for every command.
@@ -295,8 +272,6 @@ def choice_for(path: Path, given: str | None) -> PresetChoice:
     """The same with the configuration that holds for a chart file: the nearest dancetutor.yaml up the tree."""
     if given is not None:
         return choice_of(given)
-    from dancetutor_cli.chart.pack_files import find_settings_file
-
     settings = find_settings_file(path.absolute().parent)
     return choice_of(None, None if settings is None else load_configuration(settings, found=True))
 

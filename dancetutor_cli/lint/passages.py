@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,8 @@ from dancetutor_cli.chart.model import TICKS_PER_MEASURE
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.run.reading import config_path
+from dancetutor_cli.run.schema import Bounds, NotNegative
+from dancetutor_cli.run.yaml_files import load
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
@@ -26,21 +28,21 @@ _SHORTEST = 0.12  # seconds: a measure that warps leave less of has no speed any
 class PassageSettings:
     """configs/passages.yaml. What a row weighs is `step` and the rest of what it is; a passage is `measures` long."""
 
-    measures: int
-    most: int
-    harder: float
-    close: float
-    step: float
-    jump: float
-    bracket: float
-    hand: float
-    crossover: float
-    spin: float
-    footswitch: float
-    doublestep: float
-    jack: float
-    turn: float
-    unsure: float
+    measures: Annotated[int, Bounds(0)]
+    most: Annotated[int, Bounds(0)]
+    harder: NotNegative
+    close: NotNegative
+    step: NotNegative
+    jump: NotNegative
+    bracket: NotNegative
+    hand: NotNegative
+    crossover: NotNegative
+    spin: NotNegative
+    footswitch: NotNegative
+    doublestep: NotNegative
+    jack: NotNegative
+    turn: NotNegative
+    unsure: NotNegative
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,20 +78,7 @@ class Passage:
 @cache
 def passage_settings() -> PassageSettings:
     """The numbers of configs/passages.yaml; FileError says what is wrong with them."""
-    from dancetutor_cli.run.errors import FileError
-    from dancetutor_cli.run.yaml_files import read
-
-    path = config_path("passages.yaml")
-    source = read(path)
-    names = {field.name: field.type for field in fields(PassageSettings)}
-    source.only((), tuple(names))
-    values: dict[str, float] = {}
-    for name in names:
-        value = source.data.get(name)
-        if isinstance(value, bool) or not isinstance(value, int | float) or value < 0:
-            raise FileError(path, f"'{name}' must be a number, 0 or more")
-        values[name] = int(value) if names[name] == "int" else float(value)
-    return PassageSettings(**values)  # type: ignore[arg-type]
+    return load(config_path("passages.yaml"), PassageSettings)
 
 
 def hardest(play: Play, timing: Timing, settings: PassageSettings | None = None) -> tuple[Passage, ...]:

@@ -5,22 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
-from math import isfinite
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Annotated, Any, Literal, NamedTuple, TypeVar
 
-from dancetutor_cli.chart.pack_files import Condition, SettingError, texts_of
+from dancetutor_cli.chart.pack_files import Condition
 from dancetutor_cli.lint.rule import BY_METER, all_rules, matching, named_singly, rule_named
 from dancetutor_cli.run.errors import DancetutorError, FileError
-from dancetutor_cli.run.reading import config_path, shown_key
-from dancetutor_cli.run.yaml_files import read
+from dancetutor_cli.run.reading import config_path
+from dancetutor_cli.run.schema import Keys, MarkedYaml, NotNegative, Parsed, Text, Texts, check_value
+from dancetutor_cli.run.yaml_files import load, read
 
 # Which rules look at which chart, with which severity and options: layers of configuration, resolved.
 #
 # A layer is what one file says, or one entry of its `overrides`. Later layers win: configs/lint/default.yaml, what
 # `extends` names, dancetutor.yaml, the command line.
 
-SEVERITIES = ("error", "warning", "info", "off")
 Options = Mapping[str, Any]
 
 
@@ -150,79 +149,71 @@ def _worded(value: object) -> str:
     return f"meter {value}" if low and high else f"meter {high} or less" if high else f"meter {low} or more"
 
 
-def layer_of(data: Mapping[str, Any], when: Condition, place: tuple[str | int, ...]) -> Layer:
-    """What a file, or one of its overrides, says of rules where a condition holds; SettingError for what is wrong."""
+@dataclass(eq=False, repr=False)
+class RulesKeys:
+    """What a file, or an entry of its overrides, may say of rules; `rules` are checked by `layer_of`."""
+
+    select: Texts | None = None
+    ignore: Texts = ()
+    rules: dict[Text, Any] = field(default_factory=dict)
+
+
+def layer_of(source: MarkedYaml, entry: RulesKeys, when: Condition, place: Keys) -> Layer:
+    """What a file, or one of its overrides, says of rules where a condition holds; FileError for what is wrong."""
     rules: dict[str, Options] = {}
-    entries = data.get("rules") or {}
-    if not isinstance(entries, Mapping):
-        raise SettingError((*place, "rules"), "'rules' is a mapping of rules to their settings")
-    for name, options in entries.items():
-        at = (*place, "rules", str(name))
-        code = resolve_name(rule_named, str(name), at).code
-        # YAML 1.1 reads a bare `off` as False.
-        short = "off" if options is False else options
-        rules[code] = _options(code, {"severity": short} if isinstance(short, str) else short, at)
-    select = _selected(data, "select", place) if data.get("select") is not None else None
-    ignore, named = _selected(data, "ignore", place), named_singly(texts_of(data, "select"))
-    return Layer(when, select, ignore, rules, named)
+    for name, options in entry.rules.items():
+        at = (*place, "rules", name)
+        code = resolve_name(source, rule_named, name, at).code
+        rules[code] = _options(source, code, options, at)
+    selected, ignored = (
+        [resolve_name(source, matching, selector, (*place, key)) for selector in getattr(entry, key) or ()]
+        for key in ("select", "ignore")
+    )
+    select = None if entry.select is None else frozenset[str]().union(*selected)
+    return Layer(when, select, frozenset[str]().union(*ignored), rules, named_singly(entry.select or ()))
 
 
-def _options(code: str, options: Any, place: tuple[str | int, ...]) -> Options:
+def _options(source: MarkedYaml, code: str, options: Any, place: Keys) -> Options:
     defaults = default_rules()[code]
-    if not isinstance(options, Mapping):
-        raise SettingError(place, f"settings of a rule are a severity or a mapping of {', '.join(defaults)}")
-    given: dict[str, Any] = {
-        key: "off" if key == "severity" and value is False else value for key, value in options.items()
-    }
-    for key, value in given.items():
-        if key not in defaults:
-            raise SettingError((*place, key), f"{code} has no setting '{shown_key(key)}'; it has {', '.join(defaults)}")
-        if key == "severity" and value not in SEVERITIES:
-            raise SettingError((*place, key), f"'{shown_key(value)}' is no severity; they are {', '.join(SEVERITIES)}")
-        if not _same_kind(value, defaults[key]):
-            said = shown_key(repr(value))
-            raise SettingError((*place, key), f"{code} {key} must be a value like {defaults[key]!r}, not {said}")
+    if isinstance(options, str) or options is False:
+        options = {"severity": options}
+    elif not isinstance(options, dict):
+        raise source.error(place, f"settings of a rule are a severity or a mapping of {', '.join(defaults)}")
+    source.check_names(place, options, defaults)
+    for key, value in options.items():
+        at = (*place, key)
+        try:
+            check_value(source, at, value, _Severity if key == "severity" else _like(defaults[key], value))
+        except FileError as error:
+            raise source.error(at, f"{error.message}; by default it is {defaults[key]!r}") from None
         if fault := all_rules()[code].fault(key, value):
-            raise SettingError((*place, key), f"{code} {key}: {fault}")
-        if least := _too_small(value, defaults[key]):
-            raise SettingError((*place, key), f"{code} {key} must be {least}, not {value!r}")
-    return given
+            raise source.error(at, f"{code} {key}: {fault}")
+    return {key: _off(value) if key == "severity" else value for key, value in options.items()}
 
 
-def _same_kind(value: Any, default: Any) -> bool:
-    if isinstance(default, bool) or isinstance(value, bool):
-        return isinstance(value, bool) and isinstance(default, bool)
-    if default == BY_METER:  # a number or that word: `Rule.fault` looks at it
-        return isinstance(value, int | float | str)
-    if isinstance(default, int | float):
-        return isinstance(value, int | float)
+def _off(severity: Any) -> Any:
+    """YAML 1.1 reads a bare `off` as False."""
+    return "off" if severity is False else severity
+
+
+_Severity = Annotated[Literal["error", "warning", "info", "off"], Parsed(_off)]
+
+
+def _like(default: Any, value: Any) -> Any:
+    """What an option may be, by its default: nothing that rules measure is negative."""
     if isinstance(default, list):
-        return isinstance(value, list) and all(_same_kind(one, item) for item in default[:1] for one in value)
-    return isinstance(value, type(default))
+        return tuple[float, ...] if default and not isinstance(default[0], str) else tuple[str, ...]
+    if default == BY_METER:  # a number or that word: `Rule.fault` looks at words
+        return str if isinstance(value, str) else NotNegative
+    return type(default) if isinstance(default, bool | str) else NotNegative
 
 
-def _too_small(value: Any, default: Any) -> str:
-    """How large a number must be, if it is not: nothing that rules measure is negative, and no grid is 0."""
-    values, least = (value, 1) if isinstance(value, list) else ([value], 0)
-    numbers = [one for one in values if isinstance(one, int | float) and not isinstance(one, bool)]
-    if all(isfinite(one) and one >= least for one in numbers):
-        return ""
-    return f"at least {least}" + (" each" if isinstance(value, list) else "")
-
-
-def _selected(data: Mapping[str, Any], key: str, place: tuple[str | int, ...]) -> frozenset[str]:
-    found: frozenset[str] = frozenset()
-    for selector in texts_of(data, key):
-        found |= resolve_name(matching, selector, (*place, key))
-    return found
-
-
-def resolve_name(look_up: Callable[[str], _Meaning], name: str, place: tuple[str | int, ...]) -> _Meaning:
-    """What a name in a file means; SettingError with its place if it means nothing."""
+def resolve_name(source: MarkedYaml, look_up: Callable[[str], _Meaning], name: str, place: Keys) -> _Meaning:
+    """What a name in a file means; FileError with its place if it means nothing."""
     try:
         return look_up(name)
     except DancetutorError as error:
-        raise SettingError(place, str(error)) from None
+        raise source.error(place, str(error)) from None
 
 
 # How quick a move has to be to be worth a word: configs/move_times.yaml says what share of charts contain it.
@@ -251,23 +242,23 @@ def pad_of(steps_type: str) -> str:
     """The pad in the table that a steps type counts with."""
     family, _, kind = steps_type.partition("-")
     pad = f"{family}-{'double' if kind in ('halfdouble', 'double', 'routine') else 'single'}"
-    return pad if pad in _data()["meters"] else _OTHERS
+    return pad if pad in _times().meters else _OTHERS
 
 
 def bands(move: str) -> Iterator[Band]:
     """Every band of charts with the shares of a move."""
-    data = _data()
-    for pad, lasts in data["meters"].items():
-        edges: Sequence[Any] = [*lasts, None]
+    times = _times()
+    for pad, lasts in times.meters.items():
+        edges: Sequence[int | None] = [*lasts, None]
         first = 1
         for number, last in enumerate(edges):
-            yield Band(pad, first, last, data["charts"][pad][number], tuple(data["moves"][move][pad][number]))
+            yield Band(pad, first, last, times.charts[pad][number], times.moves[move][pad][number])
             first = 0 if last is None else last + 1
 
 
 def milliseconds() -> tuple[int, ...]:
     """The times of the table; `Band.within` has for each the per cent of charts with a move at most so long after."""
-    return tuple(_data()["milliseconds"])
+    return _times().milliseconds
 
 
 @cache
@@ -296,6 +287,16 @@ def described(move: str, share: float) -> Iterator[str]:
         yield f"{band.pad:12} meter {band.meters:12} {said}"
 
 
+@dataclass(eq=False, repr=False)
+class _MoveTimes:
+    """configs/move_times.yaml. meters, charts : by pad, of each band; moves : by move, pad, band and time, per cent"""
+
+    meters: dict[str, tuple[int, ...]]
+    charts: dict[str, tuple[int, ...]]
+    milliseconds: tuple[int, ...]
+    moves: dict[str, dict[str, tuple[tuple[float, ...], ...]]]
+
+
 @cache
-def _data() -> Mapping[str, Any]:
-    return read(config_path("move_times.yaml")).data
+def _times() -> _MoveTimes:
+    return load(config_path("move_times.yaml"), _MoveTimes)

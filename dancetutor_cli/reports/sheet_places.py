@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import accumulate
-from typing import Any
+from typing import Annotated
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.feet.limbs import hex_colour, limb_colours
 from dancetutor_cli.reports.terminal import safe
-from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import config_path
-from dancetutor_cli.run.yaml_files import read
+from dancetutor_cli.run.schema import NOT_IN_FILES, Bounds, HexColour, Positive, convert
+from dancetutor_cli.run.yaml_files import load, read
 
 # Pieces of SVG text: escaped, with short numbers.
 
@@ -53,6 +53,7 @@ def title(content: str) -> str:
 # Sizes and colours of the chart sheet: configs/sheet.yaml, with the colours of notes and feet.
 
 LETTERS = ("L", "R", "<", ">")  # by limb
+_Grid = Annotated[int, Bounds(1)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,21 +65,21 @@ class SheetStyle:
     quantisation : colour of a note by the coarsest grid it stands on (4 for 4ths ...)
     """
 
-    page_width: float
-    page_height: float
-    heading: float
-    lane: float
-    arrow: float
-    mark: float
-    row_spacing: float
-    beat: tuple[float, float]
-    margin: float
-    gutter: float
-    density: float
-    unsure: float
-    colours: Mapping[str, str]
-    quantisation: Mapping[int, str]
-    limbs: tuple[str, ...]
+    page_width: Positive
+    page_height: Positive
+    heading: Positive
+    lane: Positive
+    arrow: Positive
+    mark: Positive
+    row_spacing: Positive
+    beat: tuple[Positive, Positive]
+    margin: Positive
+    gutter: Positive
+    density: Positive
+    unsure: Positive
+    colours: dict[str, HexColour]
+    quantisation: Annotated[Mapping[int, str], NOT_IN_FILES] = field(default_factory=dict)
+    limbs: Annotated[tuple[str, ...], NOT_IN_FILES] = ()
 
     def note_colour(self, tick: int) -> str:
         """Colour of a note at a tick."""
@@ -90,17 +91,10 @@ class SheetStyle:
 @cache
 def sheet_style() -> SheetStyle:
     """The style of the project's configuration; FileError names what is missing or unknown."""
-    path = config_path("sheet.yaml")
-    data: dict[str, Any] = read(path).data
-    notes = read(config_path("highway.yaml")).data
-    data["quantisation"] = {int(grid): str(colour) for grid, colour in notes["quantisation"].items()}
-    data["limbs"] = tuple(hex_colour(rgb) for rgb in limb_colours().by_limb)
-    names = [field.name for field in fields(SheetStyle)]
-    if sorted(data) != sorted(names):
-        own = [name for name in names if name not in ("quantisation", "limbs")]
-        raise FileError(path, f"must have exactly these keys: {', '.join(own)}")
-    data["beat"] = (float(data["beat"][0]), float(data["beat"][1]))
-    return SheetStyle(**data)
+    style = load(config_path("sheet.yaml"), SheetStyle)
+    quantisation = convert(read(config_path("highway.yaml")), dict[_Grid, HexColour], ("quantisation",))
+    limbs = tuple(hex_colour(rgb) for rgb in limb_colours().by_limb)
+    return replace(style, quantisation=quantisation, limbs=limbs)
 
 
 # Where measures stand on a sheet: columns of measures side by side, systems of columns one below the other.

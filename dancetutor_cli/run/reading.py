@@ -12,7 +12,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from dancetutor_cli.run.errors import FileError, MissingFileError, UnavailableError
+from dancetutor_cli.run.errors import FileError, MissingFileError, UnavailableError, UsageError, did_you_mean
 
 # Reads the files of strangers: only regular files, of a bounded size; JSON of a bounded depth, every name once.
 #
@@ -169,6 +169,25 @@ def _root(name: str) -> Path:
 def config_path(name: str) -> Path:
     """Path of a file or folder in `configs/`, for example ``config_path("presets/thesis.yaml")``."""
     return _root("configs") / name
+
+
+def config_names(folder: str) -> list[str]:
+    """Names of the YAML files in a folder of `configs/`: of the presets, gaits, styles, forms or layouts there are."""
+    return sorted(path.stem for path in config_path(folder).glob("*.yaml"))
+
+
+def named_file(folder: str, name: str | Path) -> Path:
+    """The file of `configs/` that a user names, or a file of the user's own.
+
+    folder : "presets": what is named, but for its last letter. UsageError for a name that there is not
+    """
+    names, path = config_names(folder), Path(name)
+    if str(name) in names:
+        return config_path(f"{folder}/{name}.yaml")
+    if path.suffix.lower() in (".yaml", ".yml") or is_regular(path):
+        return path
+    near, there = did_you_mean(str(name), names), ", ".join(names)
+    raise UsageError(f"there is no {folder[:-1]} '{name}'{near}; there are: {there}, or give a .yaml file")
 
 
 def charts_path() -> Path:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import fields, replace
 from pathlib import Path
+from typing import Annotated, get_args, get_origin, get_type_hints
 
 import pytest
 
+from dancetutor_cli.dance import units
 from dancetutor_cli.dance.gait import Gait, gait_names, load_gait
 from dancetutor_cli.dance.plan import LEAST_FLIGHT
-from dancetutor_cli.dance.settings import default_settings, load_settings
+from dancetutor_cli.dance.settings import MotionSettings, default_settings, load_settings
 from dancetutor_cli.run.errors import FileError, UsageError
 from dancetutor_cli.run.reading import config_path
 
@@ -48,11 +51,11 @@ def test_a_file_changes_only_what_it_names(tmp_path: Path) -> None:
     ("text", "said"),
     [
         ("step:\n  speed: 1", ":2: unknown key 'speed' in 'step'; there are: longest"),
-        ("jump:\n  tuck: 0\n  far: wide", ":3: jump.far must be a number, not 'wide'"),
-        ("jump: {far: -1}", ":1: jump.far must be between 0 and 1000"),
+        ("jump:\n  tuck: 0\n  far: wide", ":3: jump.far must be a number from 0 to 20 metres, not 'wide'"),
+        ("jump: {far: -1}", ":1: jump.far must be a number from 0 to 20 metres, not -1"),
         ("jump: {far: .nan}", ":1: "),
-        ("step: {fast: 0.2}\nlegs: {}", ":2: unknown key 'legs'; there are: step"),
-        ("step: 3", ":1: 'step' must be a mapping"),
+        ("step: {fast: 0.2}\nlegs: {}", ":2: unknown key 'legs' (did you mean layers?); there are: step"),
+        ("step: 3", ":1: step must be a mapping"),
         ("step: [1, 2", ":"),
     ],
 )
@@ -86,3 +89,32 @@ def test_a_new_gait_is_one_file(tmp_path: Path) -> None:
 def test_the_least_flight_is_no_more_than_a_frame() -> None:
     """So long a flight that nobody is told of is never seen: at 60 pictures per second it is one at most."""
     assert 0.0 < LEAST_FLIGHT <= 1 / 60
+
+
+def test_every_number_of_the_motion_and_of_gaits_has_a_unit() -> None:
+    """A field without one of `dance/units.py` would be read without bounds, and nobody would know what it means."""
+    there = [kind for kind in vars(units).values() if get_origin(kind) is Annotated]
+    for section, kind in get_type_hints(MotionSettings).items():
+        for name, hint in get_type_hints(kind, include_extras=True).items():
+            assert hint in there, f"{section}.{name}"
+    for name, hint in get_type_hints(Gait, include_extras=True).items():
+        assert hint in there, name
+
+
+def test_angles_are_degrees() -> None:
+    """Independent of the units that somebody wrote: what the code turns into radians is an angle."""
+    fields = {name: {*get_type_hints(kind)} for name, kind in get_type_hints(MotionSettings).items()}
+    degrees = {
+        (section, name)
+        for section, kind in get_type_hints(MotionSettings).items()
+        for name, hint in get_type_hints(kind, include_extras=True).items()
+        if get_args(hint)[1].unit.startswith("degrees")
+    }
+    count = 0
+    for path in Path(units.__file__).parent.rglob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        for section, name in re.findall(r"radians\((?:\w+\.)*?(\w+)\.(\w+)\)", text):
+            if name in fields.get(section, ()):
+                assert (section, name) in degrees, f"{path.name}: {section}.{name}"
+                count += 1
+    assert count > 20

@@ -24,7 +24,7 @@ NEUTRAL = load_style("neutral")
 
 
 def changed(style: Style = NEUTRAL, frequency: float | None = None, damping: float = 0.5, **numbers: float) -> Style:
-    style = replace(style, numbers=replace(style.numbers, **numbers))
+    style = replace(style, body=replace(style.body, **numbers))
     if frequency is None:
         return style
     return replace(style, springs={p: Spring((frequency,) * 3, (damping,) * 3) for p in PARTS})
@@ -184,6 +184,6 @@ def _simulated(motion: Motion, style: Style):
 
     bones = bones_of(motion.skeleton)
     ragdoll = Ragdoll(motion.skeleton, bones, points_of(motion.skeleton, bones, style), style)
-    at = np.arange(0.0, motion.times[-1], 1 / style.numbers.update_rate)
+    at = np.arange(0.0, motion.times[-1], 1 / style.body.update_rate)
     nearest = np.minimum(np.round(at * motion.fps).astype(int), len(motion.times) - 1)
     return ragdoll, simulate(ragdoll, motion.rotations[nearest], motion.root[nearest], 0.0)[0]

@@ -29,7 +29,7 @@ def test_a_file_changes_only_what_it_names(tmp_path: Path) -> None:
     style, neutral = load_style(written(tmp_path, text)), load_style("neutral")
     assert style.springs["arms"] == Spring((1.0, 2.0, 3.0), (0.2, 0.2, 0.2))
     assert style.springs["hands"] == neutral.springs["hands"]
-    assert (style.numbers.gravity, style.numbers.friction) == (-2.0, neutral.numbers.friction)
+    assert (style.body.gravity, style.body.friction) == (-2.0, neutral.body.friction)
     assert style.force["chest"] == (0.0, 5.0, 6.0) and style.force["arms"] == (0.0, 0.0, 0.0)
     assert style.follower == {"head": Follower(2.0, 0.5, -1.0)}
     assert (style.placement, style.limits, style.extra_points) == ("hybrid", False, True)
@@ -39,18 +39,27 @@ def test_a_file_changes_only_what_it_names(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("placment: end\n", r"mine\.yaml:1: unknown key 'placment'; there are: placement, limits"),
-        ("limits: true\nplacement: top\n", r":2: placement must be one of end, center, hybrid, not 'top'"),
+        (
+            "placment: end\n",
+            r"mine\.yaml:1: unknown key 'placment' \(did you mean placement\?\); there are: placement, limits",
+        ),
+        ("limits: true\nplacement: top\n", r":2: placement: there is no 'top'; there are: end, center, hybrid"),
         ("limits: 1\n", r":1: limits must be true or false, not 1"),
-        ("body: {gravity: 99}\n", r":1: body\.gravity must be a number between -50 and 50, not 99"),
+        ("body: {gravity: 99}\n", r":1: body\.gravity must be a number from -50 to 50 m/s\^2, not 99"),
         ("body: {mass: 9}\n", r":1: unknown key 'mass' in 'body'; there are: gravity"),
-        ("springs: {arms: 5}\n", r":1: springs\.arms must have a frequency and a damping, and nothing else"),
-        ("springs: {arms: {frequency: [1, 2], damping: 1}}\n", r"must be one number or three, not 2"),
-        ("springs: {all: {frequency: 99, damping: 1}}\n", r"frequency must be a number between 0 and 60, not 99"),
+        ("springs: {arms: 5}\n", r":1: springs\.arms must be a mapping of frequency, damping, not 5"),
+        ("springs: {arms: {frequency: [1, 2], damping: 1}}\n", r"frequency must be one number or three, not \[1, 2\]"),
+        (
+            "springs: {all: {frequency: 99, damping: 1}}\n",
+            r":1: springs\.all\.frequency\[0\] must be a number from 0 to 60 hertz, not 99",
+        ),
         ("density: {legs: 5}\n", r":1: unknown key 'legs' in 'density'; there are: all, pelvis"),
         ("force: {chest: [1, .nan, 2]}\n", r":1: a number must be finite"),
-        ("disabled: skull\n", r":1: disabled must be a list of names"),
-        ("follower: {head: {frequency: 1}}\n", r":1: follower\.head must have frequency, damping, response"),
+        ("disabled: skull\n", r":1: disabled must be a list of values, each text, not"),
+        (
+            "follower: {head: {frequency: 1}}\n",
+            r":1: follower\.head\.damping is missing; it must be a number from 0\.1 to 5",
+        ),
     ],
 )
 def test_a_wrong_file_is_said_with_its_line(tmp_path: Path, text: str, said: str) -> None:

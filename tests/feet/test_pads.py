@@ -64,12 +64,17 @@ def test_a_pad_of_ones_own(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "line", "words"),
     [
-        ("reach", "reech", 5, "unknown key 'reech' in 'demo-pad'; there are: panels, centre, home, reach"),
-        ("  reach: 1.5\n", "", 2, "'reach' is missing"),
+        (
+            "reach",
+            "reech",
+            5,
+            "unknown key 'reech' in 'demo-pad' (did you mean reach?); there are: panels, centre, home, reach",
+        ),
+        ("  reach: 1.5\n", "", 2, "demo-pad.reach is missing; it must be a number"),
         ("[a, b]", "[a, c]", 4, "two different panels of a, b"),
-        ("[0, 0]", "[0, x]", 3, "'x' must be a number"),
+        ("[0, 0]", "[0, x]", 3, "demo-pad.centre[1] must be a number, not 'x'"),
         ("[b, 1, 0, [1, 0]]", "[b, -1, 0, [1, 0]]", 8, "same name or place"),
-        ("[b, 1, 0, [1, 0]]", "[b, 1, 0]", 8, "a panel is"),
+        ("[b, 1, 0, [1, 0]]", "[b, 1, 0]", 8, "must be a panel, [name, x, y, [arrow x, arrow y]]"),
         ("[0, 0]", "[0, .nan]", 3, "a number must be finite"),
         ("panels:", "panels: [", 9, "expected"),
     ],

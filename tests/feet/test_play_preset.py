@@ -13,7 +13,7 @@ from dancetutor_cli import feet
 from dancetutor_cli.feet.play import roll_gap
 from dancetutor_cli.feet.solver.engine import cost_at
 from dancetutor_cli.feet.solver.vocabulary import MODELS
-from dancetutor_cli.run.errors import DancetutorError, UsageError
+from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.run.reading import config_path
 
 NAMES = ["beginner", "ddr", "itg", "pump", "stamina", "thesis"]
@@ -73,13 +73,21 @@ def test_a_preset_of_ones_own_extends_another(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
-        ("extends: thesis\nweights:\n  spinn: 5\n", 3, "unknown key 'spinn' in 'weights'; there are: crossover, doubl"),
-        ("extends: thesis\nwheights: {}\n", 2, "unknown key 'wheights'; there are: extends, model"),
+        (
+            "extends: thesis\nweights:\n  spinn: 5\n",
+            3,
+            "unknown key 'spinn' in 'weights' (did you mean spin?); there are: crossover, doubl",
+        ),
+        (
+            "extends: thesis\nwheights: {}\n",
+            2,
+            "unknown key 'wheights' (did you mean weights?); there are: extends, model",
+        ),
         ("extends: thesis\nswitches:\n  brackets: true\n", 3, "there are: allow-doublestep"),
         ("extends: thesis\ncurves:\n  jack: {100: 1}\n", 3, "there are: none"),
         ("extends: itg\ncurves:\n  jack: 100\n", 3, "mapping of milliseconds to costs"),
-        ("extends: itg\ncurves:\n  jack: {-1: 100}\n", 3, "milliseconds must be whole numbers from 0 to 2047"),
-        ("extends: itg\ncurves:\n  jack: {100: 0.5}\n", 3, "costs must be whole numbers"),
+        ("extends: itg\ncurves:\n  jack: {-1: 100}\n", 3, "must be a whole number from 0 to 2047 milliseconds"),
+        ("extends: itg\ncurves:\n  jack: {100: 0.5}\n", 3, "curves.jack.100 must be a whole number from 0 to 1000000"),
         ("extends: itg\nconfidence: {100: 1001}\n", 2, "from 0 to 1000"),
         ("extends: thesis\nweights:\n  spin: lots\n", 3, "whole number"),
         ("extends: thesis\nweights:\n  spin: -1\n", 3, "whole number"),
@@ -88,8 +96,8 @@ def test_a_preset_of_ones_own_extends_another(tmp_path: Path) -> None:
         ("extends: itg\nmodel: thesis\n", 2, "'itg'"),
         ("extends: no-such\n", 1, f"there are: {', '.join(NAMES)}"),
         ("extends: mine.yaml\n", 1, "extends itself"),
-        ("model: thesis\nroll-window: 0.35\n", None, "'switches' lacks 'allow-doublestep'"),
-        ("roll-window: 0.35\n", None, "'model' must be one of thesis, itg"),
+        ("model: thesis\nroll-window: 0.35\n", None, "switches.allow-doublestep is missing"),
+        ("roll-window: 0.35\n", None, "model is missing: one of thesis, itg"),
         ("extends: thesis\nweights: 7\n", 2, "mapping"),
         ("extends: itg\npads: dance\n", 2, "list of steps types"),
         ("extends: itg\npads:\n - dance\n - danse\n", 4, "'danse' is no steps type (did you mean dance?); their firs"),
@@ -97,7 +105,7 @@ def test_a_preset_of_ones_own_extends_another(tmp_path: Path) -> None:
 )
 def test_what_is_wrong_is_named_with_file_and_line(tmp_path: Path, text: str, line: int | None, words: str) -> None:
     path = written(tmp_path, text)
-    with pytest.raises(UsageError) as caught:
+    with pytest.raises(FileError) as caught:
         feet.load_preset(path)
     place = f"{path}:{line}: " if line else f"{path}: "
     assert str(caught.value).startswith(place) and words in str(caught.value)
@@ -127,10 +135,10 @@ def test_a_strangers_preset_extends_nothing_outside_its_folder(tmp_path: Path) -
     (tmp_path / "inside").mkdir()
     path = written(tmp_path / "inside", "extends: ../base.yaml\n")
     assert feet.load_preset(path).weight("spin") == 7
-    with pytest.raises(UsageError, match="leads out of the folder"):
+    with pytest.raises(FileError, match="leads out of the folder"):
         feet.load_preset(path, confined=True)
     (tmp_path / "inside" / "link.yaml").symlink_to(tmp_path / "base.yaml")
-    with pytest.raises(UsageError, match="leads out of the folder"):
+    with pytest.raises(FileError, match="leads out of the folder"):
         feet.load_preset(written(tmp_path / "inside", "extends: link.yaml\n"), confined=True)
 
 

@@ -68,7 +68,7 @@ def test_a_file_changes_single_entries(tmp_path: Path) -> None:
         ("DT401: {grid: []}", "divisors of 192"),
         ("DT401: {grid: [0]}", "divisors of 192"),
         ("DT401: {grid: [4, 7]}", "divisors of 192"),
-        ("DT401: {grid: [a]}", "a value like"),
+        ("DT401: {grid: [a]}", "by default it is [4, 8"),
         ("DT504: {sizes: [418x]}", "'418x' is no size; write it as 418x164"),
         ("DT505: {sizes: [10x0]}", "'10x0' is no size"),
     ],

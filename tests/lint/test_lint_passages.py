@@ -94,7 +94,7 @@ def test_wrong_settings_are_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr("dancetutor_cli.lint.passages.config_path", lambda name: path)
     passage_settings.cache_clear()
     try:
-        with pytest.raises(Exception, match=r"passages.yaml.*'measures' must be a number"):
+        with pytest.raises(Exception, match=r"passages\.yaml:1: measures must be a whole number of 0 or more"):
             passage_settings()
     finally:
         monkeypatch.undo()

@@ -85,9 +85,9 @@ def test_explain_says_the_numbers(code: str) -> None:
     [
         ("DT201.max_seconds=soon", "is a number of seconds, or by-meter"),
         ("DT201.share=101", "per cent, at most 100"),
-        ("DT201.max_seconds=-1", "at least 0"),
-        ("DT201.max_seconds=true", "must be a value like 'by-meter'"),
-        ("DT202.max_seconds=by-meter", "must be a value like 0.3"),
+        ("DT201.max_seconds=-1", "a number of 0 or more"),
+        ("DT201.max_seconds=true", "by default it is 'by-meter'"),
+        ("DT202.max_seconds=by-meter", "by default it is 0.3"),
     ],
 )
 def test_nonsense_is_refused(said: str, words: str) -> None:

@@ -180,12 +180,12 @@ def _followed(
     motion: Motion, style: Style, wishes: Wishes, blows: Sequence[Blow]
 ) -> tuple[Poses, Poses, Distances, _Steps]:
     """The input and what the ragdoll made of it at the update rate, and how far it was."""
-    skeleton, rate = motion.skeleton, style.numbers.update_rate
+    skeleton, rate = motion.skeleton, style.body.update_rate
     bones = bones_of(skeleton)
     points = points_of(skeleton, bones, style)
     start, length = float(motion.times[0]), float(motion.times[-1] - motion.times[0])
     at = start + np.arange(-int(BEFORE * rate), int(np.ceil(length * rate)) + 1) / rate
-    given = _resampled(motion, at, style.numbers.sample_rate)
+    given = _resampled(motion, at, style.body.sample_rate)
     ragdoll = Ragdoll(skeleton, bones, points, style)
     aimed = follow_all(skeleton, *given, style)
     soles = BreakableSoles(ragdoll, *aimed) if "feet" in wishes.corrections else None

@@ -51,7 +51,7 @@ class StiffKnees(Actor):
 
     def __init__(self, ragdoll: Ragdoll) -> None:
         self.names = [f"{s}_knee" for s in "lr"]
-        self.base = ragdoll.style.numbers.stiffness
+        self.base = ragdoll.style.body.stiffness
         self.places: list[tuple[int, int]] = []
 
     def before(self, model: Any, data: Any, step: int) -> None:
@@ -92,7 +92,7 @@ class BreakableSoles(Actor):
                 )
         self.constraints = "".join(lines)
         self.aimed = np.stack(targets, axis=1)
-        speed = np.gradient(self.aimed, 1.0 / ragdoll.style.numbers.update_rate, axis=0)
+        speed = np.gradient(self.aimed, 1.0 / ragdoll.style.body.update_rate, axis=0)
         self.slow = (np.linalg.norm(speed[..., [0, 2]], axis=2) < SLOW) & (self.aimed[..., 1] < AIMED)
         self.held = np.zeros(self.slow.shape, dtype=bool)
 
@@ -197,7 +197,7 @@ class Struck(Actor):
 
     def __init__(self, ragdoll: Ragdoll, steps: int, start: float, blows: Sequence[Blow]) -> None:
         """steps : of the simulation, the first at second `start`"""
-        times = start + np.arange(steps) / ragdoll.style.numbers.update_rate
+        times = start + np.arange(steps) / ragdoll.style.body.update_rate
         self.chest = next(k for k, bone in enumerate(ragdoll.bones) if bone.name == "vt4") + 1
         self.force = np.zeros((len(times), 3))
         soft = np.zeros(len(times))

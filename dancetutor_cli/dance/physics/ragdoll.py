@@ -220,7 +220,7 @@ def build(skeleton: Skeleton, bones: tuple[Bone, ...], points: tuple[Point, ...]
     An actuator's control is kp times the place plus kd times the speed that its point shall have.
     more : XML of its equality section
     """
-    numbers = style.numbers
+    numbers = style.body
     actuators = "".join(_actuators(k, p, style) for k, p in enumerate(points))
     text = (
         f'<mujoco><compiler angle="degree"/><option timestep="{1 / numbers.update_rate:.9f}" '
@@ -252,7 +252,7 @@ def _body(skeleton: Skeleton, bones: tuple[Bone, ...], index: int, points: tuple
 def _joints(bone: Bone, style: Style) -> str:
     if bone.parent < 0:
         return "<freejoint/>"
-    stiff = f'damping="{style.numbers.stiffness:.6g}" stiffness="{style.numbers.spring:.6g}" solreflimit="{LIMIT:g} 1"'
+    stiff = f'damping="{style.body.stiffness:.6g}" stiffness="{style.body.spring:.6g}" solreflimit="{LIMIT:g} 1"'
     limited = "true" if style.limits else "false"
     bare = bone.name[2:] if bone.name[1] == "_" else bone.name
     if bone.hinge is None:
@@ -268,7 +268,7 @@ def _geom(bone: Bone, rest: Array, style: Style) -> str:
     density = f'density="{style.density[bone.part]:.6g}"'
     bare = bone.name[2:] if bone.name[1] == "_" else bone.name
     if bare == "talocrural":
-        rubs = f'friction="{style.numbers.friction:.4f} 0.005 0.0001" contype="2" conaffinity="1"'
+        rubs = f'friction="{style.body.friction:.4f} 0.005 0.0001" contype="2" conaffinity="1"'
         low, ball = FOOT_BOX[1] - rest[bone.joint][1], bone.end[2]
         parts = ((HEEL, ball, rubs), (ball, HEEL + 2 * FOOT_BOX[2], ""))  # toes bend where the ground is
         return "".join(

@@ -85,7 +85,7 @@ def follow(values: Array, rate: float, follower: Follower) -> Array:
 
 def follow_all(skeleton: Skeleton, rotations: Array, root: Array, style: Style) -> tuple[Array, Array]:
     """Targets (f, j, 4), (f, 3) of the ragdoll: the input at the style's update rate behind the style's followers."""
-    rate, given = style.numbers.update_rate, rotations
+    rate, given = style.body.update_rate, rotations
     rotations = given.copy()
     for part in _TRUNK:
         if part in style.follower:
@@ -167,7 +167,7 @@ def simulate(
     poses = pose_of(bones, rotations[:2, joints], root[:2])
     data.qpos[:] = poses[0]
     mujoco.mj_differentiatePos(model, data.qvel, float(model.opt.timestep), poses[0], poses[-1])
-    rate = ragdoll.style.numbers.update_rate
+    rate = ragdoll.style.body.update_rate
     gains = [p.gains(ragdoll.style) for p in points]
     kp, kd = (np.array([g[k] for g in gains]) for k in (0, 1))
     forces = _forces(ragdoll)

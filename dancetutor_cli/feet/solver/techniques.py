@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, overload
 
@@ -14,7 +15,8 @@ from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.solver.tables import EPSILON
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.run.reading import config_path
-from dancetutor_cli.run.yaml_files import read
+from dancetutor_cli.run.schema import NotNegative
+from dancetutor_cli.run.yaml_files import load
 
 if TYPE_CHECKING:
     from dancetutor_cli.feet.play import Play
@@ -60,28 +62,52 @@ def event_names(bits: int) -> tuple[str, ...]:
     return tuple(sorted(name for bit, name in enumerate(EVENTS) if bits >> bit & 1))
 
 
+@dataclass(frozen=True, slots=True)
+class _Gallop:
+    beats: NotNegative
+    seconds: NotNegative
+    neighbours: NotNegative
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    beats: NotNegative
+    seconds: NotNegative
+    length: NotNegative
+
+
+@dataclass(frozen=True, slots=True)
+class _Candle:
+    depth: NotNegative
+
+
+@dataclass(frozen=True, slots=True)
+class _Moves:
+    """configs/moves.yaml: from which time and length on something is called a move."""
+
+    candle: _Candle
+    gallop: _Gallop
+    stream: _Run
+    drill: _Run
+
+
 def limits() -> NDArray[np.float64]:
     """Thresholds of moves, by `tables.GALLOP_TICKS` and what follows."""
-    gallop, stream, drill = (
-        (_threshold(move, "beats") * TICKS_PER_BEAT, _threshold(move, "seconds"), _threshold(move, last))
-        for move, last in (("gallop", "neighbours"), ("stream", "length"), ("drill", "length"))
-    )
+    moves = _moves()
+    gallop = (moves.gallop.beats * TICKS_PER_BEAT, moves.gallop.seconds, moves.gallop.neighbours)
+    stream, drill = ((run.beats * TICKS_PER_BEAT, run.seconds, run.length) for run in (moves.stream, moves.drill))
     return np.array([*gallop, *stream, *drill])
 
 
 def long_ways(pad: Pad) -> NDArray[np.bool_]:
     """(c, c), whether a foot that goes from one panel to another passes from back to front or back: a candle."""
     across = np.abs(pad.panels[:, None] - pad.panels[None])
-    return np.asarray((across[..., 0] < EPSILON) & (across[..., 1] >= _threshold("candle", "depth") - EPSILON))
+    return np.asarray((across[..., 0] < EPSILON) & (across[..., 1] >= _moves().candle.depth - EPSILON))
 
 
 @cache
-def _threshold(move: str, name: str) -> float:
-    source = read(config_path("moves.yaml"))
-    value = source.data[move][name]
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or value < 0:
-        raise source.error((move, name), f"'{name}' of {move} must be a number, not {value!r}")
-    return float(value)
+def _moves() -> _Moves:
+    return load(config_path("moves.yaml"), _Moves)
 
 
 # Half turns: rows to which the body turns by 180 degrees at once. The linter's rule and the films' words ask here.

@@ -18,7 +18,7 @@ from dancetutor_cli.film.overlay.sprites import FLAG_EDGE, HighwayStyle, flag, f
 from dancetutor_cli.film.overlay.text import Typeface, fitted, wrapped
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.film.words import WHO
-from dancetutor_cli.run.yaml_files import RGB
+from dancetutor_cli.run.schema import RGB
 
 CALL_LEAST = 0.75  # size of a call's letters that is preferred to fewer words,
 CALL_SMALL = 0.5  # and to more than two lines

@@ -9,7 +9,6 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.feet.limbs import RGB
 from dancetutor_cli.film.layout import PixelBox
 from dancetutor_cli.film.overlay import blit as shapes
 from dancetutor_cli.film.overlay import sprites
@@ -17,6 +16,7 @@ from dancetutor_cli.film.overlay.blit import Box, Sprite, blit, rectangle
 from dancetutor_cli.film.overlay.sprites import HighwayStyle
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import Frame
+from dancetutor_cli.run.schema import RGB
 
 WHITE = (255, 255, 255)
 SOFT = (196, 202, 222)

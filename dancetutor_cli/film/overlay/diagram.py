@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.feet.limbs import RGB, Limb, limb_colours
+from dancetutor_cli.feet.limbs import Limb, limb_colours
 from dancetutor_cli.feet.play import StepKind
 from dancetutor_cli.film.layout import PixelBox
 from dancetutor_cli.film.notes import EPSILON, PanelLights
@@ -19,6 +19,7 @@ from dancetutor_cli.film.overlay import sprites
 from dancetutor_cli.film.overlay.blit import Box, Sprite, blit
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import FootFromAbove, Frame
+from dancetutor_cli.run.schema import RGB
 
 if TYPE_CHECKING:
     from dancetutor_cli.feet.play import Play

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import Kind
-from dancetutor_cli.feet.limbs import RGB, limb_colours
+from dancetutor_cli.feet.limbs import limb_colours
 from dancetutor_cli.film.notes import QUANTISATIONS, BeatLines, Callout, NoteTrack, PanelLights, Presses, lighting
 from dancetutor_cli.film.overlay import marks, sprites
 from dancetutor_cli.film.overlay.blit import Ink, Run, Sprite, blit, rectangle, strip
@@ -19,6 +19,7 @@ from dancetutor_cli.film.overlay.marks import EDGE, NUMBER_EDGE, NUMBER_OFF, Hig
 from dancetutor_cli.film.overlay.text import Typeface, fitted
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.film.scroll import Scroll
+from dancetutor_cli.run.schema import RGB
 
 BEATS_PER_MEASURE = 4
 NUMBER_SHARE = 0.019  # of the box's height that a measure's number is at least high

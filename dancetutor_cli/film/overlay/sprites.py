@@ -15,7 +15,8 @@ from dancetutor_cli.film.overlay.blit import Sprite
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.words import move_words
 from dancetutor_cli.run.reading import config_path
-from dancetutor_cli.run.yaml_files import RGB, load
+from dancetutor_cli.run.schema import RGB
+from dancetutor_cli.run.yaml_files import load
 
 # Corners of an arrow that points up, in halves of its size.
 _ARROW = np.array([

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Annotated
 
-from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import config_path
-from dancetutor_cli.run.yaml_files import Box, load
-
-RGB = tuple[int, int, int]
+from dancetutor_cli.run.schema import RGB, Bounds, Box, Positive, Share
+from dancetutor_cli.run.yaml_files import load
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,8 +17,8 @@ class CameraLook:
     """One preset camera; degrees and metres, see configs/picture.yaml."""
 
     azimuth: float
-    elevation: float
-    field: float
+    elevation: Annotated[float, Bounds(-89.99, 89.99, "degrees")]
+    field: Annotated[float, Bounds(1, 120, "degrees")]
     height: float
     margin: float
     arms: float
@@ -36,10 +35,10 @@ class FollowLook:
     and who walks on or off it whole
     """
 
-    seconds: float
+    seconds: Positive
     along: float
     region: Box
-    back: float
+    back: Annotated[float, Bounds(1, 2)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,13 +49,13 @@ class LightLook:
     """
 
     azimuth: float
-    elevation: float
+    elevation: Annotated[float, Bounds(20, 89, "degrees")]
     shadow: float
-    shadow_soft: float
+    shadow_soft: Positive
     shadow_far: float
     contact: float
-    contact_soft: float
-    contact_height: float
+    contact_soft: Positive
+    contact_height: Positive
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,10 +66,10 @@ class ToonLook:
     """
 
     bands: tuple[float, float]
-    soft: float
+    soft: Positive
     levels: tuple[float, float, float]
     shade: RGB
-    limbs: float
+    limbs: Share
     rim: float
     rim_from: float
     outline: RGB
@@ -84,19 +83,19 @@ class StageLook:
     floor: RGB
     floor_far: RGB
     floor_line: RGB
-    tile: float
-    pool: float
+    tile: Positive
+    pool: Positive
     wall: RGB
     wall_top: RGB
     strip: RGB
-    radius: float
+    radius: Positive
     pad: RGB
     pad_side: RGB
     panel: RGB
     panel_blank: RGB
     groove: RGB
     arrow: RGB
-    pad_height: float
+    pad_height: Positive
     mark: float
     glow: float
 
@@ -106,7 +105,7 @@ class Look:
     """All of configs/picture.yaml."""
 
     cameras: dict[str, CameraLook]
-    free_field: float
+    free_field: Positive
     follow: FollowLook
     light: LightLook
     toon: ToonLook
@@ -115,40 +114,7 @@ class Look:
 
 def read_look(path: Path) -> Look:
     """Read and check one file; FileError names the key that is wrong."""
-    look = load(path, Look)
-    for name, camera in look.cameras.items():
-        if not 1 <= camera.field <= 120 or not -89.99 <= camera.elevation <= 89.99:
-            raise FileError(path, f"cameras.{name}: field must be 1..120 degrees and elevation -89.99..89.99")
-        _check_region(path, f"cameras.{name}.region", camera.region)
-    positive = {
-        "free_field": look.free_field,
-        "follow.seconds": look.follow.seconds,
-        "toon.soft": look.toon.soft,
-        "stage.tile": look.stage.tile,
-        "stage.pool": look.stage.pool,
-        "stage.radius": look.stage.radius,
-        "stage.pad_height": look.stage.pad_height,
-        "light.shadow_soft": look.light.shadow_soft,
-        "light.contact_soft": look.light.contact_soft,
-        "light.contact_height": look.light.contact_height,
-    }
-    for name, value in positive.items():
-        if not value > 0:
-            raise FileError(path, f"{name}: {value:g} must be more than 0")
-    _check_region(path, "follow.region", look.follow.region)
-    if not 1 <= look.follow.back <= 2:
-        raise FileError(path, f"follow.back: {look.follow.back:g} must be 1 to 2")
-    if not 0 <= look.toon.limbs <= 1:
-        raise FileError(path, f"toon.limbs: {look.toon.limbs:g} must be 0 to 1")
-    if not 20 <= look.light.elevation <= 89:
-        raise FileError(path, f"light.elevation: {look.light.elevation:g} must be 20..89 degrees")
-    return look
-
-
-def _check_region(path: Path, name: str, region: Box) -> None:
-    left, top, right, bottom = region
-    if not (0 <= left < right <= 1 and 0 <= top < bottom <= 1):
-        raise FileError(path, f"{name}: left, top, right, bottom must be shares 0 to 1 in rising order")
+    return load(path, Look)
 
 
 @cache

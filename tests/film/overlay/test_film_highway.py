@@ -171,9 +171,9 @@ def test_a_wrong_layout_says_what_is_wrong(tmp_path: object) -> None:
 
     path = Path(str(tmp_path)) / "mine.yaml"
     for text, said in (
-        ("size: [1, 2]\nhighwy: {}\n", "unknown key 'highwy'; there are: size, dancer, highway"),
-        ("size: [100, 100]\nhighway: {box: [0, 0, 2, 1], lane: 9}\n", "highway.box"),
-        ("size: [100, 100]\nhighway: {box: [0, 0, 1, 1], lane: wide}\n", "highway.lane: 'wide' must be a number"),
+        ("size: [1, 2]\nhighwy: {}\n", ":2: unknown key 'highwy' (did you mean highway?); there are: size, dancer,"),
+        ("size: [100, 100]\nhighway: {box: [0, 0, 2, 1], lane: 9}\n", ":2: highway.box must be left, top"),
+        ("size: [100, 100]\nhighway: {box: [0, 0, 1, 1], lane: wide}\n", ":2: highway.lane must be a number from 4 to"),
         ("size: [100, 100]\n", "a dancer, a highway or both"),
         ("size: [100\n", "mine.yaml:2"),
     ):

@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.film.scene.look import RGB, StageLook
+from dancetutor_cli.film.scene.look import StageLook
 from dancetutor_cli.film.scene.scene import PANEL, Stage, SurfaceKind, pad_extent
+from dancetutor_cli.run.schema import RGB
 
 COLOURS = (
     "floor", "floor_far", "floor_line", "wall", "wall_top", "strip", "pad", "pad_side", "panel", "panel_blank",

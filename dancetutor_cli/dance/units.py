@@ -1,0 +1,21 @@
+"""Units of the numbers of the motion, as types of their fields; apart, since all modules with settings import it.
+
+A number of a file outside its bounds is refused: they keep slips out ("90" seconds for "0.90"), not styles.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from dancetutor_cli.run.schema import Bounds
+
+Metres = Annotated[float, Bounds(0, 20, "metres")]
+Seconds = Annotated[float, Bounds(0, 1000, "seconds")]  # as long as a song: a wait that never comes
+Degrees = Annotated[float, Bounds(0, 360, "degrees")]
+PerSecond = Annotated[float, Bounds(0, 1000, "per second")]
+MetresPerSecond = Annotated[float, Bounds(0, 100, "metres per second")]
+MetresPerSecondSquared = Annotated[float, Bounds(0, 100, "metres per second squared")]
+DegreesPerSecond = Annotated[float, Bounds(0, 1000, "degrees per second")]
+DegreesPerMetre = Annotated[float, Bounds(0, 1000, "degrees per metre")]
+Ratio = Annotated[float, Bounds(0, 1000)]  # a part of something, a factor, a weight: without a unit
+Count = Annotated[float, Bounds(0, 1000)]  # of things
