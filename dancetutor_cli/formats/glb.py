@@ -32,7 +32,7 @@ FREE = 0.002  # metres that a part of the body which touches nothing may be off 
 GRIPPING = 0.0003  # the same for a hand on the bar
 WAVING = 0.03  # and for hair, which is thrown about by what is so fast
 TOUCH = 0.06  # seconds around the touch of a palm in which its arm keeps all keys: contacts are measured there
-_FIRST_HAND = 2  # play.played.Limb
+FIRST_HAND = 2  # play.played.Limb
 _ANKLES, _WRISTS, _HAIR = ("l_talocrural", "r_talocrural"), ("l_radiocarpal", "r_radiocarpal"), "braid"
 
 
@@ -50,7 +50,7 @@ def clocks(motion: Motion) -> tuple[KeyTimes, ...]:
     frame = motion.times * motion.fps
     regular = np.abs(frame - np.rint(frame)) < 1e-6
     regular[[0, -1]] = True
-    feet, hands, hair, others = _groups(motion.skeleton)
+    feet, hands, hair, others = joint_groups(motion.skeleton)
     held, gripped = _touches(motion)
     free = np.full(len(every), FREE)
     out = [KeyTimes(feet, every)]
@@ -61,7 +61,7 @@ def clocks(motion: Motion) -> tuple[KeyTimes, ...]:
     return tuple(out)
 
 
-def _groups(skeleton: Skeleton) -> tuple[tuple[int, ...], ...]:
+def joint_groups(skeleton: Skeleton) -> tuple[tuple[int, ...], ...]:
     """Joints that carry the feet, that carry the hands, of the hair, and all others."""
     parents = skeleton.parents.tolist()
 
@@ -88,7 +88,7 @@ def _touches(motion: Motion) -> tuple[Mask, Mask]:
     """Keys (f,) near a palm's touch, and those at which a hand holds the bar."""
     held, gripped = np.zeros((2, len(motion.times)), dtype=bool)
     for contact in motion.contacts:
-        if contact.limb >= _FIRST_HAND:
+        if contact.limb >= FIRST_HAND:
             first, last = np.searchsorted(motion.times, (contact.start - TOUCH, contact.end + TOUCH))
             held[first:last] = True
     for grip in motion.grips:
@@ -104,14 +104,14 @@ def _off(motion: Motion, joints: tuple[int, ...], regular: Mask) -> Array:
     before, following = frames[after - 1], frames[after]
     share = ((motion.times[extra] - motion.times[before]) / (motion.times[following] - motion.times[before]))[:, None]
     far = np.zeros(len(regular))
-    for j, reach in zip(joints, _reaches(motion.skeleton)[list(joints)], strict=True):
+    for j, reach in zip(joints, reaches(motion.skeleton)[list(joints)], strict=True):
         q = quat.continuous(motion.rotations[:, j])
         drawn = quat.normalize((1.0 - share) * q[before] + share * q[following])
         far[extra] = np.maximum(far[extra], 2.0 * reach * np.linalg.norm(drawn - q[extra], axis=1))
     return far
 
 
-def _reaches(skeleton: Skeleton) -> Array:
+def reaches(skeleton: Skeleton) -> Array:
     """How far (j,) what hangs on each joint goes at most, metres; a bone at the end is as long as the one before."""
     length = np.linalg.norm(skeleton.offsets, axis=1)
     out = length.copy()

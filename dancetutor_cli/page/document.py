@@ -40,7 +40,8 @@ class Blob:
     def add(self, name: str, values: NDArray[Any], kind: str, differences: int = 0) -> None:
         """Add an array as little-endian numbers of a kind ("i2", "f4", ...).
 
-        differences : 0, 1 or 2: how often each row (the last axis) of whole numbers is replaced by its differences.
+        differences : 0, 1 or 2: how often each row (the last axis) of whole numbers is replaced by its differences;
+        these are stored with the sign as the lowest bit, so that small ones have empty high bytes.
         Numbers of more than a byte are stored byte by byte: first all low ones, which vary, then those that repeat.
         """
         array = np.ascontiguousarray(values, dtype=np.dtype(_DTYPES[kind]).newbyteorder("<"))
@@ -48,10 +49,13 @@ class Blob:
         for _ in range(differences):
             first = np.zeros((*array.shape[:-1], 1), dtype=array.dtype)
             array = np.diff(array, axis=-1, prepend=first)  # wraps round, and so does adding up
+        if differences:
+            signed = array.view(np.dtype(f"<i{array.dtype.itemsize}"))
+            array = (signed << 1) ^ (signed >> (8 * array.dtype.itemsize - 1))
         planes = np.frombuffer(array.tobytes(), dtype=np.uint8).reshape(-1, array.dtype.itemsize).T
         data = np.ascontiguousarray(planes).tobytes()
         self.index[name] = [kind, int(array.size), int(row), differences, self._size]
-        self.sizes[name] = len(zlib.compress(data, 6))
+        self.sizes[name] = len(zlib.compress(data, 1))
         self._parts.append(data)
         self._size += len(data)
 

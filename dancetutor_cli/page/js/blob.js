@@ -64,6 +64,10 @@ export class Arrays {
       if (width === 1) to.set(from);
       else for (let i = 0, at = plane; i < count; ++i, at += width) to[at] = from[i];
     }
+    if (differences) {
+      const raw = new (width === 1 ? Uint8Array : width === 2 ? Uint16Array : Uint32Array)(out.buffer);
+      for (let i = 0; i < count; ++i) raw[i] = (raw[i] >>> 1) ^ -(raw[i] & 1); // the sign is the lowest bit
+    }
     for (let round = 0; round < differences; ++round) {
       for (let start = 0; start < count; start += row) {
         for (let i = start + 1, sum = out[start]; i < start + row; ++i) sum = out[i] += sum;

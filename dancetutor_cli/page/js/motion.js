@@ -1,33 +1,31 @@
-// The dancer's motion: where each joint is at any second, as a .glb viewer would draw it.
+// The dancer's motion: where each joint is at any second. Keys lie on an even clock for each group of joints.
 
-import { lastUpTo } from "./maths.js";
-
-const TICK = 1e-5; // body.py
+const ROOT = 1e-4; // metres; content.py
 
 /**
  * @typedef {object} Group
  * @property {number[]} joints
- * @property {Float64Array} times
- * @property {Int16Array} turns joint, then w x y z, then key
+ * @property {number} rate keys a second
+ * @property {number} first number of the first key, counted from second 0
+ * @property {number} count of keys
+ * @property {number[]} steps of each joint's numbers
+ * @property {number[]} rows the first row of each joint
+ * @property {boolean[]} full whether w is there: else it follows from x, y and z
+ * @property {Int16Array} turns row (w, x, y, z or x, y, z of each joint), then key
  */
 
 export class Motion {
   /**
-   * @param {any} about @param {import("./blob.js").Arrays} arrays @param {any} body
+   * @param {import("./doc.js").MotionDoc} about @param {import("./blob.js").Arrays} arrays @param {import("./doc.js").Body} body
    */
   constructor(about, arrays, body) {
-    this.parents = /** @type {number[]} */ (body.parents);
-    this.offsets = /** @type {number[][]} */ (body.offsets);
-    this.inverse = /** @type {number[][]} */ (body.inverseBind);
-    this.start = /** @type {number} */ (about.start);
-    this.end = /** @type {number} */ (about.end);
-    /** @type {Group[]} */
-    this.groups = about.groups.map((/** @type {any} */ group, /** @type {number} */ k) => ({
-      joints: group.joints,
-      times: Float64Array.from(arrays.get(`${about.name}.time${k}`), (t) => t * TICK),
-      turns: /** @type {Int16Array} */ (arrays.get(`${about.name}.turn${k}`)),
-    }));
-    this.root = Float32Array.from(arrays.get(`${about.name}.root`), (x) => x * TICK);
+    this.parents = body.parents;
+    this.offsets = body.offsets;
+    this.inverse = body.inverseBind;
+    this.start = about.start;
+    this.end = about.end;
+    this.groups = about.groups.map((group) => readGroup(group, /** @type {Int16Array} */ (arrays.get(`${about.name}.turn${group.number}`))));
+    this.root = Float32Array.from(arrays.get(`${about.name}.root`), (x) => x * ROOT);
   }
 
   /** @returns {Pose} */
@@ -43,20 +41,15 @@ export class Motion {
     const local = pose.local;
     for (let j = 0; j < this.parents.length; ++j) local.set([1, 0, 0, 0], 4 * j);
     for (let g = 0; g < this.groups.length; ++g) {
-      const { joints, times, turns } = this.groups[g];
-      const n = times.length;
-      const before = Math.min(Math.max(lastUpTo(times, second), 0), Math.max(n - 2, 0));
-      const after = Math.min(before + 1, n - 1);
-      const span = times[after] - times[before];
-      const share = span > 0 ? Math.min(Math.max((second - times[before]) / span, 0), 1) : 0;
-      for (let i = 0; i < joints.length; ++i) {
-        const at = 4 * i * n;
-        mix(local, 4 * joints[i], turns, at, n, before, after, share);
-      }
+      const group = this.groups[g];
+      const { joints, count, rows, full, steps } = group;
+      const place = Math.min(Math.max(second * group.rate - group.first, 0), count - 1);
+      const before = Math.min(Math.floor(place), Math.max(count - 2, 0));
+      const after = Math.min(before + 1, count - 1);
+      const share = place - before;
+      for (let i = 0; i < joints.length; ++i) mix(local, 4 * joints[i], group.turns, rows[i] * count, count, before, after, share, full[i] ? 0 : steps[i]);
       if (g === 0) {
-        for (let k = 0; k < 3; ++k) {
-          pose.root[k] = this.root[k * n + before] * (1 - share) + this.root[k * n + after] * share;
-        }
+        for (let k = 0; k < 3; ++k) pose.root[k] = this.root[k * count + before] * (1 - share) + this.root[k * count + after] * share;
       }
     }
   }
@@ -138,17 +131,31 @@ export class Pose {
   }
 }
 
+/** @param {import("./doc.js").MotionGroup} group @param {Int16Array} turns @returns {Group} */
+function readGroup({ joints, rate, first, steps, full }, turns) {
+  const rows = full.map((_, i) => full.slice(0, i).reduce((sum, whole) => sum + (whole ? 4 : 3), 0));
+  const count = turns.length / full.reduce((sum, whole) => sum + (whole ? 4 : 3), 0);
+  return { joints, rate, first, steps, full, rows, count, turns };
+}
+
 /**
  * A quaternion between two keys; they lie near each other and in one half of the sphere, so a straight mix will do.
- * @param {Float64Array} out @param {number} to @param {Int16Array} turns @param {number} at @param {number} n
- * @param {number} before @param {number} after @param {number} share
+ * @param {Float64Array} out @param {number} to @param {Int16Array} turns @param {number} at of the first number
+ * @param {number} n keys @param {number} before @param {number} after @param {number} share
+ * @param {number} step of x, y and z where w is left out, 0 where it is there
  */
-function mix(out, to, turns, at, n, before, after, share) {
+function mix(out, to, turns, at, n, before, after, share, step) {
+  const from = step ? 1 : 0;
   let length = 0;
-  for (let k = 0; k < 4; ++k) {
-    const value = turns[at + k * n + before] * (1 - share) + turns[at + k * n + after] * share;
+  for (let k = from; k < 4; ++k) {
+    const row = at + (k - from) * n;
+    const value = (turns[row + before] * (1 - share) + turns[row + after] * share) * (step || 1);
     out[to + k] = value;
     length += value * value;
+  }
+  if (step) {
+    out[to] = Math.sqrt(Math.max(1 - length, 0));
+    return;
   }
   length = Math.sqrt(length) || 1;
   for (let k = 0; k < 4; ++k) out[to + k] /= length;
