@@ -182,7 +182,7 @@ def _webp(image: NDArray[np.uint8]) -> bytes:
 
 # What a page holds: chart, feet, findings and passages, the dancer and the look of the films, as plain data.
 
-SCHEMA = 1  # of the page's data; grows when an old page's script could not read it
+SCHEMA = 2  # of the page's data; grows when an old page's script could not read it
 
 
 @dataclass(frozen=True, slots=True)

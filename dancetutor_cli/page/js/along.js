@@ -1,13 +1,11 @@
 // The panel of playing along: keys and pads, waiting, help that fades, calibration, and how it went.
 
+import { calibrateDialog } from "./calibrate.js";
 import { el, toggle } from "./dom.js";
-import { GOOD, WINDOW, latencyOf } from "./judge.js";
+import { GOOD, WINDOW } from "./judge.js";
 import { panelName } from "./labels.js";
 import { meanText, scoreText } from "./said.js";
-import { HELPS } from "./settings.js";
-
-const TAPS = 12; // clicks of a calibration
-const BETWEEN = 0.6; // seconds between them
+import { FEET, HELPS } from "./settings.js";
 
 /** @param {import("./app.js").App} app */
 export function alongPanel(app) {
@@ -16,6 +14,8 @@ export function alongPanel(app) {
   const wait = toggle(t("wait"), app.practice.wait, (on) => app.practice.setWait(on), "w");
   const help = el("select", { id: "feet-help" }, ...HELPS.map((name) => el("option", { value: name }, t(`help-${name}`))));
   help.addEventListener("change", () => app.set("help", help.value));
+  const foot = el("select", { id: "foot" }, ...FEET.map((name) => el("option", { value: name }, t(`foot-${name}`))));
+  foot.addEventListener("change", () => app.practice.setFoot(foot.value));
   const score = el("p", { class: "score", role: "status" });
   const keys = el("p", { class: "keys" });
   const pads = el("p", { class: "hint", role: "status" });
@@ -29,6 +29,7 @@ export function alongPanel(app) {
     along.setAttribute("aria-pressed", String(app.practice.along));
     wait.setAttribute("aria-pressed", String(app.practice.wait));
     help.value = settings.help;
+    foot.value = settings.foot;
     const plugged = app.input.pads().map((pad) => pad.id.slice(0, 40));
     pads.textContent = plugged.length ? t("padIs", { name: plugged.join(", ") }) : t("noPad");
     const tally = app.practice.tally();
@@ -40,6 +41,7 @@ export function alongPanel(app) {
   return el("div", {},
     el("p", { class: "hint" }, t("alongHint")), el("p", { class: "group" }, along, wait), score,
     el("p", { class: "hint" }, t("windows", { good: 1000 * GOOD, wide: 1000 * WINDOW })),
+    el("p", { class: "field whole" }, el("label", { for: "foot" }, t("foot")), foot),
     el("p", { class: "field whole" }, el("label", { for: "feet-help" }, t("feetHelp")), help),
     keys, pads, el("p", { class: "group" }, assign, calibrate), el("p", { class: "hint" }, t("padHint")));
 }
@@ -61,37 +63,6 @@ function assignDialog(app, done) {
   };
   dialog.addEventListener("close", () => { app.input.learning = null; app.save(); done(); dialog.remove(); });
   ask();
-  document.body.append(dialog);
-  dialog.showModal();
-}
-
-/** Tap to a click; the middle of how late the taps are is the latency. @param {import("./app.js").App} app */
-async function calibrateDialog(app) {
-  const { t, sound } = app;
-  app.transport.pause();
-  await sound.start();
-  const text = el("p", { role: "status" }, t("calibrateHint"));
-  const dialog = el("dialog", { class: "assign", "aria-label": t("calibrate") }, el("h2", {}, t("calibrate")), text,
-    el("button", { type: "button", onclick: () => dialog.close() }, t("close")));
-  /** @type {number[]} */
-  const taps = [];
-  const first = sound.now() + 1;
-  const beats = Array.from({ length: TAPS }, (_, k) => first + k * BETWEEN);
-  for (const beat of beats) sound.click(1600, 0.5, beat);
-  const latency = sound.latency;
-  app.input.learning = (name) => {
-    if (name === "Escape") return dialog.close();
-    taps.push(sound.now() - latency);
-  };
-  const timer = setTimeout(() => {
-    const found = latencyOf(taps, beats);
-    if (found === null) text.textContent = t("calibrateFew");
-    else {
-      app.set("latency", Math.round(1000 * found) / 1000);
-      text.textContent = t("calibrateDone", { ms: Math.round(1000 * found) });
-    }
-  }, 1000 * (1.3 + TAPS * BETWEEN));
-  dialog.addEventListener("close", () => { clearTimeout(timer); app.input.learning = null; dialog.remove(); });
   document.body.append(dialog);
   dialog.showModal();
 }

@@ -9,12 +9,12 @@ import { Motion } from "./motion.js";
 import { Practice } from "./practice.js";
 import { stretch } from "./places.js";
 import { Redance } from "./redance.js";
-import { CAMERAS, FIRST_VIEW, HELPS, loadNotes, loadSettings, saveNotes, saveSettings } from "./settings.js";
+import { CAMERAS, FEET, FIRST_VIEW, HELPS, loadNotes, loadRecord, loadSettings, saveNotes, saveRecord, saveSettings } from "./settings.js";
 import { Sound, clicksOf } from "./sound.js";
 import { speak } from "./words.js";
 
 export class App {
-  /** @param {any} doc @param {import("./blob.js").Arrays} arrays */
+  /** @param {import("./doc.js").PageDoc} doc @param {import("./blob.js").Arrays} arrays */
   constructor(doc, arrays) {
     this.doc = doc;
     this.arrays = arrays;
@@ -25,7 +25,8 @@ export class App {
     this.chart = new Chart(doc, arrays);
     this.id = `${doc.words.file}#${doc.words.index}:${doc.play.total}`;
     this.notes = loadNotes(this.id);
-    this.motions = /** @type {Motion[]} */ (doc.motions.map((/** @type {any} */ about) => new Motion(about, arrays, doc.body)));
+    this.record = loadRecord(this.id);
+    this.motions = doc.motions.map((about) => new Motion(about, arrays, doc.body));
     this.sound = new Sound();
     this.sound.volume = this.settings.volume;
     this.start = Math.min(0, this.motions[0].start);
@@ -35,10 +36,11 @@ export class App {
     this.transport.lead = (a) => this.chart.secondAt(this.chart.beatAt(a) - this.leadBeats);
     this.transport.onChange = () => this.changed();
     this.practice = new Practice(this);
+    this.practice.judge.foot = FEET.indexOf(this.settings.foot) - 1;
     this.transport.onPass = () => this.practice.pass();
     this.transport.onEnd = () => this.practice.finish();
     this.sound.clicks = clicksOf(this.chart, () => ({
-      claps: this.claps, metronome: this.settings.metronome,
+      claps: this.claps, metronome: this.settings.metronome, played: (row) => this.practice.along && row.steps.some(({ note }) => !this.practice.judge.asks(note)),
     }));
     this.input = new Input(doc.pad.names, this.settings, doc.pad.directions);
     this.input.onPress = (press) => {
@@ -91,7 +93,13 @@ export class App {
   /** The clock does something else than before. */
   changed() {
     this.sound.follow(this.transport.run);
+    if (!this.transport.playing) this.practice.keep();
     this.tell("clock");
+  }
+
+  saveRecord() {
+    saveRecord(this.id, this.record);
+    this.tell("record");
   }
 
   save() {
@@ -118,10 +126,10 @@ export class App {
     this.tell("settings");
   }
 
-  /** The second that is seen now: what is heard now was scheduled a little earlier. */
+  /** The second that is seen now: what is heard now was scheduled a little earlier, and the screen may be late. */
   second() {
     const { transport, sound } = this;
-    const heard = transport.second() - (transport.playing && !transport.waiting ? sound.latency * transport.rate : 0);
+    const heard = transport.second() - (transport.playing && !transport.waiting ? (sound.latency - this.settings.sight) * transport.rate : 0);
     return Math.max(heard, this.start);
   }
 
@@ -233,12 +241,37 @@ export class App {
   async loopPassage(number) {
     const passage = this.doc.passages[number];
     if (!passage) return;
-    this.setLoop(passage.start, passage.end, number);
+    await this.loopBeats(this.chart.beatAt(passage.start), this.chart.beatAt(passage.end));
+    this.passage = number;
+    this.tell("loop");
+  }
+
+  /** Loop a stretch from its lead-in. @param {number} from @param {number} to beats @param {number} [rate] */
+  async loopBeats(from, to, rate) {
+    const [a, b] = [this.chart.secondAt(from), this.chart.secondAt(to)];
+    this.setLoop(a, b);
+    if (rate !== undefined) this.setRate(rate);
     const playing = this.transport.playing;
     this.transport.restartLoop();
-    if (this.practice.along) this.practice.restart(passage.start);
+    if (this.practice.along) this.practice.restart(a);
     if (!playing) await this.play();
     this.practice.updateHold();
+  }
+
+  /** Keep the loop that there is under a name. @param {string} name */
+  saveLoop(name) {
+    const { loop } = this.transport;
+    if (!loop) return;
+    const round = (/** @type {number} */ beat) => Math.round(1000 * beat) / 1000;
+    const [from, to] = [loop.a, loop.b].map((second) => round(this.chart.beatAt(second)));
+    this.record.loops = [...this.record.loops, { name: name.slice(0, 60), from, to, rate: Math.round(100 * this.practice.chosenRate) }].slice(-50);
+    this.saveRecord();
+  }
+
+  /** @param {import("./record.js").SavedLoop} loop */
+  dropLoop(loop) {
+    this.record.loops = this.record.loops.filter((one) => one !== loop);
+    this.saveRecord();
   }
 
   nextHelp() {
@@ -314,6 +347,7 @@ export class App {
     return {
       second, speed: this.pace * this.settings.speed, mirror: this.mirrored,
       marked: (_, row) => practice.tells(row), verdicts: practice.along ? practice.judge.verdicts : new Map(),
+      asked: (n) => !practice.along || practice.judge.asks(n),
       loop: this.transport.loop, feet: this.redance.limbs, chosen: this.chosen,
       keys: practice.along ? this.input.names().map(([name]) => name) : [], held: practice.along ? this.input.held : [],
       feedback: practice.along ? practice.shown() : null,

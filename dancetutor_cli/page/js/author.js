@@ -133,6 +133,7 @@ export function playOf(app) {
   const { doc, arrays, redance } = app;
   const columns = app.chart.columns;
   const [steps, limbs, parts, ticks, seconds, facing] = ["steps", "limb", "part", "tick", "second", "facing"].map((name) => arrays.get(`row.${name}`));
+  /** @type {(number | null)[]} */
   const stands = [null, null];
   const rows = [];
   for (let row = 0; row < ticks.length; ++row) {
@@ -143,7 +144,7 @@ export function playOf(app) {
       if (!steps[at]) continue;
       const step = own?.steps.find((one) => one.column === column);
       const limb = step ? redance.limbOf(step) : limbs[at];
-      if (limb === 0 || limb === 1) stands[limb] = /** @type {any} */ (column);
+      if (limb === 0 || limb === 1) stands[limb] = column;
       here.push({ column, limb: LIMBS[limb] ?? null, kind: KINDS[steps[at]], part: PARTS[parts[at]] ?? null });
     }
     if (!here.length) continue;

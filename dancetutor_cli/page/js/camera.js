@@ -56,7 +56,7 @@ export function matrix(camera, width, height) {
 
 /**
  * A preset that stands as near as it can while pad, arms and hands up are seen (video/camera.py).
- * @param {any} doc @param {string} name @param {number} width @param {number} height
+ * @param {import("./doc.js").PageDoc} doc @param {string} name @param {number} width @param {number} height
  * @returns {Camera}
  */
 export function preset(doc, name, width, height) {
@@ -87,7 +87,7 @@ export function preset(doc, name, width, height) {
 /**
  * A camera turned round the dancer by hand. Nearer it looks down to the pad, and never so near that the pad, where her
  * feet are, leaves the picture.
- * @param {any} doc @param {{yaw: number, pitch: number, zoom: number}} free degrees, degrees, 1 = as near as "back"
+ * @param {import("./doc.js").PageDoc} doc @param {{yaw: number, pitch: number, zoom: number}} free degrees, degrees, 1 = as near as "back"
  * @param {number} width @param {number} height
  * @returns {Camera & {zoom: number}} zoom: as near as it has come
  */
@@ -139,7 +139,7 @@ export function beside(camera, root, aspect) {
   return by === 0 ? camera : { ...camera, position: plus(camera.position, right, by), target: plus(camera.target, right, by) };
 }
 
-/** @param {any} doc @param {any} about @returns {number[][]} */
+/** @param {import("./doc.js").PageDoc} doc @param {import("./doc.js").Camera} about @returns {number[][]} */
 function corners(doc, about) {
   const { low, high, tall } = doc.stage;
   const thick = doc.look.stage.pad_height;

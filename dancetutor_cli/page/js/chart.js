@@ -34,7 +34,7 @@ const TRICKY = ["half-turn-away", "half-turn-back", "half-turn", "crossover-half
  */
 
 export class Chart {
-  /** @param {any} doc @param {import("./blob.js").Arrays} arrays */
+  /** @param {import("./doc.js").PageDoc} doc @param {import("./blob.js").Arrays} arrays */
   constructor(doc, arrays) {
     this.second = /** @type {Float64Array} */ (arrays.get("note.second"));
     this.end = /** @type {Float64Array} */ (arrays.get("note.end"));
@@ -61,7 +61,7 @@ export class Chart {
     this.last = Math.max(0, ...this.rows.map((row) => row.second), ...this.presses.flat().map((n) => this.end[n]));
   }
 
-  /** @param {any} doc @param {import("./blob.js").Arrays} arrays @returns {Row[]} */
+  /** @param {import("./doc.js").PageDoc} doc @param {import("./blob.js").Arrays} arrays @returns {Row[]} */
   readRows(doc, arrays) {
     const columns = this.columns;
     const steps = arrays.get("row.steps");

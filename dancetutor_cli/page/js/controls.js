@@ -1,7 +1,7 @@
 // The row of buttons under the picture, and the keys: one table says what each does, for buttons, keys and help alike.
 
 import { el, toggle } from "./dom.js";
-import { CAMERAS } from "./settings.js";
+import { CAMERAS, FEET } from "./settings.js";
 
 /**
  * @typedef {object} Action
@@ -36,6 +36,8 @@ export function actionsOf(app, ui) {
     { name: "claps", keys: ["h"], run: () => app.setClaps(!app.claps) },
     { name: "along", keys: ["p"], run: () => app.practice.setAlong(!app.practice.along) },
     { name: "wait", keys: ["w"], run: () => app.practice.setWait(!app.practice.wait) },
+    { name: "foot", keys: ["t"], run: () => app.practice.setFoot(FEET[(FEET.indexOf(settings.foot) + 1) % FEET.length]) },
+    { name: "coach", keys: ["c"], run: () => (app.practice.coach.on ? app.practice.coach.stop() : void app.practice.coach.start()) },
     { name: "feetHelp", keys: ["g"], run: () => app.nextHelp() },
     { name: "camera", keys: ["v"], run: () => app.setCamera(CAMERAS[(CAMERAS.indexOf(settings.camera) + 1) % CAMERAS.length]) },
     { name: "resetView", keys: ["0"], run: () => app.resetView() },
@@ -47,6 +49,8 @@ export function actionsOf(app, ui) {
     { name: "otherFoot", keys: ["o"], run: () => otherFoot(app, ui) },
     { name: "notesFaster", keys: ["."], run: () => app.set("speed", Math.min(settings.speed * 1.15, 4)) },
     { name: "notesSlower", keys: [","], run: () => app.set("speed", Math.max(settings.speed / 1.15, 0.3)) },
+    { name: "zoomIn", keys: ["z"], run: () => ui.zoom(1) },
+    { name: "zoomOut", keys: ["Shift+Z"], run: () => ui.zoom(-1) },
     { name: "helpSheet", keys: ["?"], run: () => ui.help() },
   ];
 }
@@ -100,6 +104,13 @@ export function listenToKeys(app, actions) {
   });
   document.addEventListener("keyup", (event) => app.input.keyUp(event));
   window.addEventListener("blur", () => app.input.releaseAll()); // what is let go elsewhere is not told here
+}
+
+/** Buttons beside the strip that show less or more of the song. @param {import("./app.js").App} app @param {import("./layout.js").Ui} ui */
+export function makeZoom({ t }, ui) {
+  return el("div", { class: "zoom" }, ...[["zoomIn", "+", 1, "z"], ["zoomOut", "−", -1, "⇧Z"]].map(([name, sign, by, key]) => el("button", {
+    type: "button", "aria-label": t(String(name)), title: `${t(String(name))} (${key})`, onclick: () => ui.zoom(Number(by)),
+  }, String(sign))));
 }
 
 /**

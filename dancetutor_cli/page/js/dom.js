@@ -4,14 +4,14 @@
  * An element with attributes and children; `on...` are listeners, `class` and the rest attributes.
  * @template {keyof HTMLElementTagNameMap} K
  * @param {K} tag
- * @param {Record<string, any>} [about]
+ * @param {Record<string, string | number | boolean | null | undefined | ((event: never) => void)>} [about]
  * @param {...(Node | string | null)} children
  * @returns {HTMLElementTagNameMap[K]}
  */
 export function el(tag, about = {}, ...children) {
   const out = document.createElement(tag);
   for (const [name, value] of Object.entries(about)) {
-    if (name.startsWith("on")) out.addEventListener(name.slice(2), value);
+    if (typeof value === "function") out.addEventListener(name.slice(2), /** @type {EventListener} */ (value));
     else if (name.startsWith("aria-")) out.setAttribute(name, String(value)); // a state: "true" or "false"
     else if (value === true) out.setAttribute(name, "");
     else if (value !== false && value !== null && value !== undefined) out.setAttribute(name, String(value));
@@ -32,6 +32,19 @@ export function toggle(text, on, change, hint) {
     change(now);
   });
   return button;
+}
+
+/**
+ * Bars side by side, one colour for each series; readers get the words.
+ * @param {number[][]} series of equal length @param {string[]} colours @param {string} about @param {number} [most] height of the highest bar
+ */
+export function bars(series, colours, about, most = Math.max(1, ...series.flat())) {
+  return el("div", { class: "bars", role: "img", "aria-label": about }, ...series[0].map((_, k) => el("div", { class: "bin" }, ...series.map((values, s) => {
+    const bar = el("div");
+    bar.style.height = `${Math.min(100, (100 * values[k]) / most)}%`;
+    bar.style.background = colours[s];
+    return bar;
+  }))));
 }
 
 /**

@@ -27,7 +27,7 @@ const WORDS = {
 export function failed(error) {
   const t = (navigator.language ?? "en").startsWith("de") ? WORDS.de : WORDS.en;
   const old = !("DecompressionStream" in window);
-  const why = String(/** @type {any} */ (error)?.message ?? error).slice(0, 300);
+  const why = String(error instanceof Error ? error.message : error).slice(0, 300);
   const again = (/** @type {boolean} */ all) => { forget(all); location.reload(); };
   const buttons = [el("button", { type: "button", onclick: () => again(false) }, t.settings),
     el("button", { type: "button", onclick: () => again(true) }, t.all)];

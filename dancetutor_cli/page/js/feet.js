@@ -14,12 +14,12 @@ import { UNPLAYED } from "./chart.js";
 
 /**
  * Marks of left foot, right foot and palms (video/prepare.py `feet_on_floor`).
- * @param {any} doc @param {import("./motion.js").Pose} pose @returns {Mark[]}
+ * @param {import("./doc.js").PageDoc} doc @param {import("./motion.js").Pose} pose @returns {Mark[]}
  */
 export function marksOf(doc, pose) {
   const { stage, look, style } = doc;
   const reach = look.light.contact_height;
-  return doc.body.marks.map((/** @type {any} */ about, /** @type {number} */ limb) => {
+  return doc.body.marks.map((about, limb) => {
     const colour = style.limbs_rgb[limb].map((/** @type {number} */ c) => c / 255);
     const none = { limb, line: [0, 0, 0, 0], ground: 0, near: -1, strength: 0, colour };
     if (!about) return none;

@@ -49,7 +49,7 @@ export function build(gl, sources) {
 
 /** @typedef {ReturnType<typeof meshData>} MeshData */
 
-/** The dancer's mesh as the graphics card reads it. @param {any} body @param {import("./blob.js").Arrays} arrays */
+/** The dancer's mesh as the graphics card reads it. @param {import("./doc.js").Body} body @param {import("./blob.js").Arrays} arrays */
 export function meshData(body, arrays) {
   const n = body.vertices;
   const place = arrays.get("mesh.position");
@@ -107,7 +107,7 @@ function interleaved(columns, n, width, kind) {
   return out;
 }
 
-/** @param {WebGL2RenderingContext} gl @param {any} stage */
+/** @param {WebGL2RenderingContext} gl @param {import("./doc.js").Stage} stage */
 export function makeRoom(gl, stage) {
   const array = gl.createVertexArray();
   gl.bindVertexArray(array);
@@ -162,7 +162,7 @@ export function numbers(gl, data, width, height) {
   return texture;
 }
 
-/** @param {WebGL2RenderingContext} gl @param {any} stage */
+/** @param {WebGL2RenderingContext} gl @param {import("./doc.js").Stage} stage */
 export function tileTexture(gl, stage) {
   const across = stage.panel.length;
   const deep = stage.panel[0].length;

@@ -13,6 +13,7 @@ import { INK, NOBODY, VERDICTS, drawBody, drawMarker, drawMine, drawPress, drawV
  * @property {boolean} mirror lanes the other way round
  * @property {(limb: number, row: import("./chart.js").Row | undefined) => boolean} marked whether a marker is drawn
  * @property {Map<number, string>} verdicts by note: "hit", "early", "late", "miss"
+ * @property {(note: number) => boolean} asked whether who plays along has to press it
  * @property {{a: number, b: number} | null} loop
  * @property {Map<number, number>} feet limbs the author gave to notes
  * @property {number} chosen note that is chosen, or -1
@@ -23,7 +24,7 @@ import { INK, NOBODY, VERDICTS, drawBody, drawMarker, drawMine, drawPress, drawV
 
 export class Highway {
   /**
-   * @param {HTMLCanvasElement} canvas @param {any} doc @param {import("./chart.js").Chart} chart
+   * @param {HTMLCanvasElement} canvas @param {import("./doc.js").PageDoc} doc @param {import("./chart.js").Chart} chart
    * @param {import("./words.js").Translate} t
    */
   constructor(canvas, doc, chart, t) {
@@ -178,7 +179,7 @@ export class Highway {
     const head = held && scene.second > chart.second[n] ? Math.min(scene.second, chart.end[n]) : chart.second[n];
     const x = this.laneX(column, m, scene.mirror);
     const top = y(head);
-    c.globalAlpha = verdict === "hit" ? 0.35 : 1;
+    c.globalAlpha = verdict === "hit" || !scene.asked(n) ? 0.35 : 1;
     const whose = style.players[chart.player[n] - 1]; // of a chart for two
     if (held) {
       const roll = kind === KIND.ROLL;

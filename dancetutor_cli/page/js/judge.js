@@ -17,8 +17,39 @@ export class Judge {
     this.errors = new Map();
     /** @type {number[]} seconds at which a panel was pressed that nothing asks for */
     this.wrong = [];
+    /** @type {Map<number, {row: number, limb: number}>} the solver's row and foot of each note */
+    this.stepOf = new Map(chart.rows.flatMap((row) => row.steps.map(({ note, limb }) => [note, { row: row.row, limb }])));
     this.next = 0; // first row that may still be missed
     this.from = -Infinity; // rows before it are not asked for
+    /** @type {number} the foot that is practised, 0 left or 1 right; -1: both */
+    this.foot = -1;
+    /** @type {import("./record.js").Outcome[]} what came of notes since it was taken last */
+    this.outcomes = [];
+    this.slips = 0; // wrong presses since then
+  }
+
+  /** Whether a note is asked for: the other foot's are not when one foot is practised. @param {number} note */
+  asks(note) {
+    return this.foot < 0 || this.limbOf(note) === this.foot;
+  }
+
+  /** Who steps a note. @param {number} note */
+  limbOf(note) {
+    return this.chart.given.get(note) ?? this.stepOf.get(note)?.limb ?? -1;
+  }
+
+  /** What came of notes since the last time. */
+  take() {
+    const out = { outcomes: this.outcomes, wrong: this.slips };
+    [this.outcomes, this.slips] = [[], 0];
+    return out;
+  }
+
+  /** @param {number} note @param {Verdict} verdict @param {number} [error] seconds */
+  settle(note, verdict, error) {
+    this.verdicts.set(note, verdict);
+    if (error !== undefined) this.errors.set(note, error);
+    this.outcomes.push({ row: this.stepOf.get(note)?.row ?? -1, limb: this.limbOf(note), verdict, error });
   }
 
   /** Begin at a second: notes from there on are open again. @param {number} second */
@@ -46,13 +77,12 @@ export class Judge {
     for (const n of this.chart.presses[column] ?? []) {
       const away = Math.abs(this.chart.second[n] - second);
       if (this.chart.second[n] > second + least) break;
-      if (away <= least && !this.verdicts.has(n) && this.chart.second[n] >= this.from) [best, least] = [n, away];
+      if (away <= least && !this.verdicts.has(n) && this.asks(n) && this.chart.second[n] >= this.from) [best, least] = [n, away];
     }
     if (best < 0) return this.stray(column, second, rate);
     const error = (second - this.chart.second[best]) / rate;
     const verdict = patient || Math.abs(error) <= GOOD ? "hit" : error < 0 ? "early" : "late";
-    this.verdicts.set(best, verdict);
-    if (!patient) this.errors.set(best, error);
+    this.settle(best, verdict, patient ? undefined : error);
     return verdict;
   }
 
@@ -66,19 +96,21 @@ export class Judge {
     const asked = (this.chart.presses[column] ?? []).some((n) => starts[n] - wide <= second && second <= ends[n] + wide);
     if (asked || second < this.from - wide) return null;
     this.wrong.push(second);
+    ++this.slips;
     return /** @type {const} */ ("wrong");
   }
 
   /**
    * Rows that are over become misses.
-   * @param {number} second @param {number} rate @returns {number} how many notes were missed now
+   * @param {number} second @param {number} rate @param {number} [end] of the loop: rows from there on are not asked for
+   * @returns {number} how many notes were missed now
    */
-  advance(second, rate) {
+  advance(second, rate, end = Infinity) {
     let missed = 0;
-    while (this.next < this.chart.rows.length && this.chart.rowSeconds[this.next] < second - WINDOW * rate) {
+    while (this.next < this.chart.rows.length && this.chart.rowSeconds[this.next] < Math.min(second - WINDOW * rate, end - 1e-3)) {
       for (const step of this.chart.rows[this.next].steps) {
-        if (step.limb < 0 || this.verdicts.has(step.note)) continue;
-        this.verdicts.set(step.note, "miss");
+        if (step.limb < 0 || this.verdicts.has(step.note) || !this.asks(step.note)) continue;
+        this.settle(step.note, "miss");
         ++missed;
       }
       ++this.next;
@@ -93,7 +125,7 @@ export class Judge {
   open(second) {
     for (let k = 0; k < this.chart.rows.length; ++k) {
       if (this.chart.rowSeconds[k] < Math.max(second, this.from) - 1e-3) continue;
-      if (this.chart.rows[k].steps.some((step) => !this.verdicts.has(step.note))) return this.chart.rows[k];
+      if (this.chart.rows[k].steps.some((step) => !this.verdicts.has(step.note) && this.asks(step.note))) return this.chart.rows[k];
     }
     return null;
   }
@@ -115,21 +147,6 @@ export class Judge {
     }
     return out;
   }
-}
-
-/**
- * How late taps to a beat come, seconds: the middle one, so that a stray tap does not count; null with too few.
- * @param {number[]} taps @param {number[]} beats
- */
-export function latencyOf(taps, beats) {
-  const errors = [];
-  for (const tap of taps) {
-    const nearest = beats.reduce((best, beat) => (Math.abs(beat - tap) < Math.abs(best - tap) ? beat : best), Infinity);
-    if (Math.abs(tap - nearest) < 0.25) errors.push(tap - nearest);
-  }
-  if (errors.length < 4) return null;
-  errors.sort((a, b) => a - b);
-  return errors[errors.length >> 1];
 }
 
 /**

@@ -68,7 +68,7 @@ export function findingFigures(t, { message }) {
 
 /**
  * Words beside the notes: moves where they begin, and findings.
- * @param {any} doc @param {import("./chart.js").Chart} chart @param {import("./words.js").Translate} t @returns {Label[]}
+ * @param {import("./doc.js").PageDoc} doc @param {import("./chart.js").Chart} chart @param {import("./words.js").Translate} t @returns {Label[]}
  */
 export function labelsOf(doc, chart, t) {
   /** @type {Label[]} */

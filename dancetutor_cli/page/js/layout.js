@@ -2,9 +2,10 @@
 
 import { alongPanel } from "./along.js";
 import { authorPanel, noteText } from "./author.js";
-import { makeBar } from "./controls.js";
+import { makeBar, makeZoom } from "./controls.js";
 import { el } from "./dom.js";
 import { findingsPanel, passagesPanel, settingsPanel } from "./panels.js";
+import { resultsPanel } from "./results.js";
 import { CAMERAS, FIRST_VIEW } from "./settings.js";
 import { besideCaption, besideText, countOf, musicText, saidOf } from "./said.js";
 
@@ -17,6 +18,7 @@ import { besideCaption, besideText, countOf, musicText, saidOf } from "./said.js
 
 /**
  * @typedef {object} Ui what the parts of the page ask of each other
+ * @property {(by: number) => void} zoom the strip, nearer or farther
  * @property {() => void} help opens the help sheet
  * @property {(name: string) => void} tab opens a tab
  * @property {() => boolean} fewer closes "more controls", which on a phone lie over the panels; whether they were open
@@ -36,7 +38,7 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   for (const [element, name] of /** @type {[HTMLElement, string][]} */ ([[stage, "picture"], [lanes, "notesKeys"], [strip, "timeline"]])) {
     element.setAttribute("aria-label", t(name));
   }
-  const tabs = makeTabs(app, ui, [["passages", passagesPanel(app)], ["along", alongPanel(app)], ["findings", findingsPanel(app)],
+  const tabs = makeTabs(app, ui, [["passages", passagesPanel(app)], ["along", alongPanel(app)], ["results", resultsPanel(app)], ["findings", findingsPanel(app)],
     ["author", authorPanel(app)], ["settings", settingsPanel(app, load)]]);
   const sheet = helpSheet(app, actions);
   ui.help = () => sheet.showModal();
@@ -60,7 +62,7 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   root.replaceChildren(
     el("header", {}, el("h1", {}, words.title), badge, el("p", {}, about.filter(Boolean).join(" · ")), app.doc.pair ? players(style) : null),
     el("div", { class: "status" }, said, pick),
-    main, el("footer", {}, strip, makeBar(app, ui)));
+    main, el("footer", {}, el("div", { class: "place-in-song" }, strip, makeZoom(app, ui)), makeBar(app, ui)));
   if (open) tabs.choose(open);
   app.highway?.speak(t);
   app.listeners.add((what) => {
@@ -75,7 +77,7 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   });
 }
 
-/** Which colour is whose, in a chart for two. @param {any} style */
+/** Which colour is whose, in a chart for two. @param {import("./doc.js").Style} style */
 function players(style) {
   return el("p", { class: "players" }, ...style.players.map((/** @type {string} */ colour, /** @type {number} */ k) => {
     const one = el("span", {}, `● P${k + 1} `);
@@ -112,7 +114,8 @@ function makeTabs(app, ui, panels) {
   const tabs = panels.map(([name], k) => el("button", {
     type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `panel-${name}`, "aria-selected": k === 0, tabindex: k === 0 ? 0 : -1,
     onclick: () => press(name),
-  }, app.t(`tab-${name}`)));
+    ...(name === "settings" ? { "aria-label": app.t("tab-settings"), title: app.t("tab-settings") } : {}),
+  }, name === "settings" ? "⚙\ufe0e" : app.t(`tab-${name}`)));
   const bodies = panels.map(([name, body], k) => el("div", { role: "tabpanel", id: `panel-${name}`, "aria-labelledby": `tab-${name}`, hidden: k !== 0, class: "panel", tabindex: 0 }, body));
   /** @param {string} name */
   function choose(name) {

@@ -26,7 +26,7 @@ async function main() {
   const strip = el("canvas", {
     class: "strip", role: "slider", tabindex: 0, "aria-valuemin": app.start.toFixed(1), "aria-valuemax": app.end.toFixed(1), "aria-valuenow": "0",
   });
-  const ui = { help: () => {}, tab: (/** @type {string} */ _name) => {}, fewer: () => false };
+  const ui = { zoom: (/** @type {number} */ _by) => {}, help: () => {}, tab: (/** @type {string} */ _name) => {}, fewer: () => false };
   const actions = actionsOf(app, ui);
   const show = () => layOut(app, { stage, lanes, strip }, ui, { actions, load: loadFile });
   app.onLanguage = () => {
@@ -37,13 +37,15 @@ async function main() {
   await pause();
   app.highway = new Highway(lanes, doc, app.chart, app.t);
   const timeline = new Timeline(strip, doc, app.chart, {
-    start: app.start, end: app.end, seek: (second) => app.seek(second), loop: (a, b) => app.setLoop(a, b),
+    start: app.start, end: app.end, seek: (second) => app.seek(second), loop: (a, b) => app.setLoop(a, b), changed: () => { app.fresh = true; },
   });
+  ui.zoom = (by) => timeline.zoom(by);
   listenToLanes(app, lanes, ui);
   listenToKeys(app, actions);
   takeDrops(loadFile);
   for (const name of ["gamepadconnected", "gamepaddisconnected"]) window.addEventListener(name, () => app.tell("pads"));
   window.addEventListener("resize", () => { app.fresh = true; });
+  window.addEventListener("pagehide", () => app.practice.keep());
   window.addEventListener("hashchange", () => readLink(app, location.hash));
   if (location.hash) readLink(app, location.hash);
   else app.seek(Math.max(app.start, app.chart.first - 2));

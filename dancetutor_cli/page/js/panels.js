@@ -1,15 +1,17 @@
 // The panels beside the picture: passages, findings, and what is set.
 
 import { el } from "./dom.js";
+import { loopsPart } from "./loops.js";
 import { findingFigures, findingWords } from "./labels.js";
 import { placeOf, stretch } from "./places.js";
+import { whereOf } from "./record.js";
 import { musicText, scoreText } from "./said.js";
 
 /** The hardest passages; a click loops one. @param {import("./app.js").App} app */
 export function passagesPanel(app) {
   const { t, doc, language } = app;
   const list = el("ol", { class: "cards" });
-  const buttons = doc.passages.map((/** @type {any} */ passage, /** @type {number} */ k) => {
+  const buttons = doc.passages.map((passage, k) => {
     const button = el("button", { type: "button", class: "card", "aria-pressed": "false", onclick: () => void app.loopPassage(k) },
       el("strong", {}, `${passage.number}. ${stretch(t, passage.from, passage.to)}`),
       el("span", { class: "figure" }, t("rate", { rate: Math.round(10 * passage.rate) / 10 })),
@@ -26,12 +28,13 @@ export function passagesPanel(app) {
       const { start, end } = doc.passages[k];
       const tally = app.practice.judge.tally(start, end);
       const any = tally.hit + tally.early + tally.late + tally.miss + tally.wrong > 0;
-      const text = any && app.practice.along ? scoreText(app, tally) : "";
+      const best = app.record.best[whereOf(app.chart.beatAt(start), app.chart.beatAt(end))];
+      const text = [any && app.practice.along ? scoreText(app, tally) : "", best ? t("bestRate", { rate: best }) : ""].filter(Boolean).join(" · ");
       /** @type {HTMLElement} */ (button.querySelector(".hits")).textContent = text;
     });
   });
   const empty = doc.passages.length ? null : el("p", {}, t("noPassages"));
-  return el("div", {}, el("p", { class: "hint" }, t("passagesHint")), empty, list);
+  return el("div", {}, el("p", { class: "hint" }, t("passagesHint")), empty, list, loopsPart(app));
 }
 
 /**
@@ -49,7 +52,7 @@ export function findingsPanel(app) {
     box.checked = app.notes.ticked.includes(key);
     const go = el("button", {
       type: "button", class: "card", title: about, disabled: one.second === null,
-      onclick: () => { app.transport.pause(); app.seek(one.second); },
+      onclick: () => { app.transport.pause(); app.seek(one.second ?? 0); },
     },
       el("strong", {}, `${SIGNS[/** @type {keyof typeof SIGNS} */ (one.severity)] ?? ""} ${one.rule} ${name}`),
       el("span", { class: "figure" }, one.beat === null ? "" : placeOf(t, one.beat)),
@@ -78,10 +81,10 @@ export function settingsPanel(app, load) {
     ...Object.keys(doc.languages).map((name) => el("option", { value: name }, doc.languages[name].language ?? name)));
   language.value = settings.language;
   language.addEventListener("change", () => app.setLanguage(language.value));
-  const slider = (/** @type {"volume" | "speed" | "leadBeats" | "latency"} */ name, /** @type {number} */ min, /** @type {number} */ max, /** @type {number} */ step) => {
+  const slider = (/** @type {"volume" | "speed" | "leadBeats" | "latency" | "sight"} */ name, /** @type {number} */ min, /** @type {number} */ max, /** @type {number} */ step) => {
     const input = el("input", { type: "range", id: name, min, max, step, value: settings[name] });
     const shown = el("output", { for: name });
-    const show = () => { input.value = String(settings[name]); shown.textContent = name === "latency" ? `${Math.round(1000 * settings[name])} ms` : t("number", { number: Math.round(100 * settings[name]) / 100 }); };
+    const show = () => { input.value = String(settings[name]); shown.textContent = name === "latency" || name === "sight" ? `${Math.round(1000 * settings[name])} ms` : t("number", { number: Math.round(100 * settings[name]) / 100 }); };
     input.addEventListener("input", () => { app.set(name, Number(input.value)); show(); });
     app.listeners.add((what) => { if (what === "settings") show(); });
     show();
@@ -93,7 +96,7 @@ export function settingsPanel(app, load) {
   tell();
   return el("div", {},
     el("p", { class: "field whole" }, el("span", {}, t("musicFile")), choose), file, music,
-    slider("volume", 0, 1, 0.05), slider("speed", 0.3, 4, 0.05), slider("leadBeats", 1, 16, 1), slider("latency", -0.2, 0.4, 0.005),
+    slider("volume", 0, 1, 0.05), slider("speed", 0.3, 4, 0.05), slider("leadBeats", 1, 16, 1), slider("latency", -0.2, 0.4, 0.005), slider("sight", -0.2, 0.4, 0.005),
     el("p", { class: "field whole" }, el("label", { for: "language" }, t("languageLabel")), language),
     el("p", { class: "hint" }, t("storedHint")));
 }

@@ -17,7 +17,7 @@ const LEAST = 0.4; // of the pixels across that it keeps
  * @property {boolean} playing
  */
 
-/** The dancer's textures. @param {any} doc @param {import("./blob.js").Arrays} arrays */
+/** The dancer's textures. @param {import("./doc.js").PageDoc} doc @param {import("./blob.js").Arrays} arrays */
 export function decodeSkins(doc, arrays) {
   return Promise.all(Array.from({ length: doc.body.skins }, (_, k) => {
     const data = /** @type {Uint8Array<ArrayBuffer>} */ (arrays.get(`skin.${k}`));
@@ -27,7 +27,7 @@ export function decodeSkins(doc, arrays) {
 
 export class Picture {
   /**
-   * @param {HTMLElement} place @param {any} doc @param {import("./chart.js").Chart} chart
+   * @param {HTMLElement} place @param {import("./doc.js").PageDoc} doc @param {import("./chart.js").Chart} chart
    * @param {import("./motion.js").Motion[]} motions @param {import("./settings.js").Settings} settings
    */
   constructor(place, doc, chart, motions, settings) {

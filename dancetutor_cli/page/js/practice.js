@@ -1,7 +1,9 @@
 // Practising: who plays along, what was hit, rows that are waited for, passes of a loop, the ramp, help that fades.
 
+import { Coach } from "./coach.js";
 import { Judge, ramp } from "./judge.js";
-import { HELPS } from "./settings.js";
+import { addClean, addOutcomes, dayOf, whereOf } from "./record.js";
+import { FEET, HELPS } from "./settings.js";
 
 const STRAY = 5000; // milliseconds that the keys are said
 const SHOWN = 700; // milliseconds that a verdict stands beside the receptors
@@ -15,6 +17,7 @@ export class Practice {
   constructor(app) {
     this.app = app;
     this.judge = new Judge(app.chart);
+    this.coach = new Coach(app, this);
     this.along = false; // somebody plays along
     this.wait = false; // the clock stops at each row until it is pressed
     this.passes = 0;
@@ -42,6 +45,7 @@ export class Practice {
     const { transport } = this.app;
     this.passes = 0;
     this.before = null;
+    this.coach.on = false;
     if (transport.rate === this.chosenRate) return;
     transport.setRate(this.chosenRate);
     this.app.tell("rate");
@@ -52,21 +56,49 @@ export class Practice {
     const { transport, settings } = this.app;
     const { loop } = transport;
     if (!loop) return;
-    if (!this.wait) this.judge.advance(loop.b + 1, transport.rate);
+    if (!this.wait) this.judge.advance(Infinity, transport.rate, loop.b);
     this.before = this.along ? this.tally() : null;
     const slips = this.before ? this.before.miss + this.before.wrong : 0;
     ++this.passes;
-    if (settings.ramp) transport.rate = ramp(transport.rate, slips, this.along);
+    if (this.before && !this.wait) {
+      const { chart, record } = this.app;
+      if (!slips && this.judge.foot < 0) addClean(record, whereOf(chart.beatAt(loop.a), chart.beatAt(loop.b)), transport.rate);
+      this.keep();
+    }
+    if (this.coach.on && this.before && !this.wait) this.coach.pass(this.before);
+    else if (settings.ramp) transport.rate = ramp(transport.rate, slips, this.along);
     if (settings.help === "auto" && this.along) {
       this.helpNow = Math.min(Math.max(this.helpNow + (slips ? -1 : 1), 0), 2);
     }
     this.app.tell("pass");
-    if (this.along) this.restart(loop.a);
+    if (this.along) this.restart(transport.loop?.a ?? loop.a); // the coach may have gone on to another loop
     this.updateHold();
+  }
+
+  /** What came of notes goes into the record; while the clock waits there is nothing to keep. */
+  keep() {
+    const { outcomes, wrong } = this.judge.take();
+    if (this.wait || (!outcomes.length && !wrong)) return;
+    addOutcomes(this.app.record, dayOf(new Date()), outcomes, wrong, this.app.transport.rate);
+    this.app.saveRecord();
+  }
+
+  /** One foot is practised, the other one is played for you; or both are. @param {string} foot of FEET */
+  setFoot(foot) {
+    this.keep();
+    this.app.settings.foot = foot;
+    this.judge.foot = FEET.indexOf(foot) - 1;
+    this.app.save();
+    if (foot !== "both" && !this.along) this.setAlong(true);
+    this.restart(this.app.transport.second());
+    this.updateHold();
+    this.app.tell("along");
   }
 
   /** Play along, or only watch. @param {boolean} on */
   setAlong(on) {
+    this.keep();
+    if (!on) this.coach.on = false;
     this.along = on;
     this.before = null;
     this.stray = "";
@@ -80,6 +112,7 @@ export class Practice {
 
   /** @param {boolean} on */
   setWait(on) {
+    this.keep();
     if (on && !this.along) this.setAlong(true);
     this.wait = on;
     if (on) this.restart(this.app.transport.second());
@@ -91,6 +124,7 @@ export class Practice {
   restart(second) {
     const { loop } = this.app.transport;
     this.over = null;
+    this.keep();
     this.judge.restart(loop && second < loop.b ? Math.max(second, loop.a) : second);
     this.app.tell("hits");
   }
@@ -124,7 +158,7 @@ export class Practice {
   advance(second) {
     const { transport, settings } = this.app;
     if (!transport.playing || !this.along || this.wait) return;
-    if (!this.judge.advance(second - settings.latency * transport.rate, transport.rate)) return;
+    if (!this.judge.advance(second - (settings.latency + settings.sight) * transport.rate, transport.rate)) return;
     this.show("miss", -1);
     this.app.tell("hits");
   }
@@ -160,6 +194,7 @@ export class Practice {
     if (!this.along) return;
     this.judge.advance(Infinity, this.app.transport.rate);
     this.over = this.judge.tally(-Infinity, Infinity);
+    this.keep();
     this.app.tell("hits");
   }
 

@@ -14,7 +14,7 @@ const LIFT = 0.11; // metres that a foot rises on its way
 
 export class Redance {
   /**
-   * @param {any} doc @param {import("./chart.js").Chart} chart
+   * @param {import("./doc.js").PageDoc} doc @param {import("./chart.js").Chart} chart
    * @param {[number, number, number][]} stored tick, column, limb
    */
   constructor(doc, chart, stored) {

@@ -9,6 +9,7 @@ export function saidOf(app) {
   if (app.notice) return app.notice;
   if (practice.stray === "now") return keysText(app);
   if (transport.waiting) return t("waiting");
+  if (practice.coach.on && practice.along) return [scoreText(app, practice.tally()), practice.coach.said, loopText(app)].filter(Boolean).join(" · ");
   const score = practice.along ? practice.over ? overText(app, practice.over) : scoreText(app, practice.tally()) : "";
   const told = [score, loopText(app)].filter(Boolean).join(" · ");
   return told || (!app.played && !sound.music ? musicText(app) : "");
@@ -63,8 +64,8 @@ export function scoreText(app, tally) {
 /** Who dances beside her, and where her feet differ, for her caption. @param {import("./app.js").App} app */
 export function besideCaption(app) {
   const { name, rows } = app.doc.beside;
-  const found = rows.slice(0, 3).map((/** @type {number} */ row) => app.redance.rows.get(row));
-  const where = found.filter(Boolean).map((/** @type {import("./chart.js").Row} */ row) => placeOf(app.t, row.beat)).join("; ");
+  const found = rows.slice(0, 3).flatMap((row) => app.redance.rows.get(row) ?? []);
+  const where = found.map((row) => placeOf(app.t, row.beat)).join("; ");
   const what = name === "next" ? app.t("nextBest") : name;
   return [what, app.t("besideRows", { rows: rows.length, where: rows.length > 3 ? `${where} …` : where })];
 }

@@ -165,18 +165,16 @@ export class Sound {
 /**
  * The clicks of a chart: claps on rows, ticks on beats, ticks of a count-in.
  * @param {import("./chart.js").Chart} chart
- * @param {() => {claps: boolean, metronome: boolean}} wanted
+ * @param {() => {claps: boolean, metronome: boolean, played: (row: import("./chart.js").Row) => boolean}} wanted
  * @returns {(from: number, to: number, quietUntil: number) => Click[]}
  */
 export function clicksOf(chart, wanted) {
   return (from, to, quietUntil) => {
-    const { claps, metronome } = wanted();
+    const { claps, metronome, played } = wanted();
     /** @type {Click[]} */
     const out = [];
-    if (claps) {
-      for (let k = lastUpTo(chart.rowSeconds, from) + 1; k < chart.rows.length && chart.rowSeconds[k] <= to; ++k) {
-        if (chart.rowSeconds[k] >= quietUntil) out.push({ second: chart.rowSeconds[k], pitch: CLAP, loudness: 0.55 });
-      }
+    for (let k = lastUpTo(chart.rowSeconds, from) + 1; k < chart.rows.length && chart.rowSeconds[k] <= to; ++k) {
+      if (chart.rowSeconds[k] >= quietUntil && (claps || played(chart.rows[k]))) out.push({ second: chart.rowSeconds[k], pitch: CLAP, loudness: 0.55 });
     }
     // A count-in may begin before the first beat.
     let k = from < chart.beats[0] ? Math.floor(chart.beatAt(from) + 1e-9) + 1 : lastUpTo(chart.beats, from) + 1;

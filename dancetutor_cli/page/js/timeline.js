@@ -4,11 +4,14 @@ import { clamp } from "./maths.js";
 
 const DRAG = 6; // pixels that make a drag out of a click
 const EDGE = 9; // pixels around an end of the loop that take hold of it
+const CLOSER = 1.5; // times nearer with each step of the zoom
+const LEAST = 8; // seconds that the strip shows at least
+const NARROW = 3; // pixels: measures that would be drawn narrower are drawn together
 
 export class Timeline {
   /**
-   * @param {HTMLCanvasElement} canvas @param {any} doc @param {import("./chart.js").Chart} chart
-   * @param {{start: number, end: number, seek: (s: number) => void, loop: (a: number, b: number) => void}} about
+   * @param {HTMLCanvasElement} canvas @param {import("./doc.js").PageDoc} doc @param {import("./chart.js").Chart} chart
+   * @param {{start: number, end: number, seek: (s: number) => void, loop: (a: number, b: number) => void, changed: () => void}} about
    */
   constructor(canvas, doc, chart, about) {
     this.canvas = canvas;
@@ -23,6 +26,13 @@ export class Timeline {
     this.grip = null;
     /** @type {{a: number, b: number} | null} */
     this.loop = null;
+    this.view = { from: about.start, to: about.end }; // seconds that are shown
+    this.at = about.start; // the second that was drawn last
+    canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      if (Math.abs(event.deltaX) > Math.abs(event.deltaY)) this.show(this.view.from + (event.deltaX / canvas.clientWidth) * this.shown, this.shown);
+      else this.zoom(event.deltaY < 0 ? 1 : -1, this.secondOf(event));
+    }, { passive: false });
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     canvas.addEventListener("pointerup", (event) => this.up(event));
@@ -31,14 +41,45 @@ export class Timeline {
 
   /** @param {number} second */
   share(second) {
-    return (second - this.about.start) / (this.about.end - this.about.start);
+    return (second - this.view.from) / this.shown;
   }
 
-  /** @param {PointerEvent} event */
+  /** Seconds that the strip shows. */
+  get shown() {
+    return this.view.to - this.view.from;
+  }
+
+  /** How many times nearer than the whole song. */
+  get nearness() {
+    return (this.about.end - this.about.start) / this.shown;
+  }
+
+  /** Show some seconds from one on, within the song. @param {number} from @param {number} seconds */
+  show(from, seconds) {
+    const { start, end } = this.about;
+    const long = clamp(seconds, Math.min(LEAST, end - start), end - start);
+    const first = clamp(from, start, end - long);
+    this.view = { from: first, to: first + long };
+    this.about.changed();
+  }
+
+  /** Nearer (1) or farther (-1); a second stays where it is. @param {number} by @param {number} [second] */
+  zoom(by, second = clamp(this.at, this.view.from, this.view.to)) {
+    const seconds = this.shown / CLOSER ** by;
+    this.show(second - this.share(second) * seconds, seconds);
+  }
+
+  /** What is played stays in sight: the strip goes on to the next part. @param {number} second */
+  follow(second) {
+    if (second !== this.at && !this.grip && (second > this.view.to || second < this.view.from)) this.show(second - 0.05 * this.shown, this.shown);
+    this.at = second;
+  }
+
+  /** @param {MouseEvent} event */
   secondOf(event) {
     const box = this.canvas.getBoundingClientRect();
     const share = clamp((event.clientX - box.left) / box.width, 0, 1);
-    return this.about.start + share * (this.about.end - this.about.start);
+    return this.view.from + share * this.shown;
   }
 
   /** @param {PointerEvent} event */
@@ -76,6 +117,7 @@ export class Timeline {
   /** @param {number} second @param {{a: number, b: number} | null} loop @param {(passage: number) => boolean} chosen */
   draw(second, loop, chosen) {
     this.loop = loop;
+    this.follow(second);
     const { canvas, context: c } = this;
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
     const box = canvas.getBoundingClientRect();
@@ -88,7 +130,9 @@ export class Timeline {
     c.fillRect(0, 0, width, height);
     const bars = 0.68 * height;
     const most = Math.max(4, ...this.density.map((bar) => bar.rate));
-    for (const bar of this.density) {
+    const wide = this.density.length ? (x(this.density[0].end) - x(this.density[0].start)) / ratio : NARROW;
+    for (const bar of together(this.density, Math.ceil(NARROW / Math.max(wide, 0.01)))) {
+      if (bar.end < this.view.from || bar.start > this.view.to) continue;
       c.fillStyle = bar.end <= second ? "#5b66b8" : "#3c447f";
       const tall = (bar.rate / most) * (bars - 10 * ratio);
       c.fillRect(x(bar.start), bars - tall, Math.max(1, x(bar.end) - x(bar.start) - ratio), tall);
@@ -96,6 +140,11 @@ export class Timeline {
     this.drawFacing(x, bars, height, ratio);
     this.drawMarks(x, bars, ratio, chosen);
     this.drawLoop(this.drag ?? loop, x, height, ratio);
+    if (this.nearness > 1.01) { // where in the song the part that is shown lies
+      const whole = this.about.end - this.about.start;
+      c.fillStyle = "#ffb454";
+      c.fillRect(((this.view.from - this.about.start) / whole) * width, height - 3 * ratio, (this.shown / whole) * width, 3 * ratio);
+    }
     c.fillStyle = "#fff";
     c.fillRect(Math.round(x(second)) - ratio, 0, 2 * ratio, height);
     canvas.setAttribute("aria-valuenow", second.toFixed(2));
@@ -123,7 +172,7 @@ export class Timeline {
   /** @param {(s: number) => number} x @param {number} bars @param {number} ratio @param {(passage: number) => boolean} chosen */
   drawMarks(x, bars, ratio, chosen) {
     const c = this.context;
-    this.doc.passages.forEach((/** @type {any} */ passage, /** @type {number} */ k) => {
+    this.doc.passages.forEach((passage, k) => {
       c.fillStyle = chosen(k) ? "#fff" : "#ffb454";
       c.fillRect(x(passage.start), bars - 4 * ratio, x(passage.end) - x(passage.start), 3 * ratio);
       c.font = `700 ${12 * ratio}px system-ui, sans-serif`;
@@ -162,6 +211,16 @@ export class Timeline {
       c.fillText(name, x(edge) + (side === "left" ? 4 : -4) * ratio, height - 2 * ratio);
     }
   }
+}
+
+/**
+ * Bars of several measures drawn as one, as high as the highest of them. @param {{start: number, end: number, rate: number}[]} density
+ * @param {number} count measures of one bar
+ */
+export function together(density, count) {
+  if (count < 2) return density;
+  return Array.from({ length: Math.ceil(density.length / count) }, (_, k) => density.slice(k * count, (k + 1) * count))
+    .map((some) => ({ start: some[0].start, end: some[some.length - 1].end, rate: Math.max(...some.map(({ rate }) => rate)) }));
 }
 
 /** Rows a second in every measure. @param {import("./chart.js").Chart} chart */

@@ -3,7 +3,7 @@
 const LETTERS = ["L", "R", "L", "R"];
 
 /**
- * @param {HTMLCanvasElement} canvas @param {any} doc
+ * @param {HTMLCanvasElement} canvas @param {import("./doc.js").PageDoc} doc
  * @param {{marks: import("./feet.js").Mark[], lights: Float32Array, mirror: boolean, next: {column: number, limb: number}[]}} shown
  */
 export function drawFromAbove(canvas, doc, shown) {

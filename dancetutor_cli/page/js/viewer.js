@@ -9,8 +9,8 @@ const CAST_DEPTH = [-2, 6];
 const MOST_JOINTS = 256;
 const OFF_SURFACE = [0.012, 0.006];
 const GHOST = 0.55; // how much of the ghost foot is there
-const COLOURS = ["floor", "floor_far", "floor_line", "wall", "wall_top", "strip", "pad", "pad_side", "panel",
-  "panel_blank", "groove", "arrow"];
+const COLOURS = /** @type {const} */ (["floor", "floor_far", "floor_line", "wall", "wall_top", "strip", "pad", "pad_side", "panel",
+  "panel_blank", "groove", "arrow"]);
 
 /**
  * @typedef {object} Shown what one part of the canvas shows
@@ -26,7 +26,7 @@ const COLOURS = ["floor", "floor_far", "floor_line", "wall", "wall_top", "strip"
 
 export class Viewer {
   /**
-   * @param {HTMLCanvasElement} canvas @param {any} doc @param {import("./gl.js").MeshData} mesh
+   * @param {HTMLCanvasElement} canvas @param {import("./doc.js").PageDoc} doc @param {import("./gl.js").MeshData} mesh
    * @param {ImageBitmap[]} skins
    */
   constructor(canvas, doc, mesh, skins) {
@@ -56,7 +56,7 @@ export class Viewer {
     this.lights = numbers(gl, new Float32Array(4 * doc.pad.panels.length), doc.pad.panels.length, 1);
     this.texels = soft ? 512 : 1024;
     this.map = shadowMap(gl, this.texels);
-    this.palette = new Float32Array(COLOURS.flatMap((name) => doc.look.stage[name].map((/** @type {number} */ c) => c / 255)));
+    this.palette = new Float32Array(COLOURS.flatMap((name) => doc.look.stage[name].map((c) => c / 255)));
     gl.enable(gl.CULL_FACE);
     gl.enable(gl.DEPTH_TEST);
   }

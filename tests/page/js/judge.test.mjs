@@ -5,7 +5,8 @@ import { test } from "node:test";
 import { scrollSpeed } from "../../../dancetutor_cli/page/js/highway.js";
 import { findingFigures, labelsOf, moveNames } from "../../../dancetutor_cli/page/js/labels.js";
 import { fillIn } from "../../../dancetutor_cli/page/js/words.js";
-import { Judge, latencyOf, ramp } from "../../../dancetutor_cli/page/js/judge.js";
+import { delayOf } from "../../../dancetutor_cli/page/js/calibrate.js";
+import { Judge, ramp } from "../../../dancetutor_cli/page/js/judge.js";
 import { makeLink, parseLink } from "../../../dancetutor_cli/page/js/link.js";
 import { stretch } from "../../../dancetutor_cli/page/js/places.js";
 
@@ -13,11 +14,11 @@ import { stretch } from "../../../dancetutor_cli/page/js/places.js";
 function chart() {
   const second = [1, 2, 2, 3];
   const column = [0, 0, 3, 1];
-  const rows = [[0], [1, 2], [3]].map((notes) => ({
-    second: second[notes[0]], steps: notes.map((note) => ({ note, column: column[note], limb: note % 2, part: 0 })),
+  const rows = [[0], [1, 2], [3]].map((notes, row) => ({
+    row, second: second[notes[0]], steps: notes.map((note) => ({ note, column: column[note], limb: note % 2, part: 0 })),
   }));
   return {
-    second, end: second, rows, rowSeconds: rows.map((row) => row.second),
+    second, end: second, given: new Map(), rows, rowSeconds: rows.map((row) => row.second),
     presses: [0, 1, 2, 3].map((c) => second.map((_, n) => n).filter((n) => column[n] === c)),
   };
 }
@@ -81,9 +82,10 @@ test("going back opens rows again", () => {
 
 test("the delay is the middle of all taps; strays do not count, too few are none", () => {
   const beats = [1, 2, 3, 4, 5, 6];
-  assert.equal(latencyOf([1.05, 2.06, 3.04], beats), null);
-  const found = latencyOf([1.05, 2.06, 3.05, 4.05, 5.24, 6.49], beats);
-  assert.ok(Math.abs(found - 0.05) < 1e-9);
+  assert.equal(delayOf([1.05, 2.06, 3.04], beats), null);
+  const { middle, spread, errors } = delayOf([1.05, 2.06, 3.05, 4.05, 5.24, 6.49], beats);
+  assert.ok(Math.abs(middle - 0.05) < 1e-9 && spread > 0.004 && spread < 0.1);
+  assert.equal(errors.length, 5); // the last one came to no beat
 });
 
 test("the ramp goes up after clean passes, back after misses, and ends at full speed", () => {
@@ -170,4 +172,22 @@ test("the figures of a finding are told in another language too", () => {
   assert.equal(figures("two panels, one and two again in 16ths, 110 ms apart"), "(2, 1 und 2 Felder in 16teln, 110 ms auseinander)");
   assert.equal(figures("something else"), "");
   assert.equal(figures("the body turns by 180 degrees"), "");
+});
+
+test("of one foot the other's notes are neither asked for, missed nor wrong", () => {
+  const judge = new Judge(chart()); // left steps 0 and 2, right 1 and 3
+  judge.foot = 0;
+  judge.restart(0);
+  assert.equal(judge.press(0, 1.01, 1), "hit");
+  assert.equal(judge.press(0, 2.0, 1), null); // the right foot's: played for you
+  assert.equal(judge.press(3, 2.0, 1), "hit");
+  assert.equal(judge.advance(9, 1), 0);
+  assert.equal(judge.open(0), null);
+  const { outcomes, wrong } = judge.take();
+  assert.deepEqual(outcomes.map(({ row, limb, verdict }) => [row, limb, verdict]), [[0, 0, "hit"], [1, 0, "hit"]]);
+  assert.equal(wrong, 0);
+  assert.deepEqual(judge.take(), { outcomes: [], wrong: 0 });
+  judge.chart.given.set(3, 0); // the author gave the last note to the left foot
+  judge.restart(0);
+  assert.equal(judge.press(1, 3.0, 1), "hit");
 });

@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { Transport } from "../../../dancetutor_cli/page/js/clock.js";
 import { Input } from "../../../dancetutor_cli/page/js/input.js";
 import { Practice } from "../../../dancetutor_cli/page/js/practice.js";
+import { addOutcomes, emptyRecord } from "../../../dancetutor_cli/page/js/record.js";
 import { countOf, saidOf } from "../../../dancetutor_cli/page/js/said.js";
 
 /** An app with a beat a second, a row at every second, and a clock that the test turns. */
@@ -12,14 +13,15 @@ function make() {
   const seconds = Array.from({ length: 40 }, (_, k) => k);
   const chart = {
     second: seconds, end: seconds, rowSeconds: seconds, presses: [seconds],
-    rows: seconds.map((second) => ({ second, steps: [{ note: second, column: 0, limb: 0, part: 0 }] })),
+    given: new Map(), rows: seconds.map((second) => ({ row: second, beat: second, second, steps: [{ note: second, column: 0, limb: 0, part: 0 }] })),
     beatAt: (second) => second, secondAt: (beat) => beat,
   };
   const transport = new Transport(() => at.now, 0, 40);
   transport.lead = (a) => a - 4;
   transport.countIn = true;
   const app = {
-    chart, transport, settings: { ramp: true, help: "all", latency: 0 }, sound: { latency: 0 }, both: false, notice: "",
+    chart, transport, settings: { ramp: true, help: "all", latency: 0, sight: 0 }, sound: { latency: 0 }, both: false, notice: "",
+    record: emptyRecord(), saveRecord: () => {}, doc: { passages: [] }, setLoop: (a, b) => { app.practice.endRamp(); transport.setLoop({ a, b }); },
     played: true, tell: () => {}, t: (name, values = {}) => [name, ...Object.values(values)].join(" "),
   };
   app.practice = new Practice(app);
@@ -111,4 +113,36 @@ test("the first key that is no panel has the keys said, until a panel is pressed
   assert.doesNotMatch(saidOf(app), /keys/);
   assert.equal(new Input(["a", "b", "c", "d", "e"], { keys: {}, pads: {} }).columnOf("ArrowLeft"), -1); // Pump keeps its keys
   assert.deepEqual(["ArrowLeft", "ArrowDown", "ArrowUp", "ArrowRight", "KeyK"].map((code) => app.input.columnOf(code)), [0, 1, 2, 3, 3]);
+});
+
+test("the coach loops what was missed, raises the speed by what is hit, and goes on when it is passed at full speed", async () => {
+  const { at, app, transport } = make();
+  const missed = (row) => ({ row, limb: 0, verdict: "miss", error: undefined });
+  addOutcomes(app.record, "2026-11-23", [...[8, 9, 10, 11].map((row) => ({ row, limb: 0, verdict: "hit", error: 0 }))], 0, 0.9);
+  addOutcomes(app.record, "2026-11-24", [missed(8), missed(9), missed(20)], 0, 1);
+  app.loopBeats = async (a, b) => { transport.setLoop({ a, b }); transport.restartLoop(); transport.play(); };
+  const { coach } = app.practice;
+  await coach.start();
+  assert.deepEqual([transport.loop, transport.rate, app.practice.along], [{ a: 8, b: 12 }, 0.9, true]);
+  const pass = (hits) => {
+    const { a, b } = transport.loop;
+    app.practice.restart(a);
+    for (let second = a; second < b; ++second) {
+      go(at, transport, second);
+      if (second - a < hits) app.practice.press(0, 0);
+    }
+    go(at, transport, b + 0.01);
+  };
+  pass(4);
+  assert.deepEqual([transport.rate, transport.loop.a], [1, 8]); // all hit at 90 %
+  pass(2);
+  assert.equal(transport.rate, 0.95); // half of it missed
+  pass(4);
+  assert.equal(transport.rate, 1);
+  pass(4);
+  assert.deepEqual([transport.loop, transport.rate], [{ a: 20, b: 24 }, 0.6]); // passed: the next stretch, never passed yet
+  assert.match(saidOf(app), /coachNext 100 60/);
+  coach.stop();
+  assert.equal(transport.rate, 1);
+  assert.deepEqual(app.record.best, { "8-12": 100 });
 });

@@ -1,0 +1,81 @@
+// The coach: loops what was missed, and raises or lowers the speed by what is hit, until it goes at full speed.
+
+import { coachRate, hitShare, missedOf, whereOf } from "./record.js";
+
+const FULL = 1; // the speed that is wanted in the end
+const PASSED = 0.95; // share of hits with which a stretch is passed
+const NEW = 0.7; // speed of a passage that nobody has passed
+
+/** @typedef {{from: number, to: number, rate: number}} Target beats, and the speed to begin at */
+
+export class Coach {
+  /** @param {import("./app.js").App} app @param {import("./practice.js").Practice} practice */
+  constructor(app, practice) {
+    this.app = app;
+    this.practice = practice;
+    this.on = false;
+    this.said = ""; // what it has to say of the pass before
+  }
+
+  /** What to practise next: what was missed, else the hardest passage that is not passed at full speed. @returns {Target | null} */
+  next() {
+    const { record, chart, doc } = this.app;
+    const [missed] = missedOf(record, chart.rows);
+    if (missed) return missed;
+    for (const { start, end } of doc.passages) {
+      const [from, to] = [chart.beatAt(start), chart.beatAt(end)];
+      const best = (record.best[whereOf(from, to)] ?? 0) / 100;
+      if (best < FULL) return { from, to, rate: best || NEW };
+    }
+    return null;
+  }
+
+  async start() {
+    const { app, practice } = this;
+    practice.keep();
+    const target = this.next();
+    if (!target) {
+      app.notice = app.t("coachNothing");
+      return app.tell("coach");
+    }
+    if (!practice.along) practice.setAlong(true);
+    await app.loopBeats(target.from, target.to);
+    this.take(target);
+  }
+
+  stop() {
+    this.practice.endRamp();
+    this.app.tell("coach");
+  }
+
+  /** @param {Target} target that is looped now */
+  take(target) {
+    const { app } = this;
+    app.transport.setRate(target.rate);
+    this.on = true;
+    this.said = app.t("coachBegins", { rate: Math.round(100 * target.rate) });
+    app.tell("coach");
+  }
+
+  /** A pass is over: another speed, or the next stretch. @param {import("./judge.js").Tally} tally */
+  pass(tally) {
+    const { app } = this;
+    const { transport, chart } = app;
+    const share = hitShare(tally);
+    const percent = Math.round(100 * share);
+    if (share < PASSED || transport.rate < FULL) {
+      transport.rate = coachRate(transport.rate, share, FULL);
+      this.said = app.t("coachGoesOn", { percent, rate: Math.round(100 * transport.rate) });
+      return;
+    }
+    const target = this.next();
+    if (!target) {
+      this.practice.endRamp();
+      app.notice = app.t("coachDone", { percent });
+      return;
+    }
+    app.setLoop(chart.secondAt(target.from), chart.secondAt(target.to));
+    this.take(target);
+    this.said = app.t("coachNext", { percent, rate: Math.round(100 * target.rate) });
+  }
+}

@@ -1,0 +1,31 @@
+// Loops that were kept under a name: a list, and a field to keep the one that there is.
+
+import { el } from "./dom.js";
+import { stretch } from "./places.js";
+
+/** @param {import("./app.js").App} app */
+export function loopsPart(app) {
+  const { t, chart } = app;
+  const name = el("input", { type: "text", id: "loop-name", maxlength: 60, autocomplete: "off", "aria-label": t("loopName"), placeholder: t("loopName") });
+  const keep = el("button", { type: "submit", id: "loop-keep" }, t("loopKeep"));
+  const form = el("form", { class: "group", onsubmit: (/** @type {Event} */ event) => {
+    event.preventDefault();
+    const { loop } = app.transport;
+    if (!loop) return;
+    app.saveLoop(name.value.trim() || stretch(t, chart.beatAt(loop.a) / 4, chart.beatAt(loop.b) / 4));
+    name.value = "";
+  } }, name, keep);
+  const list = el("ul", { class: "cards loops" });
+  const hint = el("p", { class: "hint" });
+  const show = () => {
+    keep.disabled = name.disabled = !app.transport.loop;
+    hint.textContent = app.transport.loop ? "" : t("loopFirst");
+    list.replaceChildren(...app.record.loops.map((loop) => el("li", { class: "kept" },
+      el("button", { type: "button", class: "card", onclick: () => void app.loopBeats(loop.from, loop.to, loop.rate / 100) },
+        el("strong", {}, loop.name), el("span", { class: "figure" }, `${loop.rate} %`), el("span", { class: "text" }, stretch(t, loop.from / 4, loop.to / 4))),
+      el("button", { type: "button", class: "sign", "aria-label": t("loopDrop", { name: loop.name }), title: t("loopDrop", { name: loop.name }), onclick: () => app.dropLoop(loop) }, "✕"))));
+  };
+  app.listeners.add((what) => { if (what === "loop" || what === "record") show(); });
+  show();
+  return el("section", {}, el("h3", {}, t("loopsTitle")), form, hint, list);
+}

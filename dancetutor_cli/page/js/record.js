@@ -1,0 +1,181 @@
+// What somebody has practised of a chart, over days: how it went by row and foot, best speeds, loops with names. All of it is
+// plain data that this browser keeps; a file of it may come from anybody, so each value is looked at.
+
+import { clamp } from "./maths.js";
+
+export const BIN = 15; // milliseconds of a bar of the histogram
+export const BINS = 19; // bars: the middle one is around 0
+const MOST = { days: 1000, rows: 20000, loops: 50, best: 500, charts: 2000, name: 60, id: 500, beat: 1e6 };
+export const LARGEST = 4_000_000; // bytes of a file that is taken in
+const FORMAT = "dancetutor-practice";
+const APART = 1; // measures between missed rows of one stretch
+const LOWEST = 0.25;
+const FIRST = 0.6; // the speed of what was never passed
+
+/**
+ * @typedef {object} Day counts of one day, and errors of left and right foot in bins
+ * @property {string} day "2026-11-24"
+ * @property {number} hit @property {number} early @property {number} late @property {number} miss @property {number} wrong
+ * @property {[number[], number[]]} feet
+ */
+/** @typedef {{tries: number, misses: number, timed: number, sum: number, missed: boolean, rate: number}} RowRecord sum: ms; missed: the last time; rate: % of the last hit, 0: none */
+/** @typedef {{name: string, from: number, to: number, rate: number}} SavedLoop beats, %; where it ends */
+/** @typedef {{days: Day[], rows: Record<string, RowRecord>, loops: SavedLoop[], best: Record<string, number>}} PracticeRecord best: % of clean passes, by beats "16-32" */
+/** @typedef {{row: number, limb: number, verdict: import("./judge.js").Verdict, error: number | undefined}} Outcome of a note; error: seconds */
+
+/** @returns {PracticeRecord} */
+export const emptyRecord = () => ({ days: [], rows: {}, loops: [], best: {} });
+
+/** @param {Date} date */
+export const dayOf = (date) => [date.getFullYear(), date.getMonth() + 1, date.getDate()].map((n) => String(n).padStart(2, "0")).join("-");
+
+/** @param {string} day @returns {Day} */
+const newDay = (day) => ({ day, hit: 0, early: 0, late: 0, miss: 0, wrong: 0, feet: [new Array(BINS).fill(0), new Array(BINS).fill(0)] });
+
+/** Add what was played at a speed. @param {PracticeRecord} record @param {string} day @param {Outcome[]} outcomes @param {number} wrong @param {number} rate */
+export function addOutcomes(record, day, outcomes, wrong, rate) {
+  if (!outcomes.length && !wrong) return;
+  let today = record.days.find((one) => one.day === day);
+  if (!today) record.days.push((today = newDay(day)));
+  record.days = record.days.slice(-MOST.days);
+  today.wrong += wrong;
+  for (const { row, limb, verdict, error } of outcomes) {
+    ++today[verdict];
+    const own = (record.rows[row] ??= { tries: 0, misses: 0, timed: 0, sum: 0, missed: false, rate: 0 });
+    ++own.tries;
+    own.missed = verdict === "miss";
+    if (own.missed) ++own.misses;
+    else own.rate = Math.round(100 * rate);
+    if (error === undefined) continue;
+    ++own.timed;
+    own.sum += Math.round(1000 * error);
+    if (limb === 0 || limb === 1) ++today.feet[limb][clamp(Math.round((1000 * error) / BIN), -(BINS >> 1), BINS >> 1) + (BINS >> 1)];
+  }
+}
+
+/** A pass without a slip. @param {PracticeRecord} record @param {string} where "16-32", beats @param {number} rate */
+export function addClean(record, where, rate) {
+  record.best[where] = Math.max(record.best[where] ?? 0, Math.round(100 * rate));
+}
+
+/** @param {number} from @param {number} to beats */
+export const whereOf = (from, to) => `${Math.round(100 * from) / 100}-${Math.round(100 * to) / 100}`;
+
+/** Share of hits, 0..1. @param {{hit: number, early: number, late: number, miss: number, wrong: number}} counts */
+export function hitShare({ hit, early, late, miss, wrong }) {
+  return hit / Math.max(hit + early + late + miss + wrong, 1);
+}
+
+/**
+ * Days in a row: those up to today (or yesterday, which today may still go on from), and the most there ever were.
+ * @param {Day[]} days @param {string} today @returns {{now: number, most: number}}
+ */
+export function streakOf(days, today) {
+  const number = (/** @type {string} */ day) => Math.round(Date.parse(`${day}T00:00:00Z`) / 86400000);
+  const all = [...new Set(days.map(({ day }) => number(day)))].sort((a, b) => a - b);
+  let [run, most] = [0, 0];
+  all.forEach((day, k) => {
+    run = day - 1 === all[k - 1] ? run + 1 : 1;
+    most = Math.max(most, run);
+  });
+  return { now: all.length && number(today) - all[all.length - 1] <= 1 ? run : 0, most };
+}
+
+/** @typedef {{from: number, to: number, misses: number, rate: number}} Missed whole measures, in beats; rate: to begin at */
+
+/**
+ * Stretches whose rows were missed the last time, the most missed first; each with the speed at which all of it was passed last.
+ * @param {PracticeRecord} record @param {import("./chart.js").Row[]} rows @param {number} [most] @returns {Missed[]}
+ */
+export function missedOf(record, rows, most = 6) {
+  /** @type {Missed[]} */
+  const out = [];
+  for (const { row, beat } of rows) {
+    const own = record.rows[row];
+    if (!own?.missed) continue;
+    const measure = Math.floor(beat / 4 + 1e-6);
+    const last = out[out.length - 1];
+    if (last && measure <= last.to / 4 + APART - 1 + 1e-6) [last.to, last.misses] = [4 * (measure + 1), last.misses + 1];
+    else out.push({ from: 4 * measure, to: 4 * (measure + 1), misses: 1, rate: FIRST });
+  }
+  for (const one of out) {
+    const passed = rows.filter(({ row, beat }) => beat >= one.from - 1e-6 && beat < one.to - 1e-6 && record.rows[row]?.rate).map(({ row }) => record.rows[row].rate);
+    if (passed.length) one.rate = clamp(Math.min(...passed) / 100, LOWEST, 1);
+  }
+  return out.sort((a, b) => b.misses - a.misses || a.from - b.from).slice(0, most);
+}
+
+/**
+ * The coach's next speed: it goes by the share that was hit. @param {number} rate @param {number} share 0..1
+ * @param {number} goal the speed that is wanted in the end
+ */
+export function coachRate(rate, share, goal) {
+  const step = share >= 0.95 ? 0.1 : share >= 0.85 ? 0.05 : share >= 0.7 ? 0 : share >= 0.5 ? -0.05 : -0.1;
+  return clamp(Math.round(100 * (rate + step)) / 100, LOWEST, Math.max(goal, LOWEST));
+}
+
+/** Of two records of one chart. Taking a file in twice changes nothing. @param {PracticeRecord} mine @param {PracticeRecord} theirs */
+export function merged(mine, theirs) {
+  const played = (/** @type {Day} */ day) => day.hit + day.early + day.late + day.miss + day.wrong;
+  const days = new Map(mine.days.map((one) => [one.day, one]));
+  for (const one of theirs.days) {
+    const own = days.get(one.day);
+    if (!own || played(one) > played(own)) days.set(one.day, one);
+  }
+  const out = { ...mine, days: [...days.values()].sort((a, b) => (a.day < b.day ? -1 : 1)).slice(-MOST.days), rows: { ...mine.rows }, best: { ...mine.best }, loops: [...mine.loops] };
+  for (const [row, one] of Object.entries(theirs.rows)) if (one.tries > (out.rows[row]?.tries ?? 0)) out.rows[row] = one;
+  for (const [where, rate] of Object.entries(theirs.best)) out.best[where] = Math.max(out.best[where] ?? 0, rate);
+  const same = (/** @type {SavedLoop} */ a, /** @type {SavedLoop} */ b) => a.name === b.name && a.from === b.from && a.to === b.to;
+  for (const one of theirs.loops) if (out.loops.length < MOST.loops && !out.loops.some((own) => same(own, one))) out.loops.push(one);
+  return out;
+}
+
+/** @param {unknown} value @returns {Record<string, unknown>} */
+const table = (value) => (value && typeof value === "object" && !Array.isArray(value) ? /** @type {Record<string, unknown>} */ (value) : {});
+/** @param {unknown} value @param {number} low @param {number} high @returns {value is number} */
+const within = (value, low, high) => typeof value === "number" && Number.isFinite(value) && value >= low && value <= high;
+/** @param {unknown} value @returns {value is number} */
+const count = (value) => Number.isInteger(value) && within(value, 0, 1e9);
+
+/** What may be kept of anything at all: each value that is as it must be. @param {unknown} value @returns {PracticeRecord} */
+export function validRecord(value) {
+  const { days, rows, loops, best } = table(value);
+  const list = (/** @type {unknown} */ some, /** @type {number} */ most) => (Array.isArray(some) ? some.slice(-most) : []);
+  const out = emptyRecord();
+  out.days = list(days, MOST.days).map(table).flatMap((one) => {
+    const { day, feet } = one;
+    if (typeof day !== "string" || !/^\d{4}-\d\d-\d\d$/.test(day) || !Number.isFinite(Date.parse(day))) return [];
+    const counts = ["hit", "early", "late", "miss", "wrong"].map((name) => one[name]);
+    const bins = Array.isArray(feet) && feet.length === 2 && feet.every((foot) => Array.isArray(foot) && foot.length === BINS && foot.every(count));
+    if (!counts.every(count) || !bins) return [];
+    const [hit, early, late, miss, wrong] = /** @type {number[]} */ (counts);
+    return [{ day, hit, early, late, miss, wrong, feet: /** @type {[number[], number[]]} */ (feet) }];
+  });
+  for (const [row, one] of Object.entries(table(rows)).slice(0, MOST.rows)) {
+    const { tries, misses, timed, sum, missed, rate } = table(one);
+    if (!/^\d{1,6}$/.test(row) || !count(tries) || !count(misses) || !count(timed) || !within(sum, -1e9, 1e9) || typeof missed !== "boolean" || !within(rate, 0, 200)) continue;
+    out.rows[row] = { tries, misses, timed, sum, missed, rate };
+  }
+  for (const { name, from, to, rate } of list(loops, MOST.loops).map(table)) {
+    if (typeof name !== "string" || !within(from, 0, MOST.beat) || !within(to, 0, MOST.beat) || to <= from || !within(rate, 25, 200)) continue;
+    out.loops.push({ name: name.slice(0, MOST.name), from, to, rate });
+  }
+  for (const [where, rate] of Object.entries(table(best)).slice(0, MOST.best)) {
+    if (/^\d{1,6}(\.\d{1,2})?-\d{1,6}(\.\d{1,2})?$/.test(where) && within(rate, 25, 200)) out.best[where] = rate;
+  }
+  return out;
+}
+
+/** A file of the records of charts. @param {Record<string, PracticeRecord>} charts */
+export const toFile = (charts) => JSON.stringify({ format: FORMAT, version: 1, charts });
+
+/** The records in such a file; null for a text that is none. @param {string} text @returns {Map<string, PracticeRecord> | null} */
+export function fromFile(text) {
+  try {
+    const { format, version, charts } = table(JSON.parse(text));
+    if (format !== FORMAT || version !== 1) return null;
+    return new Map(Object.entries(table(charts)).filter(([id]) => id.length <= MOST.id).slice(0, MOST.charts).map(([id, one]) => [id, validRecord(one)]));
+  } catch {
+    return null;
+  }
+}

@@ -1,0 +1,119 @@
+// The panel of results: errors by foot, days, rows that go wrong, what was missed, the coach, and a file of it all.
+
+import { bars, download, el, toggle } from "./dom.js";
+import { placeOf, stretch } from "./places.js";
+import { BIN, BINS, LARGEST, dayOf, fromFile, hitShare, missedOf, streakOf, toFile } from "./record.js";
+import { allRecords, loadRecord, saveRecord, takeRecords } from "./settings.js";
+
+const DAYS = 14; // that are shown
+const ROWS = 5; // rows that are listed
+
+/** @param {import("./app.js").App} app */
+export function resultsPanel(app) {
+  const { t, practice } = app;
+  const panel = el("div", { class: "results" });
+  const coach = toggle(t("coach"), false, (on) => (on ? void practice.coach.start() : practice.coach.stop()), "c");
+  const body = el("div");
+  const file = el("input", { type: "file", accept: "application/json,.json", id: "record-file", hidden: true, "aria-label": t("recordLoad") });
+  const said = el("p", { class: "hint", role: "status", id: "record-said" });
+  const load = el("button", { type: "button", onclick: () => file.click() }, t("recordLoad"));
+  const save = el("button", { type: "button", id: "record-save", onclick: () => {
+    practice.keep();
+    download("dancetutor-practice.json", toFile({ ...allRecords(), [app.id]: app.record }));
+    said.textContent = t("recordSaved", { name: "dancetutor-practice.json" });
+  } }, t("recordSave"));
+  file.addEventListener("change", async () => {
+    const [one] = file.files ?? [];
+    if (one) said.textContent = await takeFile(app, one);
+    file.value = "";
+  });
+  const show = () => {
+    coach.setAttribute("aria-pressed", String(practice.coach.on));
+    const today = app.record.days.find(({ day }) => day === dayOf(new Date()));
+    body.replaceChildren(...(app.record.days.length ? [summary(app), histogram(app, today), missed(app), rowsOf(app), days(app)] : [el("p", {}, t("noResults"))]));
+  };
+  app.listeners.add((what) => {
+    if (["record", "coach", "settings", "pass", "along"].includes(what)) show();
+  });
+  panel.append(el("p", { class: "group" }, coach), el("p", { class: "hint" }, t("coachHint")), body, el("h3", {}, t("recordTitle")),
+    el("p", { class: "group" }, save, load), file, said, el("p", { class: "hint" }, t("recordHint")));
+  show();
+  return panel;
+}
+
+/** Take in a file of records; what came of it, in words. @param {import("./app.js").App} app @param {File} file */
+async function takeFile(app, file) {
+  if (file.size > LARGEST) return app.t("recordLarge", { name: file.name.slice(0, 60), most: LARGEST / 1e6 });
+  const records = fromFile(await file.text());
+  if (!records) return app.t("recordBad", { name: file.name.slice(0, 60) });
+  app.practice.keep();
+  saveRecord(app.id, app.record);
+  takeRecords(records);
+  if (records.has(app.id)) app.record = loadRecord(app.id);
+  app.tell("record");
+  return app.t(records.has(app.id) ? "recordTaken" : "recordTakenOthers", { charts: records.size });
+}
+
+/** @param {import("./app.js").App} app */
+function summary({ t, record }) {
+  const today = dayOf(new Date());
+  const one = record.days.find(({ day }) => day === today);
+  const streak = streakOf(record.days, today);
+  const played = one ? one.hit + one.early + one.late + one.miss : 0;
+  return el("p", { class: "score" }, one ? t("today", { notes: played, percent: Math.round(100 * hitShare(one)) }) : t("todayNone"), " ",
+    streak.now ? t("streak", { days: streak.now, most: streak.most }) : "");
+}
+
+/** Errors of left and right foot, of today if anything was played, else of all days. @param {import("./app.js").App} app @param {import("./record.js").Day} [today] */
+function histogram({ t, record, doc }, today) {
+  const some = today ? [today] : record.days;
+  const feet = [0, 1].map((foot) => Array.from({ length: BINS }, (_, k) => some.reduce((sum, day) => sum + day.feet[foot][k], 0)));
+  const about = feet.map((counts, foot) => {
+    const all = counts.reduce((a, b) => a + b, 0);
+    const mean = Math.round(counts.reduce((sum, n, k) => sum + n * BIN * (k - (BINS >> 1)), 0) / Math.max(all, 1));
+    return t(foot ? "rightMean" : "leftMean", { count: all, mean: (mean > 0 ? "+" : "") + mean });
+  });
+  const edge = BIN * (BINS >> 1);
+  return el("figure", {}, el("figcaption", {}, t(today ? "histogramToday" : "histogramAll")),
+    bars(feet, doc.style.limbs, `${about.join("; ")}`),
+    el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, t("early", { ms: edge })), el("span", {}, "0"), el("span", {}, t("late", { ms: edge }))),
+    el("p", { class: "legend" }, ...about.map((text, foot) => {
+      const sign = el("span", { "aria-hidden": "true" }, "■ ");
+      sign.style.color = doc.style.limbs[foot];
+      return el("span", {}, sign, text, " ");
+    })));
+}
+
+/** @param {import("./app.js").App} app */
+function missed(app) {
+  const { t, record, chart } = app;
+  const list = missedOf(record, chart.rows);
+  if (!list.length) return el("p", {}, t("nothingMissed"));
+  return el("section", {}, el("h3", {}, t("missedTitle")), el("ol", { class: "cards" }, ...list.map((one) => el("li", {},
+    el("button", { type: "button", class: "card missed", onclick: () => void app.loopBeats(one.from, one.to, one.rate) },
+      el("strong", {}, stretch(t, one.from / 4, one.to / 4)), el("span", { class: "figure" }, `${Math.round(100 * one.rate)} %`),
+      el("span", { class: "text" }, t("missedRows", { count: one.misses })))))));
+}
+
+/** Rows that went wrong most often. @param {import("./app.js").App} app */
+function rowsOf(app) {
+  const { t, record, chart } = app;
+  const worst = chart.rows.filter(({ row }) => record.rows[row]?.tries).map((row) => ({ row, own: record.rows[row.row] }))
+    .map((one) => ({ ...one, mean: one.own.timed ? Math.round(one.own.sum / one.own.timed) : 0 }))
+    .sort((a, b) => b.own.misses / b.own.tries - a.own.misses / a.own.tries || Math.abs(b.mean) - Math.abs(a.mean)).slice(0, ROWS);
+  const cells = worst.map(({ row, own, mean }) => el("tr", {},
+    el("th", { scope: "row" }, el("button", { type: "button", class: "link", onclick: () => app.goTo(row.steps[0].note) }, placeOf(t, row.beat))),
+    el("td", {}, row.steps.map(({ limb }) => (limb === 0 || limb === 1 ? t(limb ? "footR" : "footL") : "")).join("")),
+    el("td", {}, t("missedOf", { misses: own.misses, tries: own.tries })), el("td", {}, own.timed ? `${mean > 0 ? "+" : ""}${mean} ms` : "")));
+  return el("section", {}, el("h3", {}, t("rowsTitle")), el("table", { class: "rows" }, el("thead", {}, el("tr", {},
+    ...["rowsPlace", "rowsFoot", "rowsMissed", "rowsMean"].map((name) => el("th", { scope: "col" }, t(name))))), el("tbody", {}, ...cells)));
+}
+
+/** Share of hits by day. @param {import("./app.js").App} app */
+function days({ t, record }) {
+  const some = record.days.slice(-DAYS);
+  const shares = some.map((day) => Math.round(100 * hitShare(day)));
+  const about = some.map((one, k) => `${one.day}: ${shares[k]} %`).join("; ");
+  return el("figure", {}, el("figcaption", {}, t("daysTitle")), bars([shares], ["#8f98d8"], about, 100),
+    el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, `${some[0].day}: ${shares[0]} %`), some.length > 1 ? el("span", {}, `${some[some.length - 1].day}: ${shares[shares.length - 1]} %`) : null));
+}
