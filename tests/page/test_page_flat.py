@@ -129,7 +129,10 @@ def test_lanes_are_panels_for_a_finger(flat: Browser, page_file: Path) -> None:
     flat.turn(9)
     assert text(flat, ".said").startswith("waiting")
     x, y, w, h = flat.box(".lanes")
-    numbers, words = 8 + 7 * 2, min(max(0.24 * w, 46), 80)  # room at both sides: as `Highway.measure`
+    numbers, words = (
+        8 + 7 * 2,
+        min(max((0.34 if w > 200 else 0.24) * w, 46), 80),
+    )  # room at both sides: as `Highway.measure`
     lane = min(72, (w - numbers - words) / 4)
     left = x + numbers + 0.28 * (w - numbers - words - 4 * lane)
     for column in (3, 0):  # right does nothing, left is the row

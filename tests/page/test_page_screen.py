@@ -86,7 +86,7 @@ def test_axe_finds_nothing_serious(browser: Browser) -> None:
     if not source.exists():
         pytest.skip("no axe here; `make page-tools` puts it into tests/page/node_modules")
     browser.run(source.read_text("utf-8") + "; 1")
-    for tab in ("passages", "along", "findings", "author", "settings"):
+    for tab in ("passages", "along", "results", "findings", "author", "settings"):
         browser.click(f"#tab-{tab}")
         found = browser.run(
             "axe.run(document, {resultTypes: ['violations']}).then(r => r.violations"

@@ -175,6 +175,29 @@ def test_a_real_browser_draws_it(browser: Callable[..., str], tmp_path: Path) ->
         assert near.sum() >= 20, f"no {hex_colour(colour)} on the sheet"
 
 
+def test_its_policy_forbids_scripts_and_every_place(browser: Callable[..., str], tmp_path: Path) -> None:
+    """What somebody smuggles into a sheet neither runs nor loads; without the policy both would."""
+    page, sheet = tmp_path / "s.html", html_page([(make_sheet(subject(), [SPIN]), ["fact"])])
+    found = re.search(r'<meta http-equiv="Content-Security-Policy" content="([^"]*)">', sheet)
+    assert found
+    policy = dict(part.strip().split(" ", 1) for part in found[1].split(";"))
+    assert policy == {"default-src": "'none'", "style-src": "'unsafe-inline'", "base-uri": "'none'",
+                      "form-action": "'none'"}  # fmt: skip
+    assert "<script" not in sheet and not re.findall(r"https?://(?!www\.w3\.org/)", sheet)
+    other = tmp_path / "other.png"
+    Image.new("RGB", (7, 5)).save(other)
+    smuggled = (
+        f'<img id="other" src="{other.as_uri()}" onload="document.title = \'loaded\'">'
+        "<script>document.body.dataset.ran = 1</script>"
+    )
+    hostile = sheet.replace("</main>", f"{smuggled}</main>")
+    page.write_text(hostile, encoding="utf-8")
+    kept = browser("--dump-dom", page.as_uri())
+    assert "</main>" in kept and "data-ran" not in kept and "<title>loaded" not in kept
+    page.write_text(hostile.replace(found[0], ""), encoding="utf-8")
+    assert 'data-ran="1"' in browser("--dump-dom", page.as_uri())
+
+
 # Tells in the page itself how many texts and shapes reach over the edge of their picture.
 MEASURE = """<script>
 const lost = [];

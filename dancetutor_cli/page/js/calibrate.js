@@ -107,9 +107,9 @@ export function calibrateDialog(app) {
     if (!found) return void (text.textContent = t("calibrateFew"));
     mark(found.middle, "middle");
     const [ms, spread] = [Math.round(1000 * found.middle), Math.round(1000 * found.spread)];
-    text.textContent = t(what === "latency" ? "calibrateDone" : "calibrateSeen", { ms, spread, taps: found.errors.length });
     // By eye a tap is late by the same hand, and by the screen: what is more than by ear is the screen's.
     app.set(what, Math.round(1000 * (what === "latency" ? found.middle : found.middle - settings.latency)) / 1000);
+    text.textContent = t(what === "latency" ? "calibrateDone" : "calibrateSeen", { ms, spread, taps: found.errors.length, more: Math.round(1000 * settings.sight) });
     show();
   }
 

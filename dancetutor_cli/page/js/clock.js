@@ -87,7 +87,7 @@ export class Transport {
   setRate(rate) {
     const at = this.second();
     this.rate = Math.min(Math.max(Math.round(rate * 100) / 100, 0.25), 2);
-    if (this.run) this.begin(at, this.now());
+    if (this.run) this.begin(at, Math.max(this.now(), this.run.at)); // what has not begun begins when it was to
   }
 
   /** @param {Loop | null} loop */

@@ -61,7 +61,7 @@ export class Coach {
   pass(tally) {
     const { app } = this;
     const { transport, chart } = app;
-    const share = hitShare(tally);
+    const share = hitShare(tally, tally.wrong);
     const percent = Math.round(100 * share);
     if (share < PASSED || transport.rate < FULL) {
       transport.rate = coachRate(transport.rate, share, FULL);

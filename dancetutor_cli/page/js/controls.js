@@ -80,7 +80,7 @@ function otherFoot(app, ui) {
 export function listenToKeys(app, actions) {
   const arrows = (/** @type {KeyboardEvent} */ event) => /^Arrow/.test(event.key) && !event.shiftKey;
   document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]:not(.assign)")) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || (document.querySelector("dialog[open]") && !app.input.learning)) return;
     const target = /** @type {HTMLElement} */ (event.target);
     if (target.matches("input[type=text], input[type=number], select, textarea")) return;
     if ((app.practice.along || app.input.learning) && !event.shiftKey && app.input.key(event)) return event.preventDefault();

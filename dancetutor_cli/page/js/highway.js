@@ -63,7 +63,7 @@ export class Highway {
     if (this.canvas.height !== height) this.canvas.height = height;
     const { columns, beats } = this.chart;
     const numbers = (8 + 7 * String(beats.length >> 2).length) * ratio; // room left of the lanes, for the last measure's number
-    const words = clamp((columns > 5 ? 0.12 : 0.24) * width, 46 * ratio, 80 * ratio); // and right of them
+    const words = clamp((columns > 5 ? 0.12 : width > 200 * ratio ? 0.34 : 0.24) * width, 46 * ratio, 80 * ratio); // and right of them
     const lane = Math.min((width - numbers - words) / columns, 72 * ratio);
     const left = numbers + 0.28 * (width - numbers - words - lane * columns);
     return { ratio, width, height, lane, left, receptor: Math.max(0.11 * height, 0.62 * lane), size: 0.92 * lane };

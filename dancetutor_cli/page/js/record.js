@@ -61,8 +61,8 @@ export function addClean(record, where, rate) {
 /** @param {number} from @param {number} to beats */
 export const whereOf = (from, to) => `${Math.round(100 * from) / 100}-${Math.round(100 * to) / 100}`;
 
-/** Share of hits, 0..1. @param {{hit: number, early: number, late: number, miss: number, wrong: number}} counts */
-export function hitShare({ hit, early, late, miss, wrong }) {
+/** Share of hits among notes, 0..1. @param {{hit: number, early: number, late: number, miss: number}} counts @param {number} [wrong] presses that count as notes missed */
+export function hitShare({ hit, early, late, miss }, wrong = 0) {
   return hit / Math.max(hit + early + late + miss + wrong, 1);
 }
 

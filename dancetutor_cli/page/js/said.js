@@ -2,6 +2,7 @@
 
 import { keyName } from "./input.js";
 import { placeOf, stretch } from "./places.js";
+import { hitShare } from "./record.js";
 
 /** @param {import("./app.js").App} app */
 export function saidOf(app) {
@@ -32,8 +33,7 @@ export function keysText(app) {
 
 /** How a song went that is over. @param {import("./app.js").App} app @param {import("./judge.js").Tally} tally */
 function overText(app, tally) {
-  const all = tally.hit + tally.early + tally.late + tally.miss;
-  return app.t("songOver", { percent: Math.round((100 * tally.hit) / Math.max(all, 1)), counts: `${scoreText(app, tally)} ${meanText(app, tally)}`.trim() });
+  return app.t("songOver", { percent: Math.round(100 * hitShare(tally)), counts: `${scoreText(app, tally)} ${meanText(app, tally)}`.trim() });
 }
 
 /** How late presses came on average; "" without any. @param {import("./app.js").App} app @param {import("./judge.js").Tally} tally */
@@ -50,7 +50,7 @@ function loopText(app) {
   const where = stretch(t, chart.beatAt(loop.a) / 4, chart.beatAt(loop.b) / 4);
   const percent = (/** @type {number} */ x) => Math.round(100 * x);
   const full = app.settings.ramp && rate >= 1 && practice.chosenRate >= 1;
-  const ramped = full ? t("rampFull", { rate: percent(rate) }) : rate === practice.chosenRate ? "" : t("ramped", { from: percent(practice.chosenRate), to: percent(rate) });
+  const ramped = practice.coach.on ? "" : full ? t("rampFull", { rate: percent(rate) }) : rate === practice.chosenRate ? "" : t("ramped", { from: percent(practice.chosenRate), to: percent(rate) });
   const before = practice.before ? t("passBefore", { counts: scoreText(app, practice.before) }) : "";
   return [t("loopFrom", { where, passes: practice.passes }), ramped, before].filter(Boolean).join(" · ");
 }

@@ -27,7 +27,8 @@ test("errors are counted by day and foot, and by row", () => {
   assert.equal(days.flatMap(({ feet }) => feet.flat()).reduce((a, b) => a + b), 4); // misses have no error
   assert.deepEqual(rows[1], { tries: 2, misses: 1, timed: 1, sum: 90, missed: true, rate: 80 });
   assert.deepEqual(rows[2], { tries: 2, misses: 1, timed: 1, sum: -80, missed: false, rate: 90 });
-  assert.equal(hitShare(days[0]), 0.25);
+  assert.equal(hitShare(days[0]), 1 / 3);
+  assert.equal(hitShare(days[0], days[0].wrong), 0.25);
 });
 
 test("a row's last outcome says whether it is missed, and the stretch begins where all of it was passed", () => {
