@@ -1,7 +1,8 @@
 """The practice page: how long it takes to open in a real browser, drawn by the processor there; bytes by part.
 
 A page of two minutes of the demo's hardest chart, in a fresh headless Chromium each time; the least of some openings,
-from the start of navigation to the first frame. Nothing where no Chromium is; a row of a GPU where Chromium finds one:
+from the start of navigation to the first frame. And pages of 8 and 15 minutes of 16ths, 10 rows a second (`bench_growth.chart`):
+their bytes, and the processor time of the first with and without the pieces of the dance that were kept. Nothing where no Chromium is; a row of a GPU where Chromium finds one:
 there a frame takes a 60th of a second or longer, for the browser asks for no more. Times are of the clock: on a machine
 that is busy they say little.
 """
@@ -11,7 +12,11 @@ from __future__ import annotations
 import shutil
 import sys
 import tempfile
+import time
 from pathlib import Path
+from unittest.mock import patch
+
+from bench_growth import chart
 
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.request import DanceRequest
@@ -43,6 +48,7 @@ def measure() -> list[Row]:
     page = make_page(PageRequest(DanceRequest(DEMO, Selection(difficulty="challenge"))))
     out: list[Row] = [("page without music", len(page.html) / 1e6, "MB", "4 for two minutes", "")]
     out += [(f"page, {part}", size / 1e3, "kB", "", "") for part, size in sorted(page.sizes.items())]
+    out += _long()
     if shutil.which("chromium") is None:
         return out
     with tempfile.TemporaryDirectory() as folder:
@@ -59,6 +65,30 @@ def measure() -> list[Row]:
     if not any(word in renderer if word else not renderer for word in BY_PROCESSOR):
         out.append((f"page, a frame at 1920x1080, drawn by {renderer}", by_gpu, "ms", "16.7", ""))
     return out
+
+
+def _long() -> list[Row]:
+    """Bytes and processor time of long pages."""
+    with tempfile.TemporaryDirectory() as folder:
+        requests = {}
+        for minutes in (8, 15):
+            path = Path(folder) / f"{minutes}.sm"
+            path.write_text(chart(minutes), encoding="utf-8")
+            requests[minutes] = PageRequest(DanceRequest(path, Selection()))
+        page = make_page(requests[8])  # kernels are there from now on, and the pieces are kept
+        start = time.process_time()
+        make_page(requests[8])
+        kept = time.process_time() - start
+        with patch("dancetutor_cli.dance.store.kept_folder", return_value=None):
+            start = time.process_time()
+            long = make_page(requests[15])
+            whole = (time.process_time() - start) * 8 / 15
+    return [
+        ("page of 8 minutes", len(page.html) / 1e6, "MB", "", ""),
+        ("page of 15 minutes", len(long.html) / 1e6, "MB", "4", ""),
+        ("page of 8 minutes, processor time, its dance kept", kept, "s", "8", ""),
+        ("page of 8 minutes, processor time, danced anew (of 15)", whole, "s", "8", ""),
+    ]
 
 
 def _look(browser: Browser, path: Path, size: tuple[int, int] = (1280, 720)) -> tuple[str, float, float]:

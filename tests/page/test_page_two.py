@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from dancetutor_cli.film.overlay.sprites import highway_style
 from dancetutor_cli.page.work import Page, PageRequest, make_page
 from dancetutor_cli.run.errors import UsageError
 
+ROOT = Path(__file__).resolve().parents[2]
 ROWS = ["10000001", "01000010", "00010100", "00101000", "10010001", "01000010", "00010100", "00101001"]
 SONG = "#TITLE:Two;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:dance-couple::Hard:9::\n" + "\n".join(ROWS) + "\n;\n"
 
@@ -38,6 +40,8 @@ def test_it_holds_both_dancers_and_whose_each_note_is(pair: Page) -> None:
     assert len(doc["motions"]) == 2 and pair.sizes["motion1"] > 1000
     assert [len(part["skin"]) for part in doc["body"]["parts"]] == [2] * len(doc["body"]["parts"])
     assert any(part["skin"][0] != part["skin"][1] for part in doc["body"]["parts"])
+    jsonschema = pytest.importorskip("jsonschema", reason="jsonschema is not installed; it is in the extra dev")
+    jsonschema.validate(doc, json.loads((ROOT / "docs" / "page.schema.json").read_text("utf-8")))
     assert doc["flips"] == [] and all(one["message"][:4] in ("P1: ", "P2: ") for one in doc["findings"])
     assert all(one["sentence"]["de"][:2] in ("P1", "P2") for one in doc["passages"])
 

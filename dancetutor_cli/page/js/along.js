@@ -12,6 +12,7 @@ export function alongPanel(app) {
   const { t, settings } = app;
   const along = toggle(t("along"), app.practice.along, (on) => app.practice.setAlong(on), "p");
   const wait = toggle(t("wait"), app.practice.wait, (on) => app.practice.setWait(on), "w");
+  const coach = toggle(t("coach"), false, (on) => (on ? void app.practice.coach.start() : app.practice.coach.stop()), "c");
   const help = el("select", { id: "feet-help" }, ...HELPS.map((name) => el("option", { value: name }, t(`help-${name}`))));
   help.addEventListener("change", () => app.set("help", help.value));
   const foot = el("select", { id: "foot" }, ...FEET.map((name) => el("option", { value: name }, t(`foot-${name}`))));
@@ -28,6 +29,7 @@ export function alongPanel(app) {
   const refresh = () => {
     along.setAttribute("aria-pressed", String(app.practice.along));
     wait.setAttribute("aria-pressed", String(app.practice.wait));
+    coach.setAttribute("aria-pressed", String(app.practice.coach.on));
     help.value = settings.help;
     foot.value = settings.foot;
     const plugged = app.input.pads().map((pad) => pad.id.slice(0, 40));
@@ -39,7 +41,7 @@ export function alongPanel(app) {
   show();
   refresh();
   return el("div", {},
-    el("p", { class: "hint" }, t("alongHint")), el("p", { class: "group" }, along, wait), score,
+    el("p", { class: "hint" }, t("alongHint")), el("p", { class: "group" }, along, wait, coach), score,
     el("p", { class: "hint" }, t("windows", { good: 1000 * GOOD, wide: 1000 * WINDOW })),
     el("p", { class: "field whole" }, el("label", { for: "foot" }, t("foot")), foot),
     el("p", { class: "field whole" }, el("label", { for: "feet-help" }, t("feetHelp")), help),

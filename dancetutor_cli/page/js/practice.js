@@ -75,10 +75,10 @@ export class Practice {
     this.updateHold();
   }
 
-  /** What came of notes goes into the record; while the clock waits there is nothing to keep. */
+  /** What came of notes goes into the record; while the clock waits, or nobody presses anything, there is nothing to keep. */
   keep() {
     const { outcomes, wrong } = this.judge.take();
-    if (this.wait || (!outcomes.length && !wrong)) return;
+    if (this.wait || (!wrong && outcomes.every(({ verdict }) => verdict === "miss"))) return;
     addOutcomes(this.app.record, dayOf(new Date()), outcomes, wrong, this.app.transport.rate);
     this.app.saveRecord();
   }

@@ -160,10 +160,10 @@ export class Timeline {
     c.lineWidth = 1.5 * ratio;
     c.beginPath();
     let before = middle;
-    for (const row of this.chart.rows) {
-      const y = middle - (clamp(row.facing, -180, 180) / 180) * (middle - top - 2 * ratio);
-      c.lineTo(x(row.second), before);
-      c.lineTo(x(row.second), y);
+    for (const { second, facing } of thinned(this.chart.rows, this.view, (NARROW * ratio * this.shown) / this.canvas.width)) {
+      const y = middle - (clamp(facing, -180, 180) / 180) * (middle - top - 2 * ratio);
+      c.lineTo(x(second), before);
+      c.lineTo(x(second), y);
       before = y;
     }
     c.stroke();
@@ -211,6 +211,22 @@ export class Timeline {
       c.fillText(name, x(edge) + (side === "left" ? 4 : -4) * ratio, height - 2 * ratio);
     }
   }
+}
+
+/**
+ * Facings that are in sight; of rows that would lie closer than `apart` seconds their mean.
+ * @param {{second: number, facing: number}[]} rows @param {{from: number, to: number}} view @param {number} apart
+ */
+export function thinned(rows, view, apart) {
+  /** @type {{second: number, facing: number, count: number}[]} */
+  const out = [];
+  for (const { second, facing } of rows) {
+    if (second < view.from - apart || second > view.to + apart) continue;
+    const last = out[out.length - 1];
+    if (!last || second - last.second >= apart) out.push({ second, facing, count: 1 });
+    else last.facing += (facing - last.facing) / ++last.count;
+  }
+  return out;
 }
 
 /**

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import {
   BINS, addClean, addOutcomes, coachRate, dayOf, emptyRecord, fromFile, hitShare, merged, missedOf, streakOf, toFile, validRecord,
 } from "../../../dancetutor_cli/page/js/record.js";
-import { together } from "../../../dancetutor_cli/page/js/timeline.js";
+import { thinned, together } from "../../../dancetutor_cli/page/js/timeline.js";
 
 const outcome = (row, verdict, error, limb = row % 2) => ({ row, limb, verdict, error });
 
@@ -106,4 +106,12 @@ test("narrow measures of the strip are drawn together, as high as the highest", 
   const density = Array.from({ length: 10 }, (_, k) => ({ start: k, end: k + 1, rate: k % 4 }));
   assert.equal(together(density, 1), density);
   assert.deepEqual(together(density, 4), [{ start: 0, end: 4, rate: 3 }, { start: 4, end: 8, rate: 3 }, { start: 8, end: 10, rate: 1 }]);
+});
+
+test("where rows lie closer than a few pixels, the strip draws their mean facing, and only what is in sight", () => {
+  const rows = Array.from({ length: 100 }, (_, k) => ({ second: k / 10, facing: k % 2 ? 90 : -90 }));
+  const some = thinned(rows, { from: 2, to: 4 }, 1);
+  assert.ok(some.length >= 3 && some.length <= 5);
+  assert.ok(some.slice(0, -1).every(({ facing }) => Math.abs(facing) <= 10)); // the last one may be of a row alone
+  assert.equal(thinned(rows, { from: 2, to: 4 }, 0.05).length, 21);
 });
