@@ -1,10 +1,10 @@
 """The practice page: how long it takes to open in a real browser, drawn by the processor there; bytes by part.
 
 A page of two minutes of the demo's hardest chart, in a fresh headless Chromium each time; the least of some openings,
-from the start of navigation to the first frame. And pages of 8 and 15 minutes of 16ths, 10 rows a second (`bench_growth.chart`):
-their bytes, and the processor time of the first with and without the pieces of the dance that were kept. Nothing where no Chromium is; a row of a GPU where Chromium finds one:
+from the start of navigation to the first frame. Nothing where no Chromium is; a row of a GPU where Chromium finds one:
 there a frame takes a 60th of a second or longer, for the browser asks for no more. Times are of the clock: on a machine
-that is busy they say little.
+that is busy they say little. And pages of 8 and 15 minutes of 16ths, 10 rows a second (`bench_growth.chart`): their
+bytes, and the processor time of the first with and without the pieces of the dance that were kept.
 """
 
 from __future__ import annotations
