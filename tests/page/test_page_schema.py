@@ -1,4 +1,4 @@
-"""docs/page.schema.json describes the page's document, all of it and nothing else; the script's types are made of it."""
+"""docs/page.schema.json describes the page's document, all of it and nothing else; the types are made of it."""
 
 from __future__ import annotations
 
