@@ -20,8 +20,10 @@ if TYPE_CHECKING:
 _RESOURCE_FORK = "._"  # what macOS leaves beside files on foreign disks; the games skip it too
 
 
-def find_files(paths: Sequence[Path]) -> list[Path]:
+def find_files(paths: Sequence[Path], exclude: Sequence[str] = ()) -> list[Path]:
     """The chart files that paths name: a file as it is, a folder with every .sm and .ssc below it, sorted; none twice.
+
+    exclude : patterns of what is left out of folders, see `is_excluded`
 
     Symbolic links to folders are not followed. What cannot be looked into stands for itself in the list (a path that
     is not there, a folder that cannot be read or holds no charts): `chart.load` says what is wrong with it, and the
@@ -29,18 +31,35 @@ def find_files(paths: Sequence[Path]) -> list[Path]:
     """
     found: dict[str, Path] = {}
     for path in paths:
-        for file in _below(path) if os.path.isdir(path) else (path,):  # noqa: PTH112 (Path.is_dir may raise)
+        for file in _below(path, exclude) if os.path.isdir(path) else (path,):  # noqa: PTH112 (Path.is_dir may raise)
             found.setdefault(os.path.normcase(os.path.abspath(file)), file)  # noqa: PTH100 (links stay links)
     return list(found.values())
 
 
-def _below(folder: Path) -> Iterable[Path]:
+def _below(folder: Path, exclude: Sequence[str]) -> Iterable[Path]:
     closed: list[Path] = []
     files: list[Path] = []
     for root, folders, names in os.walk(folder, onerror=lambda error: closed.append(Path(error.filename or folder))):
         folders.sort()
         files.extend(Path(root) / name for name in sorted(names) if is_chart_name(name))
+    if exclude:
+        files = [file for file in files if not is_excluded(file.relative_to(folder).as_posix(), exclude)]
     return [*files, *sorted(closed)] or [folder]
+
+
+def is_excluded(name: str, exclude: Sequence[str]) -> bool:
+    """Whether a path below the folder that is searched is left out by a pattern of `--exclude`.
+
+    A pattern (*, ?, [...]; capitals are all one) means the path, a folder on it, or a name anywhere: "Old", "*.sm",
+    "Pack/Old songs/*".
+    """
+    if not exclude:
+        return False
+    from fnmatch import fnmatchcase
+
+    parts = name.lower().split("/")
+    means = {*parts, *("/".join(parts[:end]) for end in range(1, len(parts) + 1))}
+    return any(fnmatchcase(one, pattern.lower().rstrip("/")) for pattern in exclude for one in means)
 
 
 def without_links_out(paths: Sequence[Path], files: Sequence[Path]) -> tuple[list[Path], list[Path]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 
 import click
 
@@ -23,6 +24,36 @@ COMMANDS = {
 }
 
 
+def _set_colours(context: click.Context, _: click.Parameter, value: str) -> None:
+    """Have this run, and whatever it starts, write colours or none: by the variables that all of them obey."""
+    if value == "auto" or context.resilient_parsing:
+        return
+    names = ("NO_COLOR", "FORCE_COLOR")
+    before = {name: os.environ.pop(name, None) for name in names}
+    os.environ[names[value == "always"]] = "1"
+
+    def restore() -> None:
+        for name in names:
+            os.environ.pop(name, None)
+        os.environ.update({name: said for name, said in before.items() if said is not None})
+
+    context.call_on_close(restore)
+
+
+def _colour_option() -> click.Option:
+    """--color, which all subcommands have."""
+    return click.Option(
+        ["--color"],
+        type=click.Choice(["auto", "always", "never"]),
+        default="auto",
+        show_default=True,
+        expose_value=False,
+        is_eager=True,
+        callback=_set_colours,
+        help="Colours; auto: at a terminal, unless NO_COLOR is set.",
+    )
+
+
 class _LazyGroup(click.Group):
     """Imports a subcommand's module when it is called, not before."""
 
@@ -35,6 +66,8 @@ class _LazyGroup(click.Group):
         module = importlib.import_module(f"dancetutor_cli.commands.{COMMANDS[cmd_name][0]}")
         command = module.command
         assert isinstance(command, click.Command)
+        if all(option.name != "color" for option in command.params):
+            command.params.append(_colour_option())
         return command
 
     def resolve_command(

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import click
 
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.commands.arguments import GivenPath, Source, fixes, folder, named, rules, sources
-from dancetutor_cli.commands.chart_options import preset_option, selection_options
+from dancetutor_cli.commands.arguments import GivenPath, Source, fixes, folder, named, open_output, rules, sources
+from dancetutor_cli.commands.chart_options import exclude_option, preset_option, quiet_option, selection_options
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.pack import pack_options
 from dancetutor_cli.reports.formats import FORMATS
@@ -23,7 +22,7 @@ from dancetutor_cli.run.trust import results_folder
 if TYPE_CHECKING:
     from dancetutor_cli.lint.analysis import AnalyzeTask
     from dancetutor_cli.lint.run import LintRequest, LintRun
-    from dancetutor_cli.reports.formats import Tally
+    from dancetutor_cli.reports.formats import Report, Tally
 
 
 def _explain(context: click.Context, _: click.Parameter, value: str | None) -> None:
@@ -49,6 +48,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     show_default=True,
     help="How to print the result.",
 )
+@click.option("-o", "--output-file", type=GivenPath(dir_okay=False), metavar="FILE", help="Write the result there.")
 @click.option(
     "--fail-on",
     type=click.Choice(["error", "warning", "never"]),
@@ -82,19 +82,22 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     metavar="KEY=VALUE",
     help="Change one value of the configuration, for example DT205.max_rows=4.",
 )
+@click.option("--show-settings", is_flag=True, help="Print what holds for PATH as a dancetutor.yaml, and end.")
 @click.option("--baseline", type=GivenPath(dir_okay=False), help="Known findings, not to be reported.")
 @click.option("--update-baseline", is_flag=True, help="Write the findings of this run into the baseline.")
-@click.option("-q", "--quiet", is_flag=True, help="Leave out infos, and charts without errors and warnings.")
+@quiet_option
+@exclude_option
 @click.option(
     "--full/--brief",
     default=None,
-    help="Every finding with its rows, or at most a screen for a song and a page for a pack.  "
-    "[default: brief at a terminal, full into files and pipes]",
+    help="Every chart with its table and every finding with its rows, or at most a screen for a song and a page for "
+    "a pack.  [default: brief at a terminal, else a line for each finding]",
 )
 @click.option(
     "--statistics",
     is_flag=True,
-    help="Print how often each rule was found; in brief only that. Beside other formats than text: on standard error.",
+    help="Print only how often each rule was found; with --full above the summary, beside other formats than text on "
+    "standard error.",
 )
 @click.option(
     "--sheet",
@@ -165,7 +168,12 @@ def command(**options: Any) -> int:  # fmt: skip
         raise UsageError("--diff and --backup belong to --fix; add --fix RULE or --fix safe")
     if options["watch"] and not options["fix"]:
         return _watch(request, options)
-    return _run(LintRun(request), sources(options["paths"], options["stdin_filename"]), options)
+    files = sources(options["paths"], options["stdin_filename"], options["exclude"])
+    if options["show_settings"]:
+        from dancetutor_cli.commands.settings import show_settings
+
+        return show_settings(LintRun(request), files)
+    return _run(LintRun(request), files, options)
 
 
 def _watch(request: LintRequest, options: dict[str, Any]) -> int:
@@ -180,7 +188,7 @@ def _watch(request: LintRequest, options: dict[str, Any]) -> int:
     def needs(path: Path) -> Iterable[Path]:
         return run.needs(path)
 
-    for _, changed in changes(lambda: find_files(options["paths"]), needs):
+    for _, changed in changes(lambda: find_files(options["paths"], options["exclude"]), needs):
         run = LintRun(request)
         if changed:
             click.clear()  # nothing without a terminal
@@ -198,36 +206,46 @@ def _report_errors(work: Callable[[], object]) -> None:
 
 
 def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
-    from dancetutor_cli.lint.cache import ResultCache, default_folder
-    from dancetutor_cli.lint.run import analyze_all
-    from dancetutor_cli.reports.formats import Tally, open_brief_report, open_report
+    from dancetutor_cli.commands.pack import check_comparison, check_sheet, report_beside, report_changes
 
     if options["sheet"] is not None:
-        from dancetutor_cli.commands.pack import check_sheet
-
         check_sheet(options["sheet"], len(files))
     if options["update_baseline"] and options["baseline"] is not None:
         check_file(options["baseline"])
+    if options["output_file"] is not None:
+        check_file(options["output_file"], or_device=True)
     first = files[0][0]
     if options["fix"]:
         from dancetutor_cli.commands.fixing import fix_all
 
         run.open_baseline(first)
         return fix_all(run, [run.task(path, data) for path, data in files], options)
+    with open_output(options["output_file"]) as output:
+        if options["beside"] is not None:
+            return report_beside([run.task(path, data) for path, data in files], options, output)
+        if options["compare"] is not None:
+            check_comparison(options)
+            if options["report_html"] is None:
+                return report_changes(options, output)
+        return _lint(run, files, options, output)
+
+
+def _lint(run: LintRun, files: list[Source], options: dict[str, Any], output: IO[str]) -> int:
+    """Analyze all files and write the report; the exit status."""
     from dancetutor_cli.commands.pack import PackReport
+    from dancetutor_cli.lint.cache import ResultCache, default_folder
+    from dancetutor_cli.lint.run import analyze_all
+    from dancetutor_cli.reports.formats import Tally
 
-    if options["beside"] is not None:
-        from dancetutor_cli.commands.pack import report_comparison
-
-        return report_comparison([run.task(path, data) for path, data in files], options)
-    tally = Tally(run.fail_on(first), options["exit_zero"])
+    first = files[0][0]
     run.open_baseline(first)
-    pack = PackReport(options, run.has_baseline, len(files), brief=_is_brief(options))
+    view = _view(options, output)
+    silent = options["quiet"] or (view == "none" and not options["statistics"])
+    tally = Tally(run.fail_on(first), options["exit_zero"], quiet=silent)
+    pack = PackReport(options, run.has_baseline, len(files), view)
     tasks = [run.task(path, data) for path, data in files]
-    if _is_brief(options):
-        report = open_brief_report(len(tasks), known=run.has_baseline, statistics=options["statistics"])
-    else:
-        report = open_report(options["format_name"], next(tasks[0].presets.candidates()).name)
+    report = _open_view(view, tasks, output)
+    least = "warning" if tally.fail_on == "never" else tally.fail_on
     report.begin()
     folder = None if options["no_cache"] else default_folder()
     cache = None if folder is None else ResultCache(folder)
@@ -237,31 +255,62 @@ def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
         result = run.without_baseline(raw)
         tally.add(result)
         pack.add(raw)
-        if options["quiet"]:
-            result = result.without_infos()
-        if not options["quiet"] or result.error or result.findings or result.charts:
-            report.add(result)
+        if options["quiet"] or (run.has_baseline and options["format_name"] == "text"):
+            result = result.at_least(least if options["quiet"] else "info")
+            if not (result.error or result.findings or result.charts):
+                continue
+        report.add(result)
     tally.page += pack.lines()
     if options["statistics"] and options["format_name"] == "text":
         tally.page += tally.statistics()
     report.end(tally)
-    for line in pack.summary_lines():
+    for line in pack.summary_lines(tally) if not options["quiet"] else ():
         click.echo(line, err=True)
     if options["sheet"] is not None and not tally.unreadable:
         from dancetutor_cli.commands.pack import write_sheet
 
-        click.echo(write_sheet(options["sheet"], tasks), err=True)
+        said = write_sheet(options["sheet"], tasks)
+        if not options["quiet"]:
+            click.echo(said, err=True)
+    if cache is not None and not options["watch"]:
+        _keep(files)
     _finish(run, tally, options)
     return tally.exit_status
 
 
-def _is_brief(options: dict[str, Any]) -> bool:
-    """Whether a screen is enough: for a person who has not asked for what takes more."""
+def _keep(files: list[Source]) -> None:
+    """Keep the charts as they are now, for --compare last."""
+    from dancetutor_cli.lint.snapshots import open_store
+
+    store = open_store()
+    if store is not None:
+        store.prune()
+        for path, data in files:
+            if data is None:
+                store.keep(path)
+
+
+def _view(options: dict[str, Any], output: IO[str]) -> str:
+    """How findings are shown: a format, or of text all that is known, what a screen holds, or none."""
     if options["format_name"] != "text":
-        return False
+        return str(options["format_name"])
     if options["full"] is not None:
-        return not options["full"]
-    return sys.stdout.isatty() and not (options["suggest"] or options["alternatives"])
+        return "full" if options["full"] else "brief"
+    if options["alternatives"]:
+        return "full"
+    if options["report_html"] is not None or options["sheet"] is not None or options["statistics"]:
+        return "none"
+    if output.isatty():
+        return "full" if options["suggest"] else "brief"
+    return "text"
+
+
+def _open_view(view: str, tasks: Sequence[AnalyzeTask], output: IO[str]) -> Report:
+    from dancetutor_cli.reports.formats import open_brief_report, open_report
+
+    if view == "brief":
+        return open_brief_report(output, len(tasks))
+    return open_report(view, next(tasks[0].presets.candidates()).name, output)
 
 
 def _before_work(tasks: Sequence[AnalyzeTask]) -> None:
@@ -278,11 +327,12 @@ def _before_work(tasks: Sequence[AnalyzeTask]) -> None:
 
 def _finish(run: LintRun, tally: Tally, options: dict[str, Any]) -> None:
     """What is said after the results, to standard error: so that the results stay one document."""
+    said = run.close_baseline()
     for line in tally.statistics() if options["statistics"] and options["format_name"] != "text" else ():
         click.echo(line, err=True)
-    if options["suggest"]:
+    if options["suggest"] and not options["quiet"]:
         click.echo(tally.suggestions(), err=True)
-    for line in run.close_baseline():
+    for line in said if not options["quiet"] else ():
         click.echo(line, err=True)
     if not tally.charts and not tally.unreadable and tally.unselected:
         has = "; ".join(tally.unselected[:20])

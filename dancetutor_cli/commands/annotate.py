@@ -12,7 +12,13 @@ import click
 
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.arguments import GivenPath, into, within_folders
-from dancetutor_cli.commands.chart_options import preset_option, selection_options, verbose_option
+from dancetutor_cli.commands.chart_options import (
+    exclude_option,
+    preset_option,
+    quiet_option,
+    selection_options,
+    verbose_option,
+)
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.reports.terminal import JoinedWarnings, coloured
 from dancetutor_cli.run.errors import UsageError, did_you_mean
@@ -54,6 +60,8 @@ class AnnotateWish:
     jobs: int | None
     preset: str | None
     verbose: bool
+    quiet: bool
+    exclude: tuple[str, ...]
 
 
 @click.command()
@@ -74,7 +82,9 @@ class AnnotateWish:
 @click.option("--force", is_flag=True, help="Overwrite or take out pinned measures, {dt1! ...}, too.")
 @click.option("--backup", is_flag=True, help="Keep the old file as NAME.bak.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes; default: as many as fit.")
+@quiet_option
 @verbose_option
+@exclude_option
 @preset_option
 @selection_options
 @into("selection", Selection)
@@ -110,15 +120,18 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
         backup=wish.backup,
         diff=wish.diff,
     )
-    files = find_files(paths) if wish.output is not None else within_folders(paths, find_files(paths))
+    files = find_files(paths, wish.exclude)
+    files = files if wish.output is not None else within_folders(paths, files)
     songs = _songs(_items(paths, wish.output, files))
-    talk = _Talk(order, wish.check, JoinedWarnings(every=wish.verbose))
+    talk = _Talk(order, wish.check, wish.quiet, JoinedWarnings(every=wish.verbose))
     talk.begin()
     if not wish.strip:
         from dancetutor_cli.chart.selection import note_bytes
 
         announce_compiling(
-            choice_of(wish.preset), lambda: sum(note_bytes(item.source, Selection()) for song in songs for item in song)
+            choice_of(wish.preset),
+            lambda: sum(note_bytes(item.source, Selection()) for song in songs for item in song),
+            quiet=wish.quiet,
         )
     try:
         for outcome in _outcomes(songs, order, wish.jobs):
@@ -197,13 +210,14 @@ class _Talk:
 
     order: Order
     check: bool
+    quiet: bool
     warnings: JoinedWarnings
     files: Counter[str] = field(default_factory=Counter)
     lacking: bool = False
     unselected: list[str] = field(default_factory=list)
 
     def begin(self) -> None:
-        if "rows" in self.order.styles and not self.order.strip:
+        if "rows" in self.order.styles and not self.order.strip and not self.quiet:
             from dancetutor_cli.markers.comments import WARNING
 
             click.echo(f"warning: {WARNING}", err=True)
@@ -225,7 +239,7 @@ class _Talk:
         if self.order.diff:
             for line in coloured(outcome.diff):
                 click.echo(line)
-        elif not self.check:
+        elif not self.check and not self.quiet:
             details = _leftover_message(outcome) if self.order.strip else _details(outcome)
             click.echo(f"{self._verb(outcome)} {_safe(str(outcome.source))}{details}")
             for path in outcome.companions:
@@ -238,7 +252,7 @@ class _Talk:
         return past if self.order.write else f"would be {past}:"
 
     def warn(self) -> None:
-        for line in self.warnings.lines():
+        for line in self.warnings.lines() if not self.quiet else ():
             click.echo(line, err=True)
 
     def end(self) -> int:
@@ -248,7 +262,8 @@ class _Talk:
             raise UsageError(f"no chart is of the steps type, difficulty and index asked for; there are {has}")
         words = {} if self.order.write else {"changed": "would change"}
         parts = ", ".join(f"{n} {words.get(name, name)}" for name, n in sorted(self.files.items()) if n)
-        click.echo(f"{total} file{'s' if total > 1 else ''}: {parts}", err=self.order.diff)
+        if not self.quiet:
+            click.echo(f"{total} file{'s' if total > 1 else ''}: {parts}", err=self.order.diff)
         if self.files["failed"]:
             return 2
         return 1 if self.check and self.lacking else 0

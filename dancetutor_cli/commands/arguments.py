@@ -1,14 +1,16 @@
-"""What options take: names for the Tab key, paths, the charts of `analyze`; options as a record; hours of work."""
+"""What options take: names for the Tab key, paths, charts; where results go; options as a record; hours of work."""
 
 from __future__ import annotations
 
+import io
 import os
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import fields
 from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import click
 from click.shell_completion import CompletionItem
@@ -120,8 +122,8 @@ def within_folders(paths: Sequence[Path], files: Sequence[Path]) -> list[Path]:
 Source = tuple[Path, bytes | None]  # a chart file, and what standard input had of it
 
 
-def sources(paths: tuple[Path, ...], stdin_filename: Path | None) -> list[Source]:
-    """The chart files that the paths mean; standard input with its bytes."""
+def sources(paths: tuple[Path, ...], stdin_filename: Path | None, exclude: Sequence[str] = ()) -> list[Source]:
+    """The chart files that the paths mean, without those left out; standard input with its bytes."""
     from dancetutor_cli.chart import find_files
 
     if any(str(path) == "-" for path in paths):
@@ -134,7 +136,25 @@ def sources(paths: tuple[Path, ...], stdin_filename: Path | None) -> list[Source
         return [(stdin_filename or Path(name), data)]
     if stdin_filename is not None:
         raise UsageError("--stdin-filename names the chart on standard input: give - as PATH")
-    return [(path, None) for path in find_files(paths)]
+    return [(path, None) for path in find_files(paths, exclude)]
+
+
+# Where results go: standard output, or a file that is written when all of them are there.
+
+
+@contextmanager
+def open_output(path: Path | None) -> Iterator[IO[str]]:
+    """A stream of text with a `buffer` of bytes; what is written to it is in the file at once, or not at all."""
+    if path is None:
+        yield sys.stdout
+        return
+    from dancetutor_cli.run.files import write_atomic
+
+    content = io.BytesIO()
+    stream = io.TextIOWrapper(content, encoding="utf-8", errors="replace", newline="\n")
+    yield stream
+    stream.flush()
+    write_atomic(path, content.getvalue())
 
 
 # Options of a command as one record: a dataclass whose fields are named like them.

@@ -14,12 +14,14 @@ __all__ = [
     "TABLE",
     "Selection",
     "character_option",
+    "exclude_option",
     "form_option",
     "gait_option",
     "motion_option",
     "number",
     "preset_option",
     "push_options",
+    "quiet_option",
     "report_option",
     "section_option",
     "selection_options",
@@ -73,6 +75,22 @@ def verbose_option(command: _Command) -> _Command:
     """Add --verbose; the function gets keyword argument `verbose`, to be given to `reports.terminal`."""
     option = click.option(
         "-v", "--verbose", is_flag=True, help="Tell each warning; else what is the same of many files is one line."
+    )
+    return option(command)
+
+
+def quiet_option(command: _Command) -> _Command:
+    """Add --quiet; the function gets keyword argument `quiet`."""
+    return click.option("-q", "--quiet", is_flag=True, help="Say nothing but what fails the run.")(command)
+
+
+def exclude_option(command: _Command) -> _Command:
+    """Add --exclude; the function gets keyword argument `exclude`, to be given to `chart.find_files`."""
+    option = click.option(
+        "--exclude",
+        multiple=True,
+        metavar="PATTERN",
+        help="Of a folder: leave out what has this name or path below it, such as Old, '*.sm' or 'Old/*'.",
     )
     return option(command)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import IO, TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -18,6 +18,7 @@ from dancetutor_cli.run.files import check_file, write_atomic
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.analysis import AnalyzeTask, Drawable
+    from dancetutor_cli.reports.formats import Tally
     from dancetutor_cli.reports.pack import Pack
     from dancetutor_cli.reports.sheet_drawing import Sheet
 
@@ -35,9 +36,9 @@ _OPTIONS = (
     ),
     click.option(
         "--compare",
-        type=GivenPath(exists=True),
-        metavar="OTHER",
-        help="Tell what changed since another version of PATH, by chart and row.  [format text]",
+        metavar="OTHER|REVISION|last",
+        help="Print only what changed, by chart and row, since another version of PATH: a file or folder, a revision "
+        "of git such as HEAD~1, or as the last analyze has read it.",
     ),
     click.option(
         "--beside",
@@ -75,7 +76,7 @@ def pack_options(command: Command) -> Command:
 
 _SONG = 2  # files that are one song: its .sm and its .ssc
 _WIDE = 160  # characters of a line into a file
-_BRIEF = 20  # lines of a comparison in the brief form
+_BRIEF = 20  # changes of a comparison in the brief form
 _BRIEF_ROWS = 4  # of a chart in it
 
 
@@ -83,24 +84,16 @@ class PackReport:
     """Takes the results of a run as they come, and tells of all of them at the end.
 
     options : of the command line; known : whether only what is new against a baseline is told
-    files : how many there are: one song is no pack; brief : whether a screen has to do
+    files : how many there are: one song is no pack; view : how findings are shown
     """
 
-    def __init__(self, options: Mapping[str, Any], known: bool, files: int, *, brief: bool) -> None:
+    def __init__(self, options: Mapping[str, Any], known: bool, files: int, view: str) -> None:
         self._html: Path | None = options["report_html"]
-        self._other: Path | None = options["compare"]
-        self._paths: tuple[Path, ...] = options["paths"]
+        self._options, self._brief = options, view == "brief"
         if self._html is not None:
             check_file(self._html, (".html", ".htm"))
-        if self._other is not None:
-            if len(self._paths) != 1 or str(self._paths[0]) == "-":
-                raise UsageError("--compare takes one file or folder as PATH, to compare with OTHER")
-            if self._other.is_dir() != self._paths[0].is_dir():
-                raise UsageError("--compare takes two files or two folders")
-            if options["format_name"] != "text":
-                raise UsageError("--compare tells in --format text")
-        short = known or options["quiet"] or options["statistics"] or options["format_name"] != "text"
-        self._is_told, self._brief = files > _SONG and not short, brief
+        short = known or options["quiet"] or options["statistics"]
+        self._is_told = files > _SONG and view in ("brief", "full") and not short
         self._pack: Pack | None = None
         if self._is_told or self._html is not None:
             from dancetutor_cli.reports.pack import Pack
@@ -114,48 +107,66 @@ class PackReport:
 
     def lines(self) -> list[str]:
         """What is said at the end; writes the page, too."""
-        lines: list[str] = []
-        changes = list(self._changes())
-        if self._pack is not None:
-            from dancetutor_cli.reports.pack import pack_lines
-            from dancetutor_cli.reports.pack_page import html_page
+        if self._pack is None:
+            return []
+        from dancetutor_cli.reports.pack import pack_lines
+        from dancetutor_cli.reports.pack_page import html_page
 
-            if self._is_told:
-                lines += pack_lines(self._pack, shutil.get_terminal_size().columns if self._brief else _WIDE)
-            if self._html is not None:
-                write_atomic(self._html, html_page(self._pack, changes).encode("utf-8", "replace"))
-        shown = changes[:_BRIEF] if self._brief else changes
-        more = (
-            [f"... and {len(changes) - len(shown)} more lines; --full shows them"] if len(shown) < len(changes) else []
-        )
-        return [*lines, *shown, *more]
+        if self._html is not None:
+            changes = list(_changes(self._options, None)) if self._options["compare"] is not None else []
+            write_atomic(self._html, html_page(self._pack, changes).encode("utf-8", "replace"))
+        return pack_lines(self._pack, shutil.get_terminal_size().columns if self._brief else _WIDE) * self._is_told
 
-    def summary_lines(self) -> Iterator[str]:
-        """What is said to standard error: the file that was written."""
+    def summary_lines(self, tally: Tally) -> Iterator[str]:
+        """What is said to standard error: the file that was written, and what is in it."""
         if self._html is not None and self._pack is not None:
-            yield f"{self._html}: {self._pack.songs} song{'' if self._pack.songs == 1 else 's'}"
+            yield f"{self._html}: {_plural(self._pack.songs, 'song')}; {tally.summary()}"
 
-    def _changes(self) -> Iterator[str]:
-        if self._other is None:
-            return
-        from dancetutor_cli.lint.versions import change_lines, compare
-        from dancetutor_cli.reports.terminal import safe, safe_path
 
-        found = list(compare(self._other, self._paths[0]))
-        charts = sum(bool(change.chart) for change in found)
-        files = len({change.file for change in found})
-        yield f"changed since {safe_path(str(self._other))}: {_plural(files, 'file')}, {_plural(charts, 'chart')}"
-        for line in change_lines(found, _BRIEF_ROWS if self._brief else None):
-            yield ("  " if line.startswith("  ") else "") + safe(line)
+def check_comparison(options: Mapping[str, Any]) -> None:
+    """UsageError for what does not go with --compare."""
+    if len(options["paths"]) != 1 or str(options["paths"][0]) == "-":
+        raise UsageError("--compare takes one file or folder as PATH, to compare with OTHER")
+    if options["format_name"] != "text":
+        raise UsageError("--compare tells in --format text")
+
+
+def report_changes(options: Mapping[str, Any], output: IO[str]) -> int:
+    """`--compare`: print what changed, nothing if nothing did; the exit status."""
+    is_brief = not options["full"] if options["full"] is not None else output.isatty()
+    lines = list(_changes(options, _BRIEF_ROWS if is_brief else None))
+    shown = lines[: _BRIEF + 1] if is_brief else lines
+    if len(shown) < len(lines):
+        shown.append(f"... and {len(lines) - len(shown)} more lines; --full shows them")
+    output.writelines(f"{line}\n" for line in shown)
+    return 0
+
+
+def _changes(options: Mapping[str, Any], most_rows: int | None) -> Iterator[str]:
+    """A line that says how much changed, and the changes. most_rows : of a chart, None: all"""
+    from dancetutor_cli.lint.snapshots import of_path, snapshot_of
+    from dancetutor_cli.lint.versions import change_lines, compare
+    from dancetutor_cli.reports.terminal import safe, safe_path
+
+    path, exclude = options["paths"][0], options["exclude"]
+    before = snapshot_of(options["compare"], path, exclude)
+    found = list(compare(before, of_path(path, exclude)))
+    if not found:
+        return
+    charts = sum(bool(change.chart) for change in found)
+    files = len({change.file for change in found})
+    yield f"changed since {safe_path(before.label)}: {_plural(files, 'file')}, {_plural(charts, 'chart')}"
+    for line in change_lines(found, most_rows):
+        yield ("  " if line.startswith("  ") else "") + safe(line)
 
 
 def _plural(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def report_comparison(tasks: Sequence[AnalyzeTask], options: Mapping[str, Any]) -> int:
+def report_beside(tasks: Sequence[AnalyzeTask], options: Mapping[str, Any], output: IO[str]) -> int:
     """`--beside`: print the table, with --full every chart that differs below it; the exit status."""
-    from dancetutor_cli.lint.versions import compare_techniques, read_theirs
+    from dancetutor_cli.lint.techniques import compare_techniques, read_theirs
     from dancetutor_cli.reports.pack import chart_lines, table_lines
 
     if options["format_name"] != "text":
@@ -166,7 +177,7 @@ def report_comparison(tasks: Sequence[AnalyzeTask], options: Mapping[str, Any]) 
             f"{options['beside']}: no chart in it is one of PATH's: they are matched by folder, file and chart"
         )
     lines = [*table_lines(found), *(("", *chart_lines(found)) if options["full"] else ())]
-    click.echo("\n".join(lines))
+    output.writelines(f"{line}\n" for line in lines)
     return 0
 
 

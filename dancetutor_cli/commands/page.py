@@ -14,10 +14,12 @@ from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.arguments import GivenPath, into
 from dancetutor_cli.commands.chart_options import (
     character_option,
+    exclude_option,
     form_option,
     gait_option,
     motion_option,
     preset_option,
+    quiet_option,
     selection_options,
     verbose_option,
 )
@@ -45,6 +47,7 @@ class PageWish:
     motion: Path | None
     jobs: int
     quiet: bool
+    exclude: tuple[str, ...]
     verbose: bool
     beside: str | None
     character: str
@@ -77,7 +80,8 @@ class PageWish:
     show_default=True,
     help="Processes: for a folder, and for songs over two minutes.",
 )
-@click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors.")
+@quiet_option
+@exclude_option
 @verbose_option
 @character_option
 @selection_options
@@ -133,7 +137,7 @@ def _pages(request: PageRequest, folder: Path, wish: PageWish) -> None:
     if request.dance.play is not None:
         raise UsageError(f"--play is for one chart, and {request.dance.path} is a folder")
     check_folder(folder)
-    wanted, bad = page_jobs(request, folder)
+    wanted, bad = page_jobs(request, folder, wish.exclude)
     if not wanted and not bad:
         raise UsageError(f"{request.dance.path}: no chart here matches")
     if not wanted and [path for path, _ in bad] == [request.dance.path]:  # a folder without charts, or a closed one

@@ -12,7 +12,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long
-from dancetutor_cli.commands.chart_options import preset_option, selection_options, verbose_option
+from dancetutor_cli.commands.chart_options import (
+    exclude_option,
+    preset_option,
+    quiet_option,
+    selection_options,
+    verbose_option,
+)
 from dancetutor_cli.commands.film_options import film_options, film_request
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.film.media.ffmpeg import FILES
@@ -50,7 +56,8 @@ _NO_BACKGROUND = ("poses", "section", "rate", "loop", "count_in", "metronome", "
 )
 @click.option("--jobs", type=click.IntRange(1, 256), help="Processes that draw [default: one per core].")
 @click.option("--yes", is_flag=True, help="Render even a very long film without asking.")
-@click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors.")
+@quiet_option
+@exclude_option
 @verbose_option
 @film_options
 @selection_options
@@ -91,8 +98,8 @@ def command(path: Path, output: Path | None, frames: Path | None, yes: bool, qui
 
         render_batch(path, output, frames, None if yes else LONG, quiet, options)
         return
-    for name in ("meter", "name", "shard", "results", "scheduler"):
-        if options[name] is not None:
+    for name in ("meter", "name", "shard", "results", "scheduler", "exclude"):
+        if options[name]:
             raise UsageError(f"--{name} is for folders of charts, and {path} is none")
     if files:
         output = output or path.with_name(into_file_name(path, options))

@@ -93,6 +93,7 @@ def _batch(
         meters=parse_meters(options["meter"]) if options["meter"] else None,
         shard=parse_shard(options["shard"]) if options["shard"] else (1, 1),
         longest=longest,
+        exclude=options["exclude"],
     )
 
 

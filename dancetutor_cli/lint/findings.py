@@ -9,6 +9,8 @@ from typing import Any, NamedTuple
 
 # What the linter found.
 
+RANKS = {"info": 0, "warning": 1, "error": 2}  # severities, the least first
+
 
 class ExcerptRow(NamedTuple):
     """One of the rows around a finding; a character for each column.

@@ -10,6 +10,7 @@ from operator import attrgetter
 from typing import Any
 
 from dancetutor_cli.lint.findings import (
+    RANKS,
     AlternativeResult,
     Cause,
     DifferentRun,
@@ -87,10 +88,10 @@ class FileResult:
     charts: tuple[ChartResult, ...]
     unselected: tuple[str, ...] = ()  # labels of the charts that were not asked for
 
-    def without_infos(self) -> FileResult:
-        """The same without findings that only inform, and without charts of which nothing is left to tell."""
-        charts = (replace(c, findings=_no_infos(c.findings)) for c in self.charts)
-        return replace(self, findings=_no_infos(self.findings), charts=tuple(c for c in charts if c.findings))
+    def at_least(self, severity: str) -> FileResult:
+        """The same without findings of less severity, and without charts of which nothing is left to tell."""
+        charts = (replace(c, findings=_at_least(c.findings, severity)) for c in self.charts)
+        return replace(self, findings=_at_least(self.findings, severity), charts=tuple(c for c in charts if c.findings))
 
     def all_findings(self) -> Iterator[tuple[Finding, ChartResult | None]]:
         """Every finding with the chart it is about."""
@@ -101,8 +102,8 @@ class FileResult:
                 yield finding, chart
 
 
-def _no_infos(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
-    return tuple(finding for finding in findings if finding.severity != "info")
+def _at_least(findings: tuple[Finding, ...], severity: str) -> tuple[Finding, ...]:
+    return tuple(finding for finding in findings if RANKS[finding.severity] >= RANKS[severity])
 
 
 # A `FileResult` as bytes and back: JSON behind a checksum, so that a damaged or foreign file is no result.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -283,7 +283,9 @@ class PageOutcome:
     error: str | None = None
 
 
-def page_jobs(request: PageRequest, folder: Path) -> tuple[list[PageJob], list[tuple[Path, str]]]:
+def page_jobs(
+    request: PageRequest, folder: Path, exclude: Sequence[str] = ()
+) -> tuple[list[PageJob], list[tuple[Path, str]]]:
     """The pages to make of all charts below `request.dance.path` that match, and the files that cannot be read.
 
     Charts without a pad, and those without notes, are left out. Files get names as films do.
@@ -296,7 +298,7 @@ def page_jobs(request: PageRequest, folder: Path) -> tuple[list[PageJob], list[t
     jobs: list[PageJob] = []
     bad: list[tuple[Path, str]] = []
     taken = {Path(INDEX).stem}
-    for path in chart_files((request.dance.path,)):
+    for path in chart_files((request.dance.path,), exclude):
         try:
             song = charts.load(path)
         except NoChartsError:  # the music of a menu: nobody meant it to be danced

@@ -6,21 +6,22 @@ import os
 import re
 import shutil
 from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import IO
 
-from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.reports.formats import Tally
 from dancetutor_cli.reports.terminal import safe, safe_path, terminal_of
 from dancetutor_cli.reports.text_report import STYLES
 
 _COLOUR = re.compile("\x1b\\[[0-9;]*m")
-_RANK = {"error": 0, "warning": 1, "info": 2}
 _SONG = 2  # files that are one song: its .sm and its .ssc
 _MOST_UNREADABLE = 8
 _PAGE = 60  # lines of a pack
 _PLACES = 6  # of a rule in a chart
+_ALIKE = 3  # lines of one rule that become one
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,20 +39,17 @@ class _Entry:
     @property
     def order(self) -> tuple[int, int, int]:
         """Errors first, then what is surest and most frequent."""
-        return _RANK[self.first.severity], -max(f.margin or 0 for f in self.findings), -len(self.findings)
+        return -RANKS[self.first.severity], -max(f.margin or 0 for f in self.findings), -len(self.findings)
 
 
 class BriefReport:
     """Collects files and tells of them at the end; files that could not be read go to `errors`.
 
     files : how many there will be
-    known : whether findings of a baseline are left out: if nothing is new, one line is enough
-    statistics : only how often each rule was found is wanted, which stands on the tally's page
     """
 
-    def __init__(self, stream: IO[str], errors: IO[str], files: int, *, known: bool, statistics: bool) -> None:
-        self._stream, self._errors = stream, errors
-        self._is_song, self._known, self._statistics = files <= _SONG, known, statistics
+    def __init__(self, stream: IO[str], errors: IO[str], files: int) -> None:
+        self._stream, self._errors, self._is_song = stream, errors, files <= _SONG
         terminal = terminal_of(stream)
         self._paint, self._width = terminal.paint, terminal.width
         self._entries: list[_Entry] = []
@@ -79,7 +77,7 @@ class BriefReport:
             )  # fmt: skip
         self._entries += [_Entry(result.path, charts[index], tuple(f)) for (_, index), f in by_rule.items()]
         if self._is_song:
-            self._charts += [(result, chart) for chart in result.charts]
+            self._charts += [(result, chart) for chart in result.charts if chart.findings]
 
     def end(self, tally: Tally) -> None:
         """Write it all; the last line is what was found in all."""
@@ -90,9 +88,9 @@ class BriefReport:
             self._errors.write(f"dancetutor: {more} more files could not be read; --full names them\n")
         self._errors.flush()
         lines: list[str] = []
-        if not self._statistics and (self._entries or (self._is_song and not self._known)):
+        if self._entries:
             lines = self._song() if self._is_song else self._pack(_PAGE - len(tally.page))
-        for line in (*lines, *tally.page, tally.summary()):
+        for line in (*lines, *tally.closing_lines()):
             self._stream.write(line + "\n")
 
     def _song(self) -> list[str]:
@@ -136,12 +134,25 @@ class BriefReport:
         return [*lines, "", _HINT]
 
     def _listed(self, room: int) -> list[str]:
-        entries = sorted(self._entries, key=lambda one: one.order)
-        told = list(dict.fromkeys(self._cut(self._entry_line(entry, True)) for entry in entries))
+        kinds: dict[tuple[str, str], list[_Entry]] = defaultdict(list)
+        for entry in sorted(self._entries, key=lambda one: one.order):
+            kinds[entry.first.rule, entry.first.severity].append(entry)
+        told = [self._cut(line) for of_kind in kinds.values() for line in self._kind_lines(of_kind)]
         if not told:
             return []
         shown = told[: max(4, room - 3)]
         return ["", *shown, *_more(len(told) - len(shown), "such lines"), _HINT]
+
+    def _kind_lines(self, entries: Sequence[_Entry]) -> list[str]:
+        """What is found of a rule in the charts of a song: a line for each, three and more in one."""
+        lines = list(dict.fromkeys(self._entry_line(entry, True) for entry in entries))
+        if len(lines) < _ALIKE:
+            return lines
+        labels = list(dict.fromkeys(entry.chart.label if entry.chart else "" for entry in entries))
+        first = entries[0].first
+        where = "" if first.measure is None else f", first in measure {first.measure} of {safe(labels[0])}"
+        rule = self._paint(first.rule, STYLES[first.severity])
+        return [f"{rule} {_sum(entries)} times in {len(labels)} charts{where}: {safe(first.message)}"]
 
     def _name(self, path: str) -> str:
         """A file by its path below the folder that all of them are in."""
@@ -179,7 +190,7 @@ def _counts(chart: ChartResult) -> str:
     return f"{safe(chart.label)}: {', '.join([*likes, rows, *counted])}" + (f"; {' and '.join(words)}" if words else "")
 
 
-def _sum(entries: list[_Entry]) -> int:
+def _sum(entries: Sequence[_Entry]) -> int:
     return sum(len(one.findings) for one in entries)
 
 

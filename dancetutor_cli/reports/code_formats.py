@@ -186,7 +186,8 @@ class GithubReport:
 
     def end(self, tally: Tally) -> None:
         """Write the summary."""
-        self._stream.write(f"{tally.summary()}\n")
+        if not tally.quiet:
+            self._stream.write(f"{tally.summary()}\n")
 
 
 def _data(text: str) -> str:

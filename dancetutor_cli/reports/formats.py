@@ -10,11 +10,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import IO, Any, NamedTuple, Protocol
 
+from dancetutor_cli.lint.findings import RANKS
 from dancetutor_cli.lint.results import FileResult
 
 # One object that owns the counts of a run and its exit status.
-
-_RANK = {"info": 0, "warning": 1, "error": 2}
 
 
 @dataclass
@@ -25,6 +24,7 @@ class Tally:
     exit_zero : findings do not fail the run whatever they are; unreadable files still do
     folders : that gave no file, because none is in them or they cannot be read; they are unreadable, and no files
     page : lines about all files together, to stand above the summary
+    quiet : nothing is said at the end
     """
 
     fail_on: str = "warning"
@@ -38,6 +38,7 @@ class Tally:
     unselected: list[str] = field(default_factory=list)
     suggested: int = 0
     page: list[str] = field(default_factory=list)
+    quiet: bool = False
 
     def add(self, result: FileResult) -> None:
         """Count one file."""
@@ -59,7 +60,7 @@ class Tally:
             return 2
         if self.exit_zero or self.fail_on == "never":
             return 0
-        return int(any(n and _RANK[name] >= _RANK[self.fail_on] for name, n in self.severities.items()))
+        return int(any(n and RANKS[name] >= RANKS[self.fail_on] for name, n in self.severities.items()))
 
     def statistics(self) -> list[str]:
         """How often each rule was found, one line each, most frequent first."""
@@ -72,9 +73,13 @@ class Tally:
             return "no finding would go away with one note on another panel"
         return f"{_plural(self.suggested, 'finding')} would go away with one note on another panel"
 
+    def closing_lines(self) -> list[str]:
+        """What stands below all findings: the page and the summary."""
+        return [] if self.quiet else [*self.page, self.summary()]
+
     def summary(self) -> str:
         """ "2 files, 7 charts: 1 error, 3 warnings, 2 infos"."""
-        found = [_plural(self.severities[name], name) for name in reversed(_RANK) if self.severities[name]]
+        found = [_plural(self.severities[name], name) for name in reversed(RANKS) if self.severities[name]]
         text = f"{_plural(self.files, 'file')}, {_plural(self.charts, 'chart')}: {', '.join(found) or 'no findings'}"
         if files := self.unreadable - self.folders:
             text += f"; {_plural(files, 'file')} could not be read"
@@ -107,8 +112,8 @@ class Report(Protocol):
 class Format(NamedTuple):
     """module, kind : where the report is, and its class
 
-    inputs : what that is made with, of `_INPUTS`: "text" (standard output in UTF-8), "terminal" (with "?" for what it
-    cannot show), "bytes", "errors" (standard error), "preset" (name of the cost preset)
+    inputs : what that is made with, of `_INPUTS`: "text" (the stream in UTF-8), "terminal" (with "?" for what it cannot
+    show), "bytes", "errors" (standard error), "preset" (name of the cost preset)
     """
 
     module: str
@@ -117,7 +122,7 @@ class Format(NamedTuple):
 
 
 FORMATS = {
-    "text": Format("text_report", "TextReport", ("terminal", "errors")),
+    "text": Format("text_report", "LineReport", ("terminal", "errors")),
     "json": Format("data_formats", "JsonReport", ("bytes", "preset")),
     "jsonl": Format("data_formats", "JsonLinesReport"),
     "csv": Format("data_formats", "CsvReport", ("text", "errors")),
@@ -126,31 +131,34 @@ FORMATS = {
     "gitlab": Format("code_formats", "GitlabReport"),
     "junit": Format("code_formats", "JunitReport"),
 }
+# What `text` is in other lengths: with tables and rows, or without any finding.
+VIEWS = {
+    "full": Format("text_report", "TextReport", ("terminal", "errors")),
+    "none": Format("text_report", "SummaryReport", ("terminal", "errors")),
+}
 
 
-def open_brief_report(files: int, *, known: bool, statistics: bool) -> Report:
+def open_brief_report(stream: IO[str], files: int) -> Report:
     """What a person at a terminal sees; see `brief.BriefReport`."""
     from dancetutor_cli.reports.brief import BriefReport
 
-    return BriefReport(
-        _utf8_or_replacing(sys.stdout, utf8=False), sys.stderr, files, known=known, statistics=statistics
-    )
+    return BriefReport(_utf8_or_replacing(stream, utf8=False), sys.stderr, files)
 
 
-def open_report(name: str, preset: str) -> Report:
-    """A report in this format on standard output. `preset` is the cost preset's name."""
-    form = FORMATS[name]
+def open_report(name: str, preset: str, stream: IO[str]) -> Report:
+    """A report in this format or view. `preset` is the cost preset's name."""
+    form = {**FORMATS, **VIEWS}[name]
     kind = getattr(import_module(f"dancetutor_cli.reports.{form.module}"), form.kind)
-    report: Report = kind(*(_INPUTS[what](preset) for what in form.inputs))
+    report: Report = kind(*(_INPUTS[what](stream, preset) for what in form.inputs))
     return report
 
 
-_INPUTS: dict[str, Callable[[str], Any]] = {
-    "text": lambda _: _utf8_or_replacing(sys.stdout, utf8=True),
-    "terminal": lambda _: _utf8_or_replacing(sys.stdout, utf8=False),
-    "bytes": lambda _: sys.stdout.buffer,
-    "errors": lambda _: sys.stderr,
-    "preset": lambda preset: preset,
+_INPUTS: dict[str, Callable[[Any, str], Any]] = {
+    "text": lambda stream, _: _utf8_or_replacing(stream, utf8=True),
+    "terminal": lambda stream, _: _utf8_or_replacing(stream, utf8=False),
+    "bytes": lambda stream, _: stream.buffer,
+    "errors": lambda _, __: sys.stderr,
+    "preset": lambda _, preset: preset,
 }
 
 

@@ -10,8 +10,9 @@ from pathlib import Path
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.chart.pack_files import pack_folder, read_pack_ini
+from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
-from dancetutor_cli.lint.versions import TEN, ComparedChart, TechniqueComparison
+from dancetutor_cli.lint.techniques import TEN, ComparedChart, TechniqueComparison
 from dancetutor_cli.reports.terminal import safe, safe_path
 
 # What is known of a pack: its charts, each once, and what is missing or stands out.
@@ -32,6 +33,7 @@ _MOST_HAVE = 0.8  # a difficulty that so many of the songs have is missed in the
 _FEWEST_SONGS = 5
 _FEW = 2.0  # meters between label and estimate, from which on a chart stands out
 _LEAST_ROWS = 8  # with a technique that a chart stands out for
+_PLACES = 6  # of a rule in a file
 _TIMES = 4.0  # how many times as much of a technique as the pack's charts of its meter have
 
 
@@ -53,6 +55,33 @@ class PackChart:
         return sum(self.result.counts.get(move, 0) for move in TECHNIQUES[technique])
 
 
+@dataclass(frozen=True, slots=True)
+class FileNeed:
+    """What of a file needs action. what : a rule each, "DT302 hand 3 times, measures 4 8 12", errors first"""
+
+    file: str
+    errors: int
+    warnings: int
+    what: tuple[str, ...]
+
+    @staticmethod
+    def of(result: FileResult) -> FileNeed:
+        found = [one for one, _ in result.all_findings() if one.severity != "info"]
+        found.sort(key=lambda one: -RANKS[one.severity])
+        rules = {one.rule: [other for other in found if other.rule == one.rule] for one in found}
+        errors = sum(one.severity == "error" for one in found)
+        return FileNeed(result.path, errors, len(found) - errors, tuple(map(_need, rules.values())))
+
+
+def _need(found: Sequence[Finding]) -> str:
+    measures = list(dict.fromkeys(str(one.measure) for one in found if one.measure is not None))
+    where = f", measure{'' if len(measures) == 1 else 's'} {' '.join(measures[:_PLACES])}" if measures else ""
+    where += " ..." if len(measures) > _PLACES else ""
+    times = f" {len(found)} times" if len(found) > 1 else ""
+    message = f": {safe(found[0].message)}" if len(found) == 1 else ""
+    return f"{found[0].rule} {found[0].name}{times}{where}{message}"
+
+
 class Pack:
     """Takes results as they come. A song that lies there as .sm and .ssc counts once: as .ssc, which games prefer."""
 
@@ -60,6 +89,7 @@ class Pack:
         self._results: dict[str, FileResult] = {}
         self._unreadable: list[str] = []
         self.problems: dict[str, list[str]] = {"music": [], "differ": []}
+        self._needs: dict[str, FileNeed] = {}
 
     def add(self, result: FileResult) -> None:
         """Take note of a file. What is heavy of it (rows, excerpts) is not kept."""
@@ -74,9 +104,17 @@ class Pack:
         if _PAIR in rules:
             self.problems["differ"].append(title)
         key = os.fspath(path.with_suffix(""))
+        if key not in self._needs or path.suffix.lower() == ".ssc":
+            self._needs[key] = FileNeed.of(result)
         if key not in self._results or path.suffix.lower() == ".ssc":
             charts = tuple(replace(chart, findings=(), rows=None, causes=None) for chart in result.charts)
             self._results[key] = replace(result, findings=(), charts=charts)
+
+    def needs(self) -> Iterator[FileNeed]:
+        """The files with errors and warnings, the worst first, with paths below the pack's folder."""
+        found = [one for one in self._needs.values() if one.errors or one.warnings]
+        for one in sorted(found, key=lambda need: (-need.errors, -need.warnings, need.file)):
+            yield replace(one, file=safe_path(os.path.relpath(os.path.abspath(one.file), self.folder)))  # noqa: PTH100
 
     @property
     def songs(self) -> int:
@@ -190,12 +228,12 @@ def pack_lines(pack: Pack, width: int) -> list[str]:
     if not charts:
         return []
     lines = [f"pack {safe_path(pack.folder.rsplit('/', 1)[-1])}: {pack.songs} songs, {len(charts)} charts"]
+    lines += _listed("missing", pack.missing(), _MISSING)
+    lines += _listed("stands out", pack.outliers(), _OUTLIERS)
     types = Counter(one.result.steps_type for one in charts)
     for steps_type, _ in types.most_common(_TYPES):
         lines += _by_meter(steps_type, [one for one in charts if one.result.steps_type == steps_type])
     lines.append(_by_technique(charts))
-    lines += _listed("stands out", pack.outliers(), _OUTLIERS)
-    lines += _listed("missing", pack.missing(), _MISSING)
     return [line if len(line) <= width else line[: width - 1] + "…" for line in lines[:LINES]]
 
 

@@ -165,14 +165,15 @@ def html_page(pack: Pack, changes: Sequence[str] = ()) -> str:
     charts = pack.charts()
     name = escape(safe_path(pack.folder.rsplit("/", 1)[-1]))
     body = [f'<h1>{name}</h1><p class="lead">{pack.songs} songs, {len(charts)} charts</p>']
+    body += [_needs(pack), _list("What is missing", pack.missing())]
+    if changes:
+        body.append(_list("What has changed", changes))
+    body.append(_list("What stands out", pack.outliers()))
     for steps_type, _ in Counter(one.result.steps_type for one in charts).most_common():
         of_type = [one for one in charts if one.result.steps_type == steps_type]
         body.append(f"<h2>{escape(safe(steps_type))}</h2>{_key(COLOURS)}")
         body.append(f'<div class="plots">{"".join(_figures(of_type))}</div>')
         body.append(_techniques(of_type))
-    body += [_list("What stands out", pack.outliers()), _list("What is missing", pack.missing())]
-    if changes:
-        body.append(_list("What has changed", changes))
     body.append(_table(charts))
     made = f"dancetutor {dancetutor_cli.__version__}"
     policy = "default-src 'none'; style-src 'unsafe-inline'"
@@ -246,6 +247,19 @@ def _techniques(charts: Sequence[PackChart]) -> str:
 def _list(title: str, said: Iterable[str]) -> str:
     items = "".join(f"<li>{escape(line)}</li>" for line in said)
     return f"<h2>{title}</h2>" + (f"<ul>{items}</ul>" if items else '<p class="lead">Nothing.</p>')
+
+
+def _needs(pack: Pack) -> str:
+    """Files with errors and warnings, the worst first."""
+    rows = [
+        f'<tr><td class="t">{escape(one.file)}</td><td{" class=off" if one.errors else ""}>{one.errors or ""}</td>'
+        f'<td>{one.warnings or ""}</td><td class="t">{"<br>".join(map(escape, one.what))}</td></tr>'
+        for one in pack.needs()
+    ]
+    if not rows:
+        return _list("What needs action", ())
+    head = '<th class="t">file</th><th>errors</th><th>warnings</th><th class="t">what</th>'
+    return f'<h2>What needs action</h2><div class="wide"><table><tr>{head}</tr>{"".join(rows)}</table></div>'
 
 
 def _table(charts: Iterable[PackChart]) -> str:

@@ -120,15 +120,16 @@ def _header(terminal: Terminal, columns: Sequence[Column], widths: Sequence[int]
     )
 
 
-# `--format text`: per chart a table and its findings in lint form, one line each.
+# `--format text` into files and pipes: a line for each finding and one for all; with `--full` a table for each chart,
+# and the rows of findings.
 
 STYLES = {"error": "bold red", "warning": "bold yellow", "info": "bold cyan"}
 _MOST_LETTERS = 16  # rows of another play that are written out
 _MOST_FORCED = 12  # doublesteps of a chart whose cause is written out
 
 
-class TextReport:
-    """Writes files as they come: tables and findings to `stream`, files that could not be read to `errors`."""
+class LineReport:
+    """Writes files as they come: findings to `stream`, a line each, files that could not be read to `errors`."""
 
     def __init__(self, stream: IO[str], errors: IO[str]) -> None:
         self._stream = stream
@@ -147,20 +148,54 @@ class TextReport:
             self._errors.write(f"dancetutor: {safe(result.error)}\n")
             self._errors.flush()
             return
+        self._file(result)
+
+    def end(self, tally: Tally) -> None:
+        """Write the last line: what was found in all."""
+        for line in tally.closing_lines():
+            self._line(line)
+
+    def _file(self, result: FileResult) -> None:
+        for finding, chart in result.all_findings():
+            better = f"; better: {safe(finding.suggestion)}" if finding.suggestion else ""
+            self._finding(result, chart, finding, better)
+
+    def _finding(self, result: FileResult, chart: ChartResult | None, finding: Finding, more: str = "") -> None:
+        rule = self._paint(f"{finding.rule}", STYLES[finding.severity])
+        place = ":".join(str(n) for n in (finding.line, finding.column) if n is not None)
+        where = f"{safe_path(result.path)}:{place}" if place else safe_path(result.path)
+        label = f" [{safe(chart.label)}]" if chart else ""
+        self._line(f"{where} {rule} {safe(finding.message)}{more}", self._paint(label + moment(finding), "dim"))
+
+    def _line(self, *parts: str) -> None:
+        self._stream.write("".join(parts) + "\n")
+
+
+class SummaryReport(LineReport):
+    """Only what could not be read, and the last lines."""
+
+    def _file(self, result: FileResult) -> None:
+        """Nothing is said of it."""
+
+
+class TextReport(LineReport):
+    """The same with a table for each chart and the rows around its findings."""
+
+    def _file(self, result: FileResult) -> None:
         name = " - ".join(safe(text) for text in (result.artist, result.title) if safe(text))
         self._line(self._paint(safe_path(result.path), "bold"), f"  {name}" if name else "")
         for warning in result.warnings if not (result.charts or result.unselected) else ():
             self._line(f"  {safe(warning)}")
         for finding in result.findings:
-            self._finding(result, None, finding)
+            self._drawn(result, None, finding)
         for chart in result.charts:
             self._chart(result, chart)
 
     def end(self, tally: Tally) -> None:
-        """Write the last line: what was found in all."""
-        for line in ("", *tally.page) if tally.page else ():
-            self._line(line)
-        self._line(tally.summary())
+        """Write the last line, apart from what is above it."""
+        if tally.page and not tally.quiet:
+            self._line()
+        super().end(tally)
 
     def _chart(self, result: FileResult, chart: ChartResult) -> None:
         name = f"  {safe(chart.description)}" if safe(chart.description) else ""
@@ -176,7 +211,7 @@ class TextReport:
             self._alternatives(chart)
             self._forced(chart)
         for finding in chart.findings:
-            self._finding(result, chart, finding)
+            self._drawn(result, chart, finding)
         if chart.findings:
             self._line()
 
@@ -210,19 +245,13 @@ class TextReport:
         if len(forced) > _MOST_FORCED:
             self._line(f"... and {len(forced) - _MOST_FORCED} more; --format json tells all")
 
-    def _finding(self, result: FileResult, chart: ChartResult | None, finding: Finding) -> None:
-        rule = self._paint(f"{finding.rule}", STYLES[finding.severity])
-        place = ":".join(str(n) for n in (finding.line, finding.column) if n is not None)
-        where = f"{safe_path(result.path)}:{place}" if place else safe_path(result.path)
-        label = f" [{safe(chart.label)}]" if chart else ""
-        self._line(f"{where} {rule} {safe(finding.message)}", self._paint(label + moment(finding), "dim"))
+    def _drawn(self, result: FileResult, chart: ChartResult | None, finding: Finding) -> None:
+        """A finding, the edit that would remove it, and its rows."""
+        self._finding(result, chart, finding)
         if finding.suggestion:
             self._line(f"    better: {safe(finding.suggestion)}")
         for line in draw(finding.excerpt, chart.arrows if chart else "", self._paint, plain=self._plain):
             self._line(line)
-
-    def _line(self, *parts: str) -> None:
-        self._stream.write("".join(parts) + "\n")
 
 
 def _cut(letters: str) -> str:

@@ -11,6 +11,7 @@ import json
 import os
 import stat
 import sys
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from threading import get_ident
@@ -182,3 +183,12 @@ def _is_private_group(number: int) -> bool:
         return False
     is_own = user.pw_uid != 0 and user.pw_gid == number and group.gr_name == user.pw_name
     return is_own and set(group.gr_mem) <= {user.pw_name}
+
+
+def programs(name: str, path: str) -> Iterator[Path]:
+    """Programs of a name in the folders of PATH, in order; not in one that is not absolute, where a pack may lie."""
+    for folder in path.split(os.pathsep):
+        program = Path(folder) / name
+        with suppress(OSError, ValueError):
+            if Path(folder).is_absolute() and program.is_file() and os.access(program, os.X_OK):
+                yield program

@@ -248,7 +248,14 @@ def test_quiet_leaves_infos_and_clean_charts_out(faulty: Path) -> None:
     assert "info" in found[0]
     assert found[1] == [severity for severity in found[0] if severity != "info"]
     assert all(chart["findings"] for chart in data[1]["charts"])
-    assert quiet.stdout.splitlines()[-1] == loud.stdout.splitlines()[-1]  # what is left out still counts
+    lines = [line for line in loud.stdout.splitlines()[:-1] if " DT301 " in line]
+    assert quiet.stdout.splitlines() == lines and status(quiet) == status(loud) == 1
+
+
+def test_quiet_is_silent_where_nothing_fails_the_run(faulty: Path) -> None:
+    for words in (["--fail-on", "error", "--ignore", "DT301"], ["--select", "DT5"]):
+        said = run("--quiet", *words, faulty)
+        assert (said.stdout, said.stderr, status(said)) == ("", "", 0)
 
 
 def test_suggest_says_so_when_it_finds_nothing(faulty: Path) -> None:
@@ -256,7 +263,7 @@ def test_suggest_says_so_when_it_finds_nothing(faulty: Path) -> None:
 
 
 def test_statistics_count_the_rules_above_the_summary(faulty: Path) -> None:
-    said, without = run(faulty, "--statistics"), run(faulty)
+    said, without = run(faulty, "--statistics", "--full"), run(faulty, "--full")
     table = said.stdout.removeprefix(without.stdout[: without.stdout.rindex("1 file")]).splitlines()
     assert table[0] == "" and table[-1].startswith("1 file, ")
     assert "      1 DT301 unplayable" in table[1:-1]

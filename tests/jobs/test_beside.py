@@ -13,7 +13,7 @@ from dancetutor_cli.commands.analyze import command
 from dancetutor_cli.feet import load_preset
 from dancetutor_cli.lint.figures import tech_counts, tech_rows
 from dancetutor_cli.lint.subject import solved_chart
-from dancetutor_cli.lint.versions import TEN, read_theirs
+from dancetutor_cli.lint.techniques import TEN, read_theirs
 from dancetutor_cli.run.errors import FileError, UsageError
 from dancetutor_cli.run.reading import charts_path
 

@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from dancetutor_cli.commands.analyze import command
+from dancetutor_cli.lint.snapshots import of_path
 from dancetutor_cli.lint.versions import ChartChange, change_lines, compare
 from dancetutor_cli.run.errors import UsageError
 
@@ -23,7 +24,7 @@ def changed(tmp_path: Path, edit: Callable[[str], str]) -> list[ChartChange]:
     for name, text in (("old", SONG), ("new", edit(SONG))):
         (tmp_path / name / "a").mkdir(parents=True)
         (tmp_path / name / "a" / "a.sm").write_text(text, encoding="utf-8")
-    return list(compare(tmp_path / "old", tmp_path / "new"))
+    return list(compare(of_path(tmp_path / "old"), of_path(tmp_path / "new")))
 
 
 def said(tmp_path: Path, edit: Callable[[str], str]) -> list[str]:
@@ -75,16 +76,18 @@ def test_files_come_and_go_and_may_be_broken(tmp_path: Path) -> None:
     (tmp_path / "new" / "b.sm").write_text(SONG)
     (tmp_path / "old" / "c.sm").write_text(SONG)
     (tmp_path / "new" / "a" / "a.sm").write_bytes(b"\0\1\2")
-    lines = list(change_lines(list(compare(tmp_path / "old", tmp_path / "new")), None))
+    lines = list(change_lines(list(compare(of_path(tmp_path / "old"), of_path(tmp_path / "new"))), None))
     assert lines[0].startswith("a/a.sm: cannot be read any more")
     assert lines[1:] == ["b.sm: is new", "c.sm: is gone"]
 
 
 def test_the_command_tells_it_and_cuts_it_short(tmp_path: Path) -> None:
     changed(tmp_path, lambda text: text.replace("1000\n0200\n0001\n0300\n,\n0110\n00M0\n0000\n0001", "0000\n0000"))
-    words = [str(tmp_path / "new"), "--compare", str(tmp_path / "old"), "--no-cache", "--jobs", "1", "--exit-zero"]
-    brief = CliRunner().invoke(command, [*words, "--brief"]).stdout
-    assert "1 file, 1 chart" in brief and "and 2 more rows" in brief
+    words = [str(tmp_path / "new"), "--compare", str(tmp_path / "old")]
+    result = CliRunner().invoke(command, [*words, "--brief"], standalone_mode=False)
+    assert result.stdout.startswith("changed since ") and "1 file, 1 chart" in result.stdout
+    assert "and 2 more rows" in result.stdout and result.return_value == 0 and result.stderr == ""
+    assert "DT" not in result.stdout  # no findings
     assert "more rows" not in CliRunner().invoke(command, [*words, "--full"]).stdout
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -39,7 +41,30 @@ def test_a_song_is_a_screen() -> None:
     assert len(brief.stdout.splitlines()) <= 24 < len(full.stdout.splitlines())
     assert brief.stdout.splitlines()[-1] == full.stdout.splitlines()[-1]
     assert "--full" in brief.stdout and brief.return_value == full.return_value == 1
-    assert run(SONG).stdout == full.stdout  # into a file or a pipe all of it
+
+
+def test_a_pipe_gets_a_line_for_each_finding_and_one_for_all() -> None:
+    *lines, summary = run(SONG).stdout.splitlines()
+    data = json.loads(run("--format", "json", SONG).stdout)
+    found = [one for file in data["files"] for place in (file, *file["charts"]) for one in place["findings"]]
+    assert len(lines) == len(found) and all(re.match(r"\S+:\d+(:\d+)? DT\d{3} ", line) for line in lines)
+    assert [line.split()[1] for line in lines] == [one["rule"] for one in found]
+    assert summary == run("--full", SONG).stdout.splitlines()[-1]
+
+
+def test_a_clean_chart_says_nothing() -> None:
+    for words in ((), ("--brief",)):
+        assert run(*words, SONG, "--select", "DT301").stdout == "2 files, 12 charts: no findings\n"
+        assert run(*words, SONG, "--select", "DT301", "-q").stdout == ""
+
+
+def test_three_lines_of_one_kind_are_one() -> None:
+    lines = run("--brief", SONG, "--select", "DT213").stdout.splitlines()
+    (line,) = [line for line in lines if "DT213" in line]
+    (counted,) = [
+        line for line in run(SONG, "--statistics", "--select", "DT213").stdout.splitlines() if "DT213" in line
+    ]
+    assert line.startswith(f"DT213 {counted.split()[0]} times in 5 charts, first in measure ")
 
 
 def test_a_rule_many_times_in_a_chart_is_one_line(tmp_path: Path) -> None:
@@ -70,7 +95,7 @@ def test_with_everything_in_the_baseline_it_is_one_line(pack: Path) -> None:
 
 
 def test_statistics_stand_alone() -> None:
-    said = run("--brief", SONG, "--statistics")
+    said = run(SONG, "--statistics")
     *counts, summary = said.stdout.splitlines()
     assert any("DT2" in line for line in counts) and all(line.split()[0].isdigit() for line in counts)
     assert summary.startswith("2 files, ") and said.stderr == ""

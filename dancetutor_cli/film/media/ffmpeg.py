@@ -24,7 +24,7 @@ from dancetutor_cli.run.errors import DancetutorError, UnavailableError, UsageEr
 from dancetutor_cli.run.files import one_of, write_atomic
 from dancetutor_cli.run.pictures import read_palette, write_gif, write_webp
 from dancetutor_cli.run.reading import MEGABYTE, read_json
-from dancetutor_cli.run.trust import kept_folder
+from dancetutor_cli.run.trust import kept_folder, programs
 
 # Which ffmpeg is run: the system's where it can all that films need, else the one of the package imageio-ffmpeg.
 #
@@ -49,7 +49,7 @@ def ffmpeg_program() -> str:
 def _find_executable(named: str | None, path: str) -> str:
     if named:
         return named
-    systems = list(on_path(path))
+    systems = list(programs(NAME, path))
     for program in systems:
         if not lacking(program):
             return str(program)
@@ -60,15 +60,6 @@ def _find_executable(named: str | None, path: str) -> str:
     if systems:
         return str(systems[0])  # better than none: what it cannot do, it says itself
     raise UnavailableError(f"no ffmpeg found; {MEND}")
-
-
-def on_path(path: str) -> Iterator[Path]:
-    """Programs called ffmpeg in the absolute folders of PATH, in order."""
-    for folder in path.split(os.pathsep):
-        program = Path(folder) / NAME
-        with suppress(OSError, ValueError):
-            if Path(folder).is_absolute() and program.is_file() and os.access(program, os.X_OK):
-                yield program
 
 
 def lacking(program: Path) -> list[str]:

@@ -36,6 +36,7 @@ class BatchRequest:
     """What a batch shall make. request : the film wanted of each chart (its path and selection are replaced)
 
     name : template of the films' names; meters : least and greatest meter or None; shard : (number from 1, of how many)
+    exclude : patterns of files that are left out
     """
 
     paths: tuple[Path, ...]
@@ -46,6 +47,7 @@ class BatchRequest:
     meters: tuple[int, int] | None = None
     shard: tuple[int, int] = (1, 1)
     longest: float | None = None
+    exclude: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +105,7 @@ def film_list(batch: BatchRequest) -> FilmList:
     bad: list[UnreadableFile] = []
     without: list[Path] = []
     taken: set[str] = set()
-    for path in chart_files(batch.paths):
+    for path in chart_files(batch.paths, batch.exclude):
         try:
             from dancetutor_cli import chart as charts
 
@@ -121,11 +123,11 @@ def film_list(batch: BatchRequest) -> FilmList:
     return FilmList(jobs[number - 1 :: count], *((bad, without) if number == 1 else ([], [])))
 
 
-def chart_files(paths: Sequence[Path]) -> Iterator[Path]:
-    """Chart files; of a song with both kinds the .ssc, as the games do."""
+def chart_files(paths: Sequence[Path], exclude: Sequence[str] = ()) -> Iterator[Path]:
+    """Chart files; of a song with both kinds the .ssc, as the games do. exclude : as `find_files` has it"""
     from dancetutor_cli.chart import find_files, twin
 
-    for path in find_files(paths):
+    for path in find_files(paths, exclude):
         if path.suffix.lower() == ".sm" and path not in paths and twin(path) is not None:
             continue
         yield path

@@ -51,7 +51,7 @@ def test_one_that_cannot_all_is_second_choice(tmp_path: Path, monkeypatch: pytes
     assert ffmpeg_program() == str(whole)
     chooser._find_executable.cache_clear()
     monkeypatch.setenv("PATH", f"{poor.parent}:/bin")
-    monkeypatch.setattr(chooser, "on_path", lambda path: iter([poor]))
+    monkeypatch.setattr(chooser, "programs", lambda name, path: iter([poor]))
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     assert ffmpeg_program() == str(poor), "better than none"
 
@@ -69,7 +69,7 @@ def test_none_of_the_current_folder_is_run(tmp_path: Path, monkeypatch: pytest.M
     program(tmp_path, *ENCODERS, *FILTERS)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PATH", f".::{tmp_path.name}/..:/bin")
-    assert list(chooser.on_path(os.environ["PATH"])) == [p for p in (Path("/bin/ffmpeg"),) if p.exists()]
+    assert list(chooser.programs(chooser.NAME, os.environ["PATH"])) == [p for p in (Path("/bin/ffmpeg"),) if p.exists()]
     assert not (tmp_path / "asked").exists()
 
 

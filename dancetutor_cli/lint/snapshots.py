@@ -1,0 +1,254 @@
+"""Versions of a pack to compare with: another path, a revision of git, or what the last run of `analyze` has read."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import time
+import zlib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from dancetutor_cli.chart.selection import find_files, is_chart_name, is_excluded
+from dancetutor_cli.run.errors import FileError, UsageError
+from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
+from dancetutor_cli.run.trust import kept_folder, programs, write_file
+
+LAST = "last"  # the value of --compare that means the last run
+
+
+@dataclass(frozen=True, slots=True)
+class StoredFile:
+    """One file of a version. read : its bytes, or FileError; digest : of them, by `hash_of`, or "" """
+
+    read: Callable[[], bytes]
+    digest: str = ""
+    hash_of: Callable[[bytes], str] = str
+
+    def is_same(self, data: bytes) -> bool:
+        """Whether it has these bytes; where a digest is known it is not read."""
+        return self.hash_of(data) == self.digest if self.digest else self.read() == data
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """The chart files of a version, by their paths below the folder that is compared.
+
+    label : the version for people; new : what is said of a file that is not in it
+    """
+
+    label: str
+    files: Mapping[str, StoredFile]
+    new: str = "is new"
+
+
+def snapshot_of(other: str, path: Path, exclude: Sequence[str] = ()) -> Snapshot:
+    """The version of `path` that `other` names: a file or folder, "last", or a revision. UsageError if there is none.
+
+    exclude : as `find_files` has it
+    """
+    there = Path(other)
+    if os.path.lexists(there):
+        if there.is_dir() != path.is_dir():
+            raise UsageError("--compare takes two files or two folders")
+        return of_path(there, exclude, None if path.is_dir() else path.name)
+    return of_last_run(path, exclude) if other == LAST else of_revision(other, path, exclude)
+
+
+def of_path(path: Path, exclude: Sequence[str] = (), name: str | None = None) -> Snapshot:
+    """What lies there now. name : that a single file is compared by, None: its own"""
+    if not path.is_dir():
+        return Snapshot(str(path), {name or path.name: StoredFile(partial(read_bytes, path, CHART_LIMIT))})
+    files = {Path(os.path.relpath(file, path)).as_posix(): file for file in find_files([path], exclude)}
+    return Snapshot(
+        str(path), {name: StoredFile(partial(read_bytes, file, CHART_LIMIT)) for name, file in files.items()}
+    )
+
+
+# A revision of the git repository that a path lies in.
+#
+# A pack may bring a repository with a configuration of its own. Nothing of it is run: only objects are listed and read;
+# hooks, monitors and transports are off (a partial clone would fetch what it lacks by a command of its choice), and a
+# bare repository inside of the pack is none. Whether the repository is trusted at all (safe.directory) git decides.
+
+_GIT = "git.exe" if os.name == "nt" else "git"
+_OFF = (
+    "-c", "core.fsmonitor=", "-c", f"core.hooksPath={os.devnull}", "-c", "safe.bareRepository=explicit",
+    "-c", "protocol.allow=never", "-c", "core.sshCommand=false", "-c", "credential.helper=", "--no-pager",
+)  # fmt: skip
+_ENVIRONMENT = {
+    "GIT_ALLOW_PROTOCOL": "none", "GIT_NO_LAZY_FETCH": "1", "GIT_OPTIONAL_LOCKS": "0", "GIT_TERMINAL_PROMPT": "0",
+    "GIT_NO_REPLACE_OBJECTS": "1", "LC_ALL": "C",
+}  # fmt: skip
+_OF_ANOTHER = (  # what git sets for its hooks: of another repository, perhaps
+    "GIT_DIR", "GIT_WORK_TREE", "GIT_COMMON_DIR", "GIT_PREFIX", "GIT_INDEX_FILE", "GIT_OBJECT_DIRECTORY",
+    "GIT_ALTERNATE_OBJECT_DIRECTORIES", "GIT_NAMESPACE",
+)  # fmt: skip
+_PATIENCE = 60.0  # seconds for an answer
+_HASHES = {40: hashlib.sha1, 64: hashlib.sha256}  # letters of an object's name -> what it is made with
+
+
+def of_revision(revision: str, path: Path, exclude: Sequence[str] = ()) -> Snapshot:
+    """What git has of a path at a revision, such as HEAD~1; UsageError, one line, without git or such a revision."""
+    folder = path.absolute() if path.is_dir() else path.absolute().parent
+    commit = _git(folder, revision, "rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}")
+    name = commit.decode("ascii", "replace").strip()
+    listed = _git(folder, revision, "ls-tree", "-r", "-z", "-l", name, "--", "." if path.is_dir() else path.name)
+    files = dict(_blobs(folder, revision, listed, path.is_dir(), exclude))
+    if not files:
+        raise UsageError(f"--compare {revision}: git has no chart file of {path} there")
+    return Snapshot(revision, files)
+
+
+def _blobs(
+    folder: Path, revision: str, listed: bytes, searched: bool, exclude: Sequence[str]
+) -> Iterator[tuple[str, StoredFile]]:
+    """Of what `git ls-tree -l -z` lists the chart files: "mode type object size<tab>path"."""
+    for entry in listed.split(b"\0"):
+        head, tab, name = entry.partition(b"\t")
+        fields = head.decode("ascii", "replace").split()
+        path = os.fsdecode(name)
+        if not tab or len(fields) != 4 or fields[0] not in ("100644", "100755"):  # links and submodules are no files
+            continue
+        if searched and (not is_chart_name(path.rpartition("/")[2]) or is_excluded(path, exclude)):
+            continue
+        digest, size = fields[2], int(fields[3]) if fields[3].isdigit() else 0  # "BAD" of what a partial clone lacks
+        make = _HASHES.get(len(digest), hashlib.sha1)
+
+        def read(digest: str = digest, size: int = size, path: str = path) -> bytes:
+            if size > CHART_LIMIT:
+                raise FileError(path, f"has {size} bytes at {revision}; it is not read")
+            try:
+                return _git(folder, revision, "cat-file", "blob", digest)
+            except UsageError as error:
+                raise FileError(path, str(error)) from None
+
+        def hash_of(data: bytes, make: Callable[[bytes], hashlib._Hash] = make) -> str:
+            return make(b"blob %d\0" % len(data) + data).hexdigest()
+
+        yield path, StoredFile(read, digest, hash_of)
+
+
+def _git(folder: Path, revision: str, *words: str) -> bytes:
+    """What git answers; UsageError with one line where it cannot."""
+    import subprocess  # which an ordinary run does without
+
+    program = next(programs(_GIT, os.environ.get("PATH", os.defpath)), None)
+    said = f"--compare {revision}: there is no such file or folder"
+    if program is None:
+        raise UsageError(f"{said}; for a revision install git")
+    environment = {name: value for name, value in os.environ.items() if name not in _OF_ANOTHER} | _ENVIRONMENT
+    try:
+        done = subprocess.run(
+            [program, *_OFF, *words], cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True,
+            timeout=_PATIENCE, check=False,
+        )  # fmt: skip
+    except (OSError, ValueError, subprocess.TimeoutExpired) as error:
+        raise UsageError(f"--compare {revision}: git does not answer: {error}") from None
+    if done.returncode == 0:
+        return done.stdout
+    why = done.stderr.decode("utf-8", "replace")
+    if "not a git repository" in why:
+        raise UsageError(f"{said}, and {folder} is in no git repository")
+    if "dubious ownership" in why:
+        raise UsageError(
+            f"--compare {revision}: {folder} is in a repository of somebody else, which git does not read; "
+            "if you trust it, add it to git's safe.directory"
+        )
+    if words[0] == "rev-parse":
+        raise UsageError(f"{said}, nor a revision of that name; for the last run write {LAST}")
+    raise UsageError(f"--compare {revision}: git: {' '.join(why.split())[:200] or f'status {done.returncode}'}")
+
+
+# What `analyze` has read of a chart file in its last run, compressed in the user's cache.
+#
+# A file of the store is a head, the SHA-256 of the chart file, the length of its path, the path, and its bytes.
+
+_HEAD = b"dancetutor chart 1\n"
+_DIGEST = 32
+_KEEP_SECONDS = 180 * 24 * 3600  # what nobody analyzed again in so long is removed
+_LONGEST = 1 << 16  # bytes of a path
+
+
+class ChartStore:
+    """A folder of chart files as they were. What cannot be written or read is not kept, never an error."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def keep(self, path: Path) -> None:
+        """Keep a file as it is now; where it is kept like that nothing is written."""
+        with suppress(OSError, FileError):
+            data = read_bytes(path, CHART_LIMIT)
+            head, name = _HEAD + hashlib.sha256(data).digest(), os.fsencode(path.absolute())
+            place = self._folder / hashlib.sha256(name).hexdigest()
+            if _head_of(place)[: len(head)] != head:
+                write_file(place, head + len(name).to_bytes(4, "big") + name + zlib.compress(data, 3))
+
+    def files(self) -> Iterator[tuple[Path, StoredFile]]:
+        """Every file that is kept, by its absolute path."""
+        for place in sorted(self._folder.glob("*")):
+            head = _head_of(place)
+            start = len(_HEAD) + _DIGEST
+            end = start + 4 + int.from_bytes(head[start : start + 4], "big")
+            if head.startswith(_HEAD) and start + 4 < end <= len(head):
+                digest = head[len(_HEAD) : start].hex()
+                path = Path(os.fsdecode(head[start + 4 : end]))
+                yield path, StoredFile(partial(_unpacked, place, end), digest, _sha256)
+
+    def prune(self) -> None:
+        """Remove what was not analyzed in a long time."""
+        with suppress(OSError):
+            for place in self._folder.glob("*"):
+                if time.time() - place.stat().st_mtime > _KEEP_SECONDS:
+                    place.unlink(missing_ok=True)
+
+
+def open_store() -> ChartStore | None:
+    """The store in the user's cache; None where nothing can be kept."""
+    folder = kept_folder("charts")
+    return None if folder is None else ChartStore(folder)
+
+
+def of_last_run(path: Path, exclude: Sequence[str] = ()) -> Snapshot:
+    """What the last run of `analyze` has read of a path; UsageError if it is not known."""
+    store, files = open_store(), dict[str, StoredFile]()
+    root = path.absolute()
+    for file, stored in store.files() if store is not None else ():
+        if path.is_dir() and file.is_relative_to(root) and not is_excluded(file.relative_to(root).as_posix(), exclude):
+            files[file.relative_to(root).as_posix()] = stored
+        elif file == root:
+            files[path.name] = stored
+    if not files:
+        raise UsageError(
+            f"--compare {LAST}: no run of analyze on {path} is kept; `dancetutor analyze {path}` keeps one"
+        )
+    return Snapshot("the last run", files, "is new, or was not analyzed before")
+
+
+def _sha256(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+
+def _head_of(place: Path) -> bytes:
+    """The beginning of a kept file, as far as a path may reach; empty if it cannot be read."""
+    try:
+        with place.open("rb") as file:
+            return file.read(len(_HEAD) + _DIGEST + 4 + _LONGEST)
+    except OSError:
+        return b""
+
+
+def _unpacked(place: Path, start: int) -> bytes:
+    """The bytes of a kept file; FileError if it is damaged."""
+    opened = zlib.decompressobj()
+    try:
+        data = opened.decompress(read_bytes(place, 2 * CHART_LIMIT)[start:], CHART_LIMIT)
+    except zlib.error:
+        raise FileError(place, "is damaged") from None
+    if not opened.eof:
+        raise FileError(place, "is cut off, or too large")
+    return data
