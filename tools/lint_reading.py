@@ -2,6 +2,7 @@
 
 tools/lint_reading.py FOLDER --to READING --seed 1     # of every warning and error rule 20, a file each
 tools/lint_reading.py FOLDER --to READING --rules DT201 --severity info --count 50
+tools/lint_reading.py FOLDER --to READING --rules DT212 --set DT212.severity=warning      # of a rule that is off
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import random
 import sys
 import textwrap
 from collections import defaultdict
+from collections.abc import Sequence
 from pathlib import Path
 
 from lint_table import linted
@@ -41,10 +43,12 @@ _LETTERS = "? LR<> lr<>"
 Place = FileSubject | ChartSubject
 
 
-def collected(folder: Path) -> dict[tuple[str, str], dict[int, list[tuple[Place, Finding]]]]:
+def collected(
+    folder: Path, assignments: Sequence[str] = ()
+) -> dict[tuple[str, str], dict[int, list[tuple[Place, Finding]]]]:
     """What is found below a folder: (rule, severity) -> number of the chart or file -> its findings."""
     found: dict[tuple[str, str], dict[int, list[tuple[Place, Finding]]]] = defaultdict(lambda: defaultdict(list))
-    for number, (subject, findings) in enumerate(linted(folder)):
+    for number, (subject, findings) in enumerate(linted(folder, assignments)):
         for one in findings:
             found[one.rule, one.severity][number].append((subject, one))
     return found
@@ -127,11 +131,12 @@ def main() -> int:
     parser.add_argument("--rules", default="all")
     parser.add_argument("--severity", action="append")
     parser.add_argument("--count", type=int, default=20)
+    parser.add_argument("--set", dest="assignments", action="append", default=[], metavar="KEY=VALUE")
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
     given.to.mkdir(parents=True, exist_ok=True)
     codes = {code for one in given.rules.split(",") for code in matching(one)}
-    for (code, severity), places in sorted(collected(given.folder).items()):
+    for (code, severity), places in sorted(collected(given.folder, given.assignments).items()):
         if code not in codes or severity not in (given.severity or COUNTED):
             continue
         about = _about(all_rules()[code].__doc__ or "")

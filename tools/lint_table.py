@@ -12,14 +12,14 @@ import argparse
 import json
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from dancetutor_cli import chart as reader
 from dancetutor_cli.chart import find_files
 from dancetutor_cli.lint.analysis import solved
-from dancetutor_cli.lint.check import check_chart, check_file
+from dancetutor_cli.lint.check import check_chart, check_file, told_once
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.lint.subject import ChartSubject, FileSubject
@@ -39,9 +39,11 @@ def band(steps_type: str, meter: int) -> str:
     raise AssertionError(meter)
 
 
-def linted(folder: Path) -> Iterator[tuple[FileSubject | ChartSubject, tuple[Finding, ...]]]:
-    """Every file below a folder, and every chart in it, with what the defaults find."""
-    run = LintRun(LintRequest(config="default"))
+def linted(
+    folder: Path, assignments: Sequence[str] = ()
+) -> Iterator[tuple[FileSubject | ChartSubject, tuple[Finding, ...]]]:
+    """Every file below a folder, and every chart in it, with what the defaults find. assignments : as of --set"""
+    run = LintRun(LintRequest(config="default", assignments=assignments))
     for path in find_files([folder]):
         task = run.task(path)
         try:
@@ -51,7 +53,7 @@ def linted(folder: Path) -> Iterator[tuple[FileSubject | ChartSubject, tuple[Fin
         file = FileSubject(song)
         yield file, check_file(file, task.settings)
         for subject in solved(song, song.charts, task):
-            yield subject, check_chart(subject, task.settings)
+            yield subject, told_once(check_chart(subject, task.settings), subject)
 
 
 def kept(folder: Path) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dancetutor_cli.chart.names import is_lights
-from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.rule import ChartRule, FileRule, ReaderRule, all_rules
 from dancetutor_cli.lint.rule_settings import Options, Settings
 from dancetutor_cli.run.errors import FileError, MissingFileError
@@ -99,7 +99,7 @@ def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:
     from dancetutor_cli.lint.configuration import load_configuration
 
     settings = load_configuration(find_settings_file(subject.song.path.absolute().parent), found=True).settings
-    return check_chart(subject, settings)
+    return told_once(check_chart(subject, settings), subject)
 
 
 @cache
@@ -138,6 +138,42 @@ def _as_sure_as_they_are(
             yield replace(finding, severity="info", message=said)
         else:
             yield finding
+
+
+# Rules that see one wrong foot from several sides: what it does, where the body turns for it, how unsure it is. Of
+# several about one row, or about neighbours, that of the rule named first is told.
+_OF_ONE_FOOT = (
+    "DT201", "DT209", "DT202", "DT203", "DT215", "DT205", "DT204", "DT212", "DT208", "DT211", "DT206", "DT214", "DT304",
+    "DT207", "DT213",
+)  # fmt: skip
+# How many rows with a step apart they may be; these speak of a step and of the one beside it, the last of a passage.
+_REACH = {"DT201": 1, "DT202": 1, "DT204": 1, "DT207": 1, "DT209": 1, "DT215": 1, "DT304": 1, "DT213": 2, "DT214": 2}
+
+
+def told_once(findings: tuple[Finding, ...], subject: ChartSubject) -> tuple[Finding, ...]:
+    """The findings without those that tell of a foot what another rule tells: the severest and plainest stays."""
+    if subject.play is None:
+        return findings
+    ticks, rows = subject.play.rows.tick, subject.step_rows
+    of_feet = [
+        (place, int(rows.searchsorted(ticks.searchsorted(round(one.beat * 48)))), one)
+        for place, one in enumerate(findings)
+        if one.beat is not None and one.rule in _OF_ONE_FOOT
+    ]
+    of_feet.sort(key=lambda entry: (-RANKS[entry[2].severity], _OF_ONE_FOOT.index(entry[2].rule)))
+    kept: dict[int, list[str]] = {}  # by place of the row: rules that are told there
+    dropped: set[int] = set()
+    for place, at, one in of_feet:
+        reach = _REACH.get(one.rule, 0)
+        if any(
+            other != one.rule and (near == at or abs(near - at) <= max(reach, _REACH.get(other, 0)))
+            for near in range(at - 2, at + 3)
+            for other in kept.get(near, ())
+        ):
+            dropped.add(place)
+        else:
+            kept.setdefault(at, []).append(one.rule)
+    return tuple(one for place, one in enumerate(findings) if place not in dropped)
 
 
 def _silenced(finding: Finding, subject: ChartSubject) -> bool:

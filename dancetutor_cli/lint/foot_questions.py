@@ -130,6 +130,10 @@ class Feet:
         """First row and number of rows of every run of stepped rows with crossed feet."""
         return self._candidates.crossed_runs[self._number]
 
+    def holds(self, foot: int, row: int) -> bool:
+        """Whether a hold that a foot pressed before a row is still down in it."""
+        return bool(self._holding(foot, np.array([row]))[0] >= 0)
+
     def ties(self) -> list[int]:
         """First row of every run of rows with steps that cost the same with other limbs."""
         return self._candidates.ties[self._number]

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.rule import MoveRule
+from dancetutor_cli.lint.rule import EPSILON, MoveRule
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
+
+_RUN = 8  # steps that are a run
+_LONGER = 1.4  # times the pace of the run: a pause before it, in which a foot is chosen
 
 
 class Footswitch(MoveRule):
@@ -17,14 +21,16 @@ class Footswitch(MoveRule):
     Off for most charts; configs/lint/default.yaml switches it on for the lowest difficulties.
 
     `max_seconds`: only steps at most this long after the step before count; with more time the same foot steps again.
-    by-meter: what at most `share` per cent of the charts of a meter have. Nor where a rest comes soon after it, to
-    which it can be danced as a jack without crossing.
+    by-meter: what at most `share` per cent of the charts of a meter have. Two steps on one panel are a jack to these
+    players, whatever foot the pattern after them wants. So it is told only where the author means a switch, by a mine
+    at it or feet laid down, or where eight such quick steps, none of them on the panel before it, follow without a
+    rest: who jacks it runs into those with the wrong foot. Nor where it can be danced as a jack without crossing.
 
     Bad (max_seconds = 0.6):
 
         1000  L
         0100  R
-        0100  L
+        01M0  L
         0001  R
 
     Better (max_seconds = 0.6):
@@ -48,4 +54,32 @@ class Footswitch(MoveRule):
         found = self.quick(subject, subject.rows_with(self.move))
         rows = [row for row in found if not subject.brackets(row)]
         quick = self.longest(subject)
-        return [row for row in rows if not goes_on_the_other_foot(subject, row, quick, jacked=True)]
+        return [
+            row
+            for row in rows
+            if (_is_meant(subject, row) or _leads_a_run(subject, row, quick))
+            and not goes_on_the_other_foot(subject, row, quick, jacked=True)
+        ]
+
+
+def _is_meant(subject: ChartSubject, row: int) -> bool:
+    """Whether a mine comes since the step before it, as authors mark a switch, or people have laid its foot down."""
+    assert subject.play is not None
+    before = int(subject.step_rows[int(subject.step_rows.searchsorted(row)) - 1])
+    if subject.play.rows.mines[before + 1 : row + 1].any():
+        return True
+    return subject.overrides is not None and bool((subject.overrides.ticks == subject.play.rows.tick[row]).any())
+
+
+def _leads_a_run(subject: ChartSubject, row: int, quick: float) -> bool:
+    """Whether enough single steps, each quick and on another panel than the one before, follow without a breath."""
+    at = int(subject.step_rows.searchsorted(row))
+    rows = subject.step_rows[at : at + _RUN + 1].tolist()
+    pressed = [subject.pressed(one) for one in rows]
+    return (
+        len(rows) > _RUN
+        and subject.pause(row) < _LONGER * subject.pause(rows[1])
+        and all(len(one) == 1 for one in pressed)
+        and all(one != two for one, two in pairwise(pressed))
+        and all(subject.pause(one) <= quick + EPSILON for one in rows[1:])
+    )
