@@ -108,7 +108,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 @click.option(
     "--suggest",
     is_flag=True,
-    help="Tell what makes a doublestep, and which note, moved to another panel, would remove a finding.",
+    help="Tell what makes a doublestep, and which small edit, as of a note, would remove a finding.",
 )
 @click.option(
     "--alternatives",

@@ -13,7 +13,7 @@ from dancetutor_cli.chart.edits import Splice
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Kind, NoteTable
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.note_questions import Notes
-from dancetutor_cli.lint.suggest import MovedNote
+from dancetutor_cli.lint.suggest import Suggestion
 
 # Where the characters of notes stand in a file, and the fix: some of them replaced, with what that must come to.
 
@@ -97,30 +97,27 @@ def notes_of(table: NoteTable) -> frozenset[Note]:
     return frozenset(zip(*columns, strict=True))
 
 
-# The edit that `--suggest` tells, as a fix: one note's character and that of a free panel in its row change places.
+# The edit that `--suggest` tells, as a fix: characters of notes and of free panels in their rows change places.
 
 _TAPS = (b"1", b"L", b"l", b"X", b"Y")
 
 
-def move_note(data: bytes, chart: Chart, finding: Finding, move: MovedNote) -> Fix | None:
-    """The fix; None where the row is not one plain row of characters with the note and an empty place for it."""
-    cells = cells_at(data, chart, move.tick)
-    away, there = cells.get(move.column), cells.get(move.to)
-    if away is None or there is None or away.text not in _TAPS or there.text != EMPTY:
-        return None
+def move_notes(data: bytes, chart: Chart, finding: Finding, edit: Suggestion) -> Fix | None:
+    """The fix; None where a row is not one plain row of characters with the note and an empty place for it."""
+    cells: list[tuple[Cell, bytes]] = []
+    gone, come = set[Note](), set[Note]()
     notes = chart.notes
-    found = ((notes.tick == move.tick) & (notes.column == move.column)).nonzero()[0].tolist()
-    if len(found) != 1:
-        return None
-    kind = int(notes.kind[found[0]])
-    return Fix(
-        finding.rule,
-        frozenset({finding.line or 0}),
-        move.words,
-        replaced([(away, EMPTY), (there, away.text)]),
-        gone=frozenset({(move.tick, move.column, kind, -1)}),
-        come=frozenset({(move.tick, move.to, kind, -1)}),
-    )
+    for move in edit.notes:
+        row = cells_at(data, chart, move.tick)
+        away, there = row.get(move.column), row.get(move.to)
+        found = ((notes.tick == move.tick) & (notes.column == move.column)).nonzero()[0].tolist()
+        if away is None or there is None or away.text not in _TAPS or there.text != EMPTY or len(found) != 1:
+            return None
+        cells += [(away, EMPTY), (there, away.text)]
+        gone.add((move.tick, move.column, int(notes.kind[found[0]]), -1))
+        come.add((move.tick, move.to, int(notes.kind[found[0]]), -1))
+    line = frozenset({finding.line or 0})
+    return Fix(finding.rule, line, edit.words, replaced(cells), frozenset(gone), frozenset(come))
 
 
 # The fixes that no ear hears: mines under the head of a hold, halves of holds, notes less than 3 ms off the grid.

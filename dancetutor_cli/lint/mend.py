@@ -13,15 +13,17 @@ from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.lint import fixes as safe_fixes
 from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.findings import Finding
-from dancetutor_cli.lint.fixes import Fix, move_note, notes_of
+from dancetutor_cli.lint.fixes import Fix, move_notes, notes_of
 from dancetutor_cli.lint.rule import ReaderRule, all_rules
 from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.lint.subject import ChartSubject, solved_chart
-from dancetutor_cli.lint.suggest import MENDABLE, mending_moves
+from dancetutor_cli.lint.suggest import MENDABLE, mending_edits
 
 FIXABLE = (*MENDABLE, *safe_fixes.RULES)  # rules that `--fix` knows a fix for
 _RANKED = "DT213"  # tells the rows that are least sure: the next one takes the place of one that is gone
-NO_MOVE = "no single note moved to another panel of its row removes it without bringing another finding"
+NO_MOVE = (
+    "no edit of a note or a phrase removes it and keeps the shape: without a jack, a lost figure or another finding"
+)
 NO_FIX = {
     safe_fixes.BROKEN_HOLD: "its chart holds more than plain notes, or mending it would bring another finding",
     safe_fixes.OFF_GRID: "it is 3 ms or more off the grid, or there is no free row for it in the file",
@@ -95,8 +97,8 @@ class FixSession:
     def _fixes(self, state: _State, finding: Finding) -> Iterator[Fix]:
         if finding.rule in MENDABLE:
             preset = self.preset_of(state.chart)
-            for move in mending_moves(finding, state.findings, state.subject, self.settings, preset):
-                if fix := move_note(self.song.data, state.chart, finding, move):
+            for edit in mending_edits(finding, state.findings, state.subject, self.settings, preset):
+                if fix := move_notes(self.song.data, state.chart, finding, edit):
                     yield fix
             return
         for fix in self._safe_fixes(state.chart):

@@ -1,10 +1,12 @@
-"""Small edits that would mend a finding: one note moved to another panel, proven by solving the edited chart."""
+"""Small edits that would mend a finding and keep a chart's shape, proven by solving the edited chart."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,70 +17,73 @@ from dancetutor_cli.feet.solver.engine import engine_for
 from dancetutor_cli.feet.solver.solve import OneTap, Outline, forced_limbs, move_tap
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.lint.check import check_rule, rules_of
+from dancetutor_cli.lint.edit_shape import Edit, Move, Shape, free_panels
 from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.other_foot import RESTED
 from dancetutor_cli.lint.rule import all_rules
 from dancetutor_cli.lint.rule_settings import Layer, Settings
 from dancetutor_cli.lint.subject import ChartSubject
 
-# What can be mended by moving a note: doublestep, spin, jump-spin, ambiguous start, triple step.
+# What can be mended by moving notes: doublestep, spin, jump-spin, ambiguous start, triple step.
 MENDABLE = ("DT201", "DT202", "DT203", "DT207", "DT209")
 _FAMILIES = ("DT2", "DT3")  # the edit must bring no new finding of these
-_AROUND = (0, -1, 1)  # rows in which a note may be moved, nearest first
-_FARTHER = (-2, 2, -3, 3, -4, 4)  # and where none of these does, if a fix is asked for
+_AROUND = 4  # rows to either side of the finding's in which a note may be moved
+_PHRASE = 12  # notes of a phrase that may be turned, left for right
+_MOST_SOLVED = 24  # edits of a finding that are solved whole
 # What must not happen any more in the row of a finding: that is seen before the rules are asked.
 _MOVES = {"DT201": "doublestep", "DT202": "spin", "DT203": "spin", "DT209": "doublestep"}
+# Move -> what counts as one.
+_HARD = {
+    "doublestep": "doublestep", "crossover-half": "crossover", "crossover-full": "crossover", "spin": "spin",
+    "footswitch-up": "switch", "footswitch-down": "switch", "footswitch": "switch", "sideswitch-left": "switch",
+    "sideswitch-right": "switch", "jump-footswitch": "switch", "holdswitch": "switch", "bracket": "bracket",
+}  # fmt: skip
 _RANKED = frozenset({"DT213"})  # findings that take the place of others are not new
 
 _Place = tuple[str, float | None]  # rule and beat of a finding
 
 
-@dataclass(frozen=True, slots=True)
-class _Edit:
-    row: int
-    column: int
-    to: int
-
-
-@dataclass(frozen=True, slots=True)
-class MovedNote:
-    """A tap that goes to another panel. tick : its row, 1/48 beats; column, to : from 0; words : the same for people"""
+class MovedNote(NamedTuple):
+    """A tap that goes to another panel. tick : its row, 1/48 beats; column, to : from 0"""
 
     tick: int
     column: int
     to: int
+
+
+@dataclass(frozen=True, slots=True)
+class Suggestion:
+    """Taps that go to other panels, all at once, and the same for people."""
+
+    notes: tuple[MovedNote, ...]
     words: str
 
 
 def with_suggestions(
     findings: Sequence[Finding], subject: ChartSubject, settings: Settings, preset: Preset
 ) -> tuple[Finding, ...]:
-    """The findings, those that one moved note would remove with the edit in words. The chart is not changed."""
+    """The findings, those that a good edit would remove with it in words. The chart is not changed."""
     if subject.play is None or subject.pad is None:
         return tuple(findings)
     trial = _Trial(subject, _of_families(settings), preset, _places(findings))
     told: list[Finding] = []
     for finding in findings:
-        edits = _edits(finding, subject.play, subject.chart) if finding.rule in MENDABLE else ()
-        best = next(trial.good(edits, (finding.rule, finding.beat)), None)
+        best = next(trial.good(finding), None) if finding.rule in MENDABLE else None
         told.append(finding if best is None else replace(finding, suggestion=_in_words(best, subject)))
     return tuple(told)
 
 
-def mending_moves(
+def mending_edits(
     finding: Finding, findings: Sequence[Finding], subject: ChartSubject, settings: Settings, preset: Preset
-) -> Iterator[MovedNote]:
-    """The edits that would remove one finding, the suggested one first, then those in rows farther away.
-
-    findings : all of the chart
-    """
+) -> Iterator[Suggestion]:
+    """The edits that would remove one finding, the one that is heard least first. findings : all of the chart"""
     if subject.play is None or subject.pad is None or finding.rule not in MENDABLE:
         return
+    ticks = subject.play.rows.tick
     trial = _Trial(subject, _of_families(settings), preset, _places(findings))
-    for rows in (_AROUND, _FARTHER):
-        edits = _edits(finding, subject.play, subject.chart, rows)
-        for edit in trial.good(edits, (finding.rule, finding.beat)):
-            tick = int(subject.play.rows.tick[edit.row])
-            yield MovedNote(tick, edit.column, edit.to, _in_words(edit, subject))
+    for edit in trial.good(finding):
+        notes = tuple(MovedNote(int(ticks[row]), column, to) for row, column, to in edit.moves)
+        yield Suggestion(notes, _in_words(edit, subject))
 
 
 def _of_families(settings: Settings) -> Settings:
@@ -95,29 +100,52 @@ class _Trial:
     settings: Settings
     preset: Preset
     before: set[_Place]
-    _outlines: dict[_Edit, Outline] = field(default_factory=dict)
-    _edited: dict[_Edit, _Edited] = field(default_factory=dict)
+    _outlines: dict[Move, Outline] = field(default_factory=dict)
+    _edited: dict[Edit, _Edited] = field(default_factory=dict)
 
-    def good(self, edits: Iterable[_Edit], place: _Place) -> Iterator[_Edit]:
-        """The edits with plays cheaper than now that lack the finding at a place and bring no other, cheapest first.
+    def good(self, finding: Finding) -> Iterator[Edit]:
+        """The edits with plays cheaper than now that lack the finding and bring no other, the least heard first.
 
-        The cost of all comes first, which is quickly found; the rules look at the cheapest only, until one will do.
+        The cost of single notes comes first, which is quickly found; others, and the rules, are asked of few.
         """
         assert self.subject.play is not None
-        for edit in sorted(edits, key=self._total):
-            if self._total(edit) >= self.subject.play.total:
-                return
-            if self._still_happens(edit, place):
+        place, solved = (finding.rule, finding.beat), 0
+        for edit in self._candidates(finding):
+            if len(edit.moves) == 1 and not self._may_do(edit.moves[0], place):
                 continue
             if edit not in self._edited:
+                solved += 1
+                if solved > _MOST_SOLVED:
+                    return
                 self._edited[edit] = _Edited(self._subject_after(edit), self.settings, self.before)
-            if self._edited[edit].lacks(place):
+            if self._edited[edit].is_easier(self.subject, _MOVES.get(finding.rule)) and self._edited[edit].lacks(place):
                 yield edit
 
-    def _total(self, edit: _Edit) -> int:
+    def _candidates(self, finding: Finding) -> Iterator[Edit]:
+        """Edits that keep the chart's shape: notes near the finding's row, then phrases left for right."""
+        play = self.subject.play
+        if play is None or finding.beat is None:
+            return
+        taps = (self._shape.with_repeats([move]) for move in _taps(finding.beat, play, self.subject.chart))
+        yield from sorted((edit for edit in taps if edit is not None), key=lambda edit: edit.cost)
+        row = int(play.rows.tick.searchsorted(round(finding.beat * TICKS_PER_BEAT)))
+        steps = self.subject.step_rows
+        begins = set(steps[self.subject.beginnings.anew(RESTED)].tolist())
+        yield from self._shape.mirrored_phrases(row, _PHRASE, begins)
+
+    def _may_do(self, move: Move, place: _Place) -> bool:
+        assert self.subject.play is not None
+        return self._total(move) < self.subject.play.total and not self._still_happens(move, place)
+
+    @cached_property
+    def _shape(self) -> Shape:
+        assert self.subject.play is not None and self.subject.pad is not None
+        return Shape(self.subject.play, self.subject.pad, self.subject.chart)
+
+    def _total(self, edit: Move) -> int:
         return self._outline(edit).total
 
-    def _outline(self, edit: _Edit) -> Outline:
+    def _outline(self, edit: Move) -> Outline:
         if edit not in self._outlines:
             self._outlines[edit] = self._one_tap.outline_with(edit.row, edit.column, edit.to)
         return self._outlines[edit]
@@ -128,7 +156,7 @@ class _Trial:
         assert play is not None and pad is not None
         return OneTap(engine_for(pad, self.preset), play.rows, lambda rows: forced_limbs(rows, overrides))
 
-    def _still_happens(self, edit: _Edit, place: _Place) -> bool:
+    def _still_happens(self, edit: Move, place: _Place) -> bool:
         rule, beat = place
         if rule not in _MOVES or beat is None or self.subject.play is None:
             return False
@@ -138,10 +166,12 @@ class _Trial:
             return bool(new.events[row - new.first] >> bit & 1)
         return _MOVES[rule] in self.subject.play.moves[row]
 
-    def _subject_after(self, edit: _Edit) -> ChartSubject:
+    def _subject_after(self, edit: Edit) -> ChartSubject:
         subject = self.subject
         assert subject.play is not None and subject.pad is not None
-        rows = move_tap(subject.play.rows, edit.row, edit.column, edit.to)
+        rows = subject.play.rows
+        for row, column, to in edit.moves:
+            rows = move_tap(rows, row, column, to)
         return replace(subject, play=solve(rows, subject.pad, self.preset, subject.overrides, margins=True))
 
 
@@ -154,6 +184,17 @@ class _Edited:
         self._to_ask = list(self._rules)
         self._found: set[_Place] = set()
 
+    def is_easier(self, before: ChartSubject, move: str | None) -> bool:
+        """Whether the play costs less than that of the chart as it was, and nothing hard happens more often in it.
+
+        Rules are silent about much that an author does not put in the place of something else.
+        move : that has to happen less often, so that it has not only gone to another row
+        """
+        play, old = self._subject.play, before.play
+        assert play is not None and old is not None
+        now, was = _hard_moves(play), _hard_moves(old)
+        return play.total < old.total and not now - was and (move is None or now[move] < was[move])
+
     def lacks(self, place: _Place) -> bool:
         """Whether nothing is found at a place any more, nor anything at places where nothing was found before."""
         self._to_ask.sort(key=lambda code: code != place[0])
@@ -162,30 +203,35 @@ class _Edited:
         return place not in self._found and self._found <= self._before
 
 
+def _hard_moves(play: Play) -> Counter[str]:
+    """How many rows have each of the moves that nobody puts in the place of another; two kinds of crossing are one."""
+    return Counter(kind for moves in play.moves for kind in {_HARD.get(move) for move in moves} if kind is not None)
+
+
 def _places(findings: Sequence[Finding]) -> set[_Place]:
     ours = (one for one in findings if one.rule.startswith(_FAMILIES) and one.rule not in _RANKED)
     return {(one.rule, one.beat) for one in ours}
 
 
-def _edits(finding: Finding, play: Play, chart: Chart, around: tuple[int, ...] = _AROUND) -> Iterator[_Edit]:
-    """Every tap in rows around the finding's, to every panel that is free there. around : how far they are from it"""
-    if finding.beat is None:
-        return
+def _taps(beat: float, play: Play, chart: Chart) -> Iterator[Move]:
+    """Every tap in rows around a beat's, nearest first, to every panel that is free there."""
     rows = play.rows
-    at = int(np.searchsorted(rows.tick, round(finding.beat * TICKS_PER_BEAT)))
-    for row in (at + offset for offset in around):
-        if not 0 <= row < len(rows):
-            continue
-        free = (rows.steps[row] == StepKind.NONE) & ~rows.mines[row]
-        notes, tick = chart.notes, int(rows.tick[row])
-        free[notes.column[(notes.tick <= tick) & (notes.end >= tick)]] = False  # nor where a hold or roll is or ends
+    at = int(np.searchsorted(rows.tick, round(beat * TICKS_PER_BEAT)))
+    for row in sorted(range(max(at - _AROUND, 0), min(at + _AROUND + 1, len(rows))), key=lambda row: abs(row - at)):
+        free = free_panels(play, chart, row)
         for column in np.flatnonzero(rows.steps[row] == StepKind.TAP).tolist():
-            for to in np.flatnonzero(free).tolist():
-                yield _Edit(row, column, to)
+            yield from (Move(row, column, to) for to in free)
 
 
-def _in_words(edit: _Edit, subject: ChartSubject) -> str:
+def _in_words(edit: Edit, subject: ChartSubject) -> str:
     assert subject.play is not None and subject.pad is not None
-    beat = int(subject.play.rows.tick[edit.row]) / TICKS_PER_BEAT
-    names = subject.pad.names
-    return f"move the note on beat {round(beat, 3):g} from {names[edit.column]} to {names[edit.to]}"
+    ticks, names = subject.play.rows.tick, subject.pad.names
+    beats = [f"{round(int(ticks[move.row]) / TICKS_PER_BEAT, 3):g}" for move in edit.moves]
+    each = len(edit.moves) // edit.alike
+    others = beats[each::each]
+    again = f", and the same from beat {' '.join(others)} on" if others and edit.mirrored else ""
+    if edit.mirrored:
+        return f"turn the notes on beats {beats[0]} to {beats[each - 1]} left for right{again}"
+    again = f", and the same on beat{'s' if len(others) > 1 else ''} {' '.join(others)}" if others else ""
+    move = edit.moves[0]
+    return f"move the note on beat {beats[0]} from {names[move.column]} to {names[move.to]}{again}"

@@ -20,10 +20,10 @@ from dancetutor_cli.feet.annotations import step_rows
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.lint.analysis import analyze_file
 from dancetutor_cli.lint.findings import Finding
-from dancetutor_cli.lint.fixes import move_note
+from dancetutor_cli.lint.fixes import move_notes
 from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.lint.subject import solved_chart
-from dancetutor_cli.lint.suggest import MovedNote
+from dancetutor_cli.lint.suggest import MovedNote, Suggestion
 from dancetutor_cli.run.errors import UsageError
 
 HEAD = "#TITLE:T;\n#ARTIST:A;\n#CREDIT:C;\n#OFFSET:0;\n#BPMS:0=120;\n"
@@ -253,9 +253,9 @@ def test_a_marked_note_keeps_its_letter_when_it_is_moved(tmp_path: Path) -> None
     path = tmp_path / "marked.sm"
     path.write_text(HEAD + block("pump-double", MARKED))
     chart = parse(path.read_bytes(), path).charts[0]
-    move = MovedNote(0, 9, 6, "moved")
+    edit = Suggestion((MovedNote(0, 9, 6),), "moved")
     finding = Finding("DT202", "spin", "warning", "m", line=int(chart.rows.line[0]))
-    fix = move_note(path.read_bytes(), parts(chart)[1], finding, move)
+    fix = move_notes(path.read_bytes(), parts(chart)[1], finding, edit)
     assert fix is not None
     after = parse(apply(path.read_bytes(), fix.splices), path).charts[0]
     assert [cell[1] for cell in cells(parts(after)[1]) if cell[0] == 0] == [6]

@@ -56,7 +56,7 @@ def test_one_finding_is_mended_by_two_bytes_and_no_other_comes(ssc: Path) -> Non
     before, was = ssc.read_bytes(), found(ssc)
     said = Said(ssc, *HARD, "--fix", "DT202:1")
     assert said.status == 0, said.err
-    assert "DT202 spin [dance-single Hard 8] move the note on beat 45 from right to left" in said.out
+    assert "DT202 spin [dance-single Hard 8] move the note on beat 45.5 from down to up" in said.out
     places = changed(before, ssc.read_bytes())
     assert len(places) == 2 and before.count(b"\n", 0, places[0]) == before.count(b"\n", 0, places[1])
     now = found(ssc)

@@ -16,10 +16,9 @@ from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
 from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.configuration import PresetChoice, load_configuration
-from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.results import FileResult
-from dancetutor_cli.lint.subject import ChartSubject, solved_chart
-from dancetutor_cli.lint.suggest import _Edited, _edits, mending_moves
+from dancetutor_cli.lint.subject import solved_chart
+from dancetutor_cli.lint.suggest import _Edited, _taps
 from dancetutor_cli.run.reading import charts_path
 
 SETTINGS = load_configuration(None).settings
@@ -59,8 +58,7 @@ def test_no_note_goes_where_a_hold_or_roll_is_or_ends() -> None:
     chart = song.charts[0]
     play = solve_chart(chart, load_preset("thesis"))
     for beat, taken in ((1.0, {0, 3}), (0.5, {0, 1}), (2.5, {1, 2}), (3.0, {1})):
-        finding = Finding("DT202", "spin", "warning", "", None, None, 0, beat)
-        edits = [edit for edit in _edits(finding, play, chart) if play.rows.tick[edit.row] == round(beat * 48)]
+        edits = [edit for edit in _taps(beat, play, chart) if play.rows.tick[edit.row] == round(beat * 48)]
         assert not {edit.to for edit in edits} & taken
     assert edits == []  # no tap stands in the row of a tail
 
@@ -90,7 +88,7 @@ def test_an_edit_is_tried_once_and_rules_look_at_the_cheapest_only(
     result = analysed([*SPIN, *SPIN, *SPIN, *SPIN], tmp_path)
     assert sum(finding.suggestion is not None for finding, _ in result.all_findings()) >= 2
     assert len(tried) == len(set(tried))
-    assert len(checked) == len(set(checked)) < len(tried) / 2
+    assert len(checked) == len(set(checked)) <= 2  # the same edit mends all of them
 
 
 def test_rules_are_asked_until_one_tells_what_matters(tmp_path: Path) -> None:
@@ -125,33 +123,3 @@ def test_the_outline_of_a_way_is_that_of_the_whole_solve(preset: str) -> None:
         for name in ("doublestep", "spin"):
             bit = EVENTS.index(name)
             assert (events >> bit & 1).tolist() == [name in moves for moves in play.moves]
-
-
-def test_a_fix_may_move_a_note_farther_away_where_none_near_does() -> None:
-    """After the edits in the rows beside the finding's come those up to four rows away; each is proved as they are."""
-    letters = {"L": "1000", "D": "0100", "U": "0010", "R": "0001", ".": "0000"}
-    rows = [letters[one] for one in "LRLRDUDUDUDUDLRD.UDLUDLU"]
-    head = "#TITLE:T;#BPMS:0=140;#NOTES:dance-single::Hard:9::\n"
-
-    def checked(rows: list[str]) -> tuple[ChartSubject, tuple[Finding, ...]]:
-        measures = ["\n".join(rows[at : at + 8]) for at in range(0, len(rows), 8)]
-        song = parse(
-            f"{head}{chr(10).join(measures[:1])}\n,\n{measures[1]}\n,\n{measures[2]}\n;".encode(), Path("x.sm")
-        )
-        subject = solved_chart(song, song.charts[0], load_preset("itg"))
-        return subject, check_chart(subject, SETTINGS)
-
-    subject, findings = checked(rows)
-    (spin,) = [one for one in findings if one.rule == "DT202"]
-    assert subject.play is not None and spin.beat is not None
-    at = subject.play.rows.tick.tolist().index(round(spin.beat * 48))
-    moves = list(mending_moves(spin, findings, subject, SETTINGS, load_preset("itg")))
-    away = [abs(subject.play.rows.tick.tolist().index(move.tick) - at) for move in moves]
-    near = [far for far in away if far <= 1]
-    assert near and away[: len(near)] == near and set(away[len(near) :]) and max(away) <= 4
-    move = moves[len(near)]
-    row = move.tick // 24
-    cells = list(rows[row])
-    cells[move.column], cells[move.to] = "0", "1"
-    _, after = checked([*rows[:row], "".join(cells), *rows[row + 1 :]])
-    assert (spin.rule, spin.beat) not in {(one.rule, one.beat) for one in after}
