@@ -250,6 +250,13 @@ def led_by_a_jack(subject: ChartSubject, row: int) -> bool:
     return any(one == two for one, two in pairwise(pressed))
 
 
+def has_mine_since_step(subject: ChartSubject, row: int) -> bool:
+    """Whether a mine comes after the step before a row, or with it: so authors mark that the feet switch."""
+    assert subject.play is not None
+    before = int(subject.step_rows[int(subject.step_rows.searchsorted(row)) - 1])
+    return bool(subject.play.rows.mines[before + 1 : row + 1].any())
+
+
 def _starts(subject: ChartSubject, first: int, *, anew: bool) -> dict[_Stand, int]:
     play, rows = subject.play, subject.step_rows
     assert play is not None

@@ -224,9 +224,11 @@ def test_other_formats_say_which_was_used(song: Path) -> None:
     assert {(line["index"], line["preset"]) for line in lines} == {*enumerate(BY_PAD), (None, None)}
     table = csv.DictReader(io.StringIO(run(song, "--format", "csv")))
     assert [row["preset"] for row in table] == BY_PAD
-    text = run(song)
+    text = run(song, "--full")
     assert "\ndance-single Easy 3  preset itg  hash " in text and "\npump-double Hard 9  preset pump  hash " in text
-    assert "\ndance-single Easy 3  preset 'pump' was made for pump pads, not for" in run(song, "--preset", "pump")
+    assert "\ndance-single Easy 3  preset 'pump' was made for pump pads, not for" in run(
+        song, "--full", "--preset", "pump"
+    )
 
 
 def test_the_sheet_says_which_was_used(song: Path) -> None:

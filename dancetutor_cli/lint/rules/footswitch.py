@@ -49,25 +49,24 @@ class Footswitch(MoveRule):
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Footswitches on one panel; what a bracket does beside it is DT210's."""
-        from dancetutor_cli.lint.other_foot import goes_on_the_other_foot
-
         found = self.quick(subject, subject.rows_with(self.move))
-        rows = [row for row in found if not subject.brackets(row)]
+        return [row for row in found if not subject.brackets(row) and self._is_switched(subject, row)]
+
+    def _is_switched(self, subject: ChartSubject, row: int) -> bool:
+        """Whether players know that they have to switch, or run into what follows with the wrong foot."""
+        from dancetutor_cli.lint.other_foot import goes_on_the_other_foot, has_mine_since_step
+
+        if has_mine_since_step(subject, row):
+            return True
         quick = self.longest(subject)
-        return [
-            row
-            for row in rows
-            if (_is_meant(subject, row) or _leads_a_run(subject, row, quick))
-            and not goes_on_the_other_foot(subject, row, quick, jacked=True)
-        ]
+        if not _is_laid_down(subject, row) and not _leads_a_run(subject, row, quick):
+            return False
+        return not goes_on_the_other_foot(subject, row, quick, jacked=True)
 
 
-def _is_meant(subject: ChartSubject, row: int) -> bool:
-    """Whether a mine comes since the step before it, as authors mark a switch, or people have laid its foot down."""
+def _is_laid_down(subject: ChartSubject, row: int) -> bool:
+    """Whether people have said whose foot it is."""
     assert subject.play is not None
-    before = int(subject.step_rows[int(subject.step_rows.searchsorted(row)) - 1])
-    if subject.play.rows.mines[before + 1 : row + 1].any():
-        return True
     return subject.overrides is not None and bool((subject.overrides.ticks == subject.play.rows.tick[row]).any())
 
 
