@@ -19,7 +19,7 @@ from typing import Any
 from dancetutor_cli import chart as reader
 from dancetutor_cli.chart import find_files
 from dancetutor_cli.lint.analysis import solved
-from dancetutor_cli.lint.check import check_chart, check_file, told_once
+from dancetutor_cli.lint.check import check_chart, check_file, merged_by_foot
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.lint.subject import ChartSubject, FileSubject
@@ -53,7 +53,7 @@ def linted(
         file = FileSubject(song)
         yield file, check_file(file, task.settings)
         for subject in solved(song, song.charts, task):
-            yield subject, told_once(check_chart(subject, task.settings), subject)
+            yield subject, merged_by_foot(check_chart(subject, task.settings), subject)
 
 
 def kept(folder: Path) -> dict[str, Any]:

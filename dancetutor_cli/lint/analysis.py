@@ -70,7 +70,7 @@ def _findings(
     subject: ChartSubject, task: AnalyzeTask, preset: Preset
 ) -> tuple[tuple[Finding, ...], tuple[Cause, ...] | None]:
     """What the linter finds; causes of doublesteps and suggestions where somebody wants them: they take long."""
-    from dancetutor_cli.lint.check import check_chart, told_once
+    from dancetutor_cli.lint.check import check_chart, merged_by_foot
 
     findings, causes = check_chart(subject, task.settings), None
     if task.want_rows or task.suggest:
@@ -82,7 +82,7 @@ def _findings(
         from dancetutor_cli.lint.suggest import with_suggestions
 
         findings = with_suggestions(findings, subject, task.settings, preset)
-    return told_once(findings, subject), causes
+    return merged_by_foot(findings, subject), causes
 
 
 def _alternatives(subject: ChartSubject, preset: Preset, count: int) -> tuple[AlternativeResult, ...]:
@@ -352,12 +352,12 @@ class Drawable:
 def drawable_charts(task: AnalyzeTask) -> Iterator[Drawable]:
     """The selected charts of a file that have notes; FileError if the file cannot be read."""
     from dancetutor_cli.chart.density import density
-    from dancetutor_cli.lint.check import check_chart, told_once
+    from dancetutor_cli.lint.check import check_chart, merged_by_foot
 
     song = load_song(task)
     for subject in solved(song, task.selection.charts(song), task):
         if len(subject.chart.notes):
-            findings = told_once(check_chart(subject, task.settings), subject)
+            findings = merged_by_foot(check_chart(subject, task.settings), subject)
             moves = subject.play.moves if subject.play else ()
             counts = Counter(name for names in moves for name in names)
             yield Drawable(subject, findings, density(subject.chart, task.settings.stream_rows), dict(counts))

@@ -99,7 +99,7 @@ def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:
     from dancetutor_cli.lint.configuration import load_configuration
 
     settings = load_configuration(find_settings_file(subject.song.path.absolute().parent), found=True).settings
-    return told_once(check_chart(subject, settings), subject)
+    return merged_by_foot(check_chart(subject, settings), subject)
 
 
 @cache
@@ -150,7 +150,7 @@ _OF_ONE_FOOT = (
 _REACH = {"DT201": 1, "DT202": 1, "DT204": 1, "DT207": 1, "DT209": 1, "DT215": 1, "DT304": 1, "DT213": 2, "DT214": 2}
 
 
-def told_once(findings: tuple[Finding, ...], subject: ChartSubject) -> tuple[Finding, ...]:
+def merged_by_foot(findings: tuple[Finding, ...], subject: ChartSubject) -> tuple[Finding, ...]:
     """The findings without those that tell of a foot what another rule tells: the severest and plainest stays."""
     if subject.play is None:
         return findings

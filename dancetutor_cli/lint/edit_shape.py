@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _APART = 1.0  # seconds between two rows that are no neighbours any more
 _MOTIF = 4  # rows before and after a note that make its motif
 _NEAR = 32  # rows in which a figure of four is heard to return
-_BESIDE = 2  # rows beside a phrase that belong to its motif
+_MARGIN = 2  # rows beside a phrase that belong to its motif
 _MOST_ALIKE = 12  # places of a motif; what comes more often is the pattern of the chart
 # What is heard and felt of an edit: the worst last. A note that moves alone counts 1.
 _NOTE = 1.0
@@ -41,7 +41,7 @@ _MIRRORED, _MIRRORED_NOTE, _MIRRORED_CHORD = 2.0, 0.25, 1.0
 WORST = 5.0  # an edit that is heard more than this is no good
 
 
-class Move(NamedTuple):
+class PanelMove(NamedTuple):
     """A tap that goes to another panel. row : of the play; column, to : panels"""
 
     row: int
@@ -56,7 +56,7 @@ class Edit:
     mirrored : whether they are a phrase, left for right
     """
 
-    moves: tuple[Move, ...]
+    moves: tuple[PanelMove, ...]
     cost: float
     alike: int = 1
     mirrored: bool = False
@@ -80,14 +80,14 @@ class Shape:
 
     # Single notes, and phrases left for right, as edits that keep the shape.
 
-    def with_repeats(self, moves: Sequence[Move]) -> Edit | None:
+    def with_repeats(self, moves: Sequence[PanelMove]) -> Edit | None:
         """The edit of some moves wherever their motif stands; None where that does not keep the chart's shape."""
         at = self._place[moves[0].row]
         away = {*self._repeats(at - _MOTIF, at + _MOTIF), *self._figures(at - 2, at + 1)}
         return self._everywhere(moves, away, self._cost(moves))
 
     def _everywhere(
-        self, moves: Sequence[Move], away: Iterable[int], cost: float, mirrored: bool = False
+        self, moves: Sequence[PanelMove], away: Iterable[int], cost: float, mirrored: bool = False
     ) -> Edit | None:
         """Moves here and so many places away; None where that does not keep the shape."""
         found = [tuple(moves), *(tuple(self._moved(move, by) for move in moves) for by in sorted(away))]
@@ -133,7 +133,7 @@ class Shape:
         if any((steps[self.rows[at]] > StepKind.TAP).any() for at in rows) or any(map(self._is_held, rows)):
             return None
         moves = [
-            Move(self.rows[at], column, mirror[column])
+            PanelMove(self.rows[at], column, mirror[column])
             for at in rows
             for column in sorted(self._pressed[at])
             if mirror[column] != column and mirror[column] not in self._pressed[at]
@@ -142,7 +142,7 @@ class Shape:
             return None
         chords = len({move.row for move in moves if len(self._pressed[self._place[move.row]]) > 1})
         cost = _MIRRORED + _MIRRORED_NOTE * len(moves) + _MIRRORED_CHORD * chords + self._returns(moves)
-        return self._everywhere(moves, self._repeats(first - _BESIDE, last + _BESIDE), cost, mirrored=True)
+        return self._everywhere(moves, self._repeats(first - _MARGIN, last + _MARGIN), cost, mirrored=True)
 
     def _is_held(self, at: int) -> bool:
         """Whether a hold is down in a row: what is mirrored beside it would be another figure."""
@@ -151,7 +151,7 @@ class Shape:
 
     # What an edit does to figures.
 
-    def _after(self, moves: Sequence[Move]) -> Mapping[int, frozenset[int]]:
+    def _after(self, moves: Sequence[PanelMove]) -> Mapping[int, frozenset[int]]:
         """Place -> panels after the moves, of the rows that they are in."""
         rows: dict[int, frozenset[int]] = {}
         for row, column, to in moves:
@@ -159,7 +159,7 @@ class Shape:
             rows[at] = rows.get(at, self._pressed[at]) - {column} | {to}
         return rows
 
-    def _keeps_jacks(self, moves: Sequence[Move]) -> bool:
+    def _keeps_jacks(self, moves: Sequence[PanelMove]) -> bool:
         """Whether neighbours share as many panels as before: no jack comes, and none is torn apart."""
         after = self._after(moves)
         for at in {near for place in after for near in (place, place + 1)}:
@@ -170,7 +170,7 @@ class Shape:
                 return False
         return True
 
-    def _returns(self, moves: Sequence[Move]) -> float:
+    def _returns(self, moves: Sequence[PanelMove]) -> float:
         """What figures A B A, trills and triangles, lost and new ones, are heard."""
         after, cost = self._after(moves), 0.0
         for at in {near for place in after for near in (place, place + 2)}:
@@ -180,7 +180,7 @@ class Shape:
                 cost += _RETURN_LOST * (was and not now) + _RETURN_NEW * (now and not was)
         return cost
 
-    def _cost(self, moves: Sequence[Move]) -> float:
+    def _cost(self, moves: Sequence[PanelMove]) -> float:
         """How much of some moves is heard and felt."""
         cost = self._returns(moves)
         for row, column, to in moves:
@@ -202,7 +202,7 @@ class Shape:
 
     # Where the same motif stands again, and where two dancers step the same.
 
-    def _moved(self, move: Move, by: int) -> Move:
+    def _moved(self, move: PanelMove, by: int) -> PanelMove:
         """The same move so many rows later."""
         return move._replace(row=self.rows[self._place[move.row] + by])
 
@@ -238,7 +238,7 @@ class Shape:
             found.setdefault(pressed, []).append(at)
         return found
 
-    def _breaks_unison(self, moves: Sequence[Move]) -> bool:
+    def _breaks_unison(self, moves: Sequence[PanelMove]) -> bool:
         """Whether two who dance a chart step the same, or its mirror image, in a row that would change for one only."""
         if self._chart.written is None:
             return False

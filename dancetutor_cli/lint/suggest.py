@@ -17,7 +17,7 @@ from dancetutor_cli.feet.solver.engine import engine_for
 from dancetutor_cli.feet.solver.solve import OneTap, Outline, forced_limbs, move_tap
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.lint.check import check_rule, rules_of
-from dancetutor_cli.lint.edit_shape import Edit, Move, Shape, free_panels
+from dancetutor_cli.lint.edit_shape import Edit, PanelMove, Shape, free_panels
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.other_foot import RESTED
 from dancetutor_cli.lint.rule import all_rules
@@ -100,7 +100,7 @@ class _Trial:
     settings: Settings
     preset: Preset
     before: set[_Place]
-    _outlines: dict[Move, Outline] = field(default_factory=dict)
+    _outlines: dict[PanelMove, Outline] = field(default_factory=dict)
     _edited: dict[Edit, _Edited] = field(default_factory=dict)
 
     def good(self, finding: Finding) -> Iterator[Edit]:
@@ -133,7 +133,7 @@ class _Trial:
         begins = set(steps[self.subject.beginnings.anew(RESTED)].tolist())
         yield from self._shape.mirrored_phrases(row, _PHRASE, begins)
 
-    def _may_do(self, move: Move, place: _Place) -> bool:
+    def _may_do(self, move: PanelMove, place: _Place) -> bool:
         assert self.subject.play is not None
         return self._total(move) < self.subject.play.total and not self._still_happens(move, place)
 
@@ -142,10 +142,10 @@ class _Trial:
         assert self.subject.play is not None and self.subject.pad is not None
         return Shape(self.subject.play, self.subject.pad, self.subject.chart)
 
-    def _total(self, edit: Move) -> int:
+    def _total(self, edit: PanelMove) -> int:
         return self._outline(edit).total
 
-    def _outline(self, edit: Move) -> Outline:
+    def _outline(self, edit: PanelMove) -> Outline:
         if edit not in self._outlines:
             self._outlines[edit] = self._one_tap.outline_with(edit.row, edit.column, edit.to)
         return self._outlines[edit]
@@ -156,7 +156,7 @@ class _Trial:
         assert play is not None and pad is not None
         return OneTap(engine_for(pad, self.preset), play.rows, lambda rows: forced_limbs(rows, overrides))
 
-    def _still_happens(self, edit: Move, place: _Place) -> bool:
+    def _still_happens(self, edit: PanelMove, place: _Place) -> bool:
         rule, beat = place
         if rule not in _MOVES or beat is None or self.subject.play is None:
             return False
@@ -213,14 +213,14 @@ def _places(findings: Sequence[Finding]) -> set[_Place]:
     return {(one.rule, one.beat) for one in ours}
 
 
-def _taps(beat: float, play: Play, chart: Chart) -> Iterator[Move]:
+def _taps(beat: float, play: Play, chart: Chart) -> Iterator[PanelMove]:
     """Every tap in rows around a beat's, nearest first, to every panel that is free there."""
     rows = play.rows
     at = int(np.searchsorted(rows.tick, round(beat * TICKS_PER_BEAT)))
     for row in sorted(range(max(at - _AROUND, 0), min(at + _AROUND + 1, len(rows))), key=lambda row: abs(row - at)):
         free = free_panels(play, chart, row)
         for column in np.flatnonzero(rows.steps[row] == StepKind.TAP).tolist():
-            yield from (Move(row, column, to) for to in free)
+            yield from (PanelMove(row, column, to) for to in free)
 
 
 def _in_words(edit: Edit, subject: ChartSubject) -> str:

@@ -90,7 +90,7 @@ def test_a_doublestep_is_told_with_what_makes_it() -> None:
 
 
 def test_what_forces_a_doublestep_is_told_in_text() -> None:
-    words = [str(DEMO), "--difficulty", "hard", "--steps-type", "dance-single", "--select", "DT201"]
+    words = [str(DEMO), "--difficulty", "hard", "--steps-type", "dance-single", "--select", "DT201", "--full"]
     told = [CliRunner().invoke(command, [*words, *more], standalone_mode=False).stdout for more in ((), ("--suggest",))]
     forced = [line for line in told[1].splitlines() if line.startswith("forced doublestep")]
     assert "forced doublestep on beat 21, by the hold of beat 20 ←" in forced

@@ -46,10 +46,9 @@ class Sideswitch(MoveRule):
         return [
             row
             for row in self.quick(subject, subject.rows_with(self.move))
-            if has_mine_since_step(subject, row)
-            or not (
-                subject.brackets(row)
-                or led_by_a_jack(subject, row)
-                or goes_on_the_other_foot(subject, row, quick, jacked=True)
+            if not subject.brackets(row)
+            and (
+                has_mine_since_step(subject, row)
+                or not (led_by_a_jack(subject, row) or goes_on_the_other_foot(subject, row, quick, jacked=True))
             )
         ]
