@@ -127,7 +127,8 @@ class BriefReport:
             first = min(found, key=lambda one: one.order)
             rule = self._paint(f"{first.first.rule} {first.first.name}", STYLES[first.first.severity])
             charts = len({(one.path, one.chart and one.chart.index) for one in found})
-            lines.append(f"{rule}: {_sum(found)} in {charts} chart{'' if charts == 1 else 's'}, for example")
+            what = "file" if first.chart is None else "chart"
+            lines.append(f"{rule}: {_sum(found)} in {charts} {what}{'' if charts == 1 else 's'}, for example")
             lines += [
                 self._cut(f"  {self._entry_line(one, False)}") for one in sorted(found, key=lambda x: x.order)[:each]
             ]
@@ -148,11 +149,13 @@ class BriefReport:
         lines = list(dict.fromkeys(self._entry_line(entry, True) for entry in entries))
         if len(lines) < _ALIKE:
             return lines
+        # The .sm and the .ssc of a song say the same, mostly.
+        own = {(e.chart and e.chart.label, tuple(f.beat for f in e.findings)): len(e.findings) for e in entries}
         labels = list(dict.fromkeys(entry.chart.label if entry.chart else "" for entry in entries))
         first = entries[0].first
         where = "" if first.measure is None else f", first in measure {first.measure} of {safe(labels[0])}"
         rule = self._paint(first.rule, STYLES[first.severity])
-        return [f"{rule} {_sum(entries)} times in {len(labels)} charts{where}: {safe(first.message)}"]
+        return [f"{rule} {sum(own.values())} times in {len(labels)} charts{where}: {safe(first.message)}"]
 
     def _name(self, path: str) -> str:
         """A file by its path below the folder that all of them are in."""

@@ -57,7 +57,7 @@ class PackChart:
 
 @dataclass(frozen=True, slots=True)
 class FileNeed:
-    """What of a file needs action. what : a rule each, "DT302 hand 3 times, measures 4 8 12", errors first"""
+    """What of a file needs action. what : a rule of a chart each, errors first"""
 
     file: str
     errors: int
@@ -66,20 +66,24 @@ class FileNeed:
 
     @staticmethod
     def of(result: FileResult) -> FileNeed:
-        found = [one for one, _ in result.all_findings() if one.severity != "info"]
-        found.sort(key=lambda one: -RANKS[one.severity])
-        rules = {one.rule: [other for other in found if other.rule == one.rule] for one in found}
-        errors = sum(one.severity == "error" for one in found)
-        return FileNeed(result.path, errors, len(found) - errors, tuple(map(_need, rules.values())))
+        found = [(one, chart) for one, chart in result.all_findings() if one.severity != "info"]
+        found.sort(key=lambda pair: -RANKS[pair[0].severity])
+        kinds: dict[tuple[str, str], list[Finding]] = {}
+        for one, chart in found:
+            kinds.setdefault(("" if chart is None else chart.label, one.rule), []).append(one)
+        errors = sum(one.severity == "error" for one, _ in found)
+        what = tuple(_need(label, of_kind) for (label, _), of_kind in kinds.items())
+        return FileNeed(result.path, errors, len(found) - errors, what)
 
 
-def _need(found: Sequence[Finding]) -> str:
+def _need(label: str, found: Sequence[Finding]) -> str:
     measures = list(dict.fromkeys(str(one.measure) for one in found if one.measure is not None))
     where = f", measure{'' if len(measures) == 1 else 's'} {' '.join(measures[:_PLACES])}" if measures else ""
     where += " ..." if len(measures) > _PLACES else ""
     times = f" {len(found)} times" if len(found) > 1 else ""
     message = f": {safe(found[0].message)}" if len(found) == 1 else ""
-    return f"{found[0].rule} {found[0].name}{times}{where}{message}"
+    chart = f"{safe(label)}: " if label else ""
+    return f"{chart}{found[0].rule} {found[0].name}{times}{where}{message}"
 
 
 class Pack:

@@ -91,7 +91,7 @@ def test_a_page_is_the_only_result(pack: Path, tmp_path: Path) -> None:
     page = (tmp_path / "p.html").read_text("utf-8")
     places = [page.index(f"<h2>{title}") for title in ("What needs action", "What is missing", "What stands out")]
     assert places == sorted(places) and places[-1] < page.index("<svg") < page.index("<h2>All charts")
-    assert "DT302 hand, measure 0: three panels at once" in page
+    assert "dance-single Easy 3: DT302 hand, measure 0: three panels at once" in page
 
 
 def test_only_what_is_new_against_a_baseline_is_told(pack: Path, tmp_path: Path) -> None:
