@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.film.media.ffmpeg import executable
+from dancetutor_cli.run.ffmpeg import executable
 
 BPM = 128.0
 MEASURES = 21

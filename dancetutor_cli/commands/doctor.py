@@ -92,8 +92,8 @@ def _physics() -> Check:
 def _ffmpeg() -> Check:
     import subprocess
 
-    from dancetutor_cli.film.media.ffmpeg import MEND, executable
     from dancetutor_cli.run.errors import UnavailableError
+    from dancetutor_cli.run.ffmpeg import MEND, executable
 
     try:
         path = executable()
@@ -109,7 +109,7 @@ def _ffmpeg() -> Check:
 
 def _encoder(name: str) -> Check:
     from dancetutor_cli.film.media.encoder import works
-    from dancetutor_cli.film.media.ffmpeg import MEND
+    from dancetutor_cli.run.ffmpeg import MEND
 
     label = f"encoder {name}"
     failure = works(ENCODERS[name])

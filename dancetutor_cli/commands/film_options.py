@@ -27,7 +27,7 @@ from dancetutor_cli.run.errors import UsageError
 if TYPE_CHECKING:
     from dancetutor_cli.film.clock import Practice
     from dancetutor_cli.film.layout import Layout
-    from dancetutor_cli.film.media.ffmpeg import FilmFormat
+    from dancetutor_cli.film.media.film_formats import FilmFormat
     from dancetutor_cli.film.work.request import FilmRequest
 
 MOST_LATE = 60_000.0  # milliseconds that the music may be moved

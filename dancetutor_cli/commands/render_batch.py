@@ -77,7 +77,7 @@ def _batch(
     path: Path, output: Path | None, frames: Path | None, longest: float | None, options: dict[str, Any]
 ) -> BatchRequest:
     from dancetutor_cli.film.media.encoder import Encoding, choose
-    from dancetutor_cli.film.media.ffmpeg import FORMATS, PICTURES
+    from dancetutor_cli.film.media.film_formats import FORMATS, PICTURES
     from dancetutor_cli.film.work.batch import DEFAULT_NAME, BatchRequest, parse_meters, parse_shard
 
     kind = PICTURES if frames else "mp4"

@@ -14,9 +14,9 @@ from dancetutor_cli.chart import load
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands import render
 from dancetutor_cli.film.layout import FilmLook, load_layout
-from dancetutor_cli.film.media import ffmpeg
 from dancetutor_cli.film.media.sound import seconds_of
 from dancetutor_cli.film.work.request import look_up
+from dancetutor_cli.run import ffmpeg
 from dancetutor_cli.run.reading import charts_path
 
 DEMO = charts_path() / "two_left_feet"

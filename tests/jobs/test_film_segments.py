@@ -11,7 +11,7 @@ import pytest
 
 from dancetutor_cli.film.media import encoder
 from dancetutor_cli.film.media.encoder import Encoding
-from dancetutor_cli.film.media.ffmpeg import PICTURES
+from dancetutor_cli.film.media.film_formats import PICTURES
 from dancetutor_cli.film.work import segments
 from dancetutor_cli.film.work.segments import PlanFile, Segment, render_segment
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from dancetutor_cli.film.choices import Quality
-from dancetutor_cli.film.media import ffmpeg
-from dancetutor_cli.film.media.ffmpeg import FORMATS, PICTURES, FilmFormat, JoinJob
+from dancetutor_cli.film.media.film_formats import FORMATS, PICTURES, FilmFormat, JoinJob
+from dancetutor_cli.run import ffmpeg
 from dancetutor_cli.run.errors import FileError, UnavailableError
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ _TAGGED = "setparams=range=tv:color_primaries=bt709:color_trc=bt709:colorspace=b
 
 @dataclass(frozen=True, slots=True)
 class Encoding:
-    """How a film is written. target : of `ffmpeg.FORMATS`; size : (width, height), even for H.264."""
+    """How a film is written. target : of `film_formats.FORMATS`; size : (width, height), even for H.264."""
 
     target: str
     size: tuple[int, int]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.film.clock import Clock, Pass, Practice
-from dancetutor_cli.film.media import ffmpeg
+from dancetutor_cli.run import ffmpeg
 
 # The film's sound: the song's music cut to the clock, slowed without changing pitch, with clicks where wanted.
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.film.media.encoder import Encoding
-from dancetutor_cli.film.media.ffmpeg import PICTURES
+from dancetutor_cli.film.media.film_formats import PICTURES
 from dancetutor_cli.film.work import segments
 from dancetutor_cli.film.work.records import FilmRecord, FilmRecords, find_records, new_work_name, remove_work
 from dancetutor_cli.film.work.request import FilmRequest

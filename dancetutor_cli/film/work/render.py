@@ -19,13 +19,14 @@ from dancetutor_cli.dance.rig.body import joint_matrices
 from dancetutor_cli.dance.smoothing import low_pass
 from dancetutor_cli.film.choices import RendererKind
 from dancetutor_cli.film.media.encoder import Encoding, encode_segment, join
-from dancetutor_cli.film.media.ffmpeg import PICTURES, EncoderError
+from dancetutor_cli.film.media.film_formats import PICTURES
 from dancetutor_cli.film.scene import renderer
 from dancetutor_cli.film.scene.camera import Camera
 from dancetutor_cli.film.scene.scene import PANEL, FrameState, Scene
 from dancetutor_cli.film.work import segments
 from dancetutor_cli.film.work.planning import PreparedFilm
 from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.ffmpeg import EncoderError
 from dancetutor_cli.run.files import place_of
 from dancetutor_cli.run.pool import Task, Workers, open_workers
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from dancetutor_cli.film.media.encoder import Encoding, join
-from dancetutor_cli.film.media.ffmpeg import PICTURES
+from dancetutor_cli.film.media.film_formats import PICTURES
 from dancetutor_cli.film.work.records import FilmRecord, digest_of, move_segment, new_work_name, remove_work
 from dancetutor_cli.film.work.request import FilmRequest, look_up
 from dancetutor_cli.run.errors import DancetutorError, FileError

@@ -10,7 +10,8 @@ import pytest
 from numpy.typing import NDArray
 
 from dancetutor_cli.film.clock import Clock, Pass
-from dancetutor_cli.film.media import ffmpeg, sound
+from dancetutor_cli.film.media import sound
+from dancetutor_cli.run import ffmpeg
 from dancetutor_cli.run.errors import DancetutorError
 
 CLICKS = np.arange(1, 16) * 0.5 + 0.0137

@@ -12,10 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dancetutor_cli.film.clock import Clock, Pass
-from dancetutor_cli.film.media import ffmpeg
 from dancetutor_cli.film.media import subtitles as module
 from dancetutor_cli.film.media.subtitles import SubtitleStyle, subtitle_style, subtitles
 from dancetutor_cli.film.notes import Cue
+from dancetutor_cli.run import ffmpeg
 from dancetutor_cli.run.errors import FileError
 
 STYLE = SubtitleStyle(1.0, 0.25, 0.7, 2, ("spin", "jump", "jack"))

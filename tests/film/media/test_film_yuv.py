@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.film.media import ffmpeg
 from dancetutor_cli.film.media.encoder import Encoding, encode_segment
 from dancetutor_cli.film.media.yuv import yuv420
+from dancetutor_cli.run import ffmpeg
 
 
 def _expected(frame: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.film.media import ffmpeg as chooser
-from dancetutor_cli.film.media.ffmpeg import ENCODERS, FILTERS, VARIABLE, ffmpeg_program, lacking
+from dancetutor_cli.run import ffmpeg as chooser
 from dancetutor_cli.run.errors import UnavailableError, install_command
+from dancetutor_cli.run.ffmpeg import ENCODERS, FILTERS, VARIABLE, ffmpeg_program, lacking
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="a shell script stands in for ffmpeg")
 
