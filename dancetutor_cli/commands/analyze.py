@@ -106,6 +106,17 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     help="Draw the charts of one file as a sheet of measures.",
 )
 @click.option(
+    "--sync",
+    is_flag=True,
+    help="Hear the music: how far its attacks lie from the beats, and the rules about that (DT6).",
+)
+@click.option(
+    "--plot",
+    type=GivenPath(dir_okay=False),
+    metavar="FILE.svg",
+    help="With --sync: draw the bias of one file over the song.",
+)
+@click.option(
     "--suggest",
     is_flag=True,
     help="Tell what makes a doublestep, and which small edit, as of a note, would remove a finding.",
@@ -162,8 +173,10 @@ def command(**options: Any) -> int:  # fmt: skip
         want_excerpts=options["format_name"] == "text",
         **{name: options[name] for name in ("preset", "config", "assignments", "select", "ignore", "fail_on",
                                             "baseline", "update_baseline", "suggest", "alternatives", "meter_scale",
-                                            "rate")},
+                                            "rate", "sync")},
     )  # fmt: skip
+    if options["plot"] is not None and not options["sync"]:
+        raise UsageError("--plot draws what --sync finds; add --sync")
     if not options["fix"] and (options["diff"] or options["backup"]):
         raise UsageError("--diff and --backup belong to --fix; add --fix RULE or --fix safe")
     if options["watch"] and not options["fix"]:
@@ -206,10 +219,12 @@ def _report_errors(work: Callable[[], object]) -> None:
 
 
 def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
-    from dancetutor_cli.commands.pack import check_comparison, check_sheet, report_beside, report_changes
+    from dancetutor_cli.commands.pack import check_comparison, check_plot, check_sheet, report_beside, report_changes
 
     if options["sheet"] is not None:
         check_sheet(options["sheet"], len(files))
+    if options["plot"] is not None:
+        check_plot(options["plot"], len(files))
     if options["update_baseline"] and options["baseline"] is not None:
         check_file(options["baseline"])
     if options["output_file"] is not None:
@@ -244,6 +259,10 @@ def _lint(run: LintRun, files: list[Source], options: dict[str, Any], output: IO
     tally = Tally(run.fail_on(first), options["exit_zero"], quiet=silent)
     pack = PackReport(options, run.has_baseline, len(files), view)
     tasks = [run.task(path, data) for path, data in files]
+    if any(task.settings.sync for task in tasks):
+        from dancetutor_cli.run.ffmpeg import executable
+
+        executable()  # without one, nothing is heard: say so before the work
     report = _open_view(view, tasks, output)
     least = "warning" if tally.fail_on == "never" else tally.fail_on
     report.begin()
@@ -270,6 +289,12 @@ def _lint(run: LintRun, files: list[Source], options: dict[str, Any], output: IO
         from dancetutor_cli.commands.pack import write_sheet
 
         said = write_sheet(options["sheet"], tasks)
+        if not options["quiet"]:
+            click.echo(said, err=True)
+    if options["plot"] is not None and not tally.unreadable:
+        from dancetutor_cli.commands.pack import write_plot
+
+        said = write_plot(options["plot"], tasks[0])
         if not options["quiet"]:
             click.echo(said, err=True)
     if cache is not None and not options["watch"]:

@@ -214,6 +214,32 @@ def write_sheet(path: Path, tasks: list[AnalyzeTask]) -> str:
     return f"{path}: {len(sheets)} chart{'s' if len(sheets) > 1 else ''} drawn"
 
 
+# `analyze --sync --plot FILE.svg`: the bias over the song.
+
+
+def check_plot(path: Path, files: int) -> None:
+    """Refuse before the work what could not be written after it. files : of how many files the sync is asked for"""
+    check_file(path, (".svg",))
+    if files != 1:
+        raise UsageError("--plot draws the sync of one file: name a file, not a folder")
+
+
+def write_plot(path: Path, task: AnalyzeTask) -> str:
+    """Draw the sync of a file, and return a line about it."""
+    from dancetutor_cli.lint.analysis import load_song
+    from dancetutor_cli.lint.song_sync import song_sync
+    from dancetutor_cli.reports.sync_plot import sync_plot
+    from dancetutor_cli.reports.terminal import safe
+
+    song = load_song(task)
+    found = song_sync(song)
+    if found.judgement is None:
+        return f"{path}: nothing is drawn, for the sync cannot be judged: {found.sync.reason}"
+    name = safe(song.title) or path.stem
+    write_atomic(path, sync_plot(name, found.judgement).encode("utf-8", "replace"))
+    return f"{path}: the bias over the song"
+
+
 def _facts(chart: Drawable, sheet: Sheet) -> list[str]:
     from dancetutor_cli.reports.sheet import facts_of, length_of
     from dancetutor_cli.reports.sheet_drawing import unsure_rows

@@ -257,15 +257,22 @@ class _File:
         from dancetutor_cli.lint.subject import FileSubject
 
         task, song, charts = self._task, self._song, self._with_meters()
+        found = None
+        if task.settings.sync:
+            from dancetutor_cli.lint.song_sync import song_sync
+
+            found = song_sync(song)
+            charts = tuple(replace(chart, sync=found.of_charts.get(chart.index)) for chart in charts)
         return FileResult(
             str(task.path),
             song.title,
             song.artist,
             None,
             tuple(_warnings(song, charts)),
-            check_file(FileSubject(song), task.settings),
+            check_file(FileSubject(song, found), task.settings),
             charts,
             _unselected(song, self._selected),
+            None if found is None else found.sync,
         )
 
     def _with_meters(self) -> tuple[ChartResult, ...]:

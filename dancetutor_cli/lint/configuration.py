@@ -55,6 +55,7 @@ class _ConfigurationFile(RulesKeys):
     stream_rows: Annotated[int, Bounds(1, 192, "rows in a measure")] | None = None
     sure_feet: Annotated[float, Bounds(0, 100, "per cent")] | None = None
     coin_toss: Annotated[int, Bounds(0, 1000)] | None = None
+    sync: bool | None = None
     overrides: tuple[_Override, ...] = ()
     feet: Any = None
 
@@ -185,7 +186,7 @@ def _apply(base: Configuration, source: MarkedYaml, *, confined: bool) -> Config
     if confined and file.baseline and leads_out(folder / file.baseline, folder):
         why = "'baseline' leads out of the folder of this file; put it beside it, or name it with --baseline"
         raise source.error(("baseline",), why)
-    numbers = {name: getattr(file, name) for name in ("stream_rows", "sure_feet", "coin_toss")}
+    numbers = {name: getattr(file, name) for name in ("stream_rows", "sure_feet", "coin_toss", "sync")}
     settings = replace(settings, **{name: value for name, value in numbers.items() if value is not None})
     baseline = folder / file.baseline if file.baseline else base.baseline
     return Configuration(settings, base.sources, preset, overridden, file.fail_on or base.fail_on, baseline)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from operator import attrgetter
@@ -205,3 +206,62 @@ def _bill(
     """A number and what adds up to it, without what rounds to nothing."""
     told = [f"{name} {value:+.{digits}f}" for name, value in terms if round(abs(value), digits) > 0]
     return f"{meter:.{digits}f}: {', '.join([*first, *told][:most])}"
+
+
+# Beats against the audio, as it is kept and told.
+
+NULL, ITG = 0.0, 9.0  # ms; what packs are synced to
+SYNC_TOLERANCE = 3.0  # ms, to either side
+SURE_SYNC = 0.8  # confidence from which on a bias is believed
+
+
+@dataclass(frozen=True, slots=True)
+class Sync:
+    """How the music lies under the beats.
+
+    bias_ms : the music's attack after the chart's beat; None: it could not be judged
+    confidence : 0 to 1; drift_ms : bias of the last third less that of the first
+    beat_off : whether the bias is more than a quarter beat, as where the chart is half a beat off
+    kind : "null", "itg" or "other" where the confidence is `SURE_SYNC`, else "unsure"
+    reason : why it could not be judged, or None
+    """
+
+    bias_ms: float | None
+    confidence: float
+    drift_ms: float | None
+    beat_off: bool
+    kind: str
+    reason: str | None = None
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether the bias is believed."""
+        return self.kind != "unsure"
+
+    @property
+    def description(self) -> str:
+        """For people: "the music is 25.1 ms after the beats, drift +0.2 ms, confidence 1.00: other"."""
+        if self.bias_ms is None:
+            return f"cannot be judged: {self.reason}" if self.reason else "cannot be judged"
+        side = "after" if self.bias_ms >= 0 else "before"
+        drift = "" if self.drift_ms is None else f", drift {self.drift_ms:+.1f} ms"
+        sure = f"confidence {self.confidence:.2f}"
+        return f"the music is {abs(self.bias_ms):.1f} ms {side} the beats{drift}, {sure}: {self.kind}"
+
+
+def sync_of(
+    bias_ms: float | None,
+    confidence: float,
+    drift_ms: float | None = None,
+    beat_ms: float = 0.0,
+    reason: str | None = None,
+) -> Sync:
+    """A sync of what was measured, rounded as it is told, with its kind."""
+    if bias_ms is None:
+        return Sync(None, 0.0, None, False, "unsure", reason)
+    bias, sure = round(bias_ms, 1) + 0.0, math.floor(confidence * 100) / 100
+    near = {"null": abs(bias - NULL), "itg": abs(bias - ITG)}
+    kind = min(near, key=lambda name: near[name])
+    kind = "unsure" if sure < SURE_SYNC else kind if near[kind] <= SYNC_TOLERANCE else "other"
+    drift = None if drift_ms is None else round(drift_ms, 1) + 0.0
+    return Sync(bias, sure, drift, abs(bias_ms) > beat_ms / 4, kind, reason)

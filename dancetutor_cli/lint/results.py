@@ -19,6 +19,7 @@ from dancetutor_cli.lint.findings import (
     Figures,
     Finding,
     ScoreEstimate,
+    Sync,
 )
 
 # What `analyze` knows about a file after the work is done: plain data that pickles and turns into JSON.
@@ -36,6 +37,7 @@ class ChartResult:
     ambiguous : beat of each row with ties, and "resolved" or "open", see `feet.play.Ambiguity`; None likewise
     player : of a chart for several whose part this is, from 1, else 0
     hash : by which leaderboards know the chart, see `chart.hash`; None where none does
+    sync : of a chart with timing or music of its own, where somebody asked for it; else None
     estimate : how hard it plays; None for a pad without a model of meters
     score : how hard it is to score on; None for a pad on which nobody has rated charts
     preset : name of the cost preset, None without a pad; mismatch : a line if it was made for other pads, else None
@@ -63,6 +65,7 @@ class ChartResult:
     player: int = 0
     hash: str | None = None
     score: ScoreEstimate | None = None
+    sync: Sync | None = None
 
     @property
     def label(self) -> str:
@@ -77,7 +80,7 @@ class ChartResult:
 
 @dataclass(frozen=True, slots=True)
 class FileResult:
-    """One file: either an error in one line, or its charts."""
+    """One file: either an error in one line, or its charts. sync : None where nobody asked for it"""
 
     path: str
     title: str
@@ -87,6 +90,7 @@ class FileResult:
     findings: tuple[Finding, ...]  # about the file, not about one chart
     charts: tuple[ChartResult, ...]
     unselected: tuple[str, ...] = ()  # labels of the charts that were not asked for
+    sync: Sync | None = None
 
     def at_least(self, severity: str) -> FileResult:
         """The same without findings of less severity, and without charts of which nothing is left to tell."""
@@ -111,9 +115,11 @@ def _at_least(findings: tuple[Finding, ...], severity: str) -> tuple[Finding, ..
 # Nothing of what is read can run: of JSON come numbers and texts, and what is made of them are this module's own
 # classes. Values stand in lists, in the order of the fields, for there are thousands of findings in a pack.
 
-_HEAD = b"dancetutor result 4\n"  # another number whenever the form below changes
+_HEAD = b"dancetutor result 5\n"  # another number whenever the form below changes
 _DIGEST = 32  # bytes of SHA-256
-_CLASSES = (FileResult, ChartResult, Finding, Figures, AlternativeResult, DifferentRun, Cause, Estimate, ScoreEstimate)
+_CLASSES = (
+    FileResult, ChartResult, Finding, Figures, AlternativeResult, DifferentRun, Cause, Estimate, ScoreEstimate, Sync,
+)  # fmt: skip
 _VALUES = {kind: attrgetter(*(field.name for field in fields(kind))) for kind in _CLASSES}
 _CHART_FIELDS = tuple(field.name for field in fields(ChartResult))
 _EXCERPT = [field.name for field in fields(Finding)].index("excerpt")
@@ -142,9 +148,17 @@ def _digest(data: bytes, key: str) -> bytes:
 
 
 def _file(values: list[Any]) -> FileResult:
-    path, title, artist, error, warnings, findings, charts, unselected = values
+    path, title, artist, error, warnings, findings, charts, unselected, sync = values
     return FileResult(
-        path, title, artist, error, tuple(warnings), _findings(findings), tuple(map(_chart, charts)), tuple(unselected)
+        path,
+        title,
+        artist,
+        error,
+        tuple(warnings),
+        _findings(findings),
+        tuple(map(_chart, charts)),
+        tuple(unselected),
+        _sync(sync),
     )
 
 
@@ -172,7 +186,12 @@ def _chart(values: list[Any]) -> ChartResult:
     if given["score"] is not None:
         meter, low, high, terms = given["score"]
         given["score"] = ScoreEstimate(meter, low, high, tuple(map(tuple, terms)))
+    given["sync"] = _sync(given["sync"])
     return ChartResult(**given)
+
+
+def _sync(values: list[Any] | None) -> Sync | None:
+    return None if values is None else Sync(*values)
 
 
 def _alternative(values: list[Any]) -> AlternativeResult:

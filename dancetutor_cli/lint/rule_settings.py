@@ -47,12 +47,14 @@ class Settings:
     stream_rows : a measure with at least so many rows counts as stream
     sure_feet : a finding about feet that are less sure than this, per cent, is an info
     coin_toss : it is an ambiguity where other feet cost at most so much more
+    sync : whether the music is heard, for the rules about it
     """
 
     layers: tuple[Layer, ...] = ()
     stream_rows: int = 16
     sure_feet: float = 85
     coin_toss: int = 5
+    sync: bool = False
     _resolved: dict[tuple[int, ...], dict[str, Options]] = field(default_factory=dict, compare=False, repr=False)
     _holding: dict[tuple[str, str, int], tuple[int, ...]] = field(default_factory=dict, compare=False, repr=False)
 
@@ -65,7 +67,7 @@ class Settings:
         layers = [
             (x.when, x.select and sorted(x.select), sorted(x.ignore), x.rules, sorted(x.named)) for x in self.layers
         ]
-        return repr((self.stream_rows, self.sure_feet, self.coin_toss, layers))
+        return repr((self.stream_rows, self.sure_feet, self.coin_toss, self.sync, layers))
 
     def for_file(self, path: Path) -> dict[str, Options]:
         """Code -> severity and options of the rules that run on a file as a whole."""

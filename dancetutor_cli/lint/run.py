@@ -38,6 +38,7 @@ class LintRequest:
     """What the command line asks for; None where it says nothing and the configuration decides.
 
     config : file or name of a configuration; assignments : "key=value"; select, ignore : rules
+    sync : whether the music is heard, whatever the configuration says
     """
 
     selection: Selection = field(default_factory=Selection)
@@ -56,6 +57,7 @@ class LintRequest:
     alternatives: int = 0
     meter_scale: str = AUTO
     rate: float = 1.0
+    sync: bool = False
 
 
 @dataclass
@@ -76,6 +78,8 @@ class LintRun:
         if source not in self._by_source:
             loaded = load_configuration(given if given is not None else source, found=given is None)
             loaded = with_assignments(loaded, self.request.assignments)
+            if self.request.sync:
+                loaded = replace(loaded, settings=replace(loaded.settings, sync=True))
             self._by_source[source] = with_selection(loaded, self.request.select, self.request.ignore)
         return self._by_source[source]
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
+from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.overrides import FeetProblem, Ignores, Overrides
 from dancetutor_cli.feet.pads import Pad
@@ -23,10 +24,13 @@ from dancetutor_cli.lint.candidates import Candidates
 from dancetutor_cli.lint.foot_questions import Feet
 from dancetutor_cli.lint.note_questions import Notes, PlacedChart
 from dancetutor_cli.lint.other_foot import Beginnings
+from dancetutor_cli.run.errors import FileError
 
 if TYPE_CHECKING:
+    from dancetutor_cli.chart.audio import AudioHead
     from dancetutor_cli.lint.meter.estimate import MeteredChart
     from dancetutor_cli.lint.meter.oddities import Oddities
+    from dancetutor_cli.lint.song_sync import SongSync
 
 
 # Charts that are looked at together, so that what rules ask of one is answered for all of them at once.
@@ -59,9 +63,26 @@ _LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
 
 @dataclass(frozen=True)
 class FileSubject:
-    """One readable chart file."""
+    """One readable chart file. sync : its music against its charts, None where nobody asked for it"""
 
     song: Song
+    sync: SongSync | None = None
+
+    @cached_property
+    def music(self) -> AudioHead | None:
+        """What the head of the song's music says; None where it is missing or damaged, which has rules of its own."""
+        from dancetutor_cli.chart.audio import read_head
+        from dancetutor_cli.chart.music import music_file
+
+        try:
+            return read_head(music_file(self.song))
+        except FileError:
+            return None
+
+    @cached_property
+    def danced(self) -> tuple[Chart, ...]:
+        """The charts that have notes and are no lights."""
+        return tuple(one for one in self.song.charts if len(one.notes) and not is_lights(one.steps_type))
 
     @property
     def is_warned_of(self) -> bool:

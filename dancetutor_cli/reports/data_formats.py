@@ -10,7 +10,7 @@ from dataclasses import asdict
 from typing import IO, Any
 
 import dancetutor_cli
-from dancetutor_cli.lint.findings import TECH_COUNTS, Cause, Estimate, Finding, ScoreEstimate
+from dancetutor_cli.lint.findings import TECH_COUNTS, Cause, Estimate, Finding, ScoreEstimate, Sync
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.reports.code_formats import entries, relative
 from dancetutor_cli.reports.formats import Tally
@@ -62,7 +62,8 @@ class JsonReport:
 def file_texts(result: FileResult) -> Iterator[str]:
     """One entry of `files`, in pieces, for it may be long; findings about the file itself follow its charts."""
     head = _members({"path": result.path, "error": result.error, "warnings": list(result.warnings)})
-    tail = _members({"findings": [finding_object(finding) for finding in result.findings]})
+    sync = {} if result.sync is None else {"sync": sync_object(result.sync)}
+    tail = _members({**sync, "findings": [finding_object(finding) for finding in result.findings]})
     yield f'{{{head}, "charts": ['
     for number, chart in enumerate(result.charts):
         yield from _chart_texts(chart, ", " if number else "")
@@ -84,6 +85,7 @@ def _chart_texts(chart: ChartResult, before: str) -> Iterator[str]:
         "findings": [finding_object(finding) for finding in chart.findings],
         "preset": chart.preset,
         "hash": chart.hash,
+        **({} if chart.sync is None else {"sync": sync_object(chart.sync)}),
         "doublesteps": [_cause_object(cause) for cause in chart.causes or ()],
         "ambiguous": [{"beat": beat, "kind": kind} for beat, kind in chart.ambiguous or ()],
         "plays_like": None if chart.estimate is None else _estimate_object(chart.estimate),
@@ -126,6 +128,18 @@ def _score_object(score: ScoreEstimate) -> dict[str, Any]:
         "low": round(score.low, 3),
         "high": round(score.high, 3),
         "terms": {name: round(levels, 3) for name, levels in score.terms},
+    }
+
+
+def sync_object(sync: Sync) -> dict[str, Any]:
+    """How the music lies under the beats; `reason` only where that could not be judged."""
+    return {
+        "bias_ms": sync.bias_ms,
+        "confidence": sync.confidence,
+        "drift_ms": sync.drift_ms,
+        "beat_off": sync.beat_off,
+        "kind": sync.kind,
+        **({} if sync.reason is None else {"reason": sync.reason}),
     }
 
 

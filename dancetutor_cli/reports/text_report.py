@@ -184,6 +184,8 @@ class TextReport(LineReport):
     def _file(self, result: FileResult) -> None:
         name = " - ".join(safe(text) for text in (result.artist, result.title) if safe(text))
         self._line(self._paint(safe_path(result.path), "bold"), f"  {name}" if name else "")
+        if result.sync is not None:
+            self._line(f"  sync: {safe(result.sync.description)}")
         for warning in result.warnings if not (result.charts or result.unselected) else ():
             self._line(f"  {safe(warning)}")
         for finding in result.findings:

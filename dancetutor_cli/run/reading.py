@@ -7,10 +7,11 @@ import json
 import os
 import stat
 from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache, lru_cache
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from dancetutor_cli.run.errors import FileError, MissingFileError, UnavailableError, UsageError, did_you_mean
 
@@ -41,6 +42,28 @@ def read_bytes(path: Path, limit: int) -> bytes:
     Raises MissingFileError if there is none, FileError for a pipe, a device, a folder, a circle of links, too many
     bytes, or what the system says.
     """
+    with _opened(path) as (file, size):
+        data = b""
+        if size <= limit:
+            data = file.read(size + 1)  # not more: a buffer of the whole limit would be made for it
+            if len(data) > size:
+                data += file.read(limit + 1 - len(data))
+        if max(size, len(data)) > limit:  # it has grown, or has no size, as files of /proc
+            raise FileError(path, f"is larger than {limit / MEGABYTE:.3g} MB; it is not read")
+        return data
+
+
+def read_ends(path: Path, first: int, last: int) -> tuple[bytes, bytes, int]:
+    """At most so many bytes of the start and of the end of a regular file, and its size; errors as `read_bytes`."""
+    with _opened(path) as (file, size):
+        head = file.read(first)
+        file.seek(max(size - last, 0))
+        return head, file.read(last), size
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[tuple[BinaryIO, int]]:
+    """A regular file, open, with its size; what goes wrong in the block is told as `read_bytes` does."""
     try:
         descriptor = os.open(path, _FLAGS)
     except FileNotFoundError:
@@ -55,15 +78,8 @@ def read_bytes(path: Path, limit: int) -> bytes:
         for is_kind, what in _KINDS:
             if is_kind(status.st_mode):
                 raise FileError(path, what)
-        data = b""
-        if status.st_size <= limit:
-            with open(descriptor, "rb", closefd=False) as file:
-                data = file.read(status.st_size + 1)  # not more: a buffer of the whole limit would be made for it
-                if len(data) > status.st_size:
-                    data += file.read(limit + 1 - len(data))
-        if max(status.st_size, len(data)) > limit:  # it has grown, or has no size, as files of /proc
-            raise FileError(path, f"is larger than {limit / MEGABYTE:.3g} MB; it is not read")
-        return data
+        with open(descriptor, "rb", closefd=False) as file:
+            yield file, status.st_size
     except (OSError, MemoryError) as error:
         raise FileError(path, f"cannot be read: {getattr(error, 'strerror', None) or 'out of memory'}") from None
     finally:

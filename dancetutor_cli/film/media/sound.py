@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.chart.audio import MUSIC_ONLY
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.film.clock import Clock, Pass, Practice
 from dancetutor_cli.run import ffmpeg
@@ -17,8 +18,6 @@ from dancetutor_cli.run import ffmpeg
 # The film's sound: the song's music cut to the clock, slowed without changing pitch, with clicks where wanted.
 
 RATE = 48000
-# What a song's music may be, whatever its name: a playlist in disguise would make ffmpeg open other files.
-_MUSIC_ONLY = ("-format_whitelist", "ogg,mp3,wav,w64,flac,aiff")
 FADE = 0.02  # seconds; against clicks where the music is cut
 # Onsets come out of rubberband early by this many seconds times (1 / rate - 1): measured with clicks, rates 0.4 to 2.
 STRETCH_LEAD = 0.0155
@@ -57,7 +56,7 @@ def decode(music: Path, start: float, end: float) -> Samples:
     if end <= 0:
         return out
     cut = f"aresample={RATE}:async=0,atrim=start={max(0.0, start):.9f}:end={end:.9f}"
-    arguments = (*ffmpeg.INPUT_GUARD, *_MUSIC_ONLY, "-i", ffmpeg.local(music), "-vn", "-sn", "-dn", "-map", "0:a:0")
+    arguments = (*ffmpeg.INPUT_GUARD, *MUSIC_ONLY, "-i", ffmpeg.local(music), "-vn", "-sn", "-dn", "-map", "0:a:0")
     raw = ("-af", cut, "-ac", "2", "-f", "f32le", "-c:a", "pcm_f32le", "pipe:1")
     with ffmpeg.Process((*arguments, *raw), f"reading {music.name}", read=True) as process:
         data = process.read()
@@ -72,7 +71,7 @@ def decode(music: Path, start: float, end: float) -> Samples:
 def seconds_of(music: Path) -> float:
     """How long a music file plays; EncoderError if it is no music."""
     rate = 1000
-    arguments = (*ffmpeg.INPUT_GUARD, *_MUSIC_ONLY, "-i", ffmpeg.local(music), "-vn", "-sn", "-dn", "-map", "0:a:0")
+    arguments = (*ffmpeg.INPUT_GUARD, *MUSIC_ONLY, "-i", ffmpeg.local(music), "-vn", "-sn", "-dn", "-map", "0:a:0")
     raw = ("-ac", "1", "-ar", str(rate), "-f", "u8", "-c:a", "pcm_u8", "pipe:1")
     with ffmpeg.Process((*arguments, *raw), f"reading {music.name}", read=True) as process:
         data = process.read()

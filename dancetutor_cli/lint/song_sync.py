@@ -1,0 +1,99 @@
+"""The sync of a file: charts of one timing and music are judged together, each music is heard once."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+from dancetutor_cli.chart.audio import AudioHead, Sound, decode, read_head
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.chart.music import music_file
+from dancetutor_cli.chart.names import is_lights
+from dancetutor_cli.chart.timing import Timing
+from dancetutor_cli.lint.findings import Sync, sync_of
+from dancetutor_cli.lint.onsets import Onsets, onsets
+from dancetutor_cli.lint.sync import Judgement, judge
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.ffmpeg import EncoderError
+
+_MOST_GROUPS = 4  # timings of one file that are judged: each takes a tenth of a second
+_KEPT = 2  # a song's .sm and .ssc follow each other
+
+
+class Heard(NamedTuple):
+    """What is kept of music that was decoded. silence : seconds before anything is heard; clipped : see `Sound`"""
+
+    onsets: Onsets
+    silence: float
+    clipped: float
+
+
+@dataclass(frozen=True, slots=True)
+class SongSync:
+    """The sync of a file.
+
+    sync : of the charts that use the song's own timing and music, or of most if none does; `judgement` : drawable
+    of_charts : by index, of charts with timing or music of their own
+    heard : the song's music, None where it cannot be decoded
+    """
+
+    sync: Sync
+    judgement: Judgement | None = None
+    of_charts: Mapping[int, Sync] = field(default_factory=dict)
+    heard: Heard | None = None
+
+
+def song_sync(song: Song) -> SongSync:
+    """Judge all charts of a file that are danced. UnavailableError where there is no ffmpeg at all."""
+    charts = [chart for chart in song.charts if not is_lights(chart.steps_type) and len(chart.notes)]
+    groups: dict[tuple[Timing, str], list[Chart]] = {}
+    for chart in charts:
+        groups.setdefault((chart.timing, chart.tags.get("MUSIC", "")), []).append(chart)
+    if not groups:
+        return SongSync(sync_of(None, 0.0, reason="it has no notes"))
+    ranked = sorted(groups, key=lambda key: (key != (song.timing, ""), -len(groups[key])))
+    main, *others = ranked[:_MOST_GROUPS]
+    found = _judged(song, groups[main])
+    of_charts = {chart.index: _judged(song, groups[key]).sync for key in others for chart in groups[key][:1]}
+    for key in others:
+        of_charts.update({chart.index: of_charts[groups[key][0].index] for chart in groups[key]})
+    return SongSync(found.sync, found.judgement, of_charts, found.heard)
+
+
+def _judged(song: Song, charts: Sequence[Chart]) -> SongSync:
+    """The sync of charts with one timing and one music."""
+    try:
+        heard = hear(music_file(song, charts[0]))
+    except FileError as error:
+        return SongSync(sync_of(None, 0.0, reason=f"its music cannot be heard: {error.message}"))
+    except EncoderError as error:
+        return SongSync(sync_of(None, 0.0, reason=f"its music cannot be decoded: {error}"))
+    found = judge(charts[0].timing, charts, heard.onsets)
+    if isinstance(found, Sync):
+        return SongSync(found, heard=heard)
+    return SongSync(found.sync, found, heard=heard)
+
+
+# Music that was heard last, by its file as it is now.
+_heard: OrderedDict[tuple[Path, int, int], Heard] = OrderedDict()
+
+
+def hear(music: Path) -> Heard:
+    """Onsets, silence and clipping of a music file; FileError or EncoderError where it cannot be decoded."""
+    try:
+        status = music.stat()
+    except OSError as error:
+        raise FileError(music, f"cannot be read: {error.strerror}") from None
+    key = music, status.st_size, status.st_mtime_ns
+    if key not in _heard:
+        head: AudioHead = read_head(music)
+        sound: Sound = decode(music, head)
+        if len(sound.samples) < sound.rate:
+            raise FileError(music, "holds less than a second of music")
+        _heard[key] = Heard(onsets(sound), sound.silence, sound.clipped)
+        while len(_heard) > _KEPT:
+            _heard.popitem(last=False)
+    return _heard[key]

@@ -1,0 +1,255 @@
+"""Beats against the audio: by how much the music's attacks come after a chart's beats, and how sure that is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
+from dancetutor_cli.chart.timing import Timing
+from dancetutor_cli.lint.findings import Sync, sync_of
+from dancetutor_cli.lint.onsets import Onsets
+
+# What is known of the method, and measured figures: docs/sync.md. All times are seconds unless said otherwise.
+
+BLOCKS = 32  # parts of the song, of equal time
+_LAG = 0.001  # between two biases that are tried
+_MARGIN = 0.1  # beyond half a beat on either side, so that half a beat off is seen whole
+_NEAR = 0.02  # a peak so far from another one is a rival of it
+_WITHIN = 0.025  # of the peak, those of parts of the song are looked for
+_USUAL = 0.07  # authors hardly ever miss by more: what is further off has to be better by
+_UNUSUAL = 0.2  # of the best
+_ODD = 0.7  # the most confidence in a bias that is neither usual nor such with half a beat: other music of that tempo
+_SLOPES = np.arange(-90, 91, 3) / 1000  # drifts over the whole song that are tried
+_BETTER = 1.03  # a drift has to be better than none by this
+_SHORTEST, _LONGEST = 0.3, 1.2  # of the beat, or of several, or of a part of one, in which biases are tried
+_LEAST_ROWS, _LEAST_SECONDS = 24, 8.0
+_MOST_ROWS = 12_000  # of rows and sixteenths together
+_FASTEST = 1000  # BPM
+_PARTS = 8
+_NEIGHBOURS = 64  # rows whose mean is what loudness and density of notes are measured by
+_SMOOTH = 0.002  # standard deviation of the bell that profiles are smoothed by
+# What counts nothing and what counts all for the confidence; the least of these decides.
+_RAMPS = {"margin": (0.0, 0.3), "height": (3.0, 8.0), "spread": (-0.006, -0.0015), "peak": (0.05, 0.25),
+          "parts": (0.0, 0.4)}  # fmt: skip
+
+Curve = NDArray[np.float32]
+Seconds = NDArray[np.float64]
+
+
+class Judgement(NamedTuple):
+    """A sync with what can be drawn of it.
+
+    lags : float64 (l,), biases that were tried; profile : float32 (BLOCKS, l), how well each part of the song fits them
+    first, last : second of the music of the first and the last note; biases : float64 (BLOCKS,), nan where nothing is
+    """
+
+    sync: Sync
+    lags: Seconds
+    profile: Curve
+    biases: Seconds
+    first: float
+    last: float
+
+
+class _Rows(NamedTuple):
+    """Rows that are looked at: all with notes, and all sixteenths between the first and the last of them.
+
+    second : float64 (r,), of each; weight : float32 (r,), how many charts have a note there, jumps for one and a half
+    beat, longest : seconds of the usual beat, and of those that nine of ten do not exceed
+    """
+
+    second: Seconds
+    weight: Curve
+    beat: float
+    longest: float
+
+
+def judge(timing: Timing, charts: Sequence[Chart], onsets: Onsets) -> Judgement | Sync:
+    """The sync of charts with one timing against their music; a `Sync` alone where it cannot be judged.
+
+    The strength of onsets is cut around every row with notes and every sixteenth, and each cut is divided by the
+    loudness around it. Cuts at notes count for the bias that they show, those without against it (C); together with
+    the plain mean at the notes (N) that tells rhythm from off-beats. A drift over the song is a slope, by phase.
+    """
+    reason = _reason(timing, charts)
+    if reason is None:
+        rows = _rows(timing, charts)
+        reason = _reason_of_rows(rows, onsets)
+    if reason is not None:
+        return sync_of(None, 0.0, reason=reason)
+    cycle = _cycle(rows.longest)
+    count = round((cycle + 2 * _MARGIN) / _LAG)
+    lags: Seconds = (np.arange(count, dtype=np.float64) - count // 2) * np.float64(_LAG)
+    contrast, mean = _profiles(rows, onsets, lags)
+    return _judgement(rows, lags, cycle, contrast, mean)
+
+
+def _reason(timing: Timing, charts: Sequence[Chart]) -> str | None:
+    """Why charts with this timing cannot be judged."""
+    if timing.warps:
+        return "it has warps or negative stops"
+    ticks = [int(chart.notes.tick[n]) for chart in charts for n in (0, -1) if len(chart.notes)]
+    if not ticks:
+        return "it has no notes"
+    if any(bpm > _FASTEST for tick, bpm in timing.bpms if tick <= max(ticks)):
+        return f"it has BPMs over {_FASTEST}"
+    return None
+
+
+def _rows(timing: Timing, charts: Sequence[Chart]) -> _Rows:
+    weights: dict[int, float] = {}
+    for chart in charts:
+        notes = chart.notes
+        steps = notes.judged & np.isin(notes.kind, (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT))
+        for tick, many in zip(*np.unique(notes.tick[steps], return_counts=True), strict=True):
+            weights[int(tick)] = weights.get(int(tick), 0.0) + (1.5 if many > 1 else 1.0)
+    noted = np.array(sorted(weights), dtype=np.int64)
+    if len(noted) < _LEAST_ROWS:
+        return _Rows(np.zeros(len(noted)), np.ones(len(noted), np.float32), 0.5, 0.5)
+    first, last = int(noted[0]), int(noted[-1])
+    sixteenth = TICKS_PER_BEAT // 4
+    between = np.arange(-(-first // sixteenth), last // sixteenth + 1)[:_MOST_ROWS] * sixteenth
+    ticks = np.union1d(noted, between)[:_MOST_ROWS]
+    weight = np.array([weights.get(tick, 0.0) for tick in ticks.tolist()], np.float32)
+    beats = timing.seconds_of_beats(
+        np.arange(-(-first // TICKS_PER_BEAT), last // TICKS_PER_BEAT + 1, dtype=np.float64)
+    )
+    usual, longest = np.quantile(np.diff(beats), (0.5, 0.9)) if len(beats) > 1 else (0.5, 0.5)
+    return _Rows(timing.seconds(ticks), weight, float(usual), float(longest))
+
+
+def _reason_of_rows(rows: _Rows, onsets: Onsets) -> str | None:
+    if len(rows.second) < _LEAST_ROWS or rows.second[-1] - rows.second[0] < _LEAST_SECONDS:
+        return "it has too few notes"
+    inside = (rows.second > onsets.start) & (rows.second < onsets.start + onsets.seconds)
+    return None if inside.mean() > 0.5 else "most of its notes lie outside the music"
+
+
+def _cycle(beat: float) -> float:
+    """As many beats, or such a part of one, as last long enough to tell biases apart."""
+    while beat < _SHORTEST:
+        beat *= 2
+    while beat > _LONGEST:
+        beat /= 2
+    return beat
+
+
+def _profiles(rows: _Rows, onsets: Onsets, lags: Seconds) -> tuple[Curve, Curve]:
+    """C and N of each block of the song; float32 (BLOCKS, lags)."""
+    cuts = np.empty((len(rows.second), len(lags)), np.float32)
+    for first in range(0, len(cuts), 1024):
+        cuts[first : first + 1024] = onsets.at(rows.second[first : first + 1024, None] + lags)
+    loudness = cuts.mean(axis=1)
+    cuts /= (_around(loudness) + 0.1 * loudness.mean() + 1e-9)[:, None]
+    contrast = rows.weight - _around(rows.weight)
+    place = (rows.second - rows.second[0]) / (rows.second[-1] - rows.second[0]) * BLOCKS
+    member = np.clip(place.astype(np.int64), 0, BLOCKS - 1) == np.arange(BLOCKS)[:, None]
+    return (
+        _smooth((member * contrast).astype(np.float32) @ cuts / (np.abs(contrast).sum() + 1e-9)),
+        _smooth((member * rows.weight).astype(np.float32) @ cuts / rows.weight.sum()),
+    )
+
+
+def _around(values: Curve) -> Curve:
+    """The mean of each value's neighbours."""
+    half = _NEIGHBOURS // 2
+    padded = np.pad(values, half, mode="edge").astype(np.float64).cumsum()
+    out: Curve = ((padded[2 * half :] - np.append(0.0, padded)[: len(values)]) / (2 * half + 1)).astype(np.float32)
+    return out
+
+
+def _smooth(profiles: Curve) -> Curve:
+    reach = round(3 * _SMOOTH / _LAG)
+    bell = np.exp(-0.5 * (np.arange(-reach, reach + 1) * _LAG / _SMOOTH) ** 2)
+    bell /= bell.sum()
+    padded = np.pad(profiles, ((0, 0), (reach, reach)), mode="edge")
+    out: Curve = np.array([np.convolve(row, bell, "valid") for row in padded], np.float32)
+    return out
+
+
+def _judgement(rows: _Rows, lags: Seconds, cycle: float, contrast: Curve, mean: Curve) -> Judgement:
+    """The best bias and drift, its best rival, and how well the parts of the song agree."""
+    mean = mean - mean.mean(axis=1, keepdims=True)
+    allowed = np.abs(lags) <= cycle / 2 + 0.03
+    slope = _best_slope(contrast + 0.5 * mean, allowed)
+    contrast, mean = _straightened(contrast, slope), _straightened(mean, slope)
+    whole = np.where(allowed, contrast.sum(axis=0), -np.inf)
+    is_unusual = np.abs(lags) > _USUAL
+    worth = whole - _UNUSUAL * whole.max() * is_unusual
+    best = int(worth.argmax())
+    is_odd = is_unusual[best] and abs(abs(float(lags[best])) - rows.beat / 2) > _USUAL
+    distance = np.abs(lags - lags[best])
+    near = np.flatnonzero(distance <= _WITHIN)
+    fine = mean + 2 * contrast
+    thirds = np.arange(BLOCKS) * 3 // BLOCKS
+    first, last = (_peak(lags, fine[thirds == third].sum(axis=0), near) for third in (0, 2))
+    # Middles of the first and the last third lie so far apart that they show this part of the slope.
+    drift = last - first + slope * 2 / 3
+    confidence = _confidence(lags, contrast + 0.5 * mean, fine, whole, worth, best, near)
+    if is_odd:
+        confidence = min(confidence, _ODD)
+    sync = sync_of(_peak(lags, fine.sum(axis=0), near) * 1000, confidence, drift * 1000, rows.beat * 1000)
+    level = fine.max(axis=1)
+    biases = np.array([_peak(lags, row, near) for row in fine]) + slope * _middles()
+    biases[level < 0.1 * np.median(level[level > 0]) if (level > 0).any() else level <= 0] = np.nan
+    return Judgement(sync, lags, _straightened(fine, -slope), biases, float(rows.second[0]), float(rows.second[-1]))
+
+
+def _middles() -> Seconds:
+    """Where the blocks' middles lie in the song, from -0.5 to 0.5."""
+    return (np.arange(BLOCKS) + 0.5) / BLOCKS - 0.5
+
+
+def _best_slope(profiles: Curve, allowed: NDArray[np.bool_]) -> float:
+    """The drift with which the parts of the song fit each other best; 0 where it is hardly better than none."""
+    count = profiles.shape[1]
+    spectrum, turns = np.fft.rfft(profiles, axis=1), np.fft.rfftfreq(count, _LAG)
+    sums = [(spectrum * np.exp(2j * np.pi * np.outer(slope * _middles(), turns))).sum(axis=0) for slope in _SLOPES]
+    heights = np.fft.irfft(np.array(sums), count, axis=1)[:, allowed].max(axis=1)
+    best, none = int(heights.argmax()), len(_SLOPES) // 2
+    return float(_SLOPES[best]) if heights[best] > _BETTER * heights[none] else 0.0
+
+
+def _straightened(profiles: Curve, slope: float) -> Curve:
+    """Profiles of blocks moved back by a drift of so many seconds over the song."""
+    if slope == 0.0:
+        return profiles
+    count = profiles.shape[1]
+    turn = np.exp(2j * np.pi * np.fft.rfftfreq(count, _LAG)[None, :] * (slope * _middles())[:, None])
+    out: Curve = np.fft.irfft(np.fft.rfft(profiles, axis=1) * turn, count, axis=1).astype(np.float32)
+    return out
+
+
+def _peak(lags: Seconds, values: Curve, near: NDArray[np.int64]) -> float:
+    """Where values are highest of some lags, by the parabola through the highest and its neighbours."""
+    at = int(near[values[near].argmax()])
+    if not 0 < at < len(values) - 1:
+        return float(lags[at])
+    before, here, after = (float(values[n]) for n in (at - 1, at, at + 1))
+    bend = before - 2 * here + after
+    return float(lags[at]) + (_LAG * 0.5 * (before - after) / bend if bend < 0 else 0.0)
+
+
+def _confidence(
+    lags: Seconds, rhythm: Curve, fine: Curve, whole: Seconds, worth: Seconds, best: int, near: NDArray[np.int64]
+) -> float:
+    """The least of five: what is left to the best rival, how far the peak stands out, its height, how far parts of the
+    song spread, and how many of them have it for their own best."""
+    far = np.abs(lags - lags[best]) > _NEAR
+    inside = whole[np.isfinite(whole)]
+    deviation = float(np.median(np.abs(inside - np.median(inside)))) * 1.4826 + 1e-9
+    parts = fine.reshape(_PARTS, -1, len(lags)).sum(axis=1)
+    peaks = lags[near[parts[:, near].argmax(axis=1)]]
+    own = np.where(np.isfinite(whole), rhythm.reshape(_PARTS, -1, len(lags)).sum(axis=1), -np.inf).argmax(axis=1)
+    measured = {
+        "margin": float(worth[best] - worth[far].max()) / (float(whole.max()) + 1e-9),
+        "height": float(whole[best] - np.median(inside)) / deviation,
+        "spread": -float(np.median(np.abs(peaks - np.median(peaks)))) * 1.4826,
+        "peak": float(whole[best]),
+        "parts": float((np.abs(lags[own] - lags[best]) < _NEAR).mean()),
+    }
+    return min(float(np.clip((measured[name] - low) / (high - low), 0, 1)) for name, (low, high) in _RAMPS.items())

@@ -1,0 +1,89 @@
+"""`analyze --sync --plot FILE.svg`: by how much the music's attacks come after the beats, over the song."""
+
+from __future__ import annotations
+
+import base64
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.lint.findings import ITG, NULL
+from dancetutor_cli.lint.sync import Judgement
+from dancetutor_cli.reports.sheet_places import number, tag, text
+from dancetutor_cli.reports.text_report import clock
+from dancetutor_cli.run.pictures import texture_bytes
+
+_WIDTH, _HEIGHT = 900, 420
+_LEFT, _RIGHT, _TOP, _BOTTOM = 64, 16, 56, 48
+_REACH = 40.0  # ms above and below the bias
+_STEP = 10  # ms between lines
+_DARK, _LIGHT = np.array([24, 48, 104]), np.array([255, 255, 255])  # where much and where nothing sounds
+_INK, _GREY, _LINE, _BIAS = "#1d2430", "#6b7484", "#c9ced8", "#d9480f"
+
+
+def sync_plot(name: str, found: Judgement) -> str:
+    """The picture as SVG: how well each part of the song fits each bias, dots at each part's best, and the whole's."""
+    bias = found.sync.bias_ms or 0.0
+    low, high = bias - _REACH, bias + _REACH
+    parts = [
+        tag("style", f".name{{font-size:16px;font-weight:600}}.note{{fill:{_GREY}}}text{{font-size:12px;fill:{_INK}}}"),
+        tag("rect", width=_WIDTH, height=_HEIGHT, fill="#fff"),
+        text(name, _LEFT, 24, "name"),
+        text(found.sync.description, _LEFT, 43, "note"),
+        _heat(found, low, high),
+        *_grid(found, low, high),
+        *_dots(found, low, high),
+        tag("line", x1=_LEFT, x2=_WIDTH - _RIGHT, y1=_y(bias, low, high), y2=_y(bias, low, high), stroke=_BIAS),
+    ]
+    size = f'viewBox="0 0 {_WIDTH} {_HEIGHT}" width="{_WIDTH}" height="{_HEIGHT}" font-family="sans-serif"'
+    return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>\n' + "\n".join(parts) + "\n</svg>\n"
+
+
+def _y(milliseconds: float, low: float, high: float) -> str:
+    return number(_TOP + (_HEIGHT - _TOP - _BOTTOM) * (high - milliseconds) / (high - low))
+
+
+def _x(share: float) -> str:
+    return number(_LEFT + (_WIDTH - _LEFT - _RIGHT) * share)
+
+
+def _heat(found: Judgement, low: float, high: float) -> str:
+    """The profile of each part, its highest value dark, as one picture."""
+    wanted = np.linspace(high, low, 161) / 1000
+    rows = np.array([np.interp(wanted, found.lags, part, left=0.0, right=0.0) for part in found.profile])
+    strength: NDArray[np.float64] = np.clip(rows / np.maximum(rows.max(axis=1, keepdims=True), 1e-9), 0, 1)
+    pixels = (_LIGHT + (_DARK - _LIGHT) * (strength.T**2)[..., None]).astype(np.uint8)
+    data = base64.b64encode(texture_bytes(pixels)).decode("ascii")
+    place = f'x="{_LEFT}" y="{_TOP}" width="{_WIDTH - _LEFT - _RIGHT}" height="{_HEIGHT - _TOP - _BOTTOM}"'
+    return f'<image {place} preserveAspectRatio="none" opacity="0.75" href="data:image/png;base64,{data}"/>'
+
+
+def _grid(found: Judgement, low: float, high: float) -> list[str]:
+    """Lines of milliseconds, those of null and ITG by name, and the time of the song below."""
+    out = []
+    lines = {float(one): f"{one} ms" for one in range(int(low // _STEP + 1) * _STEP, int(high) + 1, _STEP)}
+    lines.update({one: name for one, name in ((NULL, "null"), (ITG, "ITG")) if low < one < high})
+    for milliseconds, name in lines.items():
+        y = _y(milliseconds, low, high)
+        named = not name.endswith("ms")
+        out.append(
+            tag("line", x1=_LEFT, x2=_WIDTH - _RIGHT, y1=y, y2=y, stroke=_INK if named else _LINE, stroke_width=1)
+        )
+        if named or all(abs(milliseconds - one) > 4 for one in (NULL, ITG)):
+            out.append(text(name, _LEFT - 6, float(y) + 4, "axis", text_anchor="end"))
+    for share in np.linspace(0, 1, 5):
+        second = found.first + share * (found.last - found.first)
+        said = clock(second).rpartition(".")[0]
+        out.append(text(said, float(_x(float(share))), _HEIGHT - 26, "axis", text_anchor="middle"))
+    note = "dark: where attacks sound around the notes of a part; dots: each part's own best; line: the song's"
+    out.append(text(note, _LEFT, _HEIGHT - 8, "note"))
+    return out
+
+
+def _dots(found: Judgement, low: float, high: float) -> list[str]:
+    count = len(found.biases)
+    return [
+        tag("circle", cx=_x((place + 0.5) / count), cy=_y(float(seconds) * 1000, low, high), r=3.5, fill=_BIAS)
+        for place, seconds in enumerate(found.biases)
+        if low < seconds * 1000 < high
+    ]
