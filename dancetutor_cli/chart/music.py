@@ -33,10 +33,7 @@ def music_file(song: Song, chart: Chart | None = None) -> Path:
         raise FileError(
             song.path, f"music '{quote(name)}' is refused: it must be a plain file name in the song's folder"
         )
-    current = folder
-    for part in name.replace("\\", "/").split("/"):
-        if part not in ("", "."):
-            current = _entry(current, part)
+    current = named_file(folder, name)
     if not os.path.isfile(current):  # noqa: PTH113 (Path.is_file may raise)
         raise MissingFileError(song.path, f"music '{quote(name)}' is not there; put it into the song's folder")
     return _inside(song, current, folder)
@@ -48,6 +45,29 @@ def find_music(song: Song, chart: Chart) -> tuple[Path | None, str | None]:
         return music_file(song, chart), None
     except MissingFileError as error:
         return None, str(error)
+
+
+def named_file(folder: Path, name: str) -> Path:
+    """The file that a tag of a song in a folder names, whatever the case of its letters; there or not."""
+    current = folder
+    for part in name.replace("\\", "/").split("/"):
+        if part not in ("", "."):
+            current = _entry(current, part)
+    return current
+
+
+def other_case(folder: Path, name: str) -> str | None:
+    """What a file is called that a tag names with other capitals, each part of its path; None where it is as named."""
+    current, told = folder, []
+    for part in name.replace("\\", "/").split("/"):
+        names = _names(current) if part not in ("", ".", "..") else [part]
+        same = sorted(entry for entry in names if _plain(entry) == _plain(part))
+        if not same:
+            return None
+        told.append(part if part in same else same[0])
+        current = current / told[-1]
+    found = "/".join(told)
+    return None if found == name.replace("\\", "/") else found
 
 
 def _only_audio_file(song: Song, folder: Path) -> Path:

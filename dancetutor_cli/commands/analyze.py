@@ -270,7 +270,7 @@ def _lint(run: LintRun, files: list[Source], options: dict[str, Any], output: IO
     cache = None if folder is None else ResultCache(folder)
     if not options["no_cache"] and not options["quiet"] and (fault := results_folder()[1]):
         click.echo(f"note: {fault}: results are not kept", err=True)
-    for raw in analyze_all(tasks, options["jobs"], cache, _before_work):
+    for raw in run.with_packs(analyze_all(tasks, options["jobs"], cache, _before_work)):
         result = run.without_baseline(raw)
         tally.add(result)
         pack.add(raw)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import math
 import pkgutil
-import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
@@ -16,8 +15,8 @@ from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 
 if TYPE_CHECKING:
-    from dancetutor_cli.chart.model import Song
-    from dancetutor_cli.lint.findings import Estimate
+    from dancetutor_cli.chart.pack_files import PackIni
+    from dancetutor_cli.lint.findings import Estimate, Sync
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject
 
 
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
 
 BY_METER = "by-meter"  # what `max_seconds` says where the table of times is to decide
 EPSILON = 1e-6
-FAMILIES = {1: "file", 2: "feet", 3: "playability", 4: "timing", 5: "pack"}
+FAMILIES = {1: "file", 2: "feet", 3: "playability", 4: "timing", 5: "pack", 6: "sync and music"}
 
 
 class Rule(ABC):
@@ -66,6 +65,46 @@ class FileRule(Rule):
     @abstractmethod
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """Findings in one file."""
+
+
+class SyncRule(FileRule):
+    """A rule about music that was heard (`--sync`, or `sync: true`): about each sync of a file that is sure.
+
+    `tag` : of the file's tags the one that a finding stands at
+    """
+
+    tag: ClassVar[str] = "OFFSET"
+
+    def check(self, subject: FileSubject) -> Iterable[Finding]:
+        """A finding for the file, and one for each chart with timing or music of its own."""
+        heard = subject.sync
+        if heard is None:
+            return
+        if heard.sync.is_sure and (said := self.message(heard.sync, subject)):
+            yield self.finding(said, subject.tag_place(self.tag))
+        for index, sync in heard.of_charts.items():
+            if sync.is_sure and (said := self.message(sync, subject)):
+                chart = subject.song.charts[index]
+                yield self.finding(f"{chart.label}: {said}", subject.place(chart.line), chart=index)
+
+    @abstractmethod
+    def message(self, sync: Sync, subject: FileSubject) -> str | None:
+        """What is wrong with a sync, or None."""
+
+
+class PackSong(NamedTuple):
+    """A song as a `PackRule` sees it. folder : its own, for people; sync : sure"""
+
+    folder: str
+    sync: Sync
+
+
+class PackRule(Rule):
+    """A rule about the songs of a pack together, whose music was heard."""
+
+    @abstractmethod
+    def check_pack(self, songs: Sequence[PackSong], ini: PackIni | None) -> str | None:
+        """What is wrong with the pack, or None."""
 
 
 class ChartRule(Rule):
@@ -236,55 +275,6 @@ class MoveRule(TimedRule):
     def message(self, subject: ChartSubject, row: int) -> str:
         """What to say about this row."""
         return self.description
-
-
-# What rules about pictures share: whether the one that a song names is there and has a usual size.
-
-
-class PictureRule(FileRule):
-    """A rule about the picture that a tag of the song names. `tag` : its name; options `sizes` and `required`"""
-
-    tag: ClassVar[str]
-
-    @classmethod
-    def fault(cls, option: str, value: Any) -> str | None:
-        """Sizes that are none."""
-        return sizes_fault(value) if option == "sizes" else None
-
-    def check(self, subject: FileSubject) -> Iterable[Finding]:
-        """At most one finding."""
-        fault = picture_fault(subject.song, self.tag, self.options["sizes"], required=self.options["required"])
-        if fault:
-            yield self.finding(fault, subject.tag_place(self.tag))
-
-
-def sizes_fault(sizes: Sequence[object]) -> str | None:
-    """What is wrong with a list of sizes, or None."""
-    wrong = [size for size in sizes if not re.fullmatch(r"[1-9]\d*x[1-9]\d*", str(size))]
-    return f"'{wrong[0]}' is no size; write it as 418x164" if wrong else None
-
-
-def picture_fault(song: Song, tag: str, sizes: Sequence[str], *, required: bool) -> str | None:
-    """What is wrong with the picture of a tag, or None. `sizes` as "418x164"; empty: every size is right."""
-    name = song.tags.get(tag, "").strip()
-    if not name:
-        return f"#{tag} is empty" if required else None
-    folder = song.path.resolve().parent
-    path = (folder / name.replace("\\", "/")).resolve()
-    if not path.is_relative_to(folder.parent):
-        return f"#{tag} names a file outside the pack: {name}"
-    if not path.is_file():
-        return f"#{tag} names a file that is not there: {name}"
-    if not sizes:
-        return None
-    from PIL import Image, UnidentifiedImageError
-
-    try:
-        with Image.open(path) as picture:
-            width, height = picture.size
-    except (OSError, UnidentifiedImageError, Image.DecompressionBombError):
-        return f"#{tag} names a file that is no picture: {name}"
-    return None if f"{width}x{height}" in sizes else f"#{tag} is {width}x{height}, not {' or '.join(sizes)}: {name}"
 
 
 # All rules by code and name: the modules under `rules/`.

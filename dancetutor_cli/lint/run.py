@@ -123,6 +123,19 @@ class LintRun:
             request.alternatives, request.want_figures, request.want_excerpts, request.meter_scale, request.rate,
         )  # fmt: skip
 
+    def with_packs(self, results: Iterable[FileResult]) -> Iterator[FileResult]:
+        """The results, and behind them one for each pack whose songs together have findings."""
+        from dancetutor_cli.lint.pack_sync import PackSyncs
+
+        packs = PackSyncs()
+        for result in results:
+            packs.add(result)
+            yield result
+        for folder in packs.folders:
+            settings = self.configuration(folder / "Pack.ini").settings
+            if (found := packs.result(folder, settings)) is not None:
+                yield found
+
     def fail_on(self, path: Path) -> str:
         """The least severity that fails the run, as the configuration of the first file says."""
         return self.request.fail_on or self.configuration(path).fail_on or "warning"

@@ -42,8 +42,8 @@ class Tally:
 
     def add(self, result: FileResult) -> None:
         """Count one file."""
-        is_folder = result.error is not None and Path(result.path).is_dir()
-        self.folders += is_folder
+        is_folder = Path(result.path).is_dir()  # one that gave no file, or a pack with findings
+        self.folders += is_folder and result.error is not None
         self.files += not is_folder
         self.charts += len(result.charts)
         self.unreadable += result.error is not None

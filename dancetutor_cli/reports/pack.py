@@ -98,6 +98,8 @@ class Pack:
     def add(self, result: FileResult) -> None:
         """Take note of a file. What is heavy of it (rows, excerpts) is not kept."""
         path = Path(result.path)
+        if path.is_dir() and result.error is None:  # findings about the pack itself
+            return
         title = safe(result.title) or safe_path(path.stem)
         if result.error is not None:
             self._unreadable.append(result.path)

@@ -1,0 +1,52 @@
+"""What is wrong with the syncs of a pack's songs together: rules that need all of its results."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from dancetutor_cli.chart.pack_files import pack_folder, read_pack_ini
+from dancetutor_cli.lint.findings import Finding, Sync
+from dancetutor_cli.lint.results import FileResult
+from dancetutor_cli.lint.rule import PackRule, PackSong, all_rules
+from dancetutor_cli.lint.rule_settings import Settings
+
+_FEWEST = 2  # songs of a pack
+
+
+class PackSyncs:
+    """Takes results as they come. A song that lies there as .sm and .ssc counts once, as .ssc."""
+
+    def __init__(self) -> None:
+        self._songs: dict[Path, dict[str, tuple[str, Sync]]] = {}
+
+    def add(self, result: FileResult) -> None:
+        """Take note of a file whose music was heard and whose sync is sure."""
+        if result.sync is None or not result.sync.is_sure:
+            return
+        path = Path(result.path)
+        songs = self._songs.setdefault(pack_folder(path.absolute()), {})
+        key = os.fspath(path.absolute().with_suffix(""))
+        if key not in songs or path.suffix.lower() == ".ssc":
+            songs[key] = path.absolute().parent.name, result.sync
+
+    @property
+    def folders(self) -> Iterator[Path]:
+        """The folders of packs, those with songs enough to be one."""
+        return (folder for folder in sorted(self._songs) if len(self._songs[folder]) >= _FEWEST)
+
+    def result(self, folder: Path, settings: Settings) -> FileResult | None:
+        """What is found in the pack of a folder, as a result of that folder; None where nothing is."""
+        songs = [PackSong(*song) for _, song in sorted(self._songs[folder].items())]
+        ini = read_pack_ini(folder)
+        findings: list[Finding] = []
+        for code, options in settings.for_file(folder).items():
+            kind = all_rules()[code]
+            if issubclass(kind, PackRule):
+                rule = kind(options)
+                if said := rule.check_pack(songs, ini):
+                    findings.append(rule.finding(said, {}))
+        if not findings:
+            return None
+        return FileResult(os.path.relpath(folder), folder.name, "", None, (), tuple(findings), ())

@@ -1,0 +1,34 @@
+"""DT601: the music is neither at the beats nor 9 ms after them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.lint.rule import SyncRule
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.findings import Sync
+    from dancetutor_cli.lint.subject import FileSubject
+
+
+class SyncBias(SyncRule):
+    """The music's attacks come neither with the beats (null) nor 9 ms after them (ITG): one hears it as off.
+
+    `tolerance`: ms on either side of both that are no finding. Needs `--sync`. Half a beat off is DT603.
+
+    Bad: #OFFSET:0.025; with music that is at the beats. Better: #OFFSET:0.000;
+    """
+
+    code = "DT601"
+    name = "sync-bias"
+
+    def message(self, sync: Sync, subject: FileSubject) -> str | None:
+        """What to change, to the one and to the other."""
+        from dancetutor_cli.lint.findings import ITG, NULL
+
+        bias = sync.bias_ms
+        if bias is None or sync.beat_off or min(abs(bias - NULL), abs(bias - ITG)) <= self.options["tolerance"]:
+            return None
+        side = "after" if bias > 0 else "before"
+        to = [f"{(one - bias) / 1000:+.3f} for {name}" for one, name in ((NULL, "null"), (ITG, "ITG"))]
+        return f"the music is {abs(bias):.1f} ms {side} the beats; change #OFFSET by {' or '.join(to)}"
