@@ -37,13 +37,14 @@ class SongSync:
 
     sync : of the charts that use the song's own timing and music, or of most if none does; `judgement` : drawable
     of_charts : by index, of charts with timing or music of their own
-    heard : the song's music, None where it cannot be decoded
+    heard : the song's music, None where it cannot be decoded; damage : then why, if a decoder has tried
     """
 
     sync: Sync
     judgement: Judgement | None = None
     of_charts: Mapping[int, Sync] = field(default_factory=dict)
     heard: Heard | None = None
+    damage: str | None = None
 
 
 def song_sync(song: Song) -> SongSync:
@@ -60,17 +61,22 @@ def song_sync(song: Song) -> SongSync:
     of_charts = {chart.index: _judged(song, groups[key]).sync for key in others for chart in groups[key][:1]}
     for key in others:
         of_charts.update({chart.index: of_charts[groups[key][0].index] for chart in groups[key]})
-    return SongSync(found.sync, found.judgement, of_charts, found.heard)
+    return SongSync(found.sync, found.judgement, of_charts, found.heard, found.damage)
 
 
 def _judged(song: Song, charts: Sequence[Chart]) -> SongSync:
     """The sync of charts with one timing and one music."""
     try:
-        heard = hear(music_file(song, charts[0]))
+        music = music_file(song, charts[0])
     except FileError as error:
-        return SongSync(sync_of(None, 0.0, reason=f"its music cannot be heard: {error.message}"))
+        return SongSync(sync_of(None, 0.0, reason=error.message))
+    try:
+        heard = hear(music)
+    except FileError as error:
+        return SongSync(sync_of(None, 0.0, reason=f"its music {music.name} {error.message}"))
     except EncoderError as error:
-        return SongSync(sync_of(None, 0.0, reason=f"its music cannot be decoded: {error}"))
+        said = f"its music cannot be decoded: {error}"
+        return SongSync(sync_of(None, 0.0, reason=said), damage=said)
     found = judge(charts[0].timing, charts, heard.onsets)
     if isinstance(found, Sync):
         return SongSync(found, heard=heard)

@@ -33,7 +33,7 @@ _PARTS = 8
 _NEIGHBOURS = 64  # rows whose mean is what loudness and density of notes are measured by
 _SMOOTH = 0.002  # standard deviation of the bell that profiles are smoothed by
 # What counts nothing and what counts all for the confidence; the least of these decides.
-_RAMPS = {"margin": (0.0, 0.3), "height": (3.0, 8.0), "spread": (-0.006, -0.0015), "peak": (0.05, 0.25),
+_RAMPS = {"margin": (0.0, 0.3), "height": (3.0, 7.0), "spread": (-0.006, -0.0015), "peak": (0.05, 0.25),
           "parts": (0.0, 0.4)}  # fmt: skip
 
 Curve = NDArray[np.float32]

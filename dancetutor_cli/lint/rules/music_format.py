@@ -53,5 +53,7 @@ class MusicFormat(FileRule):
             said = f"has {head.rate} samples a second, not {' or '.join(map(str, rates))}"
         elif head.channels > self.options["channels"]:
             said = f"has {head.channels} channels, more than {self.options['channels']}"
+        elif subject.sync is not None and subject.sync.damage:
+            said = "cannot be decoded"
         if said:
             yield self.finding(f"the music {path.name} {said}", subject.tag_place("MUSIC"))
