@@ -14,7 +14,7 @@ from dancetutor_cli.lint.configuration import (
     with_assignments,
     with_selection,
 )
-from dancetutor_cli.lint.rule import all_rules
+from dancetutor_cli.lint.rule import FAMILIES, all_rules
 from dancetutor_cli.lint.rule_settings import default_rules
 from dancetutor_cli.run.errors import FileError, UsageError
 
@@ -44,7 +44,7 @@ def test_a_rule_without_a_line_is_named(monkeypatch: pytest.MonkeyPatch) -> None
 def test_codes_and_names_are_unique_and_well_formed() -> None:
     names = [rule.name for rule in all_rules().values()]
     assert len(set(names)) == len(names)
-    assert all(code == f"DT{int(code[2:])}" and "1" <= code[2] <= "5" for code in all_rules())
+    assert all(code == f"DT{int(code[2:])}" and int(code[2]) in FAMILIES for code in all_rules())
 
 
 def test_the_defaults_depend_on_the_difficulty(tmp_path: Path) -> None:
