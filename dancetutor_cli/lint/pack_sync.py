@@ -13,6 +13,7 @@ from dancetutor_cli.lint.rule import PackRule, PackSong, all_rules
 from dancetutor_cli.lint.rule_settings import Settings
 
 _FEWEST = 2  # songs of a pack
+_STEADY = 6.0  # ms of drift; with more a song is neither null nor ITG
 
 
 class PackSyncs:
@@ -22,14 +23,15 @@ class PackSyncs:
         self._songs: dict[Path, dict[str, tuple[str, Sync]]] = {}
 
     def add(self, result: FileResult) -> None:
-        """Take note of a file whose music was heard and whose sync is sure."""
-        if result.sync is None or not result.sync.is_sure:
+        """Take note of a file whose sync is sure and steady."""
+        sync = result.sync
+        if sync is None or not sync.is_sure or abs(sync.drift_ms or 0.0) > _STEADY:
             return
         path = Path(result.path)
         songs = self._songs.setdefault(pack_folder(path.absolute()), {})
         key = os.fspath(path.absolute().with_suffix(""))
         if key not in songs or path.suffix.lower() == ".ssc":
-            songs[key] = path.absolute().parent.name, result.sync
+            songs[key] = path.absolute().parent.name, sync
 
     @property
     def folders(self) -> Iterator[Path]:

@@ -80,7 +80,7 @@ class FileSubject:
             return None
 
     @cached_property
-    def danced(self) -> tuple[Chart, ...]:
+    def dance_charts(self) -> tuple[Chart, ...]:
         """The charts that have notes and are no lights."""
         return tuple(one for one in self.song.charts if len(one.notes) and not is_lights(one.steps_type))
 

@@ -40,6 +40,14 @@ def test_a_pack_that_mixes_both_names_the_rarer(tmp_path: Path) -> None:
     assert found(tmp_path, {"A": NULL, "B": ITG}, confidence=0.5) == {}, "songs that are not sure do not count"
 
 
+def test_a_song_that_drifts_is_of_neither_kind(tmp_path: Path) -> None:
+    packs = PackSyncs()
+    for name, bias, drift in (("A", NULL, 0.0), ("B", NULL, 0.0), ("C", ITG, 11.0)):
+        result = FileResult(str(tmp_path / name / "s.ssc"), name, "", None, (), (), ())
+        packs.add(replace(result, sync=sync_of(bias, 1.0, drift, 500.0)))
+    assert [packs.result(one, load_configuration(None).settings) for one in packs.folders] == [None]
+
+
 @pytest.mark.parametrize(("ini", "bias", "fires"), [
     ("ITG", NULL, True), ("NULL", ITG, True), ("NULL", NULL, False), ("itg", ITG, False), ("0.009", NULL, False),
 ])  # fmt: skip

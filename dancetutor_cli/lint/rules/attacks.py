@@ -31,7 +31,7 @@ class Attacks(FileRule):
         for tag in _MODIFIERS:
             if song.tags.get(tag, "").strip():
                 yield self.finding(f"#{tag} changes how the song is played", subject.tag_place(tag))
-            for chart in subject.danced:
+            for chart in subject.dance_charts:
                 if chart.tags.get(tag, "").strip():
                     said = f"#{tag} changes how {chart.label} is played"
                     yield self.finding(said, subject.place(chart.line), chart=chart.index)

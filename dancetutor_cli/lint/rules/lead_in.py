@@ -25,7 +25,7 @@ class LeadIn(FileRule):
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """One finding, at the chart that begins first."""
-        starts = [(float(one.timing.seconds(one.notes.tick[:1])[0]), one) for one in subject.danced]
+        starts = [(float(one.timing.seconds(one.notes.tick[:1])[0]), one) for one in subject.dance_charts]
         first, chart = min(starts, key=lambda start: start[0], default=(0.0, None))
         if chart is not None and first < self.options["min_seconds"]:
             said = f"the first note of {chart.label} comes {abs(first):.2f} s {'before' if first < 0 else 'after'}"

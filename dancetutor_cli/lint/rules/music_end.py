@@ -32,7 +32,7 @@ class MusicEnd(FileRule):
             return
         ends = [
             (float(one.timing.seconds(np.array([max(one.notes.tick.max(), one.notes.end.max())]))[0]), one)
-            for one in subject.danced
+            for one in subject.dance_charts
             if not one.tags.get("MUSIC")
         ]
         last, chart = max(ends, key=lambda end: end[0], default=(0.0, None))

@@ -24,7 +24,7 @@ class SameNotes(FileRule):
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """One finding for each chart that has the notes of one before it."""
         first: dict[tuple[object, ...], str] = {}
-        for chart in subject.danced:
+        for chart in subject.dance_charts:
             notes = chart.notes
             parts = (notes.tick, notes.column, notes.kind, notes.end, notes.judged)
             key = (chart.steps_type, chart.timing, *(part.tobytes() for part in parts))

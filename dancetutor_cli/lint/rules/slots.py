@@ -25,7 +25,7 @@ class Slots(FileRule):
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """One finding that names all that is missing."""
-        there = {f"{chart.steps_type} {chart.difficulty}".lower() for chart in subject.danced}
+        there = {f"{chart.steps_type} {chart.difficulty}".lower() for chart in subject.dance_charts}
         missing = [str(slot) for slot in self.options["charts"] if str(slot).lower() not in there]
         if missing:
             yield self.finding(f"there is no {' and no '.join(missing)}", subject.place())
