@@ -21,6 +21,7 @@ class PackSyncs:
 
     def __init__(self) -> None:
         self._songs: dict[Path, dict[str, tuple[str, Sync]]] = {}
+        self._names: dict[Path, str] = {}  # of the folders, as their files were named
 
     def add(self, result: FileResult) -> None:
         """Take note of a file whose sync is sure and steady."""
@@ -28,7 +29,9 @@ class PackSyncs:
         if sync is None or not sync.is_sure or abs(sync.drift_ms or 0.0) > _STEADY:
             return
         path = Path(result.path)
-        songs = self._songs.setdefault(pack_folder(path.absolute()), {})
+        folder = pack_folder(path.absolute())
+        self._names.setdefault(folder, os.fspath(folder) if path.is_absolute() else os.path.relpath(folder))
+        songs = self._songs.setdefault(folder, {})
         key = os.fspath(path.absolute().with_suffix(""))
         if key not in songs or path.suffix.lower() == ".ssc":
             songs[key] = path.absolute().parent.name, sync
@@ -51,4 +54,4 @@ class PackSyncs:
                     findings.append(rule.finding(said, {}))
         if not findings:
             return None
-        return FileResult(os.path.relpath(folder), folder.name, "", None, (), tuple(findings), ())
+        return FileResult(self._names[folder], folder.name, "", None, (), tuple(findings), ())

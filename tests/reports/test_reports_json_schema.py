@@ -54,13 +54,22 @@ def test_the_schema_is_one() -> None:
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
 
 
-@pytest.mark.parametrize("options", [(), ("--suggest",), ("--alternatives", "2"), ("--preset", "thesis")])
+@pytest.mark.parametrize("options", [(), ("--suggest",), ("--alternatives", "2"), ("--preset", "thesis"), ("--sync",)])
 def test_the_demo_song(options: tuple[str, ...]) -> None:
     data = json.loads(written(DEMO, "--format", "json", *options))
     assert flaws(data, closed(SCHEMA)) == []
     (file,) = data["files"]
     assert len(file["charts"]) == 6 and all(chart["rows"] for chart in file["charts"])
+    assert ("sync" in file) == (options == ("--sync",))
     assert all(("alternatives" in chart) == (options[:1] == ("--alternatives",)) for chart in file["charts"])
+
+
+def test_music_that_cannot_be_heard(tmp_path: Path) -> None:
+    song = tmp_path / DEMO.name
+    song.write_bytes(DEMO.read_bytes())
+    data = json.loads(written(song, "--format", "json", "--sync"))
+    assert flaws(data, closed(SCHEMA)) == []
+    assert data["files"][0]["sync"]["bias_ms"] is None and "not there" in data["files"][0]["sync"]["reason"]
 
 
 def test_real_charts(corpus: Path) -> None:
@@ -107,6 +116,6 @@ def test_other_things_are_refused() -> None:
 def test_the_page_on_formats_names_every_key() -> None:
     page = (ROOT / "docs" / "formats.md").read_text(encoding="utf-8")
     assert "(analysis.schema.json)" in page
-    for part in ("file", "chart", "row", "finding", "doublestep", "alternative"):
+    for part in ("file", "chart", "row", "finding", "doublestep", "alternative", "sync"):
         for key in SCHEMA["$defs"][part]["properties"]:
             assert re.search(rf'[`"]{key}[`"]', page), f"{part}: {key}"

@@ -33,4 +33,9 @@ class MixedSync(PackRule):
             return None
         more = f" and {len(kinds[rarer]) - _LISTED} more" if len(kinds[rarer]) > _LISTED else ""
         listed = f"{', '.join(kinds[rarer][:_LISTED])}{more}"
-        return f"{len(kinds[usual])} songs are {_KINDS[usual]}, {len(kinds[rarer])} are {_KINDS[rarer]}: {listed}"
+        many, few = (_count(len(kinds[kind]), _KINDS[kind]) for kind in (usual, rarer))
+        return f"of the songs {many}, and {few}: {listed}"
+
+
+def _count(count: int, kind: str) -> str:
+    return f"{count} {'is' if count == 1 else 'are'} {kind}"
