@@ -27,6 +27,7 @@ _BITRATES = {  # kbit/s by the index in a frame's head, for (MPEG 1, layer) and 
     (False, 3): (0, 8, 16, 24, 32, 40, 48, 56, 64, 80, 96, 112, 128, 144, 160),
 }
 _RATES = {3: (44100, 48000, 32000), 2: (22050, 24000, 16000), 0: (11025, 12000, 8000)}  # by the bits of the version
+_MOST_GAPS = 1000  # places at which frames are looked for again behind something else; what is longer is no music
 _LEAST_FRAMES = 3  # one after the other, so that it is MP3 and no accident
 
 
@@ -147,14 +148,13 @@ def _mp3(data: bytes) -> AudioHead | None:
     first = _frame(data, start)
     assert first is not None
     word = data[start + 4 + first.side : start + 8 + first.side]
-    samples, at = (-first.samples if word == b"Xing" else 0), start
+    samples, at, gaps = (-first.samples if word == b"Xing" else 0), start, 0
     while at + 4 <= len(data):
         frame = _frame(data, at)
         if frame is None or frame.length < 4:
-            following = data.find(b"\xff", at + 1)
-            if following < 0 or data[at : at + 3] == b"TAG":
+            at, gaps = data.find(b"\xff", at + 1), gaps + 1
+            if at < 0 or gaps > _MOST_GAPS:
                 break
-            at = following
             continue
         if at + frame.length <= len(data):
             samples += frame.samples
