@@ -148,6 +148,21 @@ def test_json_tells_the_sync_only_where_it_was_asked_for(tmp_path: Path) -> None
     assert [one["rule"] for one in found["findings"] if one["rule"].startswith("DT60")] == ["DT601"]
 
 
+def test_results_are_kept_with_their_sync_until_the_music_changes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DANCETUTOR_CACHE", str(tmp_path / "cache"))
+    path = song(SEEDS[2]).write(tmp_path / "song")
+    words = [str(path), "--sync", "--full", "--exit-zero"]
+    first, plain = CliRunner().invoke(command, words).stdout, CliRunner().invoke(command, words[:1] + words[2:]).stdout
+    assert "sync: the music is " in first and "sync:" not in plain
+    with monkeypatch.context() as patch:
+        patch.setattr("dancetutor_cli.lint.song_sync.song_sync", None)  # nobody hears it again
+        assert CliRunner().invoke(command, words).stdout == first
+    (path.parent / "song.wav").write_bytes(b"")
+    assert "sync: cannot be judged: its music song.wav is empty" in CliRunner().invoke(command, words).stdout
+
+
 def test_a_plot_is_one_picture_of_one_file(tmp_path: Path) -> None:
     path = song(SEEDS[2]).write(tmp_path / "song")
     picture = tmp_path / "bias.svg"

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.rule import SyncRule
 
 if TYPE_CHECKING:
@@ -14,13 +16,20 @@ if TYPE_CHECKING:
 class SyncBias(SyncRule):
     """The music's attacks come neither with the beats (null) nor 9 ms after them (ITG): one hears it as off.
 
-    `tolerance`: ms on either side of both that are no finding. Needs `--sync`. Half a beat off is DT603.
+    `tolerance`: ms on either side of both that are no finding. Needs `--sync`. Half a beat off is DT603. A file without
+    #OFFSET is told, too: the games take 0.
 
     Bad: #OFFSET:0.025; with music that is at the beats. Better: #OFFSET:0.000;
     """
 
     code = "DT601"
     name = "sync-bias"
+
+    def check(self, subject: FileSubject) -> Iterable[Finding]:
+        """Those of its syncs, and one for a file without #OFFSET."""
+        if subject.sync is not None and "OFFSET" not in subject.song.tags:
+            yield self.finding("there is no #OFFSET: the games take 0", subject.place())
+        yield from super().check(subject)
 
     def message(self, sync: Sync, subject: FileSubject) -> str | None:
         """What to change, to the one and to the other."""
