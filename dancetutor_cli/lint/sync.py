@@ -182,14 +182,13 @@ def _judgement(rows: _Rows, lags: Seconds, cycle: float, contrast: Curve, mean: 
     worth = whole - _UNUSUAL * whole.max() * is_unusual
     best = int(worth.argmax())
     is_odd = is_unusual[best] and abs(abs(float(lags[best])) - rows.beat / 2) > _USUAL
-    distance = np.abs(lags - lags[best])
-    near = np.flatnonzero(distance <= _WITHIN)
+    near = np.flatnonzero(np.abs(lags - lags[best]) <= _WITHIN)
     fine = mean + 2 * contrast
     thirds = np.arange(BLOCKS) * 3 // BLOCKS
     first, last = (_peak(lags, fine[thirds == third].sum(axis=0), near) for third in (0, 2))
     # Middles of the first and the last third lie so far apart that they show this part of the slope.
     drift = last - first + slope * 2 / 3
-    confidence = _confidence(lags, contrast + 0.5 * mean, fine, whole, worth, best, near)
+    confidence = _confidence(_Choice(lags, whole, worth, best, near), contrast + 0.5 * mean, fine)
     if is_odd:
         confidence = min(confidence, _ODD)
     sync = sync_of(_peak(lags, fine.sum(axis=0), near) * 1000, confidence, drift * 1000, rows.beat * 1000)
@@ -234,11 +233,23 @@ def _peak(lags: Seconds, values: Curve, near: NDArray[np.int64]) -> float:
     return float(lags[at]) + (_LAG * 0.5 * (before - after) / bend if bend < 0 else 0.0)
 
 
-def _confidence(
-    lags: Seconds, rhythm: Curve, fine: Curve, whole: Seconds, worth: Seconds, best: int, near: NDArray[np.int64]
-) -> float:
+class _Choice(NamedTuple):
+    """A bias out of `lags`. whole : float64 (l,), how well each fits the song, -inf where it may not be
+
+    worth : the same, less what speaks against unusual ones; best : index of the chosen one; near : of those around it
+    """
+
+    lags: Seconds
+    whole: Seconds
+    worth: Seconds
+    best: int
+    near: NDArray[np.int64]
+
+
+def _confidence(choice: _Choice, rhythm: Curve, fine: Curve) -> float:
     """The least of five: what is left to the best rival, how far the peak stands out, its height, how far parts of the
     song spread, and how many of them have it for their own best."""
+    lags, whole, worth, best, near = choice
     far = np.abs(lags - lags[best]) > _NEAR
     inside = whole[np.isfinite(whole)]
     deviation = float(np.median(np.abs(inside - np.median(inside)))) * 1.4826 + 1e-9
