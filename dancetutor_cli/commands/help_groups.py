@@ -1,0 +1,56 @@
+"""The options of a command in groups, the common ones first; an option is in the same group in all commands."""
+
+from __future__ import annotations
+
+import click
+
+# Group -> the first names of its options, in the order in which help prints them.
+GROUPS = {
+    "Charts": (
+        "--steps-type", "--difficulty", "--index", "--meter", "--player", "--section", "--exclude", "--stdin-filename",
+        "--play", "--dance", "--preset", "--animation",
+    ),
+    "Output": (
+        "--output", "--output-file", "--format", "--frames", "--poses", "--poster", "--srt", "--music", "--size",
+        "--fps", "--quality", "--background", "--into-file", "--name", "--report", "--plot", "--report-html", "--sheet",
+    ),
+    "Rules and exit status": (
+        "--select", "--ignore", "--config", "--set", "--show-settings", "--baseline", "--update-baseline", "--fail-on",
+        "--exit-zero", "--explain",
+    ),
+    "What is printed": (
+        "--full", "--statistics", "--suggest", "--alternatives", "--compare", "--tech-counts", "--meter-scale",
+        "--sync",
+    ),
+    "Changes to files": ("--fix", "--markers", "--strip", "--check", "--diff", "--dry-run", "--force", "--backup"),
+    "Picture": (
+        "--layout", "--camera", "--scroll", "--down", "--second", "--show-findings", "--call-ahead", "--font",
+        "--renderer", "--encoder",
+    ),
+    "Dancer": (
+        "--character", "--style", "--form", "--gait", "--bar", "--motion", "--physics", "--push", "--trip", "--correct",
+    ),
+    "Music and speed": (
+        "--rate", "--loop", "--count-in", "--assist-tick", "--metronome", "--sync-offset", "--mute",
+    ),
+    "Batch": ("--jobs", "--watch", "--no-cache", "--shard", "--scheduler", "--results", "--yes"),
+    "General": ("--quiet", "--verbose", "--color", "--help"),
+}  # fmt: skip
+
+
+class GroupedCommand(click.Command):
+    """A command whose help prints its options by `GROUPS`; one that is in no group stands under "Other options"."""
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Called by click for `--help`."""
+        group_of = {name: title for title, names in GROUPS.items() for name in names}
+        rank = {name: place for names in GROUPS.values() for place, name in enumerate(names)}
+        rows: dict[str, list[tuple[int, tuple[str, str]]]] = {title: [] for title in (*GROUPS, "Other options")}
+        for parameter in self.get_params(ctx):
+            if (record := parameter.get_help_record(ctx)) is not None:
+                name = max(parameter.opts, key=len)
+                rows[group_of.get(name, "Other options")].append((rank.get(name, 0), record))
+        for title, ranked in rows.items():
+            if ranked:
+                with formatter.section(title):
+                    formatter.write_dl([record for _, record in sorted(ranked)])
