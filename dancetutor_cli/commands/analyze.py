@@ -13,6 +13,7 @@ from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.arguments import GivenPath, Source, fixes, folder, named, open_output, rules, sources
 from dancetutor_cli.commands.chart_options import exclude_option, preset_option, quiet_option, selection_options
 from dancetutor_cli.commands.first_run import announce_compiling
+from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.pack import pack_options
 from dancetutor_cli.reports.formats import FORMATS
 from dancetutor_cli.run.errors import DancetutorError, UsageError
@@ -36,7 +37,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     context.exit()
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("paths", nargs=-1, required=True, type=GivenPath(allow_dash=True, holds_charts=True), metavar="PATH...")
 @selection_options
 @preset_option
@@ -219,7 +220,13 @@ def _report_errors(work: Callable[[], object]) -> None:
 
 
 def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
-    from dancetutor_cli.commands.pack import check_comparison, check_plot, check_sheet, report_beside, report_changes
+    from dancetutor_cli.commands.pack import (
+        check_comparison,
+        check_plot,
+        check_sheet,
+        report_changes,
+        report_tech_counts,
+    )
 
     if options["sheet"] is not None:
         check_sheet(options["sheet"], len(files))
@@ -236,8 +243,8 @@ def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
         run.open_baseline(first)
         return fix_all(run, [run.task(path, data) for path, data in files], options)
     with open_output(options["output_file"]) as output:
-        if options["beside"] is not None:
-            return report_beside([run.task(path, data) for path, data in files], options, output)
+        if options["tech_counts"] is not None:
+            return report_tech_counts([run.task(path, data) for path, data in files], options, output)
         if options["compare"] is not None:
             check_comparison(options)
             if options["report_html"] is None:

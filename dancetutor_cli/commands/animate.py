@@ -28,6 +28,7 @@ from dancetutor_cli.commands.chart_options import (
     style_option,
 )
 from dancetutor_cli.commands.first_run import announce_compiling
+from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.formats.writers import FORMATS
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import check_file, one_of
@@ -74,7 +75,7 @@ class Result:
     jobs: int
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("file", type=GivenPath(holds_charts=True))
 @click.option("-o", "--output", type=_FILE, help=f"A {one_of(FORMATS)} file; default: SONG-difficulty.glb.")
 @click.option(

@@ -20,6 +20,7 @@ from dancetutor_cli.commands.chart_options import (
     verbose_option,
 )
 from dancetutor_cli.commands.first_run import announce_compiling
+from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.reports.terminal import JoinedWarnings, coloured
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.files import check_folder
@@ -40,7 +41,7 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
         if name not in STRIPPED:
             raise UsageError(f"there is no style '{name}'{did_you_mean(name, STYLES)}; there are {', '.join(STYLES)}")
     if not names:
-        raise UsageError(f"--style: name one or more of {', '.join(STYLES)}")
+        raise UsageError(f"--markers: name one or more of {', '.join(STYLES)}")
     return tuple(name for name in STRIPPED if name in names)
 
 
@@ -64,20 +65,20 @@ class AnnotateWish:
     exclude: tuple[str, ...]
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("paths", nargs=-1, required=True, type=GivenPath(holds_charts=True), metavar="PATH...")
 @click.option(
-    "--style", "styles", callback=_styles, metavar="STYLE[,STYLE]",
+    "--markers", "styles", callback=_styles, metavar="STYLE[,STYLE]",
     help=f"Where to write the feet (theme: what comes next): {', '.join(STYLES)} [default: measure; with --strip all "
     "and background, a film that render has entered].",
 )  # fmt: skip
-@click.option("--strip", is_flag=True, help="Take the markers out again: of every style, or only of --style.")
+@click.option("--strip", is_flag=True, help="Take the markers out again: of every style, or only of --markers.")
 @click.option("--check", is_flag=True, help="Write nothing; exit status 1 if feet are missing or stale.")
 @click.option("--diff", is_flag=True, help="Write nothing; print what would change.")
 @click.option("--dry-run", is_flag=True, help="Write nothing; say which files would change.")
 @click.option("-o", "--output", type=GivenPath(), metavar="DIR", help="Write into this folder, not in place.")
 @click.option(
-    "--into-file", is_flag=True, help="Style edit: add the charts to the file instead of writing .edit files."
+    "--into-file", is_flag=True, help="Markers edit: add the charts to the file instead of writing .edit files."
 )
 @click.option("--force", is_flag=True, help="Overwrite or take out pinned measures, {dt1! ...}, too.")
 @click.option("--backup", is_flag=True, help="Keep the old file as NAME.bak.")
@@ -107,7 +108,7 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
         raise UsageError("--player is for analyze, animate, render and page; annotate writes both players' feet")
     wanted = wish.styles or (STRIPPED if wish.strip else STYLES[:1])
     if wish.into_file and "edit" not in wanted:
-        raise UsageError("--into-file belongs to the style 'edit'; add --style edit")
+        raise UsageError("--into-file belongs to the markers 'edit'; add --markers edit")
     order = Order(
         styles=wanted,
         named=wish.styles is not None,

@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 from click.shell_completion import ShellComplete, add_completion_class, get_completion_class
 
+from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.run.errors import FileError, UsageError
 
 PROGRAM, VARIABLE = "dancetutor", "_DANCETUTOR_COMPLETE"
@@ -48,7 +49,7 @@ Register-ArgumentCompleter -Native -CommandName %(prog_name)s -ScriptBlock {
         return f"{item.type}\t{item.value}\t{item.help or ''}"
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("shell", required=False, type=click.Choice(SHELLS))
 @click.option("--print", "only_print", is_flag=True, help="Print the script instead of installing it.")
 @click.option("--remove", is_flag=True, help="Take the installed script out again.")

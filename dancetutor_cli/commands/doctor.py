@@ -10,6 +10,7 @@ from pathlib import Path
 
 import click
 
+from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.run.errors import DancetutorError
 
 # The checks of `doctor`: each looks at one thing that rendering needs, and never raises.
@@ -180,7 +181,7 @@ def _disk() -> Check:
 WIDTH = 80  # columns
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def command(as_json: bool) -> None:
     """Check renderers, encoders, caches, fonts and disk; says how to mend what is missing.

@@ -13,6 +13,7 @@ GROUPS = {
     "Output": (
         "--output", "--output-file", "--format", "--frames", "--poses", "--poster", "--srt", "--music", "--size",
         "--fps", "--quality", "--background", "--into-file", "--name", "--report", "--plot", "--report-html", "--sheet",
+        "--json", "--print", "--remove",
     ),
     "Rules and exit status": (
         "--select", "--ignore", "--config", "--set", "--show-settings", "--baseline", "--update-baseline", "--fail-on",
@@ -38,8 +39,19 @@ GROUPS = {
 }  # fmt: skip
 
 
+# Names that options had before an option's name meant one thing in all commands; they still work.
+RENAMED = (("--style", "--markers"), ("--beside", "--tech-counts"), ("--beside", "--second"))
+
+
 class GroupedCommand(click.Command):
     """A command whose help prints its options by `GROUPS`; one that is in no group stands under "Other options"."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Called by click with what the user typed."""
+        options = {name for parameter in self.params for name in parameter.opts}
+        renamed = {old: new for old, new in RENAMED if old not in options and new in options}
+        parts = [argument.partition("=") for argument in args]
+        return super().parse_args(ctx, [renamed.get(name, name) + equals + value for name, equals, value in parts])
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Called by click for `--help`."""
@@ -47,7 +59,8 @@ class GroupedCommand(click.Command):
         rank = {name: place for names in GROUPS.values() for place, name in enumerate(names)}
         rows: dict[str, list[tuple[int, tuple[str, str]]]] = {title: [] for title in (*GROUPS, "Other options")}
         for parameter in self.get_params(ctx):
-            if (record := parameter.get_help_record(ctx)) is not None:
+            record = parameter.get_help_record(ctx) if isinstance(parameter, click.Option) else None
+            if record is not None:
                 name = max(parameter.opts, key=len)
                 rows[group_of.get(name, "Other options")].append((rank.get(name, 0), record))
         for title, ranked in rows.items():

@@ -41,7 +41,7 @@ _OPTIONS = (
         "of git such as HEAD~1, or as the last analyze has read it.",
     ),
     click.option(
-        "--beside",
+        "--tech-counts",
         type=GivenPath(exists=True),
         metavar="CACHE|FILE.csv",
         help="Print only a table: our technique counts beside those that ITGmania wrote into its Cache/Songs, or a "
@@ -66,7 +66,7 @@ _OPTIONS = (
 
 
 def pack_options(command: Command) -> Command:
-    """Add --report-html, --compare, --beside, --meter-scale and --rate to a command."""
+    """Add --report-html, --compare, --tech-counts, --meter-scale and --rate to a command."""
     for option in reversed(_OPTIONS):
         command = option(command)
     return command
@@ -164,17 +164,17 @@ def _plural(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def report_beside(tasks: Sequence[AnalyzeTask], options: Mapping[str, Any], output: IO[str]) -> int:
-    """`--beside`: print the table, with --full every chart that differs below it; the exit status."""
+def report_tech_counts(tasks: Sequence[AnalyzeTask], options: Mapping[str, Any], output: IO[str]) -> int:
+    """`--tech-counts`: print the table, with --full every chart that differs below it; the exit status."""
     from dancetutor_cli.lint.techniques import compare_techniques, read_theirs
     from dancetutor_cli.reports.pack import chart_lines, table_lines
 
     if options["format_name"] != "text":
-        raise UsageError("--beside prints a table of Markdown, in --format text")
-    found = compare_techniques(tasks, read_theirs(options["beside"]))
+        raise UsageError("--tech-counts prints a table of Markdown, in --format text")
+    found = compare_techniques(tasks, read_theirs(options["tech_counts"]))
     if not found.charts:
         raise UsageError(
-            f"{options['beside']}: no chart in it is one of PATH's: they are matched by folder, file and chart"
+            f"{options['tech_counts']}: no chart in it is one of PATH's: they are matched by folder, file and chart"
         )
     lines = [*table_lines(found), *(("", *chart_lines(found)) if options["full"] else ())]
     output.writelines(f"{line}\n" for line in lines)

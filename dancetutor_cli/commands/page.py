@@ -24,6 +24,7 @@ from dancetutor_cli.commands.chart_options import (
     verbose_option,
 )
 from dancetutor_cli.commands.first_run import announce_compiling
+from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import check_file, check_folder, make_folder
 
@@ -49,12 +50,12 @@ class PageWish:
     quiet: bool
     exclude: tuple[str, ...]
     verbose: bool
-    beside: str | None
+    second: str | None
     character: str
     preset: str | None
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("path", type=GivenPath(holds_charts=True))
 @click.option(
     "-o",
@@ -66,7 +67,7 @@ class PageWish:
 @click.option("--play", "play_file", type=_FILE, help="Feet from this JSON of analyze instead of the solver's.")
 @click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad, as players of hard charts do.")
 @click.option(
-    "--beside",
+    "--second",
     metavar="next|PRESET|FILE.json",
     help="A second dancer beside her: the next best play, another preset's, or one of a JSON file.",
 )
@@ -105,7 +106,7 @@ def command(path: Path, selection: Selection, wish: PageWish) -> None:
     dance = DanceRequest(
         file, selection, wish.preset, wish.play_file, bar=wish.bar, gait=wish.gait, form=wish.form, motion=wish.motion
     )
-    request = PageRequest(dance, wish.character, wish.music, wish.beside, wish.jobs)
+    request = PageRequest(dance, wish.character, wish.music, wish.second, wish.jobs)
     announce_compiling(choice_for(file, wish.preset), quiet=wish.quiet)
     if file.is_dir():
         _pages(request, output or Path("pages"), wish)

@@ -21,6 +21,7 @@ from dancetutor_cli.commands.chart_options import (
 )
 from dancetutor_cli.commands.film_options import film_options, film_request
 from dancetutor_cli.commands.first_run import announce_compiling
+from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.film.media.film_formats import FILES
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import check_file, check_folder, make_folder, one_of
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 _NO_BACKGROUND = ("poses", "section", "rate", "loop", "count_in", "metronome", "assist_tick", "srt", "sync_offset")
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("path", type=GivenPath(holds_charts=True))
 @click.option(
     "-o",

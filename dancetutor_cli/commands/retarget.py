@@ -11,6 +11,7 @@ import click
 
 from dancetutor_cli.commands.arguments import GivenPath, into
 from dancetutor_cli.commands.chart_options import TABLE, push_options, report_option, style_option
+from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.files import check_file, one_of
 
@@ -37,7 +38,7 @@ class RetargetOptions:
     trip: tuple[float, ...]
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @click.argument("file", type=GivenPath(holds_charts=True))
 @click.option("-o", "--output", type=_FILE, required=True, help=f"A {one_of(SUFFIXES)} file.")
 @click.option(

@@ -11,6 +11,7 @@ import numpy as np
 
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.chart_options import quiet_option
+from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.film.choices import QUALITIES, Quality
 from dancetutor_cli.film.clock import Practice
@@ -88,7 +89,7 @@ def _draw(prepared: PreparedFilm, quality: Quality) -> None:
 # `dancetutor warmup`: compile every kernel once and keep it, for example while a CI image is built.
 
 
-@click.command()
+@click.command(cls=GroupedCommand)
 @quiet_option
 def command(quiet: bool) -> None:
     """Compile everything once, so that later runs start at once.

@@ -111,7 +111,7 @@ def look_up_page(request: PageRequest) -> PageSubject:
     choice = read_chart(request.dance)
     if len(choice.parts) > 1 and request.beside is not None:
         raise UsageError(
-            f"{request.dance.path}: --beside is for one dancer, and the chart is for two: choose with --player"
+            f"{request.dance.path}: --second is for one dancer, and the chart is for two: choose with --player"
         )
     return PageSubject(request, character, solve(request.dance, choice), choice.warnings)
 

@@ -131,22 +131,22 @@ def test_what_is_true_of_the_whole_chart_is_told_once(both: Path) -> None:
 
 def test_markers_of_both_stand_in_the_file_and_go_again(both: Path) -> None:
     before = both.read_bytes()
-    assert run("annotate", both, "--style", "measure,rows")[0] == 0
+    assert run("annotate", both, "--markers", "measure,rows")[0] == 0
     text = both.read_text()
     markers = re.findall(r"\{dt1 ([^}]*)\}", text)
     assert len(markers) == 6  # two measures of each player of the routine, two of the couple
     assert "&//{dt1 " in text and re.search(r"10001000//dt\w\w\n", text)
     assert [len(re.sub(r"[()]", "", one)) for one in markers] == [4, 4, 4, 4, 10, 3]
-    assert run("annotate", both, "--style", "measure,rows", "--check")[0] == 0
+    assert run("annotate", both, "--markers", "measure,rows", "--check")[0] == 0
     marked = both.read_bytes()
-    assert run("annotate", both, "--style", "measure,rows")[0] == 0 and both.read_bytes() == marked
+    assert run("annotate", both, "--markers", "measure,rows")[0] == 0 and both.read_bytes() == marked
     assert run("annotate", both, "--strip")[0] == 0
     assert both.read_bytes() == before
 
 
 def test_nothing_is_put_beside_a_song_that_has_only_charts_for_two(both: Path) -> None:
     before = sorted(both.parent.iterdir())
-    status, said = run("annotate", both, "--style", "sidecar,theme,smeditor")
+    status, said = run("annotate", both, "--markers", "sidecar,theme,smeditor")
     assert status == 0 and "only in the styles measure and rows" in said
     assert sorted(both.parent.iterdir()) == before
 
@@ -191,7 +191,7 @@ def marked(tmp_path: Path) -> Path:
 
 def test_letters_of_marked_notes_stand_from_left_to_right_whosever_they_are(marked: Path) -> None:
     before = marked.read_bytes()
-    assert run("annotate", marked, "--style", "measure,rows")[0] == 0
+    assert run("annotate", marked, "--markers", "measure,rows")[0] == 0
     song = parse(marked.read_bytes(), marked)
     sides = re.findall(r"\{dt1 ([^}]*)\}", marked.read_text())
     assert [len(re.sub(r"[()]", "", one)) for one in sides] == [7, 5]
@@ -217,10 +217,10 @@ def test_three_in_the_same_rows_have_feet_and_markers_each(tmp_path: Path) -> No
     assert [(chart.label, chart.row_count) for chart in result.charts] == [
         (f"pump-double Hard 9 P{player}", 3) for player in (1, 2, 3)
     ]
-    assert run("annotate", path, "--style", "measure,rows")[0] == 0
+    assert run("annotate", path, "--markers", "measure,rows")[0] == 0
     (marker,) = re.findall(r"\{dt1 ([^}]*)\}", path.read_text())
     assert re.fullmatch(r"(\([LR]{3}\)){3}", marker)
-    assert run("annotate", path, "--style", "measure,rows", "--check")[0] == 0
+    assert run("annotate", path, "--markers", "measure,rows", "--check")[0] == 0
     assert run("annotate", path, "--strip")[0] == 0 and path.read_bytes() == before
 
 
@@ -243,10 +243,10 @@ def test_the_third_of_three_is_baked(tmp_path: Path) -> None:
 def test_a_head_without_an_end_beside_marked_notes_is_nobodys_step(tmp_path: Path) -> None:
     path = tmp_path / "marked.sm"
     path.write_text(HEAD + block("pump-double", MARKED + ",\n2000000000\n0000000000\n00000x0000\n000X000Y00\n"))
-    assert run("annotate", path, "--style", "measure,rows")[0] == 0
+    assert run("annotate", path, "--markers", "measure,rows")[0] == 0
     sides = re.findall(r"\{dt1 ([^}]*)\}", path.read_text())
     assert [len(re.sub(r"[()]", "", one)) for one in sides] == [7, 5, 2]
-    assert run("annotate", path, "--check", "--style", "measure,rows")[0] == 0
+    assert run("annotate", path, "--check", "--markers", "measure,rows")[0] == 0
 
 
 def test_a_marked_note_keeps_its_letter_when_it_is_moved(tmp_path: Path) -> None:

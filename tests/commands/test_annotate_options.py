@@ -59,7 +59,7 @@ def test_the_diff_can_be_applied_with_patch(song: Path, ssc: Path, tmp_path: Pat
     """The diff is right in every line number, also where a chart is added at the end."""
     import subprocess
 
-    options = [ssc, "--style", "measure,edit", "--into-file"]
+    options = [ssc, "--markers", "measure,edit", "--into-file"]
     diff = Said([*options, "--diff"]).out
     subprocess.run(["patch", "-s", ssc], input=diff.encode(), check=True, cwd=tmp_path)
     patched = ssc.read_bytes()
@@ -70,12 +70,12 @@ def test_the_diff_can_be_applied_with_patch(song: Path, ssc: Path, tmp_path: Pat
 
 def test_output_folder(song: Path, tmp_path: Path) -> None:
     before, out = files_of(song), tmp_path / "out"
-    assert Said([song.parent, "-o", out, "--style", ALL]).status == 0
+    assert Said([song.parent, "-o", out, "--markers", ALL]).status == 0
     assert files_of(song) == before
     made = files_of(out)
-    assert Said([song.parent, "-o", out, "--style", ALL]).status == 0
+    assert Said([song.parent, "-o", out, "--markers", ALL]).status == 0
     assert files_of(out) == made
-    Said([song, "--style", ALL])
+    Said([song, "--markers", ALL])
     assert files_of(song) == files_of(out / "song")
     Said([song, "-o", song.parent / "." / "song"])  # in place after all
     assert b"{dt1 " in (song / "two_left_feet.sm").read_bytes()
@@ -86,8 +86,8 @@ def test_output_folder(song: Path, tmp_path: Path) -> None:
 def test_worker_processes_do_the_same(song: Path, tmp_path: Path) -> None:
     for number in range(4):
         shutil.copytree(song, song.parent / f"copy {number}")
-    Said([song.parent, "-o", tmp_path / "one", "--jobs", 1, "--style", ALL])
-    said = Said([song.parent, "-o", tmp_path / "two", "--jobs", 2, "--style", ALL])
+    Said([song.parent, "-o", tmp_path / "one", "--jobs", 1, "--markers", ALL])
+    said = Said([song.parent, "-o", tmp_path / "two", "--jobs", 2, "--markers", ALL])
     assert files_of(tmp_path / "one") == files_of(tmp_path / "two")
     order = [line.split(": ")[0] for line in said.out.splitlines() if line.startswith("annotated")]
     assert order == sorted(order)
@@ -154,7 +154,7 @@ def test_the_preset_of_the_configuration_holds(ssc: Path) -> None:
     [
         (["--style", "tattoo"], "there is no style 'tattoo'; there are measure, rows"),
         (["--style", ""], "name one or more"),
-        (["--into-file"], "--style edit"),
+        (["--into-file"], "--markers edit"),
         (["--preset", "gpt"], "thesis"),
     ],
 )

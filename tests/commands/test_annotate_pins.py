@@ -55,7 +55,7 @@ def test_data_sme_is_input_and_keeps_what_a_person_said(ssc: Path) -> None:
     }
     data.write_text(json.dumps(theirs, indent=2))
     before = data.read_bytes()
-    Said([ssc, "--index", 0, "--style", "measure,smeditor"])
+    Said([ssc, "--index", 0, "--markers", "measure,smeditor"])
     assert b"measure 1 {dt1 R" in ssc.read_bytes()
     merged = json.loads(data.read_bytes())
     assert list(merged)[:3] == ["version", "mine", "parity"]
@@ -63,7 +63,7 @@ def test_data_sme_is_input_and_keeps_what_a_person_said(ssc: Path) -> None:
     assert len(merged["parity"]["dance-single"][0]["overrides"]) > 20
     assert merged["parity"]["dance-single"][0]["ignores"] == {"6": ["DS"]}
     once = data.read_bytes()
-    Said([ssc, "--index", 0, "--style", "measure,smeditor"])
+    Said([ssc, "--index", 0, "--markers", "measure,smeditor"])
     assert data.read_bytes() == once
-    Said([ssc, "--style", "smeditor", "--strip"])
+    Said([ssc, "--markers", "smeditor", "--strip"])
     assert data.read_bytes() == before

@@ -22,7 +22,7 @@ def test_a_folder_does_both_files_and_a_name_only_one(song: Path, ssc: Path) -> 
 
 @pytest.mark.parametrize(
     "options",
-    [["--style", style] for style in (*ALL.split(","), ALL)] + [["--style", "measure,rows,edit", "--into-file"]],
+    [["--markers", style] for style in (*ALL.split(","), ALL)] + [["--markers", "measure,rows,edit", "--into-file"]],
 )
 def test_every_style_is_written_once_checked_and_taken_out(song: Path, options: list[str]) -> None:
     before = files_of(song)
@@ -45,18 +45,18 @@ def test_every_style_is_written_once_checked_and_taken_out(song: Path, options: 
 
 def test_styles_come_out_one_by_one(song: Path) -> None:
     before = files_of(song)
-    Said([song, "--style", ALL])
+    Said([song, "--markers", ALL])
     for style in ALL.split(","):
-        assert Said([song, "--style", style, "--strip"]).status == 0
+        assert Said([song, "--markers", style, "--strip"]).status == 0
         for other in ALL.split(",")[ALL.split(",").index(style) + 1 :]:
-            assert Said([song, "--style", other, "--check"]).status == 0, (style, other)
+            assert Said([song, "--markers", other, "--check"]).status == 0, (style, other)
     assert files_of(song) == before
 
 
 @pytest.mark.parametrize("written", [*ALL.split(","), ALL, "measure,rows,edit --into-file"])
 def test_strip_alone_takes_every_style_out(song: Path, written: str) -> None:
     before = files_of(song)
-    assert Said([song, "--style", *written.split()]).status == 0
+    assert Said([song, "--markers", *written.split()]).status == 0
     assert files_of(song) != before
     said = Said([song, "--strip"])
     assert said.status == 0
@@ -76,7 +76,7 @@ def test_strip_alone_leaves_files_that_are_not_ours(song: Path, ssc: Path) -> No
     assert (song / "data.sme").read_bytes() == b"not SMEditor's"
     assert "warning: " in said.err
     assert "is not JSON" in said.err
-    assert Said([song, "--strip", "--style", "smeditor"]).status == 2, "who names a style wants to know"
+    assert Said([song, "--strip", "--markers", "smeditor"]).status == 2, "who names a style wants to know"
 
 
 def test_strip_needs_no_solver(ssc: Path) -> None:

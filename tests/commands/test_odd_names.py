@@ -37,7 +37,7 @@ def test_a_long_name_is_annotated_and_stripped(name: str, tmp_path: Path) -> Non
     assert (stripped.returncode, stripped.stderr) == (0, "")
     assert path.read_text() == text
     for style in ("sidecar", "edit"):
-        said = run("annotate", "--style", style, path)
+        said = run("annotate", "--markers", style, path)
         if said.returncode:
             assert "too long" in said.stderr and len(said.stderr.splitlines()) == 1
             assert path.read_text() == text
@@ -52,8 +52,8 @@ def test_a_name_that_is_no_text_has_a_sidecar_and_a_baseline_that_are_read_back(
     path = tmp_path / "\udcff\udcfesong.sm"
     path.write_text(SONG + "#NOTES:dance-single::Hard:9::\n1000\n;\n")
     for _ in range(2):
-        assert run("annotate", "--style", "sidecar", tmp_path).returncode == 0
-    assert run("annotate", "--style", "sidecar", "--check", tmp_path).returncode == 0
+        assert run("annotate", "--markers", "sidecar", tmp_path).returncode == 0
+    assert run("annotate", "--markers", "sidecar", "--check", tmp_path).returncode == 0
     (sidecar,) = tmp_path.glob("*.dancetutor.json")
     assert path.name in json.loads(sidecar.read_text("utf-8"))["files"]
     known = tmp_path / "known.json"

@@ -141,7 +141,7 @@ def test_only_lists_that_the_game_writes_are_read(tmp_path: Path, numbers: str, 
 
 
 def test_the_table_tells_ours_theirs_and_both(places: tuple[Path, Path]) -> None:
-    lines = printed(places[0], "--beside", places[1]).splitlines()
+    lines = printed(places[0], "--tech-counts", places[1]).splitlines()
     song = load(places[0] / "Pack" / "Two" / "two.sm")
     ours = tech_counts(solved_chart(song, song.charts[0], load_preset("itg")))
     assert [cell.strip() for cell in lines[0].split("|")] == [
@@ -158,7 +158,7 @@ def test_the_table_tells_ours_theirs_and_both(places: tuple[Path, Path]) -> None
 
 
 def test_every_difference_can_be_looked_at(places: tuple[Path, Path]) -> None:
-    lines = printed(places[0], "--beside", places[1], "--full").splitlines()
+    lines = printed(places[0], "--tech-counts", places[1], "--full").splitlines()
     told = [line for line in lines if "two.sm [dance-single Hard 9]" in line]
     assert any("Doublesteps: ours 0, theirs 7" in line for line in told)
     assert any("Jacks: ours 1 (measures 0), theirs 3" in line for line in told)
@@ -167,7 +167,7 @@ def test_every_difference_can_be_looked_at(places: tuple[Path, Path]) -> None:
 def test_a_table_of_another_program_does_as_well(places: tuple[Path, Path], tmp_path: Path) -> None:
     table = tmp_path / "theirs.csv"
     table.write_text("file,steps_type,difficulty,description,Jacks,Brackets\nTwo/two.sm,dance-single,hard,me,1,0\n")
-    lines = printed(places[0], "--beside", table).splitlines()
+    lines = printed(places[0], "--tech-counts", table).splitlines()
     assert [line.split("|")[1].strip() for line in lines[2:4]] == ["Jacks", "Brackets"]
     assert [cell.strip() for cell in lines[2].split("|")[2:-1]] == ["1", "1", "1", "1", "1 (100 %)"]
 
@@ -186,7 +186,7 @@ def test_where_beats_are_known_both_are_the_same_rows(places: tuple[Path, Path],
     """The left foot crosses on the third row (beat 1) and, back again, on the seventh; theirs stood elsewhere."""
     table = tmp_path / "times.csv"
     table.write_text(TIMES, encoding="utf-8")
-    lines = printed(places[0], "--beside", table, "--full").splitlines()
+    lines = printed(places[0], "--tech-counts", table, "--full").splitlines()
     cells = {line.split("|")[1].strip(): [cell.strip() for cell in line.split("|")[2:-1]] for line in lines[2:4]}
     assert cells["Jacks"] == ["2", "1", "1", "1", "2 (100 %)"]
     assert cells["Crossovers"] == ["2", "2", "2", "1", "1 (50 %)"]  # as often, not in the same rows
@@ -208,7 +208,7 @@ def test_our_own_csv_is_equal_to_ourselves(tmp_path: Path) -> None:
     table = tmp_path / "ours.csv"
     result = CliRunner().invoke(command, [str(DEMO), "--format", "csv", "--no-cache", "--jobs", "1", "--exit-zero"])
     table.write_text(result.stdout, encoding="utf-8")
-    lines = printed(DEMO, "--beside", table).splitlines()
+    lines = printed(DEMO, "--tech-counts", table).splitlines()
     assert all("6 (100 %)" in line for line in lines[2:12])
 
 
@@ -230,7 +230,7 @@ def test_a_table_with_a_word_for_a_number_names_the_line(tmp_path: Path, number:
 
 
 def test_charts_of_other_songs_are_said_to_be_none(places: tuple[Path, Path]) -> None:
-    result = CliRunner().invoke(command, [str(DEMO), "--beside", str(places[1])])
+    result = CliRunner().invoke(command, [str(DEMO), "--tech-counts", str(places[1])])
     assert isinstance(result.exception, UsageError)
 
 

@@ -66,7 +66,7 @@ def test_the_film_is_made_entered_and_taken_out_again(song: Path, capsys: pytest
     assert "Duration: 00:00:07.50" in told and "Video: h264" in told and "yuv420p" in told and "Audio" not in told
     changed = (song / "s.sm").read_bytes()
     assert run("annotate", song, "--strip", "--check") == 1  # there is something to take out
-    assert run("annotate", song, "--strip", "--style", "measure") == 0
+    assert run("annotate", song, "--strip", "--markers", "measure") == 0
     assert (song / "s.sm").read_bytes() == changed
     assert run("annotate", song, "--strip") == 0
     assert (song / "s.sm").read_bytes() == before and film.exists()
@@ -110,5 +110,5 @@ def test_what_makes_no_background_is_told_before_the_work(
 
 def test_a_style_that_only_render_writes_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     shutil.copy(DEMO / "two_left_feet.sm", tmp_path)
-    assert run("annotate", tmp_path, "--style", "background") == 2
+    assert run("annotate", tmp_path, "--markers", "background") == 2
     assert "`render --background --into-file` writes it" in capsys.readouterr().err
