@@ -62,7 +62,7 @@ def load_pump() -> list[Labelled]:
     """The Pump charts that players corrected; those that step at the same moments are one song."""
     with tempfile.TemporaryDirectory() as folder:
         with tarfile.open(FEET / "pump" / "labels.tar.xz") as archive:
-            unpack(archive, folder)
+            unpack(archive, Path(folder))
         labels = load_labels(next(Path(folder).rglob("labels.json")).parent)
     return _grouped(labels)
 
@@ -73,7 +73,7 @@ def load_consensus(every: int = 1) -> list[Labelled]:
         entries = json.load(file)[::every]
     with tempfile.TemporaryDirectory() as folder:
         with tarfile.open(SHARED / "charts" / "charts.tar.xz") as archive:
-            unpack(archive, folder)
+            unpack(archive, Path(folder))
         return [found for entry in entries if (found := one_label(Path(folder) / "dev", entry)) is not None]
 
 
