@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from feet_data import Labelled
@@ -118,13 +119,39 @@ def _by_parameter(share: Share, moves: Floats, timed: Floats) -> Floats:
     return np.concatenate([np.where(_FREE, rows @ b.counts, 0.0), (_HAT.T @ (timed @ flags(b))).T.ravel()])
 
 
-def least(floors: Mapping[str, Floats]) -> Floats:
-    """The least that each parameter may be: 0, what is given, and floors of some curves at `KNOTS`."""
+class Limits(NamedTuple):
+    """What the parameters may be. low : the least of each; falling : bool (curves,), those that never rise with time"""
+
+    low: Floats
+    falling: NDArray[np.bool_]
+
+
+def limits(floors: Mapping[str, Floats | float], falling: Sequence[str] = ()) -> Limits:
+    """At least 0, what is given, and floors of some weights, and of some curves at `KNOTS`."""
     given = {**floors, **_GIVEN}
-    return np.concatenate([np.zeros(len(WEIGHTS)), *(given.get(name, np.zeros(len(KNOTS))) for name in CURVES)])
+    sizes = [1] * len(WEIGHTS) + [len(KNOTS)] * len(CURVES)
+    low = [np.broadcast_to(given.get(name, 0.0), size) for name, size in zip(WEIGHTS + CURVES, sizes, strict=True)]
+    return Limits(np.concatenate(low).astype(float), np.isin(CURVES, falling))
 
 
-NONE_LESS_THAN_0 = least({})
+AT_LEAST_0 = limits({})
+
+
+def _sums_of_steps(falling: NDArray[np.bool_]) -> Floats:
+    """A matrix from steps to parameters: a knot of a falling curve is the sum of its own step and all later ones."""
+    out = np.eye(len(WEIGHTS) + len(CURVES) * len(KNOTS))
+    for number in np.flatnonzero(falling):
+        own = slice(len(WEIGHTS) + number * len(KNOTS), len(WEIGHTS) + (number + 1) * len(KNOTS))
+        out[own, own] = np.triu(out[own, own] + 1.0).clip(max=1.0)
+    return out
+
+
+def _steps(found: Floats, within: Limits) -> Floats:
+    """The steps whose sums are the parameters, or the next larger ones that fall."""
+    weights, curves = found[: len(WEIGHTS)], found[len(WEIGHTS) :].reshape(len(CURVES), len(KNOTS))
+    raised = np.maximum.accumulate(curves[:, ::-1], axis=1)[:, ::-1]
+    steps = raised - np.pad(raised[:, 1:], ((0, 0), (0, 1)))
+    return np.concatenate([weights, np.where(within.falling[:, None], steps, curves).ravel()])
 
 
 def loss(found: Floats, data: Sequence[Share], pull: float = 1.0, home: Floats | None = None) -> tuple[float, Floats]:
@@ -157,22 +184,24 @@ def loss(found: Floats, data: Sequence[Share], pull: float = 1.0, home: Floats |
 
 
 def likelihood(
-    start: Floats, data: Sequence[Share], low: Floats = NONE_LESS_THAN_0, rounds: int = 120, pull: float = 1.0,
+    start: Floats, data: Sequence[Share], within: Limits = AT_LEAST_0, rounds: int = 120, pull: float = 1.0,
     home: Floats | None = None,
 ) -> Floats:  # fmt: skip
-    """The weights, none below `low`, under which the labels are likeliest; see `loss`."""
-    scale = np.sqrt(_frequency(data, len(start)) + 1e-4)  # what seldom happens has a flat slope
+    """The weights within limits under which the labels are likeliest; see `loss`."""
+    sums_of = _sums_of_steps(within.falling)
+    scale = np.sqrt(sums_of.T @ _frequency(data, len(start)) + 1e-4)  # what seldom happens has a flat slope
+    low, high = _steps(within.low, within), _steps(_HIGH, Limits(within.low, np.zeros_like(within.falling)))
 
     def scaled(z: Floats) -> tuple[float, Floats]:
-        value, gradient = loss(z / scale, data, pull, home)
-        return value, gradient / scale
+        value, gradient = loss(sums_of @ (z / scale), data, pull, home)
+        return value, sums_of.T @ gradient / scale
 
     found = minimize(
-        scaled, start.clip(low, _HIGH) * scale, jac=True, method="L-BFGS-B",
-        bounds=list(zip(low * scale, _HIGH * scale, strict=True)),
+        scaled, _steps(start.clip(within.low, _HIGH), within).clip(low, high) * scale, jac=True, method="L-BFGS-B",
+        bounds=list(zip(low * scale, high * scale, strict=True)),
         options={"maxiter": rounds, "maxcor": 30},
     )  # fmt: skip
-    return np.asarray(found.x / scale)
+    return np.asarray(sums_of @ (found.x / scale))
 
 
 def _frequency(data: Sequence[Share], size: int) -> Floats:
@@ -193,7 +222,7 @@ def _frequency(data: Sequence[Share], size: int) -> Floats:
 
 
 def perceptron(
-    start: Floats, data: Sequence[Share], low: Floats = NONE_LESS_THAN_0, rounds: int = 6, rate: float = 2e-3
+    start: Floats, data: Sequence[Share], within: Limits = AT_LEAST_0, rounds: int = 6, rate: float = 2e-3
 ) -> Floats:
     """The averaged weights after passes over all charts, some at once, in an order of chance."""
     found, mean, count = start.copy(), np.zeros_like(start), 0
@@ -205,7 +234,8 @@ def perceptron(
     ]
     for _ in range(rounds):
         for number in order.permutation(len(some)):
-            found = np.clip(found - rate * _mistakes(some[number], found), low, _HIGH)
+            found = np.clip(found - rate * _mistakes(some[number], found), within.low, _HIGH)
+            found = _sums_of_steps(within.falling) @ _steps(found, within)
             mean += found
             count += 1
     return mean / count

@@ -72,6 +72,21 @@ def test_a_fit_takes_over_what_labels_say(tools: SimpleNamespace, jumper, method
     assert before < 1.0 == after
 
 
+def test_a_falling_curve_never_rises_with_time(tools: SimpleNamespace, jumper) -> None:  # type: ignore[no-untyped-def]
+    """She switches feet at 400 ms, so a switch gets cheap there and, held to fall, at every longer time; not without."""
+    never = ITG.with_values(curves={"footswitch": ((100, 900),)})
+    data, start = tools.fit.shares(jumper, never), tools.fit.vector(never)
+    free, held = (
+        dict(tools.fit.fitted(never, tools.fit.likelihood(start, data, within)).curves)["footswitch"]
+        for within in (tools.fit.limits({}), tools.fit.limits({}, ("footswitch",)))
+    )
+    costs = {name: [cost for _, cost in curve] for name, curve in (("free", free), ("held", held))}
+    assert costs["free"] != sorted(costs["free"], reverse=True)
+    assert costs["held"] == sorted(costs["held"], reverse=True)
+    for curve in (free, held):
+        assert cost_at(curve, np.array([400]))[0] < 300
+
+
 def test_the_fit_sees_what_the_solver_finds(tools: SimpleNamespace, jumper) -> None:  # type: ignore[no-untyped-def]
     """The cheapest way through the graph is the solver's play, with the preset that a vector makes."""
     vector = tools.fit.vector(ITG)

@@ -19,14 +19,18 @@ DISTINCT = ITG.with_values(weights=_WEIGHTS, curves=_CURVES)
 
 
 def price(picture: str, feet: str, term: str, row: int = -1, gap: int = 24, bpm: float = 150.0) -> int:
-    """What one term costs in a row when the feet are these (L, R as in the picture's places, `l`, `r` hands)."""
+    """What one term costs in a row when the feet are these (L, R as in the picture's places, `l`, `r` hands).
+
+    Words of four letters are rows of dance-single, of five letters rows of pump-single.
+    """
+    pad = pad_of("dance-single" if len(picture.split()[0]) == 4 else "pump-single")
     cells = {
         (number * gap, column): ("LRlr".index(limb), 0)
         for number, word in enumerate(feet.split())
         for column, limb in enumerate(word)
         if limb in "LRlr"
     }
-    found = play.solve(rows_of(picture, gap, bpm), pad_of("dance-single"), DISTINCT, Overrides.of(cells))
+    found = play.solve(rows_of(picture, gap, bpm), pad, DISTINCT, Overrides.of(cells))
     for (tick, column), (limb, _) in cells.items():
         assert found.limb[int(np.searchsorted(found.rows.tick, tick)), column] == limb
     return int(found.cost[row, found.terms.index(term)])
@@ -52,6 +56,10 @@ def price(picture: str, feet: str, term: str, row: int = -1, gap: int = 24, bpm:
         ("lifted", "1... ...1 M... ..1.", "L... ...R .... ..R."),
         ("release", "2... ...1 3.1.", "L... ...R ..L."),
         ("hand", "1... ...1 ..1.", "L... ...R ..l."),
+        ("split-in-front", "1... ...1 1.11", "L... ...R L.LR"),
+        ("split-in-back", "1... ...1 .111", "L... ...R .LRL"),
+        ("split-out-back", "1... ...1 11.1", "L... ...R LL.R"),
+        ("left-in-middle", ".1... ...1. .111.", ".L... ...R. .LLR."),
     ],
 )
 def test_each_weight_alone(term: str, picture: str, feet: str) -> None:
@@ -78,6 +86,14 @@ def test_each_weight_alone(term: str, picture: str, feet: str) -> None:
         ("teleport", "1... 1..1", "L... R..L"),
         ("crossover", "1... .1.. ...1", "L... .R.. ...L"),
         ("crossover-start", "1... .1.. ...1", "L... .R.. ...L"),
+        ("middle-switch", "..1.. ..1..", "..R.. ..L.."),
+        ("shared-jack", ".1.. .1.. .1..", ".L.. .R.. .R.."),
+        ("jump-move", "1... ...1 11..", "L... ...R LR.."),
+        ("jump-exchange", "...1 11.. 11..", "...R LL.. LR.."),
+        ("other-split", "1... ...1 11.1", "L... ...R LL.R"),
+        ("bracket-again", "11.. ...1 11..", "LL.. ...R LL.."),
+        ("held-again", "...1 2... .1.. 3...", "...R L... .L.."),
+        ("held-tap", "21.. ...1 .1.. 3...", "LL.. ...R .L.."),
     ],
 )
 def test_each_curve_alone(term: str, picture: str, feet: str) -> None:
@@ -94,6 +110,17 @@ def test_a_doublestep_after_the_other_foot_was_freed() -> None:
     assert price("2... ...1 3... ..1.", "L... ...R .... ..R.", "freed-doublestep") == freed[1][1]  # 400 ms
     assert price("2... 3..1 ..1.", "L... ...R ..R.", "early-freed-doublestep", gap=12) == early[0][1]
     assert price("2... 3..1 ..1. .1..", "L... ...R ..L. .L..", "early-freed-doublestep") == 0  # the other one
+
+
+def test_a_hold_that_has_ended_since_the_last_row() -> None:
+    """The foot that held steps next, or the other foot takes over its panel; 400 ms after the row before."""
+    step, switch = (DISTINCT.curve(name)[1][1] for name in ("freed-step", "released-switch"))
+    assert price("2... ...1 3... ..1.", "L... ...R .... ..L.", "freed-step") == step
+    assert price("2... ...1 3... ..1.", "L... ...R .... ..R.", "freed-step") == 0  # it stays
+    assert price("2... ...1 3... 1...", "L... ...R .... L...", "freed-step") == 0  # on its panel
+    assert price("2... 3... ..1.", "L... .... ..L.", "freed-step") == 0  # it is a doublestep
+    assert price("2... ...1 3... 1...", "L... ...R .... R...", "released-switch") == switch
+    assert price("2... ...1 3... 1...", "L... ...R .... R...", "footswitch") == 0
 
 
 @pytest.mark.parametrize(
@@ -119,6 +146,18 @@ def test_a_doublestep_after_the_other_foot_was_freed() -> None:
         ("jump", "1... ...1 11.1", "L... ...R LL.R"),
         ("bracket", "1... ...1 11.1", "L... ...R LL.R"),
         ("bracket-in-front", "1... ...1 .1.1", "L... ...R .R.R"),  # behind the middle
+        ("bracket-in-front", "1... ...1 1.11", "L... ...R L.LR"),  # a row of three panels
+        ("split-in-front", "1... ...1 1.1.", "L... ...R L.L."),
+        ("left-in-middle", ".1... ...1. .111.", ".L... ...R. .LRR."),
+        ("footswitch", "..1.. ..1..", "..R.. ..L.."),  # a centre panel
+        ("middle-switch", ".1.. .1..", ".R.. .L.."),
+        ("shared-jack", "1... 1...", "L... L..."),
+        ("jump-move", "1... ...1 1..1", "L... ...R L..R"),  # it stays
+        ("jump-move", "1... ...1 .1.1", "L... ...R .L.R"),  # the other foot moves
+        ("jump-footswitch", "...1 11.. 11..", "...R LL.. LR.."),  # it stays on a panel of the jump
+        ("other-split", "1... ...1 1.11", "L... ...R L.RR"),
+        ("bracket", "11.. ...1 11..", "LL.. ...R LL.."),
+        ("held-again", "...1 2... ...1 .1.. 3...", "...R L... ...R .L.."),  # the other foot has stepped
     ],
 )
 def test_what_costs_nothing(term: str, picture: str, feet: str) -> None:

@@ -11,7 +11,7 @@ import math
 
 from dancetutor_cli.feet.solver.jit import inner_kernel
 from dancetutor_cli.feet.solver.state import LAST, LEFT_AT, LEFT_HELD, LEFT_LIFTED, RIGHT_AT, SIDE, turn
-from dancetutor_cli.feet.solver.tables import DISTANCE_UNIT, EPSILON, LEFT, RIGHT
+from dancetutor_cli.feet.solver.tables import DISTANCE_UNIT, EPSILON, LEFT, MIDDLE, RIGHT
 from dancetutor_cli.feet.solver.vocabulary import EVENTS as NAMES
 from dancetutor_cli.feet.solver.vocabulary import MODELS
 
@@ -19,7 +19,7 @@ from dancetutor_cli.feet.solver.vocabulary import MODELS
     MARKED_DOUBLESTEP, MARKED_FOOTSWITCH, SIDESWITCH, JUMP_FOOTSWITCH, HOLDSWITCH, BRACKET_IN_FRONT, BRACKET_IN_BACK,
     BRACKET_OUT_BACK, BRACKET_ASIDE, TWISTED, CROSSOVER_JUMP, CROSSOVER_FULL, SPIN, TURN_135, TURN_180, FACING,
     FACING_ASIDE, STRETCH, LEAP, MINE, LIFTED, RELEASE, HAND, HAND_HOLD, HAND_BEHIND,
-    UNPLAYABLE,
+    UNPLAYABLE, SPLIT_IN_FRONT, SPLIT_IN_BACK, SPLIT_OUT_BACK, LEFT_IN_MIDDLE,
 ) = range(len(MODELS["itg"].weights))  # fmt: skip
 _BIT = {name: 1 << bit for bit, name in enumerate(NAMES)}
 (
@@ -42,6 +42,8 @@ _WEIGHTS, _CURVES = len(MODELS["itg"].weights), len(MODELS["itg"].curves)
 (
     _F_DOUBLESTEP, _F_NEAR, _F_RELEASED, _F_FREED, _F_EARLY_FREED, _F_FORCED, _F_GROWN, _F_JACK, _F_SWITCH, _F_BRACKET,
     _F_HELD_BRACKET, _F_BRACKET_JUMP, _F_JUMP, _F_AFTER_JUMP, _F_TELEPORT, _F_CROSSOVER, _F_CROSSOVER_START,
+    _F_FREED_STEP, _F_MIDDLE_SWITCH, _F_RELEASED_SWITCH, _F_SHARED_JACK, _F_JUMP_MOVE, _F_JUMP_EXCHANGE, _F_OTHER_SPLIT,
+    _F_BRACKET_AGAIN, _F_HELD_AGAIN, _F_HELD_TAP,
 ) = (1 << _DISTANCE_BITS + i for i in range(_CURVES - 1))  # fmt: skip
 _ANKLE = 30  # 1/20 panels: a foot that goes farther than from corner to corner leaps
 _WIDE = 40  # 1/20 panels: feet farther apart than this are stretched
@@ -86,10 +88,12 @@ def charge_feet(before, s, pressed, ended, terms, rules):  # type: ignore[no-unt
         if g.panels[s[foot], foot, 1] >= 0:
             brackets += 1
             events |= EVENT_BRACKET
-            _charge_direction(s, foot, terms, rules)
+            _charge_direction(s, foot, pressed[1 - foot], terms, rules)
         old = g.mask[before[foot]]
         if ended[0] & old and pressed[foot] & ~old:
             terms[RELEASE] += w[RELEASE]
+        elif ended[1] & old and pressed[foot] & ~old and before[LAST] != foot + 1:
+            facts |= _F_FREED_STEP
         if (
             before[LAST] in (0, foot + 1)
             and not before[LEFT_HELD + 1 - foot]
@@ -101,14 +105,25 @@ def charge_feet(before, s, pressed, ended, terms, rules):  # type: ignore[no-unt
         facts |= _F_BRACKET_JUMP if brackets else _F_JUMP
         for foot in range(2):
             old, other = g.mask[before[foot]], g.mask[before[1 - foot]]
-            if old & pressed[1 - foot] & ~other and not old & pressed[foot] and not before[LEFT_HELD + foot]:
-                terms[JUMP_FOOTSWITCH] = w[JUMP_FOOTSWITCH]
-                events |= EVENT_JUMP_FOOTSWITCH
+            if old & pressed[1 - foot] & ~other and not before[LEFT_HELD + foot]:
+                if old & pressed[foot]:
+                    facts |= _F_JUMP_EXCHANGE
+                else:
+                    terms[JUMP_FOOTSWITCH] = w[JUMP_FOOTSWITCH]
+                    events |= EVENT_JUMP_FOOTSWITCH
+            if before[LAST] == foot + 1 and pressed[foot] & ~old:
+                facts |= _F_JUMP_MOVE
+            if before[LAST] == 2 - foot and g.panels[s[foot], foot, 1] >= 0:
+                facts |= _F_OTHER_SPLIT
     elif left or right:
         foot = 0 if left else 1
         if brackets:
             holds = before[LEFT_HELD + foot] and not before[LEFT_HELD + 1 - foot]
-            facts |= _F_HELD_BRACKET if holds else _F_BRACKET
+            stays = pressed[foot] & ~g.mask[before[foot]] == 0
+            if holds:
+                facts |= _F_HELD_TAP if stays else _F_HELD_BRACKET
+            else:
+                facts |= _F_BRACKET_AGAIN if stays else _F_BRACKET
         more, happened = _charge_step(before, foot, pressed[foot], ended, terms, rules)
         facts |= more
         events |= happened
@@ -116,8 +131,11 @@ def charge_feet(before, s, pressed, ended, terms, rules):  # type: ignore[no-unt
 
 
 @inner_kernel
-def _charge_direction(s, foot, terms, rules):  # type: ignore[no-untyped-def]
-    """Where a foot on two panels points: outward in front, as it likes best, costs nothing."""
+def _charge_direction(s, foot, split, terms, rules):  # type: ignore[no-untyped-def]
+    """Where a foot on two panels points: outward in front, as it likes best, costs nothing.
+
+    split : whether the other foot presses, too: a row of three panels or four
+    """
     g, w = rules.geometry, rules.weights
     heel, toe = g.panels[s[foot], foot, 0], g.panels[s[foot], foot, 1]
     inward = (g.left[toe, 0] - g.left[heel, 0]) * (1 if foot == 0 else -1) > EPSILON
@@ -125,11 +143,16 @@ def _charge_direction(s, foot, terms, rules):  # type: ignore[no-untyped-def]
     if abs(g.left[toe, 1] - g.left[heel, 1]) <= EPSILON:
         terms[BRACKET_ASIDE] += w[BRACKET_ASIDE]
     elif inward and back:
-        terms[BRACKET_IN_BACK] += w[BRACKET_IN_BACK]
+        term = SPLIT_IN_BACK if split else BRACKET_IN_BACK
+        terms[term] += w[term]
     elif inward:
-        terms[BRACKET_IN_FRONT] += w[BRACKET_IN_FRONT]
+        term = SPLIT_IN_FRONT if split else BRACKET_IN_FRONT
+        terms[term] += w[term]
     elif back:
-        terms[BRACKET_OUT_BACK] += w[BRACKET_OUT_BACK]
+        term = SPLIT_OUT_BACK if split else BRACKET_OUT_BACK
+        terms[term] += w[term]
+    if split and foot == 0 and (g.middle == heel or g.middle == toe):
+        terms[LEFT_IN_MIDDLE] += w[LEFT_IN_MIDDLE]
 
 
 @inner_kernel(inline="always")
@@ -140,19 +163,21 @@ def _charge_step(before, foot, pressed, ended, terms, rules):  # type: ignore[no
     stands, other = g.mask[before[foot]], g.mask[before[1 - foot]]
     again = before[LAST] == foot + 1
     if again and pressed & ~stands == 0:
-        return _F_JACK, 0
+        return _F_JACK | _F_SHARED_JACK if pressed & other else _F_JACK, 0
     if not before[LAST] and pressed & ~stands:
         facts |= _F_AFTER_JUMP
     if pressed & other and not pressed & reserved_panels(before, 1 - foot, g.panels):
+        kind = _F_SWITCH
         for panel in range(len(g.arrow)):  # a bracket may take over two
             if pressed & other & 1 << panel:
+                kind = _F_MIDDLE_SWITCH if g.arrow[panel] == MIDDLE else kind
                 events |= _SWITCH[g.arrow[panel]]
                 if g.arrow[panel] in (LEFT, RIGHT):
                     terms[SIDESWITCH] = w[SIDESWITCH]
         if before[LEFT_LIFTED + 1 - foot]:
             terms[MARKED_FOOTSWITCH] = w[MARKED_FOOTSWITCH]
         else:
-            facts |= _F_SWITCH
+            facts |= _F_RELEASED_SWITCH if ended[1] & pressed & other else kind
     if again:
         more, happened = _charge_doublestep(before, foot, pressed, ended, terms, rules)
         facts |= more
@@ -166,7 +191,7 @@ def _charge_doublestep(before, foot, pressed, ended, terms, rules):  # type: ign
     g, w = rules.geometry, rules.weights
     stands, other = g.mask[before[foot]], g.mask[before[1 - foot]]
     if before[LEFT_HELD + foot]:
-        return 0, EVENT_FORCED  # a bracket on what it holds
+        return _F_HELD_AGAIN, EVENT_FORCED  # a bracket on what it holds
     if before[LEFT_HELD + 1 - foot]:
         return _F_FORCED, EVENT_FORCED
     if ended[0] & other:

@@ -1,5 +1,15 @@
 """The dynamic programme: the cheapest way through the rows, over the transition tables that `explore` fills.
 
+With m a move of row r from state a to state b, cost(m) what it costs by weights, time(f, e) what its facts f cost by
+curves e milliseconds after the last row with steps, the cheapest way to each state costs
+
+    C(0, start) = 0
+    C(r, b) = min over moves m: a -> b of row r of  C(r - 1, a) + cost(m) + time(facts(m), e(r))
+
+and the play is what leads to the least C(n, b) of the last row n (Bellman 1957; Viterbi 1967). `margins` has the same
+from the end, D(n, b) = 0, D(r - 1, a) = min over m of  cost(m) + time(facts(m), e(r)) + D(r, b): a row's margin is the
+least C(r - 1, a) + cost(m) + time(facts(m), e(r)) + D(r, b) among moves with other limbs, minus the play's cost.
+
 For each layer of states and pattern of a row the edges to the next layer are known, so the loop only adds costs. Costs
 of a row are kept relative to the row's cheapest state. Of several ways as cheap, the first in order of edges is taken.
 """

@@ -47,6 +47,7 @@ class Geometry(NamedTuple):
     panels : int64 (p, 2, 2), by place and foot: heel and toe; the toe is -1 on one panel
     mask : int64 (p,), the panels of a place as bits; near : int64 (p,), these and their neighbours
     arrow : int64 (c,), where a panel's arrow points: `UP`, `DOWN`, `LEFT`, `RIGHT`, `MIDDLE`; diagonals are up or down
+    middle : the panel in the middle of the pad, -1 if there is none
     """
 
     left: NDArray[np.float64]
@@ -58,6 +59,7 @@ class Geometry(NamedTuple):
     mask: NDArray[np.int64]
     near: NDArray[np.int64]
     arrow: NDArray[np.int64]
+    middle: int
 
 
 class Rules(NamedTuple):
@@ -131,6 +133,7 @@ def geometry(pad: Pad) -> Geometry:
     return Geometry(
         left, right, angle, distance, place, panels, mask, near.astype(np.int64),
         np.array([_arrow(*way) for way in pad.arrows]),
+        next((p for p in range(c) if np.hypot(*(pad.panels[p] - pad.centre)) <= EPSILON), -1),
     )  # fmt: skip
 
 

@@ -33,13 +33,15 @@ _ITG = (
     "marked-doublestep", "marked-footswitch", "sideswitch", "jump-footswitch", "holdswitch", "bracket-in-front",
     "bracket-in-back", "bracket-out-back", "bracket-aside", "twisted", "crossover-jump", "crossover-full", "spin",
     "turn-135", "turn-180", "facing", "facing-aside", "stretch", "leap", "mine", "lifted", "release", "hand",
-    "hand-hold", "hand-behind", "unplayable",
+    "hand-hold", "hand-behind", "unplayable", "split-in-front", "split-in-back", "split-out-back", "left-in-middle",
 )  # fmt: skip
 # `distance` comes last: the others happen or do not, it has a size
 _ITG_CURVES = (
     "doublestep", "near-doublestep", "released-doublestep", "freed-doublestep", "early-freed-doublestep",
     "forced-doublestep", "grown-bracket", "jack", "footswitch", "bracket", "held-bracket", "bracket-jump", "jump",
-    "after-jump", "teleport", "crossover", "crossover-start", "distance",
+    "after-jump", "teleport", "crossover", "crossover-start", "freed-step", "middle-switch", "released-switch",
+    "shared-jack", "jump-move", "jump-exchange", "other-split", "bracket-again", "held-again", "held-tap",
+    "distance",
 )  # fmt: skip
 
 MODELS = {
