@@ -20,7 +20,7 @@ from dancetutor_cli.feet.solver.store import ACTION, EVENTS, FACTS, FACTS_KNOWN,
 from dancetutor_cli.feet.solver.tables import DISTANCE_UNIT
 from dancetutor_cli.feet.solver.vocabulary import MODELS
 
-FIXED = ("hand", "unplayable")  # not for a fit: what nobody does where there is another way
+FIXED = ("hand", "hand-behind", "unplayable")  # not for a fit: what nobody does where there is another way
 BY_SIZE = ("stretch", "leap")  # their counts are 1/20 panels
 DISTANCE_BITS = 10
 TERMS = MODELS["itg"].terms

@@ -34,7 +34,7 @@ LABEL, CONSENSUS = 20.0, 0.05  # what a row of a label counts beside one that tw
 EVERY = 3  # of so many charts of the consensus one is looked at: they are many, and much alike
 FOLDS = {"itg": 4, "pump": 5}
 # no label on dance pads is a bracket after more than 0.4 s, and the consensus has programs' brackets there: people jump
-AT_LEISURE = {"bracket": np.interp(KNOTS, [370, 500, 700], [0.0, 2.2, 3.0])}
+AT_LEISURE = dict.fromkeys(("bracket", "bracket-again"), np.interp(KNOTS, [370, 500, 700], [0.0, 2.2, 3.0]))
 # what one foot does twice in a row is never easier for being quicker: it belongs into the slowest gap of a run
 SLOWEST_GAP = ("doublestep", "near-doublestep", "jack")
 # no label on dance pads brackets while crossed, and these pads have no centre panel: it costs what other switches do
@@ -89,6 +89,13 @@ def outcome(labels: Sequence[Labelled], preset: Preset) -> Outcome:
         assert found.margin is not None
         out.append((label, right, found.margin[np.unique(label.row)]))
     return out
+
+
+def fit_of_all(task: Task, home: Preset) -> tuple[list[Share], Floats]:
+    """All charts of a task as graphs, and the weights under which their labels are likeliest."""
+    whole = shares([*task.judged, *task.guard], home)
+    everything = mixed(whole, task, {label.name for label in task.judged})
+    return whole, likelihood(start_of(home), everything, task.within, ROUNDS)
 
 
 def cross_validated(task: Task, whole: Sequence[Share], home: Preset, begin: Floats | None = None) -> Outcome:
@@ -164,9 +171,7 @@ def fit_all(write: bool, only: str | None, *, both: bool) -> None:
         home, began = feet.load_preset(task.preset), time.process_time()
         print(f"{task.preset}: rows right")
         told("before, the preset as it is", outcome(task.judged, home))
-        whole = shares([*task.judged, *task.guard], home)
-        everything = mixed(whole, task, {label.name for label in task.judged})
-        found = likelihood(start_of(home), everything, task.within, ROUNDS)
+        whole, found = fit_of_all(task, home)
         held_out = cross_validated(task, whole, home, found)
         told("likelihood, songs not seen", held_out)
         preset = fitted(home, found)
