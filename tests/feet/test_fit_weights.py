@@ -73,7 +73,7 @@ def test_a_fit_takes_over_what_labels_say(tools: SimpleNamespace, jumper, method
 
 
 def test_a_falling_curve_never_rises_with_time(tools: SimpleNamespace, jumper) -> None:  # type: ignore[no-untyped-def]
-    """She switches feet at 400 ms, so a switch gets cheap there and, held to fall, at every longer time; not without."""
+    """She switches feet at 400 ms, so a switch gets cheap there and, held to fall, at every longer time."""
     never = ITG.with_values(curves={"footswitch": ((100, 900),)})
     data, start = tools.fit.shares(jumper, never), tools.fit.vector(never)
     free, held = (

@@ -222,3 +222,18 @@ def test_labels(shared_data: Path) -> None:
                 right[label["kind"]].append(all(found.limb[row, column] == foot for column, foot in feet.items()))
     assert np.mean(right["song"]) >= 0.995
     assert np.mean(right["pattern"]) >= 0.97
+
+
+def test_one_foot_twice_belongs_into_the_slow_gap() -> None:
+    """Random taps 65 and 195 ms apart in turn: whatever one foot does twice in a row, it does after the long gap."""
+    quick = slow = 0
+    for seed in range(100, 120):
+        rng, words, column = np.random.default_rng(seed), [], 0
+        for number in range(60):
+            column = int(rng.choice([other for other in range(4) if other != column]))
+            words += ["." * column + "1" + "." * (3 - column)] + ["...."] * (2 * (number % 2))
+        found = play.solve(rows_of(" ".join(words), 12, 15_000 / 65), pad_of("dance-single"), ITG)
+        foot = found.limb.max(axis=1)
+        again = np.flatnonzero(foot[1:] == foot[:-1]) + 1
+        quick, slow = quick + int((again % 2 == 1).sum()), slow + int((again % 2 == 0).sum())
+    assert slow > 20 and quick <= slow / 4

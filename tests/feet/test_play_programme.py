@@ -54,7 +54,7 @@ def few_rows(draw: st.DrawFn) -> Rows:
     return rows_of(" ".join(words), gap=draw(st.sampled_from([6, 12, 24, 96])))
 
 
-@pytest.mark.parametrize("name", ["thesis", "itg", "ddr"])
+@pytest.mark.parametrize("name", ["thesis", "itg", "ddr", "pump"])
 def test_against_every_way(name: str) -> None:
     pad, preset = pad_of("dance-single"), PRESETS[name]
 
