@@ -1,7 +1,7 @@
 """Which node of a file is which bone of a human: by VRM's `humanoid` map, or by name.
 
 Names are compared by their words, without separators, capitals, name spaces and side: this covers the styles of
-Mixamo, Unreal, Rigify, Blender, 3ds Max, VRoid, KayKit, CMU, H-Anim and others. The result is checked against the
+Mixamo, Unreal, Rigify, Blender, 3ds Max, VRoid, KayKit, CMU, H-Anim, MikuMikuDance and others. The result is checked against the
 tree: a bone lies below the one it hangs on. Bone names are VRM's; source of the required 15: VRM 1.0 specification,
 humanoid.md.
 """
@@ -9,6 +9,7 @@ humanoid.md.
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -47,6 +48,19 @@ _FILLERS = frozenset({"x", "m", "c", "stretch", "bend"})  # middle, and what ben
 _PREFIX = re.compile(r"(mixamorig\d*|character\d+|(valvebiped)?bip\d+|ccbase|def|jbip|bone)(?=.)")
 # of CMU's ASF files, where the side is one letter in front: lfemur
 _ASF = frozenset({"femur", "tibia", "foot", "toes", "clavicle", "humerus", "radius", "wrist", "hand"})
+# and of MakeHuman's and Daz's CMU conversions: rshoulder
+_ASF |= {"collar", "shldr", "shoulder", "elbow", "forearm", "thigh", "hip", "knee", "shin", "ankle", "toe"}
+# of MikuMikuDance, whose standard bones have Japanese names; 左 and 右 come first
+_MMD = {
+    "センター": "center",
+    "下半身": "lowerbody",
+    "上半身": "upperbody",
+    "上半身2": "upperbody2",
+    "首": "neck",
+    "頭": "head",
+}
+_MMD_SIDED = {"肩": "clavicle", "腕": "upperarm", "ひじ": "forearm", "手首": "hand", "足": "thigh", "ひざ": "shin"}
+_MMD_SIDED |= {"足首": "foot", "つま先": "toe"}
 _LIMBS = {"Leg": ("UpperLeg", "LowerLeg", "Foot", "Toes"), "Arm": ("Shoulder", "UpperArm", "LowerArm", "Hand")}
 _OLD = {"talocrural": "ankle", "radiocarpal": "wrist", "metatarsal": "midtarsal"}  # H-Anim's names before version 2
 _PAIRED = ("UpperLeg", "LowerLeg", "Foot", "UpperArm", "LowerArm", "Hand")
@@ -170,6 +184,11 @@ def _from_hanim(nodes: Nodes) -> dict[str, int]:
 
 def words_of(name: str) -> tuple[str, str]:
     """Side ("left", "right", "") and plain words of a bone's name: ("left", "upleg") for "mixamorig:LeftUpLeg"."""
+    plain = unicodedata.normalize("NFKC", name)
+    if plain in _MMD:
+        return "", _MMD[plain]
+    if plain[:1] in ("左", "右"):
+        return "left" if plain[0] == "左" else "right", _MMD_SIDED.get(plain[1:], "")
     name = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     tokens = [t for t in re.split(r"[^A-Za-z0-9]+", name) if t]
     tokens = [t.lower() for t in tokens]

@@ -51,38 +51,85 @@ def read_bvh(path: Path, scale: float | None = None) -> Motion:
 
     Returns
     -------
-    Motion with the file's own skeleton (without End Sites), time 0 at the first frame, no contacts
+    Motion with the file's own skeleton (without End Sites), time 0 at the first frame, no contacts. Where hips move
+    under a root, they are joint 0, with all that the root does. Other bones keep their median place; a note says which
 
     Raises
     ------
-    FileError for a file that is no BVH, cut off or too large, with the line; or in which a joint other than the root
-    changes its distance to its parent
+    FileError for a file that is no BVH, cut off or too large, with the line
     """
     lines = _lines(path)
     joints, at = _hierarchy(path, lines)
     values, frame_time = _frames(path, lines, at, sum(len(j.channels) for j in joints))
     scale = _scale(joints) if scale is None else scale
-    offsets = np.array([j.offset for j in joints])
-    rotations = np.tile([1.0, 0.0, 0.0, 0.0], (len(values), len(joints), 1))
-    root = np.tile(offsets[0], (len(values), 1))
+    rotations, moved = _channels_of(joints, values)
+    base = _moving_base(joints, moved)
+    root, first = _carried(joints, base, rotations, moved)
+    rotations[:, base] = first
+    below = _below(joints, base)
+    offsets = np.stack([np.median(moved[:, j], axis=0) for j in below]) * scale
+    offsets[0] = np.array(joints[base].offset) * scale
+    place = {j: k for k, j in enumerate(below)}
+    parents = np.array([-1, *(place[joints[j].parent] for j in below[1:])], dtype=np.int32)
+    skeleton = Skeleton(tuple(joints[j].name for j in below), parents, offsets)
+    times = np.arange(len(values), dtype=np.float64) * frame_time
+    turns = quat.continuous(rotations[:, below])
+    notes = _left_out(joints, below[1:], moved, scale)
+    return Motion(skeleton, 1.0 / frame_time, times, turns, np.asarray(root * scale), (), notes=notes)
+
+
+def _channels_of(joints: list[_Joint], values: Array) -> tuple[Array, Array]:
+    """Local rotations (f, j, 4) and places relative to the parents (f, j, 3)."""
+    rotations = np.empty((len(values), len(joints), 4))
+    moved = np.empty((len(values), len(joints), 3))
     column = 0
     for j, joint in enumerate(joints):
         own = values[:, column : column + len(joint.channels)]
         column += len(joint.channels)
-        rotations[:, j] = _turns(joint.channels, own)
-        moved = _places(joint, own)
-        if j == 0:
-            root = moved
-        elif np.ptp(moved, axis=0).max() > 1e-3 * max(1.0, float(np.abs(offsets).max())):
-            raise FileError(path, f"joint {joint.name!r} moves away from its parent; only the root may")
-        else:
-            offsets[j] = moved[0]
-    parents = np.array([j.parent for j in joints], dtype=np.int32)
-    skeleton = Skeleton(tuple(j.name for j in joints), parents, offsets * scale)
-    times = np.arange(len(values), dtype=np.float64) * frame_time
-    return Motion(
-        skeleton, 1.0 / frame_time, times, quat.continuous(rotations), np.asarray(root * scale, dtype=np.float64), ()
-    )
+        rotations[:, j], moved[:, j] = _turns(joint.channels, own), _places(joint, own)
+    return rotations, moved
+
+
+def _moves(joints: list[_Joint], j: int, moved: Array) -> bool:
+    """Whether a joint changes its place relative to its parent."""
+    size = max(1.0, max(float(np.abs(joint.offset).max()) for joint in joints))
+    return float(np.ptp(moved[:, j], axis=0).max()) > 1e-3 * size
+
+
+def _below(joints: list[_Joint], base: int) -> list[int]:
+    """A joint and all that hang on it, parents first."""
+    out = {base}
+    for j in range(base + 1, len(joints)):
+        if joints[j].parent in out:
+            out.add(j)
+    return sorted(out)
+
+
+def _moving_base(joints: list[_Joint], moved: Array) -> int:
+    """The lowest joint that moves away from its parent and carries most of the skeleton: hips under a root; else 0."""
+    carries = [j for j in range(len(joints)) if 2 * len(_below(joints, j)) > len(joints)]
+    return max((j for j in carries if _moves(joints, j, moved)), default=0)
+
+
+def _carried(joints: list[_Joint], base: int, rotations: Array, moved: Array) -> tuple[Array, Array]:
+    """Place (f, 3) and turn (f, 4) of a joint in the world, through all that it hangs on."""
+    place, turn = moved[:, base], rotations[:, base]
+    above = joints[base].parent
+    while above >= 0:
+        place = moved[:, above] + quat.rotate(rotations[:, above], place)
+        turn = quat.multiply(rotations[:, above], turn)
+        above = joints[above].parent
+    return place, turn
+
+
+def _left_out(joints: list[_Joint], below: list[int], moved: Array, scale: float) -> tuple[str, ...]:
+    """A note on joints whose bones change their length or place: they are kept at their median."""
+    names = [joints[j].name for j in below if _moves(joints, j, moved)]
+    if not names:
+        return ()
+    most = 100.0 * scale * max(float(np.ptp(moved[:, j], axis=0).max()) for j in below)
+    which = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+    return (f"bones that change their place are kept still: {which}, by up to {most:.1f} cm",)
 
 
 def frame_count(motion: Motion, fps: float) -> int:

@@ -55,7 +55,16 @@ def of_motion(path: Path, motion: Motion) -> CapturedMotion:
     places, turns = world_transforms(skeleton, motion.rotations, motion.root)
     rest_turns = np.tile(_IDENTITY, (len(skeleton.names), 1))
     return CapturedMotion(
-        path, skeleton.names, skeleton.parents, skeleton.rest, rest_turns, motion.fps, motion.times, places, turns
+        path,
+        skeleton.names,
+        skeleton.parents,
+        skeleton.rest,
+        rest_turns,
+        motion.fps,
+        motion.times,
+        places,
+        turns,
+        motion.notes,
     )
 
 

@@ -172,10 +172,11 @@ def test_a_good_file_turns_the_leg(tmp_path: Path) -> None:
     np.testing.assert_allclose(quat.rotate(motion.rotations[1, 1], [0, -1, 0]), [1, 0, 0], atol=1e-12)
 
 
-def test_a_joint_that_leaves_its_parent_is_refused(tmp_path: Path) -> None:
+def test_a_bone_that_changes_its_length_keeps_its_median_and_is_named(tmp_path: Path) -> None:
     path = tmp_path / "x.bvh"
     text = GOOD.replace("CHANNELS 3 Zrotation", "CHANNELS 4 Yposition Zrotation")
     text = text.replace("0 90 0 0 0 0 0 0 0\n0 90 0 0 0 0 90 0 0", "0 90 0 0 0 0 -50 0 0 0\n0 90 0 0 0 0 -20 0 0 0")
     path.write_text(text)
-    with pytest.raises(FileError, match="Leg"):
-        read_bvh(path)
+    motion = read_bvh(path)
+    np.testing.assert_allclose(motion.skeleton.offsets[1], [0, -0.35, 0])
+    assert motion.notes == ("bones that change their place are kept still: Leg, by up to 30.0 cm",)

@@ -19,8 +19,16 @@ from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.plants import lowest
 from dancetutor_cli.dance.physics.ragdoll import hinge_axis
 from dancetutor_cli.dance.physics.repin import AnkleTracks, repinned
+from dancetutor_cli.dance.physics.standing import (
+    TRUNK,
+    JointPaths,
+    first_frame,
+    segment_angles,
+    standing_frames,
+    standing_pose,
+)
 from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.dance.rig.body import local_rotations
+from dancetutor_cli.dance.rig.body import local_rotations, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.run.errors import FileError
@@ -28,12 +36,10 @@ from dancetutor_cli.run.errors import FileError
 Array = NDArray[np.float64]
 BENT, STRAIGHT = 0.30, 0.09  # sines of a limb's bend: from the first on it shows its plane, below the second not at all
 CLEAR = 0.7  # cosine between both axes from which the bend alone says what the plane is
-STILL = 0.25  # metres per second, of a body of the rig's size: slower feet may stand
-LOW = 0.06  # metres over its lowest that a foot which stands may be
 UNEVEN = 0.12  # metres; a floor that differs more has steps, and is left as it is
-JUMP, JUMP_LEAST = 20.0, 0.1  # times the next frame's way, and part of the body's height, that a rest pose is away
+_EXTENT = (("skullbase", "l_talocrural"), ("l_hip", "l_knee"), ("r_hip", "r_knee"))
+OFF = 12.0  # degrees between the segments of a capture and of what is made of it, on average, that are a fault
 _UP = np.array([0.0, 1.0, 0.0])
-_BODY = ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4", "skullbase")
 _LIMBS = (("shoulder", "elbow", "radiocarpal"), ("hip", "knee", "talocrural"))
 
 
@@ -42,6 +48,7 @@ class CapturedMotion:
     """A file's motion, in the world as the file has it. f frames, j joints, parents before children.
 
     rest, rest_turns : (j, 3) and (j, 4) in the rest pose; times : (f,) seconds; places, turns : (f, j, 3), (f, j, 4)
+    notes : what of the file is left out, for people
     """
 
     path: Path
@@ -53,6 +60,7 @@ class CapturedMotion:
     times: Array
     places: Array
     turns: Array
+    notes: tuple[str, ...] = ()
 
 
 def on_body(captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton) -> Motion:
@@ -64,13 +72,13 @@ def on_body(captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton)
 
     Returns
     -------
-    Motion of `body`, its lowest standing feet on y = 0, turned so that the file's rest pose looks to +Z
+    Motion of `body`, its lowest standing feet on y = 0, turned to look to +Z
 
     Raises
     ------
-    FileError if the file's joints lie in one point.
+    FileError if the file's joints lie in one point, if nothing says which way is up, or if its poses do not carry over.
     """
-    captured = _without_reference(captured)
+    captured = _without_reference(captured, joints)
     given = _Upright(captured, joints, body)
     frames = len(captured.times)
     world = np.empty((frames, len(body.names), 4))
@@ -91,18 +99,44 @@ def on_body(captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton)
     root = middle - (hips[0] + hips[1]) / 2
     rotations, root = repinned(body, (rotations, root), feet.feet)
     start = captured.times - captured.times[0]
-    return Motion(body, captured.fps, start, quat.continuous(rotations), root, ())
+    _check(given, body, (rotations, root))
+    return Motion(body, captured.fps, start, quat.continuous(rotations), root, (), notes=captured.notes)
 
 
-def _without_reference(captured: CapturedMotion) -> CapturedMotion:
-    """Without the rest pose that some converters put before the first frame: from it everything would jump."""
-    if len(captured.times) < 4:
+def _check(given: _Upright, body: Skeleton, poses: tuple[Array, Array]) -> None:
+    """Raise FileError where the body's segments do not point where the captured ones do."""
+    places, _ = world_transforms(body, *poses)
+    paths = _paths(given.captured, given.joints)
+    upright = replace(paths, places={name: given.place(name) for name in given.joints})
+    angles = segment_angles(upright, {name: places[:, body.index(name)] for name in given.joints})
+    mean, worst = float(np.mean(list(angles.values()))), max(angles, key=lambda name: angles[name])
+    if not mean <= OFF:
+        raise FileError(
+            given.captured.path,
+            f"its poses cannot be carried over: segments point {mean:.0f} degrees elsewhere on average, "
+            f"{worst} {angles[worst]:.0f}; are its left and right, and its joints' names, right?",
+        )
+
+
+def _without_reference(captured: CapturedMotion, joints: Mapping[str, int]) -> CapturedMotion:
+    """Without the rest pose that some converters put before the motion: from it everything would jump."""
+    first = first_frame(_paths(captured, joints))
+    if not first or len(captured.times) - first < 2:
         return captured
-    first, second = (float(np.abs(np.diff(captured.places[k : k + 2], axis=0)).max()) for k in (0, 1))
-    if first < JUMP * max(second, 1e-9) or first < JUMP_LEAST * float(np.ptp(captured.rest, axis=0).max()):
-        return captured
-    turns = captured.turns[1:]
-    return replace(captured, times=captured.times[1:], places=captured.places[1:], turns=turns)
+    rest = slice(first, None)
+    return replace(captured, times=captured.times[rest], places=captured.places[rest], turns=captured.turns[rest])
+
+
+def _paths(captured: CapturedMotion, joints: Mapping[str, int]) -> JointPaths:
+    """What the rig's joints do in the file."""
+    return JointPaths(
+        captured.path,
+        captured.fps,
+        {name: captured.places[:, k] for name, k in joints.items()},
+        {name: captured.turns[:, k] for name, k in joints.items()},
+        {name: captured.rest[k] for name, k in joints.items()},
+        {name: captured.rest_turns[k] for name, k in joints.items()},
+    )
 
 
 class _Upright:
@@ -113,19 +147,11 @@ class _Upright:
 
     def __init__(self, captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton) -> None:
         self.captured, self.joints = captured, joints
-        rest = captured.rest
-        at = {name: rest[k] for name, k in joints.items()}
-        left = at["l_hip"] - at["r_hip"] + at["l_shoulder"] - at["r_shoulder"]
-        up = at["skullbase"] - (at["l_talocrural"] + at["r_talocrural"]) / 2
-        axis = np.eye(3)[np.abs(up).argmax()] * np.sign(up[np.abs(up).argmax()])
-        left = left - (left @ axis) * axis
-        if min(float(np.linalg.norm(left)), float(np.linalg.norm(up))) < 1e-6:
-            raise FileError(captured.path, "its joints lie in one point at rest; export it with its rest pose")
-        left /= np.linalg.norm(left)
-        matrix = np.stack([left, axis, np.cross(left, axis)])
-        self.turn = _from_matrix(matrix)
-        self.scale = _leg(body.rest, {n: body.index(n) for n in joints if n in body.names}) / _leg(rest, joints)
-        self.rest = {name: quat.rotate(self.turn, place) for name, place in at.items()}
+        if any(float(np.ptp(captured.places[:, [joints[a], joints[b]]], axis=1).max()) < 1e-6 for a, b in _EXTENT):
+            raise FileError(captured.path, "its joints lie in one point; export it with its bones' lengths")
+        pose = standing_pose(_paths(captured, joints), body)
+        self.turn, self.rest, self.turns = pose.turn, pose.places, pose.turns
+        self.scale = _leg({n: body.rest[body.index(n)] for n in joints}) / _leg(self.rest)
         hips = [body.rest[body.index(f"{s}_hip")] for s in "lr"]
         self.theirs = self.scale * float(np.linalg.norm(self.rest["l_hip"] - self.rest["r_hip"]))
         self.wider = (float(np.linalg.norm(hips[0] - hips[1])) - self.theirs) / 2
@@ -135,28 +161,19 @@ class _Upright:
         return self.scale * quat.rotate(self.turn, self.captured.places[:, self.joints[name]])
 
     def delta(self, name: str) -> Array:
-        """World turn (f, 4) from the rest pose."""
-        j = self.joints[name]
-        delta = quat.multiply(self.captured.turns[:, j], quat.conjugate(self.captured.rest_turns[j]))
-        return quat.multiply(quat.multiply(self.turn, delta), quat.conjugate(self.turn))
+        """World turn (f, 4) from the pose in which the captured person stands."""
+        turned = quat.multiply(self.turn, self.captured.turns[:, self.joints[name]])
+        return quat.multiply(turned, quat.conjugate(self.turns[name]))
 
     def bone(self, name: str, tip: str) -> Array:
-        """The bone (3,) in the rest pose."""
+        """The bone (3,) in the pose in which the captured person stands."""
         return np.asarray(self.rest[tip] - self.rest[name])
 
 
-def _leg(rest: Array, joints: Mapping[str, int]) -> float:
+def _leg(places: Mapping[str, Array]) -> float:
     """Mean length of both legs."""
     bones = [(f"{s}_{a}", f"{s}_{b}") for s in "lr" for a, b in (("hip", "knee"), ("knee", "talocrural"))]
-    return sum(float(np.linalg.norm(rest[joints[a]] - rest[joints[b]])) for a, b in bones) / 2
-
-
-def _from_matrix(matrix: Array) -> Array:
-    """The quaternion (4,) of a rotation matrix: rows are where x, y, z come from."""
-    first = quat.between(np.array([1.0, 0.0, 0.0]), matrix[:, 0])
-    y = quat.rotate(first, _UP)
-    second = quat.from_axis_angle(matrix[:, 0], np.arctan2(np.cross(y, matrix[:, 1]) @ matrix[:, 0], y @ matrix[:, 1]))
-    return quat.multiply(second, first)
+    return sum(float(np.linalg.norm(places[a] - places[b])) for a, b in bones) / 2
 
 
 def _level(pelvis: Array, given: _Upright) -> Array:
@@ -170,12 +187,12 @@ def _level(pelvis: Array, given: _Upright) -> Array:
 
 def _spread(body: Skeleton, joints: Mapping[str, int], world: Array) -> None:
     """Joints of trunk and neck that the file lacks turn by their share between those that it has."""
-    known = [k for k, name in enumerate(_BODY) if name in joints]
+    known = [k for k, name in enumerate(TRUNK) if name in joints]
     for before, after in pairwise(known):
         for k in range(before + 1, after):
             share = np.full(len(world), (k - before) / (after - before))
-            low, high = (world[:, body.index(_BODY[e])] for e in (before, after))
-            world[:, body.index(_BODY[k])] = quat.slerp(low, high, share)
+            low, high = (world[:, body.index(TRUNK[e])] for e in (before, after))
+            world[:, body.index(TRUNK[k])] = quat.slerp(low, high, share)
     for side in "lr":
         if f"{side}_sternoclavicular" not in joints:
             world[:, body.index(f"{side}_sternoclavicular")] = world[:, body.index("vt4")]
@@ -253,7 +270,7 @@ def _feet(body: Skeleton, given: _Upright, world: Array) -> _Feet:
     for side in "lr":
         ankle, toes = f"{side}_talocrural", f"{side}_metatarsal"
         path, own = given.place(ankle), body.offsets[body.index(toes)]
-        standing = _standing(path, given.captured.fps)
+        standing = standing_frames(path, given.captured.fps)
         level, theirs = quat.IDENTITY, own
         if toes in given.rest:
             way = given.bone(ankle, toes)
@@ -293,13 +310,3 @@ def _floor(low: Array, standing: NDArray[np.bool_]) -> Array:
         return np.full(len(low), np.median(low[standing]))
     knots.sort()
     return np.asarray(np.interp(np.arange(len(low)), [at for at, _, _ in knots], [height for _, height, _ in knots]))
-
-
-def _standing(path: Array, fps: float) -> NDArray[np.bool_]:
-    """In which frames (f,) an ankle (f, 3) may stand: low and slow, or the lowest ones if it never rests."""
-    if len(path) < 3:
-        return np.ones(len(path), dtype=bool)
-    speed = np.linalg.norm(np.gradient(path, 1.0 / fps, axis=0), axis=1)
-    low = path[:, 1] < np.percentile(path[:, 1], 5) + LOW
-    still = low & (speed < STILL)
-    return np.asarray(still if still.sum() >= 5 else low)

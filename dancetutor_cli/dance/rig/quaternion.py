@@ -143,7 +143,7 @@ def swing_twist(q: ArrayLike, axis: ArrayLike) -> tuple[Array, Array]:
 def continuous(q: Array) -> Array:
     """The same rotations (f, ..., 4) with signs chosen so that neighbours in time are on the short arc."""
     dot = np.sum(q[1:] * q[:-1], axis=-1, keepdims=True)
-    sign = np.concatenate((np.ones_like(dot[:1]), np.cumprod(np.where(dot < 0, -1.0, 1.0), axis=0)))
+    sign = np.concatenate((np.ones_like(q[:1, ..., :1]), np.cumprod(np.where(dot < 0, -1.0, 1.0), axis=0)))
     return np.asarray(q * sign)
 
 
