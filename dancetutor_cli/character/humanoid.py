@@ -1,9 +1,9 @@
 """Which node of a file is which bone of a human: by VRM's `humanoid` map, or by name.
 
 Names are compared by their words, without separators, capitals, name spaces and side: this covers the styles of
-Mixamo, Unreal, Rigify, Blender, 3ds Max, VRoid, KayKit, CMU, H-Anim, MikuMikuDance and others. The result is checked against the
-tree: a bone lies below the one it hangs on. Bone names are VRM's; source of the required 15: VRM 1.0 specification,
-humanoid.md.
+Mixamo, Unreal, Rigify, Blender, 3ds Max, VRoid, KayKit, CMU, H-Anim, MikuMikuDance and others. The result is checked
+against the tree: a bone lies below the one it hangs on. Bone names are VRM's; source of the required 15: VRM 1.0
+specification, humanoid.md.
 """
 
 from __future__ import annotations

@@ -20,25 +20,31 @@ ARM, LEG = ("sternoclavicular", "shoulder", "elbow", "radiocarpal"), ("hip", "kn
 
 # trunk from hips to head, arm, leg, words for left and right, how a side's word and a joint's are joined; - : lacks it
 NAMES = {
-    "mixamo": "Hips Spine Spine1 Spine2 Neck Head|Shoulder Arm ForeArm Hand|UpLeg Leg Foot ToeBase|Left Right|mixamorig:{}{}",
+    "mixamo": "Hips Spine Spine1 Spine2 Neck Head"
+    "|Shoulder Arm ForeArm Hand|UpLeg Leg Foot ToeBase|Left Right|mixamorig:{}{}",
     "lafan1": "Hips Spine Spine1 Spine2 Neck Head|Shoulder Arm ForeArm Hand|UpLeg Leg Foot Toe|Left Right|{}{}",
     "rokoko": "Hips Spine Spine2 Spine4 Neck Head|Shoulder Arm ForeArm Hand|Thigh Shin Foot Toe|Left Right|{}{}",
-    "cmu": "root lowerback upperback thorax lowerneck head|clavicle humerus radius wrist|femur tibia foot toes|l r|{}{}",
+    "cmu": "root lowerback upperback thorax lowerneck head"
+    "|clavicle humerus radius wrist|femur tibia foot toes|l r|{}{}",
     "bandai": "Hips Spine - Chest Neck Head|Shoulder UpperArm LowerArm Hand|UpperLeg LowerLeg Foot Toes|L R|{1}_{0}",
     "mocapnet": "hip abdomen - chest neck head|collar shoulder elbow hand|hip knee foot -|l r|{}{}",
     "poser": "hip abdomen - chest neck head|Collar Shldr ForeArm Hand|Thigh Shin Foot -|l r|{}{}",
     "xsens": "Pelvis L5 L3 T8 Neck Head|Shoulder UpperArm ForeArm Hand|UpperLeg LowerLeg Foot Toe|Left Right|{}{}",
     "perception": "Hips Chest Chest2 Chest4 Neck Head|Collar Shoulder Elbow Wrist|Hip Knee Ankle Toe|Left Right|{}{}",
-    "unreal": "pelvis spine_01 spine_02 spine_03 neck_01 head|clavicle upperarm lowerarm hand|thigh calf foot ball|l r|{1}_{0}",
-    "vrm": "hips spine chest upperChest neck head|Shoulder UpperArm LowerArm Hand|UpperLeg LowerLeg Foot Toes|left right|{}{}",
+    "unreal": "pelvis spine_01 spine_02 spine_03 neck_01 head"
+    "|clavicle upperarm lowerarm hand|thigh calf foot ball|l r|{1}_{0}",
+    "vrm": "hips spine chest upperChest neck head"
+    "|Shoulder UpperArm LowerArm Hand|UpperLeg LowerLeg Foot Toes|left right|{}{}",
     "vroid": "J_Bip_C_Hips J_Bip_C_Spine J_Bip_C_Chest J_Bip_C_UpperChest J_Bip_C_Neck J_Bip_C_Head"
     "|Shoulder UpperArm LowerArm Hand|UpperLeg LowerLeg Foot ToeBase|L R|J_Bip_{}_{}",
-    "kinect": "SpineBase SpineMid - SpineShoulder Neck Head|- Shoulder Elbow Wrist|Hip Knee Ankle Foot|Left Right|{1}{0}",
+    "kinect": "SpineBase SpineMid - SpineShoulder Neck Head"
+    "|- Shoulder Elbow Wrist|Hip Knee Ankle Foot|Left Right|{1}{0}",
     "smpl": "Pelvis Spine1 Spine2 Spine3 Neck Head|Collar Shoulder Elbow Wrist|Hip Knee Ankle Foot|L R|{}_{}",
     "biped": "Bip01 Bip01_Spine Bip01_Spine1 Bip01_Spine2 Bip01_Neck Bip01_Head"
     "|Clavicle UpperArm Forearm Hand|Thigh Calf Foot Toe0|L R|Bip01_{}_{}",
     "mmd": "センター 上半身 - 上半身2 首 頭|肩 腕 ひじ 手首|足 ひざ 足首 つま先|左 右|{}{}",
-    "hanim": "HumanoidRoot vl5 vt10 vt4 vc4 skullbase|sternoclavicular shoulder elbow wrist|hip knee ankle midtarsal|l r|{}_{}",
+    "hanim": "HumanoidRoot vl5 vt10 vt4 vc4 skullbase"
+    "|sternoclavicular shoulder elbow wrist|hip knee ankle midtarsal|l r|{}_{}",
 }
 
 

@@ -70,6 +70,17 @@ def test_nobody_stands_a_shove_of_1500_newtons_and_the_notes_missed_are_named(pl
     assert measured["frames past joint limits"].met
 
 
+def test_a_held_note_that_a_shove_makes_her_leave_is_missed_and_named() -> None:
+    events = [(1.0, {0: plays.L}), (1.3, {3: plays.R}), (3.2, {1: plays.L})]
+    play = plays.play(events, holds={(0, 0): 2.9})
+    held = bake(plays.chart().timing, play, plays.pad(), section=(0.6, 3.8))
+    made = through_ragdoll(held, NEUTRAL, Wishes(pushes=(Push(WHEN, 1200.0, 270.0),))).motion
+    assert "missed: 1.000 s column 0 (left foot, held)" in made.notes[-1]
+    assert report(held)["contacts missed"].value == 0 and report(made)["contacts missed"].value == 1
+    light = through_ragdoll(held, NEUTRAL, Wishes(pushes=(Push(WHEN, 200.0, 270.0),))).motion
+    assert light.notes[-1].endswith("; no note is missed") and report(light)["contacts missed"].value == 0
+
+
 def test_a_caught_foot_is_late_and_she_pitches_ahead(plain: Motion, undisturbed: Motion) -> None:
     made = through_ragdoll(plain, NEUTRAL, Wishes(trips=(Stumble(WHEN),))).motion
     assert apart(made, undisturbed, "skullbase").max() >= 0.05

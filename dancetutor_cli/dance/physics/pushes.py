@@ -15,6 +15,8 @@ from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import sole_points, world_transforms
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.play import StepKind
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 
 if TYPE_CHECKING:
@@ -127,6 +129,7 @@ class BreakableSoles(Actor):
 # and misses the notes that it cannot reach any more.
 
 Blow = tuple[float, Array]  # second, and force (3,) in newtons, world
+HOLD_GRACE = 0.25  # seconds that a held note may be let go: StepMania's TimingWindowSecondsHold
 LASTS = 0.15  # seconds that a push acts, and that an obstacle holds a foot
 CHEST = 0.10  # metres over vt4 at which it strikes
 SOFT = 1e-4  # of its stiffness that a spring keeps: 32 Hz become 0.32
@@ -322,12 +325,15 @@ def _hop(share: Array) -> Array:
     return np.asarray(np.sin(np.pi * np.clip(share, 0.0, 1.0)))
 
 
-def without(motion: Motion, missed: Sequence[Contact], note: str) -> Motion:
-    """The motion without contacts that are missed, and with a note that says which."""
-    gone = {id(c) for c in missed}
+def without(motion: Motion, missed: Sequence[Contact], note: str, at: float) -> Motion:
+    """The motion without contacts that are missed, but those held at second `at`, and with a note that says which."""
+    started = {id(c) for c in missed if c.start < at}
+    gone = {id(c) for c in missed} - started
     kept = tuple(c for c in motion.contacts if id(c) not in gone)
     names = ("left foot", "right foot", "left hand", "right hand")
-    which = ", ".join(f"{c.start:.3f} s column {c.column} ({names[c.limb]})" for c in missed)
+    which = ", ".join(
+        f"{c.start:.3f} s column {c.column} ({names[c.limb]}{', held' if id(c) in started else ''})" for c in missed
+    )
     tail = f"; missed: {which}" if missed else "; no note is missed"
     return replace(motion, contacts=kept, notes=(*motion.notes, note + tail))
 
@@ -352,7 +358,7 @@ def disturbed(motion: Motion, pushes: Sequence[Push], trips: Sequence[Stumble]) 
         rotations, root = repinned(motion.skeleton, (motion.rotations, motion.root), feet)
         name = ("left", "right")[side]
         note = f"tripped at {at:.3f} s: her {name} foot is caught"
-        motion = without(replace(motion, rotations=rotations, root=root), missed, note)
+        motion = without(replace(motion, rotations=rotations, root=root), missed, note, at)
     return motion, blows
 
 
@@ -373,8 +379,15 @@ def recovered(
             feet = staggering(motion, feet, push.second, apart[most])
             gone = {id(c) for c in missed}
             motion = replace(motion, contacts=tuple(c for c in motion.contacts if id(c) not in gone))
+            missed = [*held_at(motion, push.second), *missed]
         out.append(missed)
     return motion, feet, out
+
+
+def held_at(motion: Motion, second: float) -> list[Contact]:
+    """The notes that feet hold at a second; they stay among the contacts, so that a report counts them as missed."""
+    feet = (c for c in motion.contacts if c.limb < Limb.LEFT_HAND and c.kind == StepKind.HOLD)
+    return [c for c in feet if c.start < second and c.end > second + HOLD_GRACE]
 
 
 def _farthest(motion: Motion, apart: Array, push: Push) -> int:
@@ -389,5 +402,5 @@ def with_push_notes(motion: Motion, root: Array, pushes: Sequence[Push], missed:
         apart = motion.root - root
         gave = 100 * float(np.hypot(*apart[_farthest(motion, apart, push), [0, 2]]))
         note = f"pushed at {push.second:.3f} s with {push.newtons:g} N: her hips give way by {gave:.0f} cm"
-        motion = without(motion, gone, note)
+        motion = without(motion, gone, note, push.second)
     return motion

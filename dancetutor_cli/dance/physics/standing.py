@@ -117,7 +117,7 @@ def _up_axis(given: JointPaths, zero: tuple[Array, Array] | None) -> Array:
     if zero is not None and float(mean @ zero[1]) > abs(mean[most]) - 0.1:
         return zero[1]
     if abs(mean[most]) > CLEARLY:
-        return np.eye(3)[most] * np.sign(mean[most])
+        return np.asarray(np.eye(3)[most] * np.sign(mean[most]))
     if zero is not None:
         return zero[1]
     raise FileError(

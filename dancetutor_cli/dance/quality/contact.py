@@ -21,12 +21,15 @@ from dancetutor_cli.dance.rig.body import (
 )
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.feet.limbs import Limb, Part
+from dancetutor_cli.feet.play import StepKind
 
 # Contact error: when each limb reaches its panel, against the note's time.
 
 Array = NDArray[np.float64]
 TOUCH = 0.0002  # metres over the surface that count as touching
 INSIDE = 0.02  # metres of a panel around a sole's middle that make it a good foothold
+HOLD_GRACE = 0.25  # seconds that a held note may be let go: StepMania's TimingWindowSecondsHold
+HOLD_STEP, OFF_PANEL = 0.01, 0.002  # seconds between looks at a held note; metres over the panel that are off it
 OFFSETS = np.arange(-50, 51) / 1000.0  # seconds around a note: 1 kHz
 
 
@@ -64,7 +67,8 @@ def soles_inside(motion: Motion) -> Array:
 
 
 def contact_errors(motion: Motion) -> Array:
-    """When sole or palm reaches the panel minus the note's time, milliseconds (c,), nan where it misses the panel.
+    """When sole or palm reaches the panel minus the note's time, milliseconds (c,), nan where it misses the panel, or
+    leaves it while the note is held.
 
     The motion is resampled at 1 kHz within 50 ms of the note. A contact begins when the lowest point comes within
     0.2 mm of the surface, after having been higher; a limb that has stood there all the time is on time if it is
@@ -78,7 +82,22 @@ def contact_errors(motion: Motion) -> Array:
         for k, contact in enumerate(part):
             rows = slice(k * len(OFFSETS), (k + 1) * len(OFFSETS))
             out[start + k] = _error(place(_points(motion, contact), positions[rows], world[rows]), contact)
+            if contact.kind == StepKind.HOLD and away_from_hold(motion, contact) > HOLD_GRACE:
+                out[start + k] = np.nan
     return out
+
+
+def away_from_hold(motion: Motion, contact: Contact) -> float:
+    """The longest time in seconds that a limb is off the panel between a held note's head and its end."""
+    end = min(contact.end, float(motion.times[-1]))
+    times = np.arange(contact.start, end, HOLD_STEP)
+    if len(times) < 2:
+        return 0.0
+    positions, world = world_transforms(motion.skeleton, *sample(motion, times))
+    points = place(_points(motion, contact), positions, world)
+    inside = np.abs(points[..., [0, 2]] - np.array(contact.panel)).max(axis=2) <= HALF_PANEL + 1e-6
+    off = ~((points[..., 1] <= OFF_PANEL) & inside).any(axis=1)
+    return HOLD_STEP * max((end - first for first, end in intervals(off)), default=0)
 
 
 def _points(motion: Motion, contact: Contact) -> tuple[BodyPoint, ...]:
