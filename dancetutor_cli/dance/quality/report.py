@@ -15,6 +15,7 @@ from dancetutor_cli.dance.physics.style import NEUTRAL
 from dancetutor_cli.dance.quality.contact import bar_figures, contact_figures, ground_figures
 from dancetutor_cli.dance.quality.dynamics import balance_figures, dynamics_figures, flight_figures
 from dancetutor_cli.dance.quality.figures import Body, Figure, MotionReport, body_of, published_figures
+from dancetutor_cli.dance.quality.foot_slide import slide_figures
 from dancetutor_cli.dance.quality.posture import (
     PAST,
     capsule_figures,
@@ -102,6 +103,7 @@ def fault_figures(before: Motion, after: Motion, plants: Plants | None) -> tuple
             slides = plant_slides(motion, plants)
             worst = max(slides, default=float("nan"))
             out.append(Figure(f"slide per plant{words}", 1000 * worst, "mm", None if words else 1.0))
+        out += slide_figures(motion, words, not words)
         if words:
             out += _knees(body, motion, words)
         out.append(Figure(f"frames past limits{words}", float(_past(motion).sum()), "", goal))
