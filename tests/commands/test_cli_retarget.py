@@ -13,6 +13,7 @@ from physics_phrase import phrase
 
 from dancetutor_cli.commands.retarget import _CORRECTIONS, command
 from dancetutor_cli.dance.physics.pipeline import CORRECTIONS
+from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.film.media.encoder import Encoding, join
 from dancetutor_cli.film.work import render
 from dancetutor_cli.formats.bvh import read_bvh, write_bvh
@@ -56,6 +57,19 @@ def test_motion_goes_from_format_to_format(bvh: Path, tmp_path: Path) -> None:
     assert last.skeleton.names[last.skeleton.index("l_radiocarpal")] == "l_radiocarpal"
     assert np.isfinite(last.rotations).all() and first.rotations[:, hand].shape == (61, 4)
     assert abs(float(last.root[:, 1].mean() - first.root[:, 1].mean())) < 0.03
+
+
+def test_a_glb_with_joints_that_never_move_is_read_again(tmp_path: Path) -> None:
+    given = phrase(1.0)
+    npz, glb, again = tmp_path / "a.npz", tmp_path / "b.glb", tmp_path / "c.npz"
+    turn = quat.from_axis_angle(np.array([1.0, 0.0, 0.0]), np.array(0.4))
+    given.rotations[:, given.skeleton.index("l_metacarpophalangeal_3")] = turn  # one key for the whole clip
+    write_npz(npz, given)
+    run(npz, "-o", glb, "--correct", "none")
+    run(glb, "-o", again, "--correct", "none")
+    first, last = read_npz(npz), read_npz(again)
+    head = first.skeleton.index("skullbase")
+    assert np.degrees(quat.angle_between(first.rotations[:, head], last.rotations[:, head])).max() < 8.0
 
 
 def test_another_body_gets_springs_by_a_search_that_is_kept(
