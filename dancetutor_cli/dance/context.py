@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.dance.motion import Bar, Grip, Ground
+from dancetutor_cli.dance.motion import Bar, Contact, Grip, Ground, Motion
 from dancetutor_cli.dance.rig.body import BALL_AHEAD
 from dancetutor_cli.dance.rig.skeleton import Skeleton, dancer_skeleton
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_arms import BarSettings
 from dancetutor_cli.dance.settings_feet import StepSettings
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.play import StepKind
 
 if TYPE_CHECKING:
     from dancetutor_cli.dance.plan import Plan
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 PANEL = 0.28  # metres, width of one panel
 HALF_PANEL = PANEL / 2
+HOLD_GRACE = 0.25  # seconds that a held note may be let go: StepMania's TimingWindowSecondsHold
 
 
 def panels_on_ground(pad: Pad) -> Array:
@@ -197,3 +200,9 @@ def grip_share(grip: Grip, times: Array, reach: float) -> Array:
     """How much of a grip there is at each time (n,), 0 to 1; reach : seconds to the rail and from it."""
     long = way_time(grip, reach)
     return smooth((times - grip.start + long) / long) * smooth((grip.end + long - times) / long)
+
+
+def held_at(motion: Motion, second: float) -> list[Contact]:
+    """The notes that feet hold at a second; they stay among the contacts, so that a report counts them as missed."""
+    feet = (c for c in motion.contacts if c.limb < Limb.LEFT_HAND and c.kind == StepKind.HOLD)
+    return [c for c in feet if c.start < second and c.end > second + HOLD_GRACE]

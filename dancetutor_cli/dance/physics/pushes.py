@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.dance.context import held_at
 from dancetutor_cli.dance.physics.plants import Plants, cleared
 from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import sole_points, world_transforms
 from dancetutor_cli.dance.smoothing import smooth
-from dancetutor_cli.feet.limbs import Limb
-from dancetutor_cli.feet.play import StepKind
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 
 if TYPE_CHECKING:
@@ -129,7 +128,6 @@ class BreakableSoles(Actor):
 # and misses the notes that it cannot reach any more.
 
 Blow = tuple[float, Array]  # second, and force (3,) in newtons, world
-HOLD_GRACE = 0.25  # seconds that a held note may be let go: StepMania's TimingWindowSecondsHold
 LASTS = 0.15  # seconds that a push acts, and that an obstacle holds a foot
 CHEST = 0.10  # metres over vt4 at which it strikes
 SOFT = 1e-4  # of its stiffness that a spring keeps: 32 Hz become 0.32
@@ -382,12 +380,6 @@ def recovered(
             missed = [*held_at(motion, push.second), *missed]
         out.append(missed)
     return motion, feet, out
-
-
-def held_at(motion: Motion, second: float) -> list[Contact]:
-    """The notes that feet hold at a second; they stay among the contacts, so that a report counts them as missed."""
-    feet = (c for c in motion.contacts if c.limb < Limb.LEFT_HAND and c.kind == StepKind.HOLD)
-    return [c for c in feet if c.start < second and c.end > second + HOLD_GRACE]
 
 
 def _farthest(motion: Motion, apart: Array, push: Push) -> int:

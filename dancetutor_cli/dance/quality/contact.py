@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.dance.context import HALF_PANEL
+from dancetutor_cli.dance.context import HALF_PANEL, HOLD_GRACE
 from dancetutor_cli.dance.motion import Contact, Motion, sample
 from dancetutor_cli.dance.quality.figures import GROUND, Body, Figure, intervals, over_ground
 from dancetutor_cli.dance.rig import quaternion as quat
@@ -28,7 +28,6 @@ from dancetutor_cli.feet.play import StepKind
 Array = NDArray[np.float64]
 TOUCH = 0.0002  # metres over the surface that count as touching
 INSIDE = 0.02  # metres of a panel around a sole's middle that make it a good foothold
-HOLD_GRACE = 0.25  # seconds that a held note may be let go: StepMania's TimingWindowSecondsHold
 HOLD_STEP, OFF_PANEL = 0.01, 0.002  # seconds between looks at a held note; metres over the panel that are off it
 OFFSETS = np.arange(-50, 51) / 1000.0  # seconds around a note: 1 kHz
 

@@ -24,7 +24,7 @@ JOINTS = ("l_talocrural", "l_metatarsal", "r_talocrural", "r_metatarsal")
 
 
 @dataclass(frozen=True, slots=True)
-class Stand:
+class StandingSpan:
     """A joint that stands: name, from `start` to `end` in seconds, and how far it slides, metres."""
 
     joint: str
@@ -33,7 +33,7 @@ class Stand:
     slide: float
 
 
-def stands_of(times: Array, name: str, path: Array) -> list[Stand]:
+def stands_of(times: Array, name: str, path: Array) -> list[StandingSpan]:
     """When a joint of a foot stands, and how far it slides.
 
     Parameters
@@ -54,7 +54,7 @@ def stands_of(times: Array, name: str, path: Array) -> list[Stand]:
     for first, end in intervals(low & slow).tolist():
         if (end - first) * step < SHORTEST:
             continue
-        out.append(Stand(name, float(times[first]), float(times[end - 1]), _extent(path[first:end][:, [0, 2]])))
+        out.append(StandingSpan(name, float(times[first]), float(times[end - 1]), _extent(path[first:end][:, [0, 2]])))
     return out
 
 
@@ -64,7 +64,7 @@ def _extent(places: Array) -> float:
     return float(np.ptp(places @ np.stack([np.cos(angles), np.sin(angles)]), axis=0).max())
 
 
-def stands(motion: Motion) -> list[Stand]:
+def stands(motion: Motion) -> list[StandingSpan]:
     """Stands of all four joints of the feet of a motion of the rig."""
     length = float(motion.times[-1] - motion.times[0])
     times = motion.times[0] + np.arange(int(length * RATE + 1e-6) + 1) / RATE
