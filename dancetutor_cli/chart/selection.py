@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from dancetutor_cli import chart
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import SONG_SUFFIXES
 
@@ -158,8 +159,6 @@ def note_bytes(path: Path, selection: Selection, data: bytes | None = None) -> i
 
     data : what to read in place of the file. A large file that is meant in part is not read only for this.
     """
-    from dancetutor_cli import chart
-
     try:
         size = path.stat().st_size if data is None else len(data)
         if selection.is_all or size > _LARGE:

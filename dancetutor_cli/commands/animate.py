@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.chart.timing import FASTEST, SLOWEST
+from dancetutor_cli.chart import one_song
+from dancetutor_cli.chart.selection import Selection, note_bytes
+from dancetutor_cli.chart.timing import FASTEST, SLOWEST, heard
 from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, into
 from dancetutor_cli.commands.chart_options import (
     TABLE,
@@ -31,7 +32,7 @@ from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.formats.writers import FORMATS
 from dancetutor_cli.run.errors import UsageError
-from dancetutor_cli.run.files import check_file, one_of
+from dancetutor_cli.run.files import check_file, one_of, write_atomic
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
@@ -124,8 +125,6 @@ def command(file: Path, selection: Selection, dance: DanceOptions, result: Resul
     """
     from dancetutor_cli.character import DANCER, dressed, load_character
     from dancetutor_cli.character.mesh import partner_of
-    from dancetutor_cli.chart import one_song
-    from dancetutor_cli.chart.selection import note_bytes
     from dancetutor_cli.dance.performance import perform, pooled, solve
     from dancetutor_cli.dance.request import DanceRequest, check_request, read_chart, with_style
     from dancetutor_cli.formats.animation import AnimatedDancer, Animation
@@ -175,7 +174,6 @@ def _report_file(result: Result) -> Path | None:
 
 def _section(choice: ChartChoice, section: str | None, performance: Performance) -> tuple[float, float] | None:
     """The section in seconds of the music as it is heard."""
-    from dancetutor_cli.chart.timing import heard
     from dancetutor_cli.dance.request import section_of
 
     if section is None:
@@ -241,7 +239,6 @@ def _report(report: MotionReport, asked_for: bool, places: _Places) -> None:
             click.echo(f"note: {note}")
     if places.report is not None:
         from dancetutor_cli.reports.motion_report import as_json
-        from dancetutor_cli.run.files import write_atomic
 
         write_atomic(places.report, (json.dumps(as_json(report), indent=1) + "\n").encode())
         click.echo(f"{places.report}: the report")

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import click
-from click.shell_completion import ShellComplete, add_completion_class, get_completion_class
+from click.shell_completion import BashComplete, ShellComplete, add_completion_class, get_completion_class
 
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.run.errors import FileError, UsageError
@@ -78,8 +78,6 @@ def command(shell: str | None, only_print: bool, remove: bool) -> None:
 def script_for(shell: str) -> str:
     """The script that a shell reads when it starts."""
     if shell == "bash":  # click asks the bash that it finds for its version, and there may be none
-        from click.shell_completion import BashComplete
-
         return BashComplete.source_template % _variables("bash")
     found = get_completion_class(shell)
     assert found is not None

@@ -21,7 +21,7 @@ from dancetutor_cli.commands.chart_options import (
     section_option,
     style_option,
 )
-from dancetutor_cli.film.choices import LEAST_SIDE, MOST_SIDE, QUALITIES, RENDERERS
+from dancetutor_cli.film.choices import LEAST_SIDE, MOST_SIDE, QUALITIES, RENDERERS, parse_ahead
 from dancetutor_cli.run.errors import UsageError
 
 if TYPE_CHECKING:
@@ -140,7 +140,6 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmR
     """The request that these options make, for a film of a format."""
     from dancetutor_cli.character import check_character
     from dancetutor_cli.dance.request import DanceRequest, with_style
-    from dancetutor_cli.film.choices import parse_ahead
     from dancetutor_cli.film.layout import FilmLook, load_layout
     from dancetutor_cli.film.media.encoder import even_size
     from dancetutor_cli.film.scroll import parse_scroll

@@ -12,13 +12,15 @@ import click
 
 from dancetutor_cli.chart.selection import twin
 from dancetutor_cli.commands.arguments import within_folders
-from dancetutor_cli.reports.terminal import coloured
+from dancetutor_cli.lint.analysis import analyze_file
+from dancetutor_cli.lint.fix import FixOrder, FixOutcome, fix_file, pick
+from dancetutor_cli.lint.rule import rule_named
+from dancetutor_cli.reports.terminal import coloured, safe
 from dancetutor_cli.run.errors import UsageError
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.analysis import AnalyzeTask
     from dancetutor_cli.lint.findings import Finding
-    from dancetutor_cli.lint.fix import FixOutcome
     from dancetutor_cli.lint.results import FileResult
     from dancetutor_cli.lint.run import LintRun
 
@@ -42,7 +44,6 @@ def parse_fix_requests(texts: Sequence[str]) -> tuple[FixRequest, ...]:
 
 def _parse_fix_request(text: str) -> FixRequest:
     from dancetutor_cli.lint.mend import FIXABLE
-    from dancetutor_cli.lint.rule import rule_named
 
     if text.strip().lower() == SAFE:
         return FixRequest(SAFE)
@@ -84,9 +85,6 @@ def _check(tasks: Sequence[AnalyzeTask], options: dict[str, Any]) -> None:
 
 
 def _fix(run: LintRun, task: AnalyzeTask, wanted: Sequence[FixRequest], options: dict[str, Any]) -> FixOutcome:
-    from dancetutor_cli.lint.analysis import analyze_file
-    from dancetutor_cli.lint.fix import FixOrder, FixOutcome, fix_file
-
     result = run.without_baseline(analyze_file(task))
     if result.error is not None:
         return FixOutcome(error=result.error)
@@ -96,8 +94,6 @@ def _fix(run: LintRun, task: AnalyzeTask, wanted: Sequence[FixRequest], options:
 
 
 def _of_file(result: FileResult, asked_for: FixRequest) -> tuple[tuple[Finding, int], ...]:
-    from dancetutor_cli.lint.fix import pick
-
     findings = [(finding, chart.player) for chart in result.charts for finding in chart.findings]
     text = f"--fix {asked_for.rule}:{asked_for.number}"
     if asked_for.number is not None and len(result.charts) > 1:
@@ -163,6 +159,4 @@ class _Talk:
 
 
 def _safe(text: str) -> str:
-    from dancetutor_cli.reports.terminal import safe
-
     return safe(text)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from dancetutor_cli.chart import one_song
 from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long
 from dancetutor_cli.commands.chart_options import (
     exclude_option,
@@ -159,8 +160,6 @@ def _one_film(path: Path, output: Path | None, options: dict[str, Any]) -> Path:
         film or options["poses"] or options["poster"] or options["srt"] or options["background"]
     ):
         return path
-    from dancetutor_cli.chart import one_song
-
     file = one_song(path)
     if film and file == path:
         raise UsageError(f"{output} is one film, and {path} holds not just one song; name one of its files")

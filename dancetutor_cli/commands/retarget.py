@@ -13,7 +13,7 @@ from dancetutor_cli.commands.arguments import GivenPath, into
 from dancetutor_cli.commands.chart_options import TABLE, push_options, report_option, style_option
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.run.errors import UsageError, did_you_mean
-from dancetutor_cli.run.files import check_file, one_of
+from dancetutor_cli.run.files import check_file, one_of, write_atomic
 
 if TYPE_CHECKING:
     from dancetutor_cli.formats.retarget import Retargeting
@@ -133,8 +133,6 @@ def _report(work: Retargeting, wanted: RetargetOptions) -> None:
         for note in report.notes:
             click.echo(f"note: {note}")
         if wanted.report_to != TABLE:
-            from dancetutor_cli.run.files import write_atomic
-
             write_atomic(Path(wanted.report_to), (json.dumps(as_json(report), indent=1) + "\n").encode())
             click.echo(f"{wanted.report_to}: the report")
     if wanted.plot is not None:

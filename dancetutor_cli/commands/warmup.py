@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
 import numpy as np
 
+from dancetutor_cli import chart as charts
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.chart_options import quiet_option
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.dance.request import DanceRequest
+from dancetutor_cli.feet import DEFAULT_PRESET
 from dancetutor_cli.film.choices import QUALITIES, Quality
 from dancetutor_cli.film.clock import Practice
 from dancetutor_cli.film.layout import FilmLook, load_layout
@@ -44,7 +47,6 @@ def _solve() -> None:
 
     Tables that are full, as those of many charts become, are filled into larger ones.
     """
-    from dancetutor_cli import chart as charts
     from dancetutor_cli.feet import load_pad, load_preset, solve_chart
     from dancetutor_cli.feet.solver import store
     from dancetutor_cli.feet.solver.engine import Engine
@@ -59,7 +61,6 @@ def _solve() -> None:
 
 
 def _prepare(prepared: dict[str, PreparedFilm], steps_type: str) -> None:
-    from dancetutor_cli.feet import DEFAULT_PRESET
     from dancetutor_cli.film.work.planning import prepare
 
     look = FilmLook(load_layout("television"), (320, 180), renderer="cpu")
@@ -71,8 +72,6 @@ def _prepare(prepared: dict[str, PreparedFilm], steps_type: str) -> None:
 
 
 def _draw(prepared: PreparedFilm, quality: Quality) -> None:
-    from dataclasses import replace
-
     from dancetutor_cli.film.film import Film
     from dancetutor_cli.film.media.yuv import yuv420
     from dancetutor_cli.film.overlay.blit import Run, strip

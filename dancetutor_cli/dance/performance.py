@@ -18,13 +18,17 @@ from dancetutor_cli.dance.ends import (
     with_exit,
 )
 from dancetutor_cli.dance.motion import Cut, Motion
+from dancetutor_cli.dance.physics.style import load_style
 from dancetutor_cli.dance.pieces import BakedPiece, Each, Piece, RagdollStyle, in_turn, pieces_of, whole_span
 from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_request, no_pad, read_chart
 from dancetutor_cli.dance.settings import load_settings
+from dancetutor_cli.dance.store import with_store
 from dancetutor_cli.dance.two import merge_plays, pad_of_both, place_on, sides_of
 from dancetutor_cli.feet.play import without_unplayable
+from dancetutor_cli.feet.play_json import read_play
 from dancetutor_cli.feet.solved import Solved, solve_song
 from dancetutor_cli.run.errors import DancetutorError, UsageError
+from dancetutor_cli.run.pool import Task, open_workers
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
@@ -99,7 +103,6 @@ class Performance:
         if self.request.style is None:
             return None
         from dancetutor_cli.dance.physics.pipeline import wishes_of
-        from dancetutor_cli.dance.physics.style import load_style
 
         wishes = wishes_of(self.request.push, self.request.trip, self.rate)
         befalls = [("--push", push.second) for push in wishes.pushes] + [("--trip", t.second) for t in wishes.trips]
@@ -128,8 +131,6 @@ def solve(request: DanceRequest, chart: ChartChoice | None = None) -> tuple[Solv
             raise no_pad(request, one.chart)
     if request.play is None:
         return solved
-    from dancetutor_cli.feet.play_json import read_play
-
     one = solved[0]
     assert one.play is not None and one.pad is not None
     return (replace(one, play=read_play(request.play, one.chart, one.play.rows, one.pad)),)
@@ -188,14 +189,10 @@ def as_heard(play: Play, timing: Timing) -> Play:
 
 def pooled(jobs: int = 1) -> Each:
     """Does pieces of work in up to so many processes, but those that are kept; results come in the pieces' order."""
-    from dancetutor_cli.dance.store import with_store
-
     return with_store(in_turn if jobs <= 1 else partial(_pooled, jobs))
 
 
 def _pooled(jobs: int, function: Callable[[Piece], BakedPiece], pieces: Sequence[Piece]) -> Iterator[BakedPiece]:
-    from dancetutor_cli.run.pool import Task, open_workers
-
     if len(pieces) == 1:
         yield function(pieces[0])
         return

@@ -6,8 +6,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from dancetutor_cli import chart as charts
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.dance.settings import USUAL
+from dancetutor_cli.dance.settings import USUAL, load_settings
+from dancetutor_cli.lint.part import check_part, part_of
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.fingerprint import NAMED
 
@@ -75,7 +77,6 @@ def check_request(request: DanceRequest) -> None:
     UnavailableError if a style is wanted and there is no engine for it.
     """
     from dancetutor_cli.dance.gait import load_gait
-    from dancetutor_cli.dance.settings import load_settings
 
     load_settings(request.motion, request.form)
     load_gait(request.gait)
@@ -101,10 +102,8 @@ def read_chart(request: DanceRequest, section: str | None = None) -> ChartChoice
 
     section : looked at here, so that a slip is told before a chart is read
     """
-    from dancetutor_cli import chart as charts
     from dancetutor_cli.dance.two import check_alone
     from dancetutor_cli.lint.configuration import choice_for, mismatch, preset_for
-    from dancetutor_cli.lint.part import check_part
 
     if section is not None:
         check_part(section)
@@ -124,8 +123,6 @@ def read_chart(request: DanceRequest, section: str | None = None) -> ChartChoice
 
 def section_of(chart: ChartChoice, section: str, end: float) -> tuple[float, float]:
     """First and last second of the song of a section as the user wrote it; `end` is the last one that there may be."""
-    from dancetutor_cli.lint.part import part_of
-
     return part_of(section, chart.song, chart.parts[0], chart.presets[0], end)
 
 

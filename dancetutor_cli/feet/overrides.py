@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
+from dancetutor_cli.feet import load_pad
 from dancetutor_cli.feet.limbs import Limb, Part
 
 # What people said about the feet of a chart: limbs they force, findings they do not want, and what was wrong in it.
@@ -124,8 +125,6 @@ def contradictions(chart: Chart, said: Iterable[CellOverride]) -> tuple[list[Cel
     A row that contradicts itself is dropped as a whole; a step that contradicts a hold which its foot is said to keep
     pressing is dropped alone.
     """
-    from dancetutor_cli.feet import load_pad
-
     ordered = sorted(said, key=lambda s: (s.tick, s.column))
     if not ordered:
         return [], []

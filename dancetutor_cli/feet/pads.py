@@ -51,6 +51,11 @@ class Pad:
         return np.hypot(difference[..., 0], difference[..., 1])
 
     @cached_property
+    def width(self) -> float:
+        """Distance along x between the middles of the outermost panels."""
+        return float(np.ptp(self.panels[:, 0]))
+
+    @cached_property
     def neighbours(self) -> NDArray[np.bool_]:
         """Whether one foot can press two panels, (c, c); no panel is its own neighbour."""
         near: NDArray[np.bool_] = (self.distances <= self.reach + 1e-6) & ~np.eye(len(self), dtype=bool)

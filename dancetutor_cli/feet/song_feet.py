@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind, Song
+from dancetutor_cli.chart.note_data import shares_rows
 from dancetutor_cli.chart.pack_files import (
     FILE_NAME,
     Condition,
@@ -18,7 +19,7 @@ from dancetutor_cli.chart.pack_files import (
     find_settings_file,
 )
 from dancetutor_cli.feet.limbs import LETTERS, MEANING, UNKNOWN, Limb, Part
-from dancetutor_cli.feet.overrides import CellOverride, FeetProblem, Ignores, Overrides
+from dancetutor_cli.feet.overrides import CellOverride, FeetProblem, Ignores, Overrides, contradictions
 from dancetutor_cli.run.reading import shown_key
 from dancetutor_cli.run.schema import MarkedYaml, Parsed, Texts, convert
 from dancetutor_cli.run.yaml_files import read
@@ -150,9 +151,7 @@ class SongFeet:
         Returns the overrides for the solver, the ignores for the linter, and what was contradictory, for findings.
         FileError : dancetutor.yaml cannot be read
         """
-        from dancetutor_cli.chart.note_data import shares_rows
         from dancetutor_cli.feet.annotations import has_pins, pinned
-        from dancetutor_cli.feet.overrides import contradictions
         from dancetutor_cli.feet.sme import ChartData, read_sme
 
         song = self._song

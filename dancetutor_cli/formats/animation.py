@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.dance.motion import Cut
+from dancetutor_cli.character.retarget import retarget
+from dancetutor_cli.dance.motion import Cut, padded_from, shifted
 from dancetutor_cli.dance.performance import Performance, Performer
 from dancetutor_cli.dance.pieces import Each, in_turn
+from dancetutor_cli.feet.play import dropped_notes_message
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
@@ -76,9 +78,6 @@ class AnimatedDancer:
     @cached_property
     def motion(self) -> Motion:
         """The motion for the character's skeleton, beginning with those of the others."""
-        from dancetutor_cli.character.retarget import retarget
-        from dancetutor_cli.dance.motion import padded_from, shifted
-
         return shifted(padded_from(retarget(self.baked.motion, self.character), self.animation.begin), *self.place)
 
     @property
@@ -90,8 +89,6 @@ class AnimatedDancer:
         """What there is to say, for people: of the whole motion, or only of the moves."""
         if of_motion:
             return self.baked.motion.notes
-        from dancetutor_cli.feet.play import dropped_notes_message
-
         start, end = self.section
         line = dropped_notes_message([one for one in self._dancer.plan.let_go if start <= one.second <= end])
         return (line,) if line else ()

@@ -10,12 +10,28 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from dancetutor_cli.character import load_character
+from dancetutor_cli.character.humanoid import humanoid_of
+from dancetutor_cli.character.retarget import onto, retarget
+from dancetutor_cli.dance.physics.captured import on_body
+from dancetutor_cli.dance.physics.hair import add_hair
+from dancetutor_cli.dance.physics.pipeline import Tuning, through_ragdoll, tuned
+from dancetutor_cli.dance.physics.style import NEUTRAL, load_style
+from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
+from dancetutor_cli.dance.settings import default_settings
+from dancetutor_cli.formats.captured import of_motion, read_captured
+from dancetutor_cli.formats.npz import read_npz
 from dancetutor_cli.run.errors import DancetutorError, FileError
+from dancetutor_cli.run.files import write_atomic
+from dancetutor_cli.run.reading import config_path, read_json
+from dancetutor_cli.run.trust import kept_folder
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.dance.motion import Motion
-    from dancetutor_cli.dance.physics.pipeline import RagdollResult, Tuning, Wishes
+    from dancetutor_cli.dance.physics.pipeline import RagdollResult, Wishes
     from dancetutor_cli.dance.physics.style import Style
     from dancetutor_cli.dance.quality.figures import MotionReport
     from dancetutor_cli.dance.rig.skeleton import Skeleton
@@ -46,8 +62,6 @@ class Retargeting:
     @cached_property
     def character(self) -> Character:
         """Who shall move."""
-        from dancetutor_cli.character import load_character
-
         return load_character(self.task.character)
 
     @cached_property
@@ -60,13 +74,6 @@ class Retargeting:
     @cached_property
     def source_motion(self) -> Motion:
         """The file's motion on the body, before any physics."""
-        from dancetutor_cli.character.humanoid import humanoid_of
-        from dancetutor_cli.character.retarget import onto
-        from dancetutor_cli.dance.physics.captured import on_body
-        from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-        from dancetutor_cli.formats.captured import of_motion, read_captured
-        from dancetutor_cli.formats.npz import read_npz
-
         path = self.task.source
         if path.suffix.lower() == ".npz":
             motion = read_npz(path)
@@ -80,9 +87,6 @@ class Retargeting:
     @cached_property
     def style(self) -> Style:
         """The style, with springs and densities of the body."""
-        from dancetutor_cli.dance.physics.style import load_style
-        from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-
         style = load_style(self.task.style)
         if "limits" not in self.task.wishes.corrections:
             style = replace(style, limits=False)
@@ -92,10 +96,6 @@ class Retargeting:
     @cached_property
     def ragdoll_result(self) -> RagdollResult:
         """Behind the ragdoll, on the body."""
-        from dancetutor_cli.dance.physics.hair import add_hair
-        from dancetutor_cli.dance.physics.pipeline import through_ragdoll
-        from dancetutor_cli.dance.settings import default_settings
-
         try:
             passed = through_ragdoll(self.source_motion, self.style, self.task.wishes)
         except FileError:
@@ -109,8 +109,6 @@ class Retargeting:
     @cached_property
     def motion(self) -> Motion:
         """For the character's skeleton."""
-        from dancetutor_cli.character.retarget import retarget
-
         return retarget(self.ragdoll_result.motion, self.character)
 
     @property
@@ -120,8 +118,6 @@ class Retargeting:
 
     def report(self) -> MotionReport:
         """The quality of the motion on the body, its faults before and after, and the ragdoll's distances."""
-        import numpy as np
-
         from dancetutor_cli.dance.quality.report import fault_figures, report, with_distances
 
         passed = self.ragdoll_result
@@ -135,12 +131,6 @@ class Retargeting:
 
 def tuning_of(body: Skeleton) -> Tuning:
     """Springs and densities of a body: those found before, or a short search, whose result is kept."""
-    from dancetutor_cli.dance.physics.pipeline import Tuning, tuned
-    from dancetutor_cli.dance.physics.style import NEUTRAL, load_style
-    from dancetutor_cli.run.files import write_atomic
-    from dancetutor_cli.run.reading import config_path, read_json
-    from dancetutor_cli.run.trust import kept_folder
-
     digest = hashlib.sha256(body.offsets.round(6).tobytes())
     digest.update(config_path(f"styles/{NEUTRAL}.yaml").read_bytes() + SCHEMA)
     folder = kept_folder("bodies")

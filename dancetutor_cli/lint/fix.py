@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from dancetutor_cli.chart.edits import unified
 from dancetutor_cli.lint.analysis import AnalyzeTask, load_song
 from dancetutor_cli.lint.configuration import preset_for
 from dancetutor_cli.lint.findings import Finding
@@ -62,7 +63,6 @@ def fix_file(order: FixOrder) -> FixOutcome:
 
 
 def _fix(order: FixOrder) -> FixOutcome:
-    from dancetutor_cli.chart.edits import unified
     from dancetutor_cli.lint.mend import FixSession
 
     task = order.task

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.chart import twin
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Kind, Song
 from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.chart.reader import load
@@ -198,8 +199,6 @@ Key = tuple[str, str, int]
 
 def differences(song: Song) -> Iterator[tuple[str, int | None, int | None]]:
     """Message, line and chart of everything that the .sm beside a .ssc has otherwise; nothing for a .sm."""
-    from dancetutor_cli.chart import twin
-
     other_path = twin(song.path) if song.format == "ssc" else None
     if other_path is None:
         return

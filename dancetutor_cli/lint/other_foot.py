@@ -319,6 +319,5 @@ class _Step(NamedTuple):
 
     def _to_other_pad(self) -> bool:
         assert self.subject.pad is not None
-        panels = self.subject.pad.panels
-        half, two = len(panels) // 2, float(np.ptp(panels[:, 0])) > 2.5
+        half, two = len(self.subject.pad) // 2, self.subject.pad.width > 2.5
         return two and self.before >= 0 and (self.before < half) != (self.column < half)

@@ -5,6 +5,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from dancetutor_cli.chart.timing import check_section, parse_section
 from dancetutor_cli.run.errors import UsageError
 
 if TYPE_CHECKING:
@@ -18,8 +21,6 @@ _HARDEST = re.compile(r"\s*hardest\s*:\s*(\d+)\s*", re.IGNORECASE)
 
 def check_part(text: str) -> None:
     """UsageError for what is no part of any chart: so that a slip is told before a chart is read."""
-    from dancetutor_cli.chart.timing import check_section
-
     if not _FINDING.fullmatch(text) and not _HARDEST.fullmatch(text):
         check_section(text)
 
@@ -34,8 +35,6 @@ def part_of(text: str, song: Song, chart: Chart, preset: Preset, end: float) -> 
     preset : with which the feet are found that the finding is about
     end : second at which the chart ends; no part goes on after it, and one that begins after it is a UsageError
     """
-    from dancetutor_cli.chart.timing import parse_section
-
     if match := _FINDING.fullmatch(text):
         first, last = _around_finding(song, chart, preset, match[1].upper(), int(match[2]))
         return max(0.0, first), min(end, last)
@@ -58,8 +57,6 @@ def _hardest(song: Song, chart: Chart, preset: Preset, number: int) -> tuple[flo
 
 
 def _around_finding(song: Song, chart: Chart, preset: Preset, rule: str, number: int) -> tuple[float, float]:
-    import numpy as np
-
     from dancetutor_cli.lint.check import findings_of
     from dancetutor_cli.lint.subject import solved_chart
 

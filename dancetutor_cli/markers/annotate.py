@@ -9,8 +9,12 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from dancetutor_cli import chart as reader
+from dancetutor_cli.chart.edits import apply, unified
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.lint.configuration import mismatch, preset_for
+from dancetutor_cli.markers import background, edit
+from dancetutor_cli.markers.comments import BACKGROUND, EDIT, FILE_STYLES, SIDECAR, FileChange, Lack
 from dancetutor_cli.run.errors import FileError, NoChartsError
 from dancetutor_cli.run.files import ChangedError, back_up, make_folder, remove_leftovers, write_atomic
 
@@ -18,7 +22,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.feet.preset import Preset
     from dancetutor_cli.lint.run import LintRun
-    from dancetutor_cli.markers.comments import FileChange, Lack
     from dancetutor_cli.markers.planning import FilePlan, MarkerPlan
 
 
@@ -98,9 +101,6 @@ def _attempt(item: Item, order: Order, second: bool) -> AnnotateOutcome:
 
 
 def _annotate(item: Item, order: Order, second: bool) -> AnnotateOutcome:
-    from dancetutor_cli import chart as reader
-    from dancetutor_cli.markers.comments import EDIT, FILE_STYLES, SIDECAR
-
     beside = [style for style in order.styles if style in FILE_STYLES and (style == SIDECAR or not second)]
     if order.into_file and not order.strip and EDIT in beside:
         beside.remove(EDIT)
@@ -127,7 +127,6 @@ class _Work:
     def write(self) -> None:
         """Plan all styles that are asked for."""
         from dancetutor_cli.markers import planning
-        from dancetutor_cli.markers.comments import EDIT
 
         choice = _configured(self.order.preset).presets(self.item.source)
         added = EDIT in self.order.styles and self.order.into_file
@@ -158,7 +157,6 @@ class _Work:
     def strip(self) -> None:
         """Plan the removal of all styles that are asked for."""
         from dancetutor_cli.markers import planning
-        from dancetutor_cli.markers.comments import BACKGROUND, EDIT, Lack
 
         base = self._without_added() if EDIT in self.order.styles else self.song
         added = base
@@ -206,31 +204,19 @@ class _Work:
 
     def _charts(self, song: Song) -> list[Chart]:
         """The charts that are meant; those that we added ourselves have no feet to write."""
-        from dancetutor_cli.markers import edit
-
         return [chart for chart in self.order.selection.charts(song) if not edit.ours(chart)]
 
     def _without_added(self) -> Song:
         """The song without the charts that an earlier run has added for the charts that are meant."""
-        from dancetutor_cli import chart as reader
-        from dancetutor_cli.chart.edits import apply
-        from dancetutor_cli.markers import edit
-
         splices = edit.without_added(self.song, self._charts(self.song))
         return reader.parse(apply(self.song.data, splices), self.song.path) if splices else self.song
 
     def _without_background(self, song: Song) -> Song:
         """The song without the entries of films; the very same object if there are none."""
-        from dancetutor_cli import chart as reader
-        from dancetutor_cli.chart.edits import apply
-        from dancetutor_cli.markers import background
-
         splices = background.remove(song)
         return reader.parse(apply(song.data, splices), song.path) if splices else song
 
     def _take(self, plan: MarkerPlan) -> None:
-        from dancetutor_cli.markers.comments import FileChange
-
         self.changes.append(FileChange(self.item.target, self.song.data, plan.data))
         self.lacks += plan.lacks
         self.notes += plan.notes
@@ -271,8 +257,6 @@ def _configured(preset: str | None) -> LintRun:
 
 
 def _diff(changes: Sequence[FileChange]) -> Iterator[str]:
-    from dancetutor_cli.chart.edits import unified
-
     for change in changes:
         yield from unified(str(change.path), change.old, change.new)
 

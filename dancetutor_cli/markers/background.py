@@ -9,7 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from dancetutor_cli.chart.edits import Splice
+from dancetutor_cli import chart as reader
+from dancetutor_cli.chart import find_files
+from dancetutor_cli.chart.edits import Splice, apply, unchanged
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.msd import Tag, blanked, scan
 from dancetutor_cli.run.errors import FileError, UsageError
@@ -145,8 +147,6 @@ def _beats(value: bytes) -> Iterator[float]:
 
 def files_of_song(path: Path) -> list[Path]:
     """The chart files that get the entry: a file that was named alone, of a folder of one song its .sm and .ssc."""
-    from dancetutor_cli.chart import find_files
-
     return [path] if not path.is_dir() else find_files([path])
 
 
@@ -168,9 +168,6 @@ def enter(film: Path, files: Sequence[Path], backup: bool = False) -> list[str]:
 
 
 def _enter(film: Path, file: Path, backup: bool) -> list[str]:
-    from dancetutor_cli import chart as reader
-    from dancetutor_cli.chart.edits import apply, unchanged
-
     remove_leftovers(file.parent)
     song = reader.load(file)
     without = reader.parse(apply(song.data, remove(song)), file)

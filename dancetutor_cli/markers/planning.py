@@ -14,7 +14,7 @@ from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.note_data import parts, written_parts
 from dancetutor_cli.chart.pack_files import song_stems
 from dancetutor_cli.chart.reader import parse
-from dancetutor_cli.feet import sme
+from dancetutor_cli.feet import sme, solve_chart
 from dancetutor_cli.feet.annotations import step_rows
 from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.song_feet import overrides_for
@@ -148,8 +148,6 @@ def solve_charts(
     problems: list[Lack],
 ) -> Iterator[ChartFeet]:
     """The feet of each chart that has a pad; contradictions in what people said about them go to `problems`."""
-    from dancetutor_cli.feet import solve_chart
-
     padless = set()
     for chart in charts:
         feet = []

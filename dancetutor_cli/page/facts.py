@@ -10,6 +10,7 @@ import numpy as np
 
 from dancetutor_cli.chart.density import bpm_text
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind, Song
+from dancetutor_cli.feet import solve
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.feet.play import Play, StepKind
@@ -92,8 +93,6 @@ def _rows(play: Play) -> Iterator[int]:
 
 
 def _flip(play: Play, row: int, pad: Pad, preset: Preset, overrides: Overrides) -> dict[str, Any]:
-    from dancetutor_cli.feet import solve
-
     tick = int(play.rows.tick[row])
     cells = overrides.cells()
     asked = {}

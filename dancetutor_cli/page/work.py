@@ -9,11 +9,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dancetutor_cli import chart as charts
+from dancetutor_cli.character import dressed, load_character
+from dancetutor_cli.character.mesh import with_foot_colours
+from dancetutor_cli.chart.music import find_music
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.motion import shifted
 from dancetutor_cli.dance.performance import pad_of, perform, play_of_all, playable, pooled, solve
-from dancetutor_cli.page.document import IndexEntry, index_page
+from dancetutor_cli.dance.request import check_request, read_chart
+from dancetutor_cli.feet import alternatives, load_pad, load_preset
+from dancetutor_cli.feet.play_json import read_play
+from dancetutor_cli.feet.solved import solve_song
+from dancetutor_cli.film.scroll import parse_segments
+from dancetutor_cli.lint.passages import hardest
+from dancetutor_cli.page.document import IndexEntry, document, index_page
 from dancetutor_cli.run.errors import DancetutorError, FileError, NoChartsError, UsageError
+from dancetutor_cli.run.files import write_atomic
+from dancetutor_cli.run.pool import Task, open_workers
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
@@ -102,10 +114,6 @@ def make_page(request: PageRequest) -> Page:
 
 def look_up_page(request: PageRequest) -> PageSubject:
     """The quick part of `make_page`: read and solve."""
-    from dancetutor_cli.character import dressed, load_character
-    from dancetutor_cli.character.mesh import with_foot_colours
-    from dancetutor_cli.dance.request import check_request, read_chart
-
     character = with_foot_colours(load_character(dressed(request.character, request.dance.gait)))
     check_request(request.dance)
     choice = read_chart(request.dance)
@@ -120,7 +128,6 @@ def pack_page(page: PageSubject) -> Page:
     """The rest of it: bake and pack."""
     from dancetutor_cli.character.retarget import retarget
     from dancetutor_cli.page.content import pack_content
-    from dancetutor_cli.page.document import document
 
     request, solved = page.request, page.solved
     music, warnings = _music(page.song, page.chart) if request.music else (None, ())
@@ -145,10 +152,6 @@ def _second_play(page: PageSubject) -> tuple[Solved, ...]:
     wanted, path, one = page.request.beside, page.request.dance.path, page.solved[0]
     if wanted is None:
         return ()
-    from dancetutor_cli.feet import alternatives, load_preset
-    from dancetutor_cli.feet.play_json import read_play
-    from dancetutor_cli.feet.solved import solve_song
-
     assert one.play is not None and one.pad is not None
     if wanted.lower().endswith(".json"):
         return (replace(one, play=read_play(Path(wanted), one.chart, one.play.rows, one.pad)),)
@@ -165,7 +168,6 @@ def _content(
     page: PageSubject, beside: tuple[Solved, ...], motions: list[Motion], music: tuple[str, bytes] | None
 ) -> Content:
     from dancetutor_cli.film.notes import note_track
-    from dancetutor_cli.film.scroll import parse_segments
     from dancetutor_cli.page.content import Content
     from dancetutor_cli.page.facts import beats_of, flips_of, ticks_of, words_of
 
@@ -221,7 +223,6 @@ def _findings(solved: tuple[Solved, ...]) -> Iterator[Finding]:
 
 def _passages(solved: tuple[Solved, ...]) -> list[dict[str, Any]]:
     """The hardest passages, the hardest first; of two parts told with whose they are."""
-    from dancetutor_cli.lint.passages import hardest
     from dancetutor_cli.page.facts import differing, passage_object
 
     pairs = [(found, one.chart) for one in solved if one.play for found in hardest(one.play, one.chart.timing)]
@@ -235,8 +236,6 @@ def _passages(solved: tuple[Solved, ...]) -> list[dict[str, Any]]:
 
 
 def _music(song: Song, chart: Chart) -> tuple[tuple[str, bytes] | None, tuple[str, ...]]:
-    from dancetutor_cli.chart.music import find_music
-
     path, missing = find_music(song, chart)
     if path is None:
         return None, (f"{missing}; the page claps",)
@@ -290,8 +289,6 @@ def page_jobs(
 
     Charts without a pad, and those without notes, are left out. Files get names as films do.
     """
-    from dancetutor_cli import chart as charts
-    from dancetutor_cli.feet import load_pad
     from dancetutor_cli.film.overlay.text import clean
     from dancetutor_cli.film.work.batch import DEFAULT_NAME, chart_files, file_name
 
@@ -324,8 +321,6 @@ def page_jobs(
 
 def make_all(jobs: list[PageJob], processes: int) -> Iterator[PageOutcome]:
     """Make pages, in several processes; outcomes come as they are done."""
-    from dancetutor_cli.run.pool import Task, open_workers
-
     workers = open_workers(min(processes, max(len(jobs), 1)), lambda key, n: None)
     try:
         for k, job in enumerate(jobs):
@@ -339,14 +334,10 @@ def make_all(jobs: list[PageJob], processes: int) -> Iterator[PageOutcome]:
 
 def write_index(folder: Path, outcomes: list[PageOutcome], title: str) -> None:
     """The index of what was made, in the order of the charts."""
-    from dancetutor_cli.run.files import write_atomic
-
     write_atomic(folder / INDEX, index_page([one.job.entry for one in outcomes if one.error is None], title))
 
 
 def _make(_: Callable[[int], None], job: PageJob) -> tuple[int, tuple[str, ...]]:
-    from dancetutor_cli.run.files import write_atomic
-
     page = make_page(job.request)
     write_atomic(job.target, page.html)
     return len(page.html), page.warnings

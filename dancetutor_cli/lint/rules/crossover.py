@@ -79,10 +79,8 @@ class Crossover(TimedRule):
 
 def _walks_over(subject: ChartSubject, row: int) -> bool:
     """Whether the steps around a row go on and on to one side, panel by panel, farther than a pad is wide."""
-    import numpy as np
-
     play, pad = subject.play, subject.pad
-    if play is None or pad is None or np.ptp(pad.panels[:, 0]) <= _WIDE:
+    if play is None or pad is None or pad.width <= _WIDE:
         return False
     rows = subject.step_rows
     at = int(rows.searchsorted(row))
@@ -95,17 +93,16 @@ def _walks_over(subject: ChartSubject, row: int) -> bool:
         while last + 1 < len(around) and _onwards(around[last], around[last + 1], pad.panels[:, 0] * way):
             last += 1
         walked = [pressed[0] for pressed in around[first : last + 1]]
-        if len({*walked}) >= _WALKED and np.ptp(pad.panels[walked, 0]) >= _WIDE:
+        x = pad.panels[walked, 0]
+        if len({*walked}) >= _WALKED and x.max() - x.min() >= _WIDE:
             return True
     return False
 
 
 def _in_passing(subject: ChartSubject, row: int) -> bool:
     """Whether only this step is crossed, and the few steps to it come from the other of two pads."""
-    import numpy as np
-
     feet, pad = subject.feet, subject.pad
-    if feet is None or pad is None or np.ptp(pad.panels[:, 0]) <= _WIDE:
+    if feet is None or pad is None or pad.width <= _WIDE:
         return False
     rows = subject.step_rows
     at, half = int(rows.searchsorted(row)), len(pad.panels) // 2

@@ -9,9 +9,6 @@ from typing import TYPE_CHECKING
 from dancetutor_cli.lint.rule import EPSILON, MoveRule
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from dancetutor_cli.lint.subject import ChartSubject
 
 _BEFORE, _AFTER = 3, 1  # steps
@@ -86,7 +83,7 @@ class Doublestep(MoveRule):
             _round_the_centre(subject, row) or _crosses_to_jump(subject, row, self.longest(subject)) for row in rows
         ):
             return True
-        if subject.pad is None or not _two(subject.pad.panels):
+        if subject.pad is None or subject.pad.width <= ONE_PAD:
             return False
         changing = Freedom(self.longest(subject), switch=0.0)
         return all(led_by_a_jack(subject, row) and fewest_crossed(subject, row, changing) <= _LED for row in rows)
@@ -188,14 +185,8 @@ def _own_side(subject: ChartSubject, row: int, *, exchanged: bool = False) -> bo
     if (limbs >= 0).sum() != 1 or limbs.max() > 1:
         return False
     panels, column = subject.pad.panels, int(limbs.argmax())
-    of_pad = panels[len(panels) // 2 * (2 * column // len(panels)) :][: len(panels) // 2] if _two(panels) else panels
+    half = len(panels) // 2
+    of_pad = panels[half * (2 * column // len(panels)) :][:half] if subject.pad.width > ONE_PAD else panels
     off = panels[column, 0] - of_pad[:, 0].mean()
     right = (int(limbs.max()) == 1) != exchanged
     return bool(off > EPSILON if right else off < -EPSILON)
-
-
-def _two(panels: NDArray[np.float64]) -> bool:
-    """Whether these are the panels of two pads side by side."""
-    import numpy as np
-
-    return float(np.ptp(panels[:, 0])) > ONE_PAD

@@ -121,13 +121,11 @@ class Spin(MoveRule):
 
     def _walks(self, subject: ChartSubject, row: int) -> bool:
         """Whether she only goes along a pad for two: a foot has passed the other, side by side."""
-        import numpy as np
-
         play, pad = subject.play, subject.pad
         if play is None or pad is None or row == 0:
             return False
         beside = max(abs(play.facing[row - 1]), abs(play.facing[row])) >= SIDEWAYS
-        return bool(beside and np.ptp(pad.panels[:, 0]) > ONE_PAD)
+        return bool(beside and pad.width > ONE_PAD)
 
 
 def _goes_round(subject: ChartSubject, row: int) -> bool:
