@@ -192,6 +192,7 @@ def command(**options: Any) -> int:  # fmt: skip
 
 def _watch(request: LintRequest, options: dict[str, Any]) -> int:
     """Run for all files, then for those that are saved, until Ctrl-C."""
+    from dancetutor_cli.chart import find_files
     from dancetutor_cli.lint.run import LintRun, changes
 
     if any(str(path) == "-" for path in options["paths"]):
@@ -349,6 +350,8 @@ def _before_work(tasks: Sequence[AnalyzeTask]) -> None:
     solves_often = any(task.suggest or task.alternatives for task in tasks)
 
     def size() -> int:
+        from dancetutor_cli.chart.selection import note_bytes
+
         return sum(note_bytes(task.path, task.selection, task.data) for task in tasks)
 
     announce_compiling(tasks[0].presets, None if solves_often else size)

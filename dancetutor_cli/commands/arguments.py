@@ -15,11 +15,7 @@ from typing import IO, Any
 import click
 from click.shell_completion import CompletionItem
 
-from dancetutor_cli.chart import find_files
-from dancetutor_cli.chart.names import COLUMNS
-from dancetutor_cli.chart.selection import without_links_out
 from dancetutor_cli.run.errors import UsageError
-from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.trust import exclude
 
 # The names that options take, for the Tab key: asked for only while a shell completes.
@@ -55,6 +51,8 @@ def folder(name: str) -> Callable[[], Iterable[str]]:
     """The files of a folder of configs, without their suffix."""
 
     def names() -> Iterable[str]:
+        from dancetutor_cli.run.reading import config_path
+
         return [path.stem for path in config_path(name).glob("*.yaml")]
 
     return names
@@ -62,6 +60,8 @@ def folder(name: str) -> Callable[[], Iterable[str]]:
 
 def steps_types() -> Iterable[str]:
     """Those that have a name."""
+    from dancetutor_cli.chart.names import COLUMNS
+
     return COLUMNS
 
 
@@ -105,6 +105,7 @@ class GivenPath(click.Path):
 
 def within_folders(paths: Sequence[Path], files: Sequence[Path]) -> list[Path]:
     """The files that may be written of those that a search has found; each link out of its folders is one line."""
+    from dancetutor_cli.chart.selection import without_links_out
     from dancetutor_cli.reports.terminal import safe
 
     kept, links = without_links_out(paths, files)

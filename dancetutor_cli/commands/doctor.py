@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import shutil
-import subprocess
-import sys
 import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -71,6 +68,7 @@ def _cpu() -> Check:
 
 def _gl() -> Check:
     from dancetutor_cli.film.scene.gl.available import gpu_device, require_gl
+    from dancetutor_cli.run.errors import UnavailableError
 
     try:
         require_gl()
@@ -85,6 +83,7 @@ def _gl() -> Check:
 
 def _physics() -> Check:
     from dancetutor_cli.dance.physics.style import engine, is_installed
+    from dancetutor_cli.run.errors import install_command
 
     if not is_installed():
         return Check("physics", "without", "no engine for styles and retarget", install_command("physics"))
@@ -133,6 +132,7 @@ def _rubberband() -> Check:
 
 def _cache() -> Check:
     from dancetutor_cli.run.kernels.store import VARIABLE, count_kernels, kernel_folder
+    from dancetutor_cli.run.reading import PACKAGE
 
     folder = kernel_folder()
     target = folder.root or PACKAGE
@@ -188,8 +188,14 @@ def command(as_json: bool) -> None:
 
     Exit status 0 if videos can be made, 2 if not.
     """
+    import sys
+
     checks = examine()
     if as_json:
+        import json
+
+        from dancetutor_cli.run.foreign_text import json_without_commands
+
         rows = [{"name": c.name, "state": c.state, "message": c.message, "mend": c.mend} for c in checks]
         text = json.dumps({"schema": 1, "checks": rows}, ensure_ascii=False, indent=1)
         click.echo(json_without_commands(text))

@@ -12,21 +12,16 @@ from typing import TYPE_CHECKING, Any, TextIO
 import click
 
 from dancetutor_cli.commands.film_options import film_request
-from dancetutor_cli.film.media.encoder import Encoding, choose
-from dancetutor_cli.film.media.ffmpeg import FORMATS, PICTURES
-from dancetutor_cli.film.work.batch import DEFAULT_NAME, Batch, BatchRequest, film_list, parse_meters, parse_shard
-from dancetutor_cli.film.work.records import find_records
-from dancetutor_cli.film.work.segments import common_to_workers, frames_of
-from dancetutor_cli.reports.terminal import FilmProgress, JoinedWarnings, failures_table, safe
+from dancetutor_cli.reports.terminal import JoinedWarnings
 from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.run.files import check_file, check_folder, encoded, make_folder
 from dancetutor_cli.run.foreign_text import json_without_commands
-from dancetutor_cli.run.pool import ClusterWorkers, default_jobs, open_workers
 
 if TYPE_CHECKING:
     from dancetutor_cli.film.choices import RendererKind
-    from dancetutor_cli.film.work.batch import UnreadableFile
+    from dancetutor_cli.film.work.batch import BatchRequest, UnreadableFile
     from dancetutor_cli.film.work.segments import FilmOutcome
+    from dancetutor_cli.reports.terminal import FilmProgress
     from dancetutor_cli.run.pool import Workers
 
 
@@ -34,6 +29,11 @@ def render_batch(
     path: Path, output: Path | None, frames: Path | None, longest: float | None, quiet: bool, options: dict[str, Any]
 ) -> None:
     """Make a film of every chart below `path` that matches. Exits with 2 if one of them failed."""
+    from dancetutor_cli.film.work.batch import Batch, film_list
+    from dancetutor_cli.film.work.records import find_records
+    from dancetutor_cli.reports.terminal import FilmProgress, safe
+    from dancetutor_cli.run.pool import default_jobs
+
     if options["scheduler"]:  # its workers have a working folder of their own
         path, output = path.absolute(), (output or Path("videos")).absolute()
         frames = None if frames is None else frames.absolute()
@@ -98,9 +98,14 @@ def _batch(
 
 
 def _workers(scheduler: str | None, jobs: int, progress: FilmProgress, kind: RendererKind) -> Workers:
+    from dancetutor_cli.film.work.segments import common_to_workers, frames_of
+    from dancetutor_cli.run.pool import open_workers
+
     if scheduler is None:
         common = common_to_workers(kind) if jobs > 1 else ""
         return open_workers(jobs, lambda _key, count: progress.advance(count), common)
+    from dancetutor_cli.run.pool import ClusterWorkers
+
     return ClusterWorkers(scheduler, lambda _key, count: progress.advance(count), frames_of)
 
 
@@ -123,6 +128,8 @@ def _write(results: TextIO | None, line: dict[str, Any]) -> None:
 
 
 def _tell(outcome: FilmOutcome, progress: FilmProgress, quiet: bool, number: int, count: int) -> None:
+    from dancetutor_cli.reports.terminal import safe
+
     name = outcome.job.output.name
     text = {"done": "done", "skipped": "is there already", "failed": f"FAILED: {outcome.error}"}[outcome.status]
     if not quiet or outcome.status == "failed":
@@ -146,6 +153,8 @@ def _sum_up(outcomes: list[FilmOutcome], unreadable: list[UnreadableFile], witho
             parts.append(f"{len(without)} {'songs have' if len(without) > 1 else 'song has'} no such chart")
         click.echo(", ".join(parts), err=True)
     if failed or unreadable:
+        from dancetutor_cli.reports.terminal import failures_table
+
         rows = [(str(bad.path), "", bad.error) for bad in unreadable]
         rows += [(str(one.job.request.path), one.job.label, one.error or "") for one in failed]
         failures_table(rows)

@@ -9,10 +9,7 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dancetutor_cli import chart as reader
-from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.lint.check import check_chart, check_file
 from dancetutor_cli.lint.configuration import PresetChoice, mismatch, preset_for
 from dancetutor_cli.lint.findings import AUTO, AlternativeResult, Cause, Figures, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
@@ -256,6 +253,7 @@ class _File:
         """What is told of the file."""
         if self._failed:
             return self._failed
+        from dancetutor_cli.lint.check import check_file
         from dancetutor_cli.lint.subject import FileSubject
 
         task, song, charts = self._task, self._song, self._with_meters()
@@ -307,6 +305,8 @@ def _unselected(song: Song, selected: tuple[Chart, ...]) -> tuple[str, ...]:
 
 def load_song(task: AnalyzeTask) -> Song:
     """Read the task's file; FileError if that fails."""
+    from dancetutor_cli import chart as reader
+
     return reader.load(task.path) if task.data is None else reader.parse(task.data, task.path)
 
 
@@ -319,6 +319,8 @@ def solved(song: Song, charts: tuple[Chart, ...], task: AnalyzeTask) -> Iterator
 
 
 def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
+    from dancetutor_cli.chart.names import is_lights
+
     yield from (warning.message for warning in song.warnings)
     for result in charts:
         if is_lights(result.steps_type):  # nobody dances them

@@ -95,6 +95,9 @@ def _run_rule(rule: ChartRule | ReaderRule, subject: ChartSubject) -> list[Findi
 
 def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:
     """What the linter finds in a chart, with the configuration that holds for its file."""
+    from dancetutor_cli.chart.pack_files import find_settings_file
+    from dancetutor_cli.lint.configuration import load_configuration
+
     settings = load_configuration(find_settings_file(subject.song.path.absolute().parent), found=True).settings
     return merged_by_foot(check_chart(subject, settings), subject)
 

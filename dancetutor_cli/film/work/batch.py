@@ -11,8 +11,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from dancetutor_cli import chart as charts
-from dancetutor_cli.chart import find_files, twin
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.media.film_formats import PICTURES
@@ -109,6 +107,8 @@ def film_list(batch: BatchRequest) -> FilmList:
     taken: set[str] = set()
     for path in chart_files(batch.paths, batch.exclude):
         try:
+            from dancetutor_cli import chart as charts
+
             song = charts.load(path)
         except NoChartsError:  # the music of a menu: nobody meant it to be danced
             without.append(path)

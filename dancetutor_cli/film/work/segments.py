@@ -17,14 +17,14 @@ import numpy as np
 from dancetutor_cli.film.media.encoder import Encoding, join
 from dancetutor_cli.film.media.film_formats import PICTURES
 from dancetutor_cli.film.work.records import FilmRecord, digest_of, move_segment, new_work_name, remove_work
-from dancetutor_cli.film.work.request import FilmRequest, film_key, look_up
+from dancetutor_cli.film.work.request import FilmRequest, look_up
 from dancetutor_cli.run.errors import DancetutorError, FileError
 from dancetutor_cli.run.files import place_of
-from dancetutor_cli.run.kernels.compiling import is_kept
 from dancetutor_cli.run.pool import Report, Task
 
 if TYPE_CHECKING:
     from dancetutor_cli.film.choices import RendererKind
+    from dancetutor_cli.film.film import Film
     from dancetutor_cli.film.picture import Frame
     from dancetutor_cli.film.plan import FilmPlan
     from dancetutor_cli.film.work.planning import PreparedFilm
@@ -76,6 +76,8 @@ def _film(plan: PlanFile) -> Film:
 
     A pickle can run anything, so one that this program has not written is never loaded.
     """
+    from dancetutor_cli.film.film import Film
+
     data = plan.path.read_bytes()
     if hashlib.sha256(data).hexdigest() != plan.digest:
         raise FileError(plan.path, "was changed by somebody else while the film was made")
@@ -92,7 +94,13 @@ def common_to_workers(kind: RendererKind) -> str:
 
     One worker does that alone, by `warm_up`, and the others fetch what it has compiled.
     """
+    from dancetutor_cli.film.scene import renderer
+    from dancetutor_cli.film.scene.cpu.shade import resolve
+    from dancetutor_cli.run.kernels.compiling import is_kept
+
     if renderer.resolve_renderer(kind) != "cpu":
+        from dancetutor_cli.film.scene.gl.available import gpu_device
+
         return "dancetutor_cli.film.film" if gpu_device() is not None else "dancetutor_cli.film.work.common_gl"
     return "dancetutor_cli.film.work.common" if is_kept(resolve) else ""
 
@@ -102,6 +110,16 @@ def warm_up(report: Report) -> None:
 
     That is to import what drawing needs and to fetch its kernels, or compile them, by drawing a tiny room.
     """
+    from dancetutor_cli.character import load_dancer
+    from dancetutor_cli.feet import load_pad
+    from dancetutor_cli.film import film  # noqa: F401
+    from dancetutor_cli.film.media import yuv  # noqa: F401
+    from dancetutor_cli.film.scene import (
+        dancer,  # noqa: F401
+        renderer,
+    )
+    from dancetutor_cli.film.scene.scene import FrameState, Scene
+
     pad = load_pad("dance-single")
     if pad is None:
         return
@@ -113,6 +131,8 @@ def warm_up(report: Report) -> None:
 
 def render_segment(report: Report, plan: PlanFile, segment: Segment, encoding: Encoding) -> str:
     """Draw and encode one segment; returns its SHA-256, "" for pictures. Its file appears whole or not at all."""
+    from dancetutor_cli.film.media.encoder import encode_segment
+
     film = _film(plan)
     part = segment.path
     if encoding.target != PICTURES:
@@ -228,6 +248,8 @@ def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> O
 
     earlier : what is kept of that run; work : name of the folder to make beside the output, for what is not finished
     """
+    from dancetutor_cli.film.work.request import film_key
+
     subject = look_up(job.request)
     frames = subject.clock.frames
     if job.longest is not None and max(subject.clock.seconds, subject.chart_seconds) > job.longest:
@@ -236,6 +258,8 @@ def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> O
     folder = job.output.parent / work
     if earlier.key == key and earlier.size is not None and earlier.size == size_of(job.output):
         return OpenedFilm(key, folder, None, (), (), None, frames, subject.warnings, skipped=True)
+    from dancetutor_cli.film.work.planning import prepare
+
     prepared = prepare(job.request, subject)
     parts = tuple(segments(frames, job.encoding, folder))
     finished: tuple[int, ...] = ()
@@ -299,6 +323,8 @@ def close_film(report: Report, job: FilmJob, opened: OpenedFilm, digests: dict[i
 
 def write_sound(prepared: PreparedFilm, encoding: Encoding, folder: Path) -> Path | None:
     """The sound track as a WAV file in `folder`; None for a silent film."""
+    from dancetutor_cli.film.media import sound
+
     if not encoding.format.has_sound or prepared.sound is None:
         return None
     path = folder / "sound.wav"
