@@ -59,7 +59,6 @@ def price(picture: str, feet: str, term: str, row: int = -1, gap: int = 24, bpm:
         ("split-in-front", "1... ...1 1.11", "L... ...R L.LR"),
         ("split-in-back", "1... ...1 .111", "L... ...R .LRL"),
         ("split-out-back", "1... ...1 11.1", "L... ...R LL.R"),
-        ("left-in-middle", ".1... ...1. .111.", ".L... ...R. .LLR."),
     ],
 )
 def test_each_weight_alone(term: str, picture: str, feet: str) -> None:
@@ -148,7 +147,6 @@ def test_a_hold_that_has_ended_since_the_last_row() -> None:
         ("bracket-in-front", "1... ...1 .1.1", "L... ...R .R.R"),  # behind the middle
         ("bracket-in-front", "1... ...1 1.11", "L... ...R L.LR"),  # a row of three panels
         ("split-in-front", "1... ...1 1.1.", "L... ...R L.L."),
-        ("left-in-middle", ".1... ...1. .111.", ".L... ...R. .LRR."),
         ("footswitch", "..1.. ..1..", "..R.. ..L.."),  # a centre panel
         ("middle-switch", ".1.. .1..", ".R.. .L.."),
         ("shared-jack", "1... 1...", "L... L..."),

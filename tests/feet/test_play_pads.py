@@ -52,10 +52,7 @@ def busy(columns: int, seed: int) -> Rows:
 @pytest.mark.parametrize("name", sorted(PRESETS))
 @pytest.mark.parametrize("steps_type", sorted(load_pads(config_path("pads.yaml"))))
 def test_every_pad_in_every_preset(steps_type: str, name: str) -> None:
-    """But for the right foot's preference for the middle panel, which is no mirror's."""
     rows, pad, preset = busy(COLUMNS[steps_type], 3), pad_of(steps_type), PRESETS[name]
-    if preset.model == "itg":
-        preset = preset.with_values(weights={"left-in-middle": 0})
     assert check_mirror(rows, pad, preset, left_right=True) > 0
     found = feet.solve(rows, pad, PRESETS[name])
     assert ((found.limb != Limb.NONE) == (rows.steps > 0)).all()

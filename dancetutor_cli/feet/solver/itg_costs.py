@@ -19,7 +19,7 @@ from dancetutor_cli.feet.solver.vocabulary import MODELS
     MARKED_DOUBLESTEP, MARKED_FOOTSWITCH, SIDESWITCH, JUMP_FOOTSWITCH, HOLDSWITCH, BRACKET_IN_FRONT, BRACKET_IN_BACK,
     BRACKET_OUT_BACK, BRACKET_ASIDE, TWISTED, CROSSOVER_JUMP, CROSSOVER_FULL, SPIN, TURN_135, TURN_180, FACING,
     FACING_ASIDE, STRETCH, LEAP, MINE, LIFTED, RELEASE, HAND, HAND_HOLD, HAND_BEHIND,
-    UNPLAYABLE, SPLIT_IN_FRONT, SPLIT_IN_BACK, SPLIT_OUT_BACK, LEFT_IN_MIDDLE,
+    UNPLAYABLE, SPLIT_IN_FRONT, SPLIT_IN_BACK, SPLIT_OUT_BACK,
 ) = range(len(MODELS["itg"].weights))  # fmt: skip
 _BIT = {name: 1 << bit for bit, name in enumerate(NAMES)}
 (
@@ -151,8 +151,6 @@ def _charge_direction(s, foot, split, terms, rules):  # type: ignore[no-untyped-
     elif back:
         term = SPLIT_OUT_BACK if split else BRACKET_OUT_BACK
         terms[term] += w[term]
-    if split and foot == 0 and (g.middle == heel or g.middle == toe):
-        terms[LEFT_IN_MIDDLE] += w[LEFT_IN_MIDDLE]
 
 
 @inner_kernel(inline="always")

@@ -33,7 +33,7 @@ _ITG = (
     "marked-doublestep", "marked-footswitch", "sideswitch", "jump-footswitch", "holdswitch", "bracket-in-front",
     "bracket-in-back", "bracket-out-back", "bracket-aside", "twisted", "crossover-jump", "crossover-full", "spin",
     "turn-135", "turn-180", "facing", "facing-aside", "stretch", "leap", "mine", "lifted", "release", "hand",
-    "hand-hold", "hand-behind", "unplayable", "split-in-front", "split-in-back", "split-out-back", "left-in-middle",
+    "hand-hold", "hand-behind", "unplayable", "split-in-front", "split-in-back", "split-out-back",
 )  # fmt: skip
 # `distance` comes last: the others happen or do not, it has a size
 _ITG_CURVES = (
