@@ -26,7 +26,7 @@ def run(*arguments: object) -> Result:
 def test_music_without_notes_is_no_error(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"menu.{suffix}"
     path.write_text(MENU)
-    result = run(path, "--no-cache")
+    result = run(path, "--no-cache", "--full")
     assert (result.exception, result.return_value) == (None, 0)
     assert "no charts: the file has no NOTES: nothing to dance" in result.output
 

@@ -44,7 +44,7 @@ def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = No
             click.echo(f"note: {fault}", err=True)
         return
     folder, is_ready = kernel_folder(), all(is_compiled(preset) for preset in presets)
-    if folder.fault and not quiet and not is_ready:
+    if folder.fault and not quiet and (VARIABLE in os.environ or not is_ready):
         where = (
             f"compiled kernels are kept in {folder.root or 'the installation'}"
             if folder.is_writable

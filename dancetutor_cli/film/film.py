@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Song
 from dancetutor_cli.film.clock import JointBlocks, Moments
 from dancetutor_cli.film.layout import WIDE_PAD, PixelBox, lowered, overlap
-from dancetutor_cli.film.media.subtitles import subtitle_style, subtitles
 from dancetutor_cli.film.notes import PanelLights, lighting
 from dancetutor_cli.film.overlay import captions
 from dancetutor_cli.film.overlay import marks as beside
@@ -29,13 +28,11 @@ from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import Frame, darkened
 from dancetutor_cli.film.plan import FilmPlan, turned
-from dancetutor_cli.film.scene import dancer
 from dancetutor_cli.film.scene.props import Television
 from dancetutor_cli.film.scroll import parse_scroll
 from dancetutor_cli.film.words import CALLS_OFF, CALLS_WIDE, Stay, calls_room, clear, dancing, moments, stay
 from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.files import encoded, write_atomic
-from dancetutor_cli.run.pictures import picture_bytes
 
 if TYPE_CHECKING:
     from dancetutor_cli.film.scene.dancer import Dancer
@@ -209,6 +206,8 @@ class Film:
     @cached_property
     def _dancer(self) -> Dancer:
         """The renderer of the dancer's box; made in the process that draws."""
+        from dancetutor_cli.film.scene import dancer
+
         plan, look = self.plan, self.plan.look
         left, top, right, bottom = self._box("dancer")
         assert self.layout.dancer is not None and plan.motions and plan.pad is not None
@@ -351,6 +350,8 @@ def write_pose_index(folder: Path, song: Song, chart: Chart, plan: FilmPlan) -> 
 
 def write_poster(path: Path, plan: FilmPlan) -> None:
     """A picture for a title page: the first called-out move, or a note a third into the film."""
+    from dancetutor_cli.run.pictures import picture_bytes
+
     one = plan.clock.passes[-1]
     first = max(one.start, one.sound_from) + 1.0
     calls = [call.second for call in plan.callouts if first <= call.second <= one.end]
@@ -365,6 +366,8 @@ def write_poster(path: Path, plan: FilmPlan) -> None:
 
 def write_subtitles(path: Path, plan: FilmPlan) -> str | None:
     """Subtitles that name the moves, beside the film. Returns a warning if there is nothing to name, so no file."""
+    from dancetutor_cli.film.media.subtitles import subtitle_style, subtitles
+
     text = subtitles(plan.cues, plan.clock, subtitle_style())
     if not text:
         path.unlink(missing_ok=True)  # one of an earlier film would lie

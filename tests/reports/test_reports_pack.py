@@ -113,7 +113,7 @@ class Tags(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.seen.add(tag)
         self.links += [f"{tag} {name}" for name, _ in attrs if name in ("src", "href", "onerror", "onload")]
-        if tag not in ("meta", "path", "rect", "circle", "polyline"):
+        if tag not in ("br", "meta", "path", "rect", "circle", "polyline"):
             self.open.append(tag)
 
     def handle_endtag(self, tag: str) -> None:

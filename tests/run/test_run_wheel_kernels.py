@@ -54,7 +54,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     monkeypatch.setattr("dancetutor_cli.run.reading.PACKAGE", package)
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "build"))
     assert not hits(source)
-    shutil.copytree(store.kernel_folder().of_module(source), came(package))
+    shutil.copytree(store.kernel_folder().of_module(source), came(package), dirs_exist_ok=True)
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "mine"))
     yield package
     for cached in (store.source_digest, target.maker):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +13,6 @@ from dancetutor_cli.film.choices import Quality
 from dancetutor_cli.film.media.film_formats import FORMATS, PICTURES, FilmFormat, JoinJob
 from dancetutor_cli.run import ffmpeg
 from dancetutor_cli.run.errors import FileError, UnavailableError
-from dancetutor_cli.run.pictures import picture_bytes
 
 if TYPE_CHECKING:
     from dancetutor_cli.film.picture import Frame
@@ -57,6 +55,8 @@ def choose(wanted: str) -> Encoder:
 
 def _has_cuda() -> bool:
     """Whether NVIDIA's driver is there at all: asking ffmpeg costs a tenth of a second."""
+    import ctypes
+
     for library in ("libcuda.so.1", "nvcuda.dll"):
         try:
             ctypes.CDLL(library)
@@ -147,6 +147,8 @@ def encode_segment(frames: Iterable[Frame], encoding: Encoding, path: Path, firs
 
 def save_picture(frame: Frame, path: Path) -> None:
     """Write one frame as PNG."""
+    from dancetutor_cli.run.pictures import picture_bytes
+
     try:
         path.write_bytes(picture_bytes(frame, compress_level=2))
     except OSError as error:

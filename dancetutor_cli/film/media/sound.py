@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import wave
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -101,6 +100,8 @@ def stretch(samples: Samples, rate: float) -> Samples:
 
 def _through(arguments: tuple[str, ...], data: bytes) -> bytes:
     """Give ffmpeg `data` and return what it makes of it; a thread writes, so that neither pipe can block the other."""
+    from concurrent.futures import ThreadPoolExecutor
+
     with ffmpeg.Process(arguments, "changing the speed of the music", write=True, read=True) as process:
         with ThreadPoolExecutor(1) as pool:
 

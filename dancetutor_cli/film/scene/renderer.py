@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from dancetutor_cli.character.mesh import PREFIX
 from dancetutor_cli.film.choices import QUALITIES, RENDERERS, Quality, RendererKind
 from dancetutor_cli.film.scene.camera import NEAR, Camera
-from dancetutor_cli.film.scene.gl.available import gpu_device, load_pyrender
 from dancetutor_cli.film.scene.scene import (
     PANEL,
     FootMark,
@@ -89,10 +88,14 @@ def resolve_renderer(kind: RendererKind) -> RendererKind:
 
 
 def _gpu() -> bool:
+    from dancetutor_cli.film.scene.gl.available import gpu_device
+
     return gpu_device() is not None
 
 
 def _create_gl(scene: Scene, size: tuple[int, int], quality: Quality) -> Renderer:
+    from dancetutor_cli.film.scene.gl.available import load_pyrender
+
     load_pyrender()
     from dancetutor_cli.film.scene.gl.renderer import GlRenderer
 

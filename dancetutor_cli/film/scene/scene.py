@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character.mesh import Character, rest_vertices
-from dancetutor_cli.dance.rig.body import palm_points
 from dancetutor_cli.feet.limbs import LimbColours, limb_colours
 from dancetutor_cli.film.picture import PadLike
 from dancetutor_cli.film.scene.camera import WHOLE, Camera, Region, parse
@@ -231,6 +230,8 @@ def foot_marks(scene: Scene, joints: Array, whose: str = "") -> tuple[FootMark |
 
 def hand_marks(scene: Scene, joints: Array) -> tuple[FootMark | None, FootMark | None]:
     """As `foot_marks`, for the palms: a palm is a foot whose heel and toe are one point."""
+    from dancetutor_cli.dance.rig.body import palm_points  # brings numba, which choosing a scene must not
+
     skeleton = scene.character.skeleton
     needed = [f"{side}_{part}" for side in "lr" for part in ("shoulder", "elbow", "radiocarpal")]
     if not set(needed) <= set(skeleton.names):

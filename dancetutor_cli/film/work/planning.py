@@ -9,14 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.character import DANCER, dressed, load_character
-from dancetutor_cli.character.mesh import with_foot_colours
-from dancetutor_cli.character.retarget import retarget
 from dancetutor_cli.chart.density import fastest_bpm
-from dancetutor_cli.dance.bake import mines_of
 from dancetutor_cli.dance.motion import Motion, shifted
 from dancetutor_cli.dance.performance import as_heard, pad_of, perform, play_of_all, playable, pooled, solve
-from dancetutor_cli.dance.quality.contact import feet_on_mines, mine_messages
 from dancetutor_cli.dance.two import place_on
 from dancetutor_cli.film.choices import parse_ahead
 from dancetutor_cli.film.clock import whole_song
@@ -29,8 +24,6 @@ from dancetutor_cli.film.overlay.diagram import step_rows
 from dancetutor_cli.film.overlay.header import title_warnings, words_of
 from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.film.plan import FilmPlan, turned
-from dancetutor_cli.film.scene.scene import Scene
-from dancetutor_cli.film.scene.visibility import feet_hidden
 from dancetutor_cli.film.scroll import ScrollSegments, SpeedSegments, reading_bpm, segments_of, speeds_of
 from dancetutor_cli.film.work.request import (
     FilmRequest,
@@ -40,7 +33,6 @@ from dancetutor_cli.film.work.request import (
     quiet_after,
     quiet_in,
 )
-from dancetutor_cli.lint.check import findings_of
 from dancetutor_cli.run.errors import UsageError
 
 if TYPE_CHECKING:
@@ -119,6 +111,9 @@ def _mines(
     motions: Mapping[float, Sequence[Motion]], plays: Sequence[tuple[Solved, Play]], fastest: float
 ) -> tuple[dict[float, tuple[Motion, ...]], tuple[OnMine, ...]]:
     """The motions, whose notes tell of mines that a foot is on, and these mines at the fastest rate."""
+    from dancetutor_cli.dance.bake import mines_of
+    from dancetutor_cli.dance.quality.contact import feet_on_mines, mine_messages
+
     pad = pad_of([one for one, _ in plays])
     out: dict[float, tuple[Motion, ...]] = {}
     found: list[OnMine] = []
@@ -164,6 +159,8 @@ class PreparedFilm:
 
 def prepare(request: FilmRequest, subject: FilmSubject) -> PreparedFilm:
     """Do everything dear that comes before the first frame. DancetutorError says in one line what is wrong."""
+    from dancetutor_cli.character import dressed
+
     song, chart, clock = subject.song, subject.chart, subject.clock
     dance = film_dance(request, subject)
     play, pad = dance.play, dance.pad
@@ -223,6 +220,9 @@ def _with_feet_camera(look: FilmLook, character: Character | None, pad: Pad) -> 
     part = look.layout.dancer
     if character is None or part is None or look.camera is not None or look.layout.screen is not None:
         return look
+    from dancetutor_cli.film.scene.scene import Scene
+    from dancetutor_cli.film.scene.visibility import feet_hidden
+
     camera = Scene(character, pad).camera(part.camera, look.size, part.region)
     return replace(look, camera=HIGH) if feet_hidden(character, camera, look.size) else look
 
@@ -242,6 +242,7 @@ def _about(one: Solved) -> CalloutSubject:
 
 
 def _findings(one: Solved) -> tuple[Finding, ...]:
+    from dancetutor_cli.lint.check import findings_of
     from dancetutor_cli.lint.subject import subject_of
 
     return findings_of(subject_of(one))
@@ -287,8 +288,13 @@ def _fitted(
 
     given : the motions are of files, which may be for the character's skeleton already
     """
+    from dancetutor_cli.character import DANCER, load_character
+
     if not motions or (name == DANCER and not given):
         return None, motions
+    from dancetutor_cli.character.mesh import with_foot_colours
+    from dancetutor_cli.character.retarget import retarget
+
     character = with_foot_colours(load_character(name))
 
     def fitted(motion: Motion) -> Motion:
