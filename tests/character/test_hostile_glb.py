@@ -7,8 +7,10 @@ import os
 import struct
 import tracemalloc
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -146,7 +148,12 @@ def test_a_file_of_100_megabytes_is_refused_unread(tmp_path: Path, monkeypatch: 
     path = tmp_path / "large.glb"
     with path.open("wb") as file:
         file.truncate(100_000_000)  # a hole: takes no disk
-    monkeypatch.setattr("dancetutor_cli.run.reading.open", lambda *how, **more: pytest.fail("was read"), raising=False)
+
+    @contextmanager
+    def unread(*_how: object, **_more: object) -> Iterator[SimpleNamespace]:
+        yield SimpleNamespace(read=lambda *_: pytest.fail("was read"))
+
+    monkeypatch.setattr("dancetutor_cli.run.reading.open", unread, raising=False)
     with pytest.raises(FileError, match="100 MB"):
         load_character(str(path))
 
