@@ -97,7 +97,7 @@ def test_how_sure_feet_must_be_is_a_matter_of_the_configuration() -> None:
 def test_nonsense_is_refused(value: str) -> None:
     from dancetutor_cli.run.errors import UsageError
 
-    with pytest.raises(UsageError, match="must be a (whole )?number from 0 to"):
+    with pytest.raises(UsageError, match=r"must be a (whole )?number from 0 to"):
         with_assignments(load_configuration(None), [value])
 
 
