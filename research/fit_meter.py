@@ -14,7 +14,7 @@ from __future__ import annotations
 import argparse
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -29,21 +29,17 @@ from scipy.optimize import nnls
 from dancetutor_cli.lint.meter.estimate import (
     TAGGED,
     MeteredChart,
-    label_scales_of,
-    level_of,
     on_scale,
     scales_of,
     sized,
     tagged_scale,
 )
 from dancetutor_cli.lint.meter.features import Feature
-from dancetutor_cli.lint.meter.model import Curve, MeterModel, Scale, model_for, model_of
-from dancetutor_cli.lint.meter.score import Level
+from dancetutor_cli.lint.meter.model import Curve, MeterModel, Scale, model_of
 from dancetutor_cli.run.reading import config_path
 
 Floats = NDArray[np.float64]
 TARGET = config_path("meter")
-SCORES = config_path("score.yaml")
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 FOLDS, TURNS, ROUNDS = 10, 5, 12
 PULL = 1.0  # towards 0, of a piece scaled to deviation 1
@@ -379,37 +375,9 @@ def main() -> None:
             path.write_text(yaml_of(pad, Fit(used, names).model(intervals, alone)), encoding="utf-8")
             print(f"  written: {path.name}")
     if given.tiers:
-        fit_scores(every, given.folder, given.tiers, given.dry_run)
+        score_fit.fit_scores(every, WANTED, (given.folder, given.tiers), dry_run=given.dry_run)
     else:
         print("scores: not fitted, since no --tiers names the tiers of a community")
-
-
-def fit_scores(every: Sequence[Labelled], folder: Path, tiers: Path, dry_run: bool) -> None:
-    """Print how many pairs of songs not seen come out right, and write configs/score.yaml."""
-    charts = score_fit.rated(every, folder, tiers)
-    levels = levels_by_label(every)
-    lines, (below, above) = score_fit.report(charts, lambda one: levels[one.chart])
-    print("\n".join(lines))
-    if not dry_run:
-        model = replace(score_fit.fitted(charts, score_fit.pull_of(charts, 0)), below=below, above=above)
-        SCORES.write_text(score_fit.yaml_of(model, charts), encoding="utf-8")
-        print(f"  written: {SCORES.name}")
-
-
-def levels_by_label(charts: Sequence[Labelled]) -> dict[Labelled, Level]:
-    """The level of each chart as in use: by its label, on the scale that its file is found to be numbered on."""
-    files: dict[tuple[str, str], list[Labelled]] = defaultdict(list)
-    for one in charts:
-        files[one.file, one.steps_type].append(one)
-    out = {}
-    for (_, steps_type), of_file in files.items():
-        model = model_for(steps_type)
-        if model is not None and len(model.scales) > 1:
-            places = [WANTED.index(feature) for feature in model.features]
-            rows = [sized(model, [one.values[n] for n in places], (one.meter, one.difficulty)) for one in of_file]
-            for one, this, scale in zip(of_file, rows, label_scales_of(rows, of_file[0].tag), strict=True):
-                out[one] = level_of(this, scale)
-    return out
 
 
 if __name__ == "__main__":

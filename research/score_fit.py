@@ -11,8 +11,9 @@ from __future__ import annotations
 
 import csv
 import hashlib
+from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,10 +22,15 @@ from meter_data import Labelled
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
+from dancetutor_cli.lint.meter.estimate import label_scales_of, level_of, sized
+from dancetutor_cli.lint.meter.features import Feature
+from dancetutor_cli.lint.meter.model import model_for
 from dancetutor_cli.lint.meter.oddities import ODDITIES, TIMED, Oddities
 from dancetutor_cli.lint.meter.score import Level, ScoreModel, Weight
+from dancetutor_cli.run.reading import config_path
 
 Floats = NDArray[np.float64]
+SCORES = config_path("score.yaml")
 TERMS: Mapping[str, tuple[str, ...]] = {
     "rhythm": ("odd waits", "triplets", "fine rows"),
     "bursts": ("quick", "half-quick"),
@@ -319,3 +325,36 @@ def yaml_of(model: ScoreModel, charts: Sequence[Rated]) -> str:
         lines.append(f"  {pad}:\n    start: {start:g}\n    usual:\n")
         lines += [f"      {name}: {row(values)}\n" for name, values in model.usual[pad].items() if name in used]
     return "".join(lines)
+
+
+def fit_scores(
+    every: Sequence[Labelled], features: Sequence[Feature], sources: tuple[Path, Path], *, dry_run: bool
+) -> None:
+    """Print how many pairs of songs not seen come out right, and write configs/score.yaml.
+
+    features : those that the values of the charts are of; sources : the folder of the charts, the table of tiers
+    """
+    charts = rated(every, *sources)
+    levels = levels_by_label(every, features)
+    lines, (below, above) = report(charts, lambda one: levels[one.chart])
+    print("\n".join(lines))
+    if not dry_run:
+        model = replace(fitted(charts, pull_of(charts, 0)), below=below, above=above)
+        SCORES.write_text(yaml_of(model, charts), encoding="utf-8")
+        print(f"  written: {SCORES.name}")
+
+
+def levels_by_label(charts: Sequence[Labelled], features: Sequence[Feature]) -> dict[Labelled, Level]:
+    """The level of each chart as in use: by its label, on the scale that its file is found to be numbered on."""
+    files: dict[tuple[str, str], list[Labelled]] = defaultdict(list)
+    for one in charts:
+        files[one.file, one.steps_type].append(one)
+    out = {}
+    for (_, steps_type), of_file in files.items():
+        model = model_for(steps_type)
+        if model is not None and len(model.scales) > 1:
+            places = [features.index(feature) for feature in model.features]
+            rows = [sized(model, [one.values[n] for n in places], (one.meter, one.difficulty)) for one in of_file]
+            for one, this, scale in zip(of_file, rows, label_scales_of(rows, of_file[0].tag), strict=True):
+                out[one] = level_of(this, scale)
+    return out
