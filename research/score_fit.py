@@ -335,6 +335,8 @@ def fit_scores(
     features : those that the values of the charts are of; sources : the folder of the charts, the table of tiers
     """
     charts = rated(every, *sources)
+    if not charts:
+        raise SystemExit(f"{sources[1]}: none of its paths is a chart below {sources[0]}; name their folder")
     levels = levels_by_label(every, features)
     lines, (below, above) = report(charts, lambda one: levels[one.chart])
     print("\n".join(lines))
