@@ -205,11 +205,12 @@ def _followed(motion: Motion, piece: Piece, ragdoll: RagdollStyle) -> BakedPiece
 def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
     """Solve the body at times `at` (f,), and move it so that its centre of mass, head and all, is where it shall be."""
     skeleton, settings, reach = context.skeleton, context.settings, context.settings.body.reach
-    targets = targets_at(plan, body, at, context)
+    feet = both_feet(plan.feet, at, settings)
+    targets = targets_at(plan, body, (at, feet), context)
     poses = solve(skeleton, targets, reach, 0.0)
     ground = sample_path(body.mass, body.times, at)
     goal = np.column_stack((ground[:, 0], body.mass_height.at(at), ground[:, 1]))
-    feet, waiting = both_feet(plan.feet, at, context.settings), waiting_at(plan, at, context)
+    waiting = waiting_at(plan, at, context)
     hands = hand_use(plan, body, at, waiting, context)
     glances = glances_at(plan, body, at, context)
     free = (1.0 - hands.floor.max(axis=1)) * (1.0 - hands.bar.max(axis=1))

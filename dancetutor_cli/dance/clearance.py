@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -133,8 +134,8 @@ def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings,
     length = float(np.linalg.norm(path))
     axes = np.eye(2) if length < SHORT else np.array([[path[1], -path[0]], path]) / length
     axes = axes * [[outward], [1.0]]
-    e = travelled(SHARES, step, way.even)
-    ahead = headings(start_yaw + swung(SHARES, step) * (way.end_yaw - start_yaw))
+    e, turned = _by_share(step, way.even)
+    ahead = headings(start_yaw + turned * (way.end_yaw - start_yaw))
     straight = start + e[:, None] * path - BALL_AHEAD * ahead
     aim = headings(np.broadcast_to(np.asarray(other_yaw), e.shape))
     still = shoe_line(other - BALL_AHEAD * aim, aim)
@@ -158,6 +159,12 @@ def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings,
     return chosen
 
 
+@lru_cache(maxsize=256)
+def _by_share(step: StepSettings, even: float) -> tuple[Array, Array]:
+    """How far a swing has come at the `SHARES`, and how far it has turned; not to be written to."""
+    return travelled(SHARES, step, even), swung(SHARES, step)
+
+
 def wrung(way: Way, line: Array, step: StepSettings) -> Array:
     """How much farther (...) than legs may cross they do on the way, radians, 0 for not at all.
 
@@ -166,10 +173,12 @@ def wrung(way: Way, line: Array, step: StepSettings) -> Array:
     """
     if way.hips is None:
         return np.zeros(line.shape[:-2])
-    hips = way.hips[0] + swung(SHARES, step) * (way.hips[1] - way.hips[0])
+    hips = way.hips[0] + _by_share(step, way.even)[1] * (way.hips[1] - way.hips[0])
     angle = np.arctan2(-line[..., 1], line[..., 0]) - hips
     angle[..., 0] = (angle[..., 0] + np.pi) % (2 * np.pi) - np.pi
-    most = np.abs(np.unwrap(angle, axis=-1)).max(axis=-1)
+    if (np.abs(np.diff(angle)) >= np.pi).any():
+        angle = np.unwrap(angle)
+    most = np.abs(angle).max(axis=-1)
     allowed = max(np.radians(step.cross), abs(float(angle.reshape(-1, len(hips))[0, 0])))
     return np.asarray(np.maximum(most - allowed, 0.0))
 
@@ -196,7 +205,10 @@ def lag(share: Array) -> Array:
 
 def headings(yaw: Array) -> Array:
     """Unit vectors (..., 2), x and z, of yaws (...)."""
-    return np.stack((np.sin(yaw), np.cos(yaw)), axis=-1)
+    out = np.empty((*np.shape(yaw), 2))
+    np.sin(yaw, out=out[..., 0])
+    np.cos(yaw, out=out[..., 1])
+    return out
 
 
 def gaps_at(balls: Array, yaws: Array, other: Array, other_yaw: float) -> Array:
@@ -209,6 +221,8 @@ def gaps_at(balls: Array, yaws: Array, other: Array, other_yaw: float) -> Array:
 
 def over(panels: Array, balls: Array, toes: Array, air: float) -> NDArray[np.bool_]:
     """Which shoes, balls (k, 2) and toes (k,) in radians, are nearer than `air`, metres, to some panels (p, 2)."""
+    if not len(panels):
+        return np.zeros(len(balls), dtype=bool)
     ahead = headings(toes)
     across = np.column_stack((ahead[:, 1], -ahead[:, 0]))
     points = balls[:, None] + SHOE_OUTLINE[:, :1] * ahead[:, None] + SHOE_OUTLINE[:, 1:] * across[:, None]
@@ -218,7 +232,8 @@ def over(panels: Array, balls: Array, toes: Array, air: float) -> NDArray[np.boo
 
 def segment_gaps(a: Array, b: Array, c: Array, d: Array) -> Array:
     """Least distance (...) between segments a-b and c-d in the plane, (..., 2) each; c-d may be one for all."""
-    p, q, r, t = (np.ascontiguousarray(np.broadcast_to(x, a.shape)).reshape(-1, 2) for x in (a, b, c, d))
+    same = (x if x.shape == a.shape else np.broadcast_to(x, a.shape) for x in (a, b, c, d))
+    p, q, r, t = (np.ascontiguousarray(x).reshape(-1, 2) for x in same)
     out = np.empty(a.size // 2)
     _segment_gaps(p, q, r, t, out)
     return out.reshape(a.shape[:-1])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,7 @@ from dancetutor_cli.dance.clearance import (
 from dancetutor_cli.dance.plan import STRAIGHT, FootTrack, Gallop, Hover, Jump, Move, Pivot, Shake, Step, Swing, Walk
 from dancetutor_cli.dance.rig.body import BALL_AHEAD, dancer_foot
 from dancetutor_cli.dance.settings import MotionSettings
-from dancetutor_cli.dance.settings_feet import WalkSettings
+from dancetutor_cli.dance.settings_feet import StepSettings, WalkSettings
 from dancetutor_cli.dance.smoothing import smooth
 
 # The ways of both feet over the ground in a jump: half straight, half round each other, never through each other.
@@ -126,35 +127,67 @@ def both_feet(tracks: tuple[FootTrack, FootTrack], times: Array, settings: Motio
 def foot_path(track: FootTrack, times: Array, settings: MotionSettings) -> FootPath:
     """Sample a foot at `times` (f,), seconds."""
     moves, step = track.moves, settings.step
-    lift = np.array([m.lift for m in moves])
-    land = np.array([m.land for m in moves])
-    place = np.array([track.start, *(m.target for m in moves)])
-    yaw = np.array([track.start_yaw, *(m.yaw for m in moves)])
-    done = np.searchsorted(lift, times, side="right")  # placements 0..done are known; move done - 1 has begun
-    i = np.maximum(done - 1, 0)
     if not moves:
         still = np.zeros_like(times)
-        ball = np.column_stack((np.full_like(times, place[0, 0]), still, np.full_like(times, place[0, 1])))
+        ball = np.column_stack((np.full_like(times, track.start[0]), still, np.full_like(times, track.start[1])))
         ball[:, 1] = track.start_level
-        return FootPath(ball, np.full_like(times, yaw[0]), still, np.ones(len(times), dtype=bool), still)
-    swinging = (done > 0) & (times < land[i])
-    s = np.where(swinging, (times - lift[i]) / (land[i] - lift[i]), 0.0)
-    even = np.where(_are(track, Step, Hover)[i], evenness(land - lift, step)[i], 0.0)
-    gone = travelled(s, step, even, _low(track)[i])
-    ground = np.where(swinging[:, None], _ground(track, place, i, gone), place[done])
+        return FootPath(ball, np.full_like(times, track.start_yaw), still, np.ones(len(times), dtype=bool), still)
+    done, i, swinging, s, even, ground, turned = _over_ground(track, times, step)
     level = np.array([track.start_level, *(m.level if isinstance(m, Walk) else 0.0 for m in moves)])
     climb = _climb(level[i], level[np.minimum(i + 1, len(level) - 1)], s, settings.walk)
     up = np.where(swinging, _height(track, i, s, risen(s, step, even)) + climb, 0.0)
     ball = np.column_stack((ground[:, 0], np.where(swinging, up, level[done]), ground[:, 1]))
-    turned = yaw[i] + swung(s, step) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
     pitch = np.where(swinging, _swing_pitch(track, i, s, step.pitch_top), _stand_pitch(track, times, done, settings))
     for k in np.flatnonzero(_are(track, Shake)):
         near = swinging & (i == k)
         if near.any():
             ball[near], pitch[near] = _shaken(moves[k], times[near], ball[near], pitch[near])
     pivoting = swinging & _are(track, Pivot)[i]
-    turned = np.where(swinging, turned, yaw[done])
     return FootPath(_rocked(ball, turned, pitch), turned, pitch, ~swinging | pivoting, s)
+
+
+def shoe_path(track: FootTrack, times: Array, settings: MotionSettings) -> tuple[Array, Array]:
+    """Ball (f, 2) over the ground and yaw (f,) of a foot at `times` (f,), as of `foot_path`, which is dearer."""
+    moves = track.moves
+    if not moves or any(isinstance(move, Shake) or min(move.pitches) < 0.0 for move in moves):
+        path = foot_path(track, times, settings)
+        return path.ball[:, [0, 2]], path.yaw
+    over = _over_ground(track, times, settings.step)
+    return over.place, over.yaw
+
+
+class _OverGround(NamedTuple):
+    """A foot over the ground at f times.
+
+    done : (f,) placements 0 to this one are known; move : (f,) that has begun last; swinging : (f,) bool
+    s : (f,) 0 to 1 of the swing; even : (f,) as of `evenness`; place : (f, 2) of the ball; yaw : (f,) radians
+    """
+
+    done: NDArray[np.int64]
+    move: NDArray[np.int64]
+    swinging: NDArray[np.bool_]
+    s: Array
+    even: Array
+    place: Array
+    yaw: Array
+
+
+def _over_ground(track: FootTrack, times: Array, step: StepSettings) -> _OverGround:
+    """Of a foot that has moves."""
+    moves = track.moves
+    lift = np.array([m.lift for m in moves])
+    land = np.array([m.land for m in moves])
+    place = np.array([track.start, *(m.target for m in moves)])
+    yaw = np.array([track.start_yaw, *(m.yaw for m in moves)])
+    done = np.searchsorted(lift, times, side="right")  # placements 0..done are known; move done - 1 has begun
+    i = np.maximum(done - 1, 0)
+    swinging = (done > 0) & (times < land[i])
+    s = np.where(swinging, (times - lift[i]) / (land[i] - lift[i]), 0.0)
+    even = np.where(_are(track, Step, Hover)[i], evenness(land - lift, step)[i], 0.0)
+    gone = travelled(s, step, even, _low(track)[i])
+    ground = np.where(swinging[:, None], _ground(track, place, i, gone), place[done])
+    turned = yaw[i] + swung(s, step) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
+    return _OverGround(done, i, swinging, s, even, ground, np.where(swinging, turned, yaw[done]))
 
 
 def _shaken(move: Move, times: Array, ball: Array, pitch: Array) -> tuple[Array, Array]:
@@ -205,13 +238,15 @@ def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], e: Array) -> A
     """
     start, end = place[i], place[i + 1]
     bulge = np.array([m.bulge if isinstance(m, Swing) else STRAIGHT for m in track.moves])[i]
-    straight = start + (e - bulge[:, 2] * lag(e))[:, None] * (end - start)
-    jumps = [m if isinstance(m, Jump) else NO_JUMP for m in track.moves]
-    share = np.array([jump.round for jump in jumps])[i][:, None]
-    middles = np.array([jump.middles for jump in jumps])[i]
-    line_turn = np.array([jump.line_turn for jump in jumps])[i]
-    round_ = turning(start, end, (middles[:, 0], middles[:, 1]), line_turn, e)
-    return np.asarray((1 - share) * straight + share * round_ + bulge[:, :2] * bend(e)[:, None])
+    way = start + (e - bulge[:, 2] * lag(e))[:, None] * (end - start)
+    if (jumping := _are(track, Jump)[i]).any():
+        jumps, k = [m if isinstance(m, Jump) else NO_JUMP for m in track.moves], i[jumping]
+        share = np.array([jump.round for jump in jumps])[k][:, None]
+        middles = np.array([jump.middles for jump in jumps])[k]
+        line_turn = np.array([jump.line_turn for jump in jumps])[k]
+        round_ = turning(start[jumping], end[jumping], (middles[:, 0], middles[:, 1]), line_turn, e[jumping])
+        way[jumping] = (1 - share) * way[jumping] + share * round_
+    return np.asarray(way + bulge[:, :2] * bend(e)[:, None])
 
 
 def _height(track: FootTrack, i: NDArray[np.int64], s: Array, step: Array) -> Array:

@@ -189,6 +189,7 @@ def pieces_of(plan: Plan, context: Context, fps: float, ragdoll: RagdollStyle | 
     """All pieces of a dance, in order of time."""
     start, end = whole_span(plan, context)
     pieces = []
+    plan = replace(plan, touches=plan.contacts)  # each until the foot leaves: for all pieces at once
     for first, last in pairwise(piece_ends(plan, start, end)):
         before, after = (first if first == start else first - OVERLAP), (MARGIN if last == end else OVERLAP)
         pieces.append(piece_of(plan, context, fps, ((before, last), (first, last), after), ragdoll))
@@ -284,9 +285,10 @@ def joined(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, en
         at, rotations, root = times[keep], quat.continuous(one.motion.rotations[keep]), one.motion.root[keep]
         if not last:
             share = smooth((at - piece.kept_span[1]) / BLEND + 1.0)
-            later, later_root = sample(done[k + 1].motion, at)
-            rotations = np.where((share > 0.0)[:, None, None], quat.slerp(rotations, later, share[:, None]), rotations)
-            root = root + share[:, None] * (later_root - root)
+            turns = share > 0.0  # the last keys alone
+            later, later_root = sample(done[k + 1].motion, at[turns])
+            rotations[turns] = quat.slerp(rotations[turns], later, share[turns, None])
+            root[turns] += share[turns, None] * (later_root - root[turns])
         if parts:
             flipped = np.sum(rotations[0] * parts[-1][1][-1], axis=-1) < 0
             rotations[:, flipped] *= -1.0

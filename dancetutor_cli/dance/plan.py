@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -209,7 +210,7 @@ class Plan:
     @property
     def contacts(self) -> tuple[Contact, ...]:
         """What presses which panel, and how long: until the foot leaves, at the latest until its touch ends."""
-        lifts = [np.array([move.lift for move in track.moves if isinstance(move, Swing)]) for track in self.feet]
+        lifts = [[move.lift for move in track.moves if isinstance(move, Swing)] for track in self.feet]
         return tuple(_ended(touch, lifts[touch.limb]) if touch.limb < len(lifts) else touch for touch in self.touches)
 
     @property
@@ -218,9 +219,9 @@ class Plan:
         return airborne(self.feet)
 
 
-def _ended(touch: Contact, lifts: Array) -> Contact:
-    k = int(np.searchsorted(lifts, touch.start))
-    return replace(touch, end=min(touch.end, float(lifts[k]))) if k < len(lifts) else touch
+def _ended(touch: Contact, lifts: list[float]) -> Contact:
+    k = bisect_left(lifts, touch.start)
+    return touch if k == len(lifts) or touch.end <= lifts[k] else replace(touch, end=float(lifts[k]))
 
 
 def airborne(feet: tuple[FootTrack, FootTrack]) -> Array:

@@ -63,7 +63,7 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> SettledTra
     may_rise, residuals = heels_may_rise(plan, times, settings.step.press_time), []
     rounds = ROUNDS_WITH_PALMS if plan.presses else ROUNDS
     for number in range(rounds):
-        targets = targets_at(plan, body, coarse, context)
+        targets = targets_at(plan, body, (coarse, both_feet(plan.feet, coarse, settings)), context)
         poses = solve(context.skeleton, targets, settings.body.reach)
         placed = world_transforms(context.skeleton, poses.rotations, poses.root)
         offset = centre_of_mass(context.skeleton, *placed) - poses.root
@@ -99,10 +99,10 @@ def _around(coarse: Array, gives: Array, times: Array) -> Array:
     return out
 
 
-def targets_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Targets:
-    """What the IK is asked for at times `at` (f,), heels raised as the trajectory says."""
+def targets_at(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Context) -> Targets:
+    """What the IK is asked for at times (f,) at which feet are sampled, heels raised as the trajectory says."""
+    at, feet = sampled
     up = sample_path(body.heels, body.times, at) + waiting_at(plan, at, context).heels
-    feet = both_feet(plan.feet, at, context.settings)
     return ik_targets(plan, body, raised(feet, up), at, context)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -65,9 +66,9 @@ def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float, p
     triangles, side = _by_side(mesh, whole.skeleton)
     blob.add("mesh.triangles", triangles.T, "u4", 1)
     skins = [mesh.skins, *([pack(with_bar(partner_of(character), bar, floor)).skins] if pair else [])]
-    images = [pyramid[0] for one in skins for pyramid in one.pyramids]
+    images = [pyramid[0][..., :3] for one in skins for pyramid in one.pyramids]
     for number, image in enumerate(images):
-        blob.add_bytes(f"skin.{number}", _webp(image))
+        blob.add_bytes(f"skin.{number}", _webp(image.shape, image.tobytes()))
     material = mesh.material[triangles[:, 0]]
     skeleton = whole.skeleton
     parents, offsets = skeleton.parents.copy(), skeleton.offsets.copy()
@@ -176,8 +177,10 @@ def _runs(material: NDArray[np.int32], side: NDArray[np.int64]) -> list[tuple[in
     return list(zip(cuts[:-1], np.diff(cuts).tolist(), strict=True))
 
 
-def _webp(image: NDArray[np.uint8]) -> bytes:
-    return texture_bytes(image[..., :3], ".webp", quality=QUALITY, method=6)
+@lru_cache(maxsize=4)  # the pages of a folder have one dancer
+def _webp(shape: tuple[int, ...], pixels: bytes) -> bytes:
+    image = np.frombuffer(pixels, dtype=np.uint8).reshape(shape)
+    return texture_bytes(image, ".webp", quality=QUALITY, method=6)
 
 
 # What a page holds: chart, feet, findings and passages, the dancer and the look of the films, as plain data.

@@ -35,7 +35,6 @@ class Blob:
         self._parts: list[bytes] = []
         self._size = 0
         self.index: dict[str, list[Any]] = {}  # name -> [type, count, row length, rounds of differences, offset]
-        self.sizes: dict[str, int] = {}  # compressed bytes of each array alone, for reports
 
     def add(self, name: str, values: NDArray[Any], kind: str, differences: int = 0) -> None:
         """Add an array as little-endian numbers of a kind ("i2", "f4", ...).
@@ -55,13 +54,16 @@ class Blob:
         planes = np.frombuffer(array.tobytes(), dtype=np.uint8).reshape(-1, array.dtype.itemsize).T
         data = np.ascontiguousarray(planes).tobytes()
         self.index[name] = [kind, int(array.size), int(row), differences, self._size]
-        self.sizes[name] = len(zlib.compress(data, 1))
         self._parts.append(data)
         self._size += len(data)
 
     def add_bytes(self, name: str, data: bytes) -> None:
         """Add bytes as they are, for example an image."""
         self.add(name, np.frombuffer(data, dtype=np.uint8), "u1")
+
+    def sizes(self) -> dict[str, int]:
+        """Compressed bytes of each array alone, for reports."""
+        return {name: len(zlib.compress(data, 1)) for name, data in zip(self.index, self._parts, strict=True)}
 
     def whole(self) -> bytes:
         """All of it, not compressed yet."""

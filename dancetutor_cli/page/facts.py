@@ -81,8 +81,8 @@ def flips_of(play: Play, pad: Pad, preset: Preset, overrides: Overrides) -> list
     step it so. Of charts so long that it would take minutes only the first rows are told. Rows that are laid down by a
     person (`overrides`) keep what the rest says.
     """
-    most = MOST_WORK // max(len(play.rows), 1)
-    return [_flip(play, row, pad, preset, overrides) for row in islice(_rows(play), most)]
+    most, total = MOST_WORK // max(len(play.rows), 1), play.total
+    return [_flip(play, row, total, (pad, preset, overrides)) for row in islice(_rows(play), most)]
 
 
 def _rows(play: Play) -> Iterator[int]:
@@ -92,7 +92,8 @@ def _rows(play: Play) -> Iterator[int]:
     yield from np.flatnonzero(seen & feet).tolist()
 
 
-def _flip(play: Play, row: int, pad: Pad, preset: Preset, overrides: Overrides) -> dict[str, Any]:
+def _flip(play: Play, row: int, total: int, given: tuple[Pad, Preset, Overrides]) -> dict[str, Any]:
+    pad, preset, overrides = given
     tick = int(play.rows.tick[row])
     cells = overrides.cells()
     asked = {}
@@ -105,7 +106,7 @@ def _flip(play: Play, row: int, pad: Pad, preset: Preset, overrides: Overrides) 
     changed = np.argwhere(other.limb != play.limb)
     return {
         "row": row,
-        "extra": other.total - play.total if kept else -1,
+        "extra": other.total - total if kept else -1,
         "changes": [[int(r), int(c), int(other.limb[r, c])] for r, c in changed] if kept else [],
     }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +22,7 @@ from dancetutor_cli.feet.play_json import read_play
 from dancetutor_cli.feet.solved import solve_song
 from dancetutor_cli.film.scroll import parse_segments
 from dancetutor_cli.lint.passages import hardest
-from dancetutor_cli.page.document import IndexEntry, document, index_page
+from dancetutor_cli.page.document import Blob, IndexEntry, document, index_page
 from dancetutor_cli.run.errors import DancetutorError, FileError, NoChartsError, UsageError
 from dancetutor_cli.run.files import write_atomic
 from dancetutor_cli.run.pool import Task, open_workers
@@ -64,13 +64,23 @@ class PageRequest:
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """A page that is made. sizes : compressed bytes by part, for whoever wants to know what weighs."""
+    """A page that is made. blob, music : the arrays in it, and bytes of the song's file."""
 
     html: bytes
     title: str
     label: str
     warnings: tuple[str, ...]
-    sizes: dict[str, int]
+    blob: Blob = field(repr=False)
+    music: int = 0
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Compressed bytes by part, for whoever wants to know what weighs."""
+        out = {"music": self.music} if self.music else {}
+        for name, size in self.blob.sizes().items():
+            part = name.partition(".")[0]
+            out[part] = out.get(part, 0) + size
+        return out
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +147,7 @@ def pack_page(page: PageSubject) -> Page:
     fitted = [retarget(motion, page.character) for motion in motions]
     doc, blob = pack_content(_content(page, beside, fitted, music))
     html = document(doc, blob, music[1] if music else None)
-    return Page(html, page.title, page.label, warnings, _sizes(blob.sizes, music))
+    return Page(html, page.title, page.label, warnings, blob, len(music[1]) if music else 0)
 
 
 def _motions(request: PageRequest, solved: tuple[Solved, ...]) -> list[Motion]:
@@ -246,16 +256,6 @@ def _music(song: Song, chart: Chart) -> tuple[tuple[str, bytes] | None, tuple[st
         return (MUSIC_TYPES[path.suffix.lower()], path.read_bytes()), ()
     except OSError as error:
         raise FileError(path, f"cannot be read: {error.strerror}") from error
-
-
-def _sizes(arrays: dict[str, int], music: tuple[str, bytes] | None) -> dict[str, int]:
-    out: dict[str, int] = {}
-    for name, size in arrays.items():
-        part = name.partition(".")[0]
-        out[part] = out.get(part, 0) + size
-    if music is not None:
-        out["music"] = len(music[1])
-    return out
 
 
 # A folder of charts: a practice page for each, and an index that leads to them.

@@ -34,10 +34,12 @@ def fingerprint(*values: Any) -> str:
 
 def _add(digest: _Hash, value: Any) -> None:
     digest.update(type(value).__name__.encode())
-    if is_dataclass(value):
-        for field in fields(value):
-            named, one = field.metadata.get(NAMED), getattr(value, field.name)
-            digest.update(field.name.encode())
+    if type(value) in (float, int, str):
+        digest.update(repr(value).encode(*_TEXT) + b"\0")
+    elif is_dataclass(value):
+        for name, named in _fields(value.__class__):
+            one = getattr(value, name)
+            digest.update(name.encode())
             _add(digest, one if named is None or one is None or one in _names(named) else Path(one))
     elif isinstance(value, tuple | list):
         digest.update(b"%d" % len(value))
@@ -51,6 +53,12 @@ def _add(digest: _Hash, value: Any) -> None:
         digest.update(f"{value.shape}{value.dtype}".encode() + value.tobytes())
     else:
         digest.update(repr(value).encode(*_TEXT) + b"\0")
+
+
+@cache
+def _fields(kind: type) -> tuple[tuple[str, Any], ...]:
+    """Names of a dataclass' fields, each with what `NAMED` says of it."""
+    return tuple((field.name, field.metadata.get(NAMED)) for field in fields(kind))
 
 
 def _names(named: str | Collection[str]) -> Collection[str]:

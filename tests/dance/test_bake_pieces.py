@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from bake_plays import MEDLEY, chart, pad, play, stream
 from dancetutor_cli.character import load_dancer
 from dancetutor_cli.dance import pieces
 from dancetutor_cli.dance.bake import bake, bake_plan, plan_of, planned
-from dancetutor_cli.dance.foot_path import foot_path
+from dancetutor_cli.dance.foot_path import foot_path, shoe_path
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.performance import _pooled
 from dancetutor_cli.dance.pieces import piece_ends, trimmed
@@ -35,6 +36,25 @@ def short(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture(scope="module")
 def whole() -> Motion:
     return bake(chart().timing, play(EVENTS), pad())
+
+
+@pytest.mark.parametrize("toes_up", [False, True])
+def test_the_way_over_the_ground_alone_is_that_of_the_whole_foot(toes_up: bool) -> None:
+    settings = default_settings()
+    for track in plan_of(chart().timing, play(EVENTS), pad()).feet:
+        if toes_up:
+            moves = tuple(replace(move, pitches=(*move.pitches[:2], -0.2, -0.1)) for move in track.moves)
+            track = replace(track, moves=moves)
+        times = np.linspace(track.moves[0].lift - 1.0, track.moves[-1].land + 1.0, 5000)
+        foot = foot_path(track, times, settings)
+        ball, yaw = shoe_path(track, times, settings)
+        assert np.array_equal(ball, foot.ball[:, [0, 2]]) and np.array_equal(yaw, foot.yaw)
+
+
+def test_contacts_of_a_plan_that_has_its_contacts_are_the_same() -> None:
+    plan = plan_of(chart().timing, play(EVENTS), pad())
+    assert any(touch.end > contact.end for touch, contact in zip(plan.touches, plan.contacts, strict=True))
+    assert replace(plan, touches=plan.contacts).contacts == plan.contacts
 
 
 def places(motion: Motion) -> np.ndarray:

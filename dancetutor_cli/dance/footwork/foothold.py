@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.clearance import ANKLE, SHARES, Way, detour, evenness, gaps_at, headings, over
 from dancetutor_cli.dance.context import HALF_PANEL, Spot, ball_of, middle_of, on_panel, room_on
-from dancetutor_cli.dance.foot_path import foot_path
+from dancetutor_cli.dance.foot_path import shoe_path
 from dancetutor_cli.dance.footwork.footing import Footing, FootState
 from dancetutor_cli.dance.motion import Ground
 from dancetutor_cli.dance.plan import Bulge
-from dancetutor_cli.dance.rig.body import BALL_AHEAD, SHOE_OUTLINE
+from dancetutor_cli.dance.rig.body import BALL_AHEAD, HALF_SHOE, SHOE_OUTLINE
 from dancetutor_cli.dance.settings_feet import StepSettings
 from dancetutor_cli.feet.limbs import Part
 
@@ -26,6 +26,7 @@ TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
 LATEST = 4  # swings of a foot that are looked at to see where it is
 CROSSED_PRICE = 3e3  # of a radian that legs cross too far
 MIDDLE_PRICE = 1e2  # of a metre that the middle of a shoe is off its panel
+SURELY = 1e-9  # metres; as exact as it need be
 EDGE_PRICE = 4e2  # of a metre that a shoe would reach over the edge of the pad
 
 
@@ -90,13 +91,13 @@ def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple
     panel, room = panels[goal.columns[0]], room_on(panels, goal.columns[0], step)
     hurry = goal.cut * (step.resting if following is None else 1.0)  # who stays a while stands on the panel's middle
     far = float(np.linalg.norm(panel - other.middle))
-    wide = float(np.clip((far - step.wide) / max(step.wide_most - step.wide, 1e-9), 0.0, 1.0))
+    wide = min(max((far - step.wide) / max(step.wide_most - step.wide, 1e-9), 0.0), 1.0)
     wide *= far < step.leap + HALF_PANEL  # beyond, the other foot comes along
     cut = max(hurry, step.edge, wide * step.wide_inward)
     yaw = footing.limited(goal.yaw + foot.outward * wide * np.radians(step.wide_turn), footing.body_yaw())
     toes = footing.toes(foot, yaw)
     beyond = (far - 2 * HALF_PANEL) / max(step.wide - 2 * HALF_PANEL, 1e-9)
-    hard = max(goal.haste, float(np.clip(beyond, 0.0, 1.0)))
+    hard = max(goal.haste, min(beyond, 1.0))
     inside = step.middle_inside + hard * (step.middle_inside_hasty - step.middle_inside)
     spot = Spot(panel, room, np.maximum(room, room + hurry * (HALF_PANEL - inside - room)))
     ball = landing_ball(spot, toes, other.middle, cut, step.edge_margin)
@@ -218,9 +219,12 @@ def heel_up(step: StepSettings, cut: float, heel: Heel, columns: list[int]) -> P
     return float(out[0]), float(max(out[0], out[1])), float(max(out[2], out[3])), float(out[3])
 
 
-def shoe_distance(a: Pose, b: Pose) -> float:
-    """Least distance between the middle lines of two standing shoes, metres."""
-    return float(gaps_at(a.ball[None], np.array([a.toes]), b.ball, b.toes)[0])
+def touching(a: Pose, b: Pose, apart: float) -> bool:
+    """Whether the middle lines of two standing shoes are less than so far apart, metres."""
+    away = a.middle - b.middle
+    if np.hypot(away[0], away[1]) > 2 * HALF_SHOE + apart + SURELY:
+        return False
+    return bool(gaps_at(a.ball[None], np.array([a.toes]), b.ball, b.toes)[0] < apart)
 
 
 def around(
@@ -234,5 +238,4 @@ def around(
     if max(other.landed, other.turned) <= span[0]:
         return detour(way, other.ball, footing.toes(other), step, foot.outward)
     times = span[0] + SHARES * (span[1] - span[0])
-    there = foot_path(other.track(LATEST), times, footing.settings)
-    return detour(way, there.ball[:, [0, 2]], there.yaw, step, foot.outward)
+    return detour(way, *shoe_path(other.track(LATEST), times, footing.settings), step, foot.outward)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.clearance import SHARES, Way, detour, evenness
 from dancetutor_cli.dance.context import Context
-from dancetutor_cli.dance.foot_path import foot_path
+from dancetutor_cli.dance.foot_path import shoe_path
 from dancetutor_cli.dance.footwork.footfalls import Stand, standing
 from dancetutor_cli.dance.footwork.footing import SHORTEST, Footing, Proposal, Row, hold, pair, press, pressed_by
 from dancetutor_cli.dance.footwork.homing import HomeSteps, faces_as_at_home, leg_shakes
@@ -251,10 +251,10 @@ def _gone_around(feet: tuple[FootTrack, FootTrack], walked: float, context: Cont
 
 def _bulge(feet: tuple[FootTrack, FootTrack], side: int, step: Swing, context: Context) -> Bulge:
     start = standing(feet, step.lift)
-    there = foot_path(feet[1 - side], step.lift + SHARES * (step.land - step.lift), context.settings)
+    there = shoe_path(feet[1 - side], step.lift + SHARES * (step.land - step.lift), context.settings)
     even = float(evenness(step.land - step.lift, context.settings.step))
     way = Way(start.balls[side], float(start.yaws[side]), np.array(step.target), step.yaw, even=even)
-    return detour(way, there.ball[:, [0, 2]], there.yaw, context.settings.step, 1.0 - 2.0 * side)
+    return detour(way, *there, context.settings.step, 1.0 - 2.0 * side)
 
 
 # From a play to a plan: when each foot leaves and lands, where, and how it is turned. One rule to a module.

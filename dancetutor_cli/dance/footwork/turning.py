@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 
 import numpy as np
@@ -83,6 +84,11 @@ class Facing:
         self.play, self.settings = play, settings
         steps = ((play.limb == Limb.LEFT_FOOT) | (play.limb == Limb.RIGHT_FOOT)).any(axis=1)
         self.rows = np.flatnonzero(steps)
+        self._steps: list[int] = self.rows.tolist()
+        self._second: list[float] = play.rows.second.tolist()
+        self._facing: list[float] = play.facing.tolist()
+        feet = [(play.limb == side).any(axis=1) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
+        self._alone: list[int] = np.where(feet[0] == feet[1], -1, feet[1]).tolist()  # the foot that steps alone, or -1
         # Which way round she goes at rows that turn half around, as she saw it coming.
         self.halves: dict[int, float] = {}
         self.past: list[tuple[float, float]] = []  # seconds and where it would face, degrees, row by row
@@ -100,7 +106,7 @@ class Facing:
         slack = [max(step.turn_rate, spin) * abs(time - row.time) for time, _ in around]
         low = max(yaw - free for (_, yaw), free in zip(around, slack, strict=True))
         high = min(yaw + free for (_, yaw), free in zip(around, slack, strict=True))
-        return float(np.clip((low + high) / 2, normal - step.turn_crossed, normal + step.turn_crossed))
+        return float(min(max((low + high) / 2, normal - step.turn_crossed), normal + step.turn_crossed))
 
     def turn(self, row: Row, footing: Footing) -> float:
         """By how many degrees the feet normal turns at a row, positive left: a form's way, the play's or the shorter.
@@ -132,17 +138,15 @@ class Facing:
 
     def _as_formed(self, j: int, turn: float, normal: float) -> float:
         """The turn at row `j` of the play as the form has it, where one foot steps."""
-        feet = [side for side in (0, 1) if (self.play.limb[j] == side).any()]
-        k = int(np.searchsorted(self.rows, j))
-        if len(feet) != 1 or k == 0:
+        k, alone = bisect_left(self._steps, j), self._alone[j]
+        if alone < 0 or k == 0:
             return turn
-        second = self.play.rows.second
-        return passing(turn, normal, feet[0], float(second[j] - second[self.rows[k - 1]]), self.settings.step)
+        seconds = self._second[j] - self._second[self._steps[k - 1]]
+        return passing(turn, normal, alone, seconds, self.settings.step)
 
     def _side(self, j: int, lead: int) -> float:
         """The side, 1 left, to which the foot that steps at row `j` passes ahead of the other one."""
-        feet = [side for side in (0, 1) if (self.play.limb[j] == side).any()]
-        return 2.0 * (feet[0] if len(feet) == 1 else lead) - 1.0
+        return 2.0 * (self._alone[j] if self._alone[j] >= 0 else lead) - 1.0
 
     def begin_anew(self) -> None:
         """What was before a stand is of no account: she has turned to the screen."""
@@ -150,17 +154,17 @@ class Facing:
 
     def _coming(self, row: Row, normal: float, lead: int) -> Iterator[tuple[float, float]]:
         """The rows to come, as far as they matter."""
-        second, facing = self.play.rows.second, self.play.facing
-        k, rounded = int(np.searchsorted(self.rows, row.index, side="right")), self.rounded
-        for j in self.rows[k:].tolist():
-            if second[j] > row.time + ALL_ROUND / self.settings.step.turn_rate:
+        latest, rounded = row.time + ALL_ROUND / self.settings.step.turn_rate, self.rounded
+        for k in range(bisect_right(self._steps, row.index), len(self._steps)):
+            j = self._steps[k]
+            if self._second[j] > latest:
                 return
-            turn = shorter(normal, float(facing[j]))
+            turn = shorter(normal, self._facing[j])
             if is_half(turn):
                 turn = self.halves.setdefault(j, self._half(j, normal, rounded, self._side(j, lead)))
             turn = self._as_formed(j, turn, normal)
             rounded, normal = rounds(normal, turn, rounded), normal + turn
-            yield float(second[j]), body_yaw(normal, self.settings)
+            yield self._second[j], body_yaw(normal, self.settings)
 
 
 def turn_start(move: tuple[float, float], leaves: float, far: float, step: StepSettings) -> float:
