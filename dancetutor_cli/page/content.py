@@ -17,8 +17,9 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.feet.limbs import hex_colour, limb_colours
 from dancetutor_cli.feet.solver.techniques import moves_and_turns
 from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
-from dancetutor_cli.film.scene.geometry import PackedMeshes, pack
+from dancetutor_cli.film.scene.geometry import ABOVE, PackedMeshes, pack
 from dancetutor_cli.film.scene.props import JOINT, bar_matrix, with_bar
+from dancetutor_cli.film.scene.renderer import RING_SHARE, SHADOW_FADE
 from dancetutor_cli.film.scene.scene import PANEL, SOLE_RADIUS, Scene
 from dancetutor_cli.formats.glb import FIRST_HAND, joint_groups, reaches
 from dancetutor_cli.page.document import Blob
@@ -62,6 +63,7 @@ def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float, p
     span = np.array([mesh.uv.min(axis=0), np.maximum(np.ptp(mesh.uv, axis=0), 1e-6)])
     blob.add("mesh.uv", np.rint((mesh.uv - span[0]) / span[1] * 65535).T, "u2", 1)
     blob.add("mesh.joints", mesh.joints.T, "u1")
+    blob.add("mesh.above", np.rint(mesh.above * (255 / ABOVE)), "u1")
     blob.add("mesh.weights", _bytes_that_sum(mesh.weights).T, "u1")
     triangles, side = _by_side(mesh, whole.skeleton)
     blob.add("mesh.triangles", triangles.T, "u4", 1)
@@ -79,6 +81,7 @@ def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float, p
         "size": size.tolist(),
         "uv": span.tolist(),
         "vertices": len(mesh.positions),
+        "above": ABOVE,
         "skins": len(images),
         "parts": [
             {
@@ -250,6 +253,8 @@ def pack_content(content: Content) -> tuple[dict[str, Any], Blob]:
             "arrow": tiles.arrow.tolist(),
             "tall": scene.tall,
             "sole": SOLE_RADIUS,
+            "shadow_fade": list(SHADOW_FADE),
+            "ring_share": RING_SHARE,
         },
         "body": pack_body(blob, content.character, bar, -scene.look.stage.pad_height, content.pair),
         "pair": content.pair,

@@ -294,7 +294,7 @@ export class App {
     return this.settings.camera === "front";
   }
 
-  /** The row whose feet are shown as ghosts: the next one, while the picture stands. */
+  /** The row whose feet are shown as soles on the pad: the next one, while the picture stands. */
   nextRow() {
     const { transport, chart } = this;
     if (transport.playing && !transport.waiting) return null;

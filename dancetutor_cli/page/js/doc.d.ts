@@ -144,6 +144,10 @@ export type Stage = {
   arrow: [number, number][][];
   tall: number;
   sole: number;
+  /** Metres from her over which her shadow grows light. */
+  shadow_fade: [number, number];
+  /** Of its ring that a foot keeps beside the panel that it presses. */
+  ring_share: number;
 };
 
 /** A run of triangles of one material. */
@@ -171,6 +175,8 @@ export type Body = {
   size: [number, number, number];
   uv: [[number, number], [number, number]];
   vertices: number;
+  /** Metres that 255 of mesh.above stands for. */
+  above: number;
   skins: number;
   parts: Part[];
   names: string[];

@@ -9,19 +9,21 @@ import { UNPLAYED } from "./chart.js";
  * @property {number} ground height of what is below
  * @property {number} near 0..1, how near to it; below 0: no foot
  * @property {number} strength of the ring
+ * @property {number} pressed 0..1, how lit a panel is that it presses and that is under it
  * @property {number[]} colour 0..1
  */
 
 /**
- * Marks of left foot, right foot and palms (video/prepare.py `feet_on_floor`).
- * @param {import("./doc.js").PageDoc} doc @param {import("./motion.js").Pose} pose @returns {Mark[]}
+ * Marks of left foot, right foot and palms (film/scene/renderer.py `feet_on_floor`).
+ * @param {import("./doc.js").PageDoc} doc @param {import("./motion.js").Pose} pose
+ * @param {Float32Array} lights four numbers a panel @returns {Mark[]}
  */
-export function marksOf(doc, pose) {
+export function marksOf(doc, pose, lights) {
   const { stage, look, style } = doc;
   const reach = look.light.contact_height;
   return doc.body.marks.map((about, limb) => {
     const colour = style.limbs_rgb[limb].map((/** @type {number} */ c) => c / 255);
-    const none = { limb, line: [0, 0, 0, 0], ground: 0, near: -1, strength: 0, colour };
+    const none = { limb, line: [0, 0, 0, 0], ground: 0, near: -1, strength: 0, pressed: 0, colour };
     if (!about) return none;
     const [heel, toe] = [0, 1].map((end) => place(pose, about.joints[end], about.at[end]));
     const x = (heel[0] + toe[0]) / 2;
@@ -34,8 +36,31 @@ export function marksOf(doc, pose) {
     const t = Math.min(1, Math.max(0, (near - 0.88) / 0.07));
     const planted = t * t * (3 - 2 * t);
     const strength = look.stage.mark * (limb < 2 ? planted + (1 - planted) * (0.12 + 0.38 * near) : near);
-    return { limb, line: [heel[0], heel[2], toe[0], toe[2]], ground, near, strength, colour };
+    const line = [heel[0], heel[2], toe[0], toe[2]];
+    const pressed = pressedBy(doc, line, colour, lights) * (limb < 2 ? planted : near);
+    return { limb, line, ground, near, strength, pressed, colour };
   });
+}
+
+const UNDER = 0.75; // panel widths from a panel's middle at which a sole may still press it
+
+/**
+ * How lit a panel is that has the limb's colour and is under it, or partly so, 0..1.
+ * @param {import("./doc.js").PageDoc} doc @param {number[]} line @param {number[]} colour @param {Float32Array} lights
+ */
+function pressedBy(doc, line, colour, lights) {
+  const { panels, centre, width } = doc.pad;
+  const way = [line[2] - line[0], line[3] - line[1]];
+  const long = Math.max(way[0] ** 2 + way[1] ** 2, 1e-9);
+  let most = 0;
+  panels.forEach((/** @type {number[]} */ panel, /** @type {number} */ column) => {
+    const lit = lights[4 * column + 3];
+    if (lit <= most || colour.some((c, k) => Math.abs(c - lights[4 * column + k]) > 1e-3)) return;
+    const from = [-(panel[0] - centre[0]) * width - line[0], (panel[1] - centre[1]) * width - line[1]];
+    const along = Math.min(1, Math.max(0, (from[0] * way[0] + from[1] * way[1]) / long));
+    if (Math.hypot(from[0] - along * way[0], from[1] - along * way[1]) < UNDER * width) most = lit;
+  });
+  return Math.min(most, 1);
 }
 
 /** @param {import("./motion.js").Pose} pose @param {number} joint @param {number[]} beside */

@@ -73,6 +73,7 @@ export function meshData(body, arrays) {
     hull: interleaved(arrays.get("mesh.hull"), n, 3, Int8Array),
     joints: interleaved(arrays.get("mesh.joints"), n, 4, Uint8Array),
     weights: interleaved(arrays.get("mesh.weights"), n, 4, Uint8Array),
+    above: Float32Array.from(/** @type {ArrayLike<number>} */ (arrays.get("mesh.above")), (part) => (part * body.above) / 255),
   };
 }
 
@@ -91,6 +92,8 @@ export function makeMesh(gl, data) {
   attribute(gl, 4, 4, gl.UNSIGNED_BYTE, 4, 0, false);
   buffer(gl, gl.ARRAY_BUFFER, data.weights);
   attribute(gl, 5, 4, gl.UNSIGNED_BYTE, 4, 0, true);
+  buffer(gl, gl.ARRAY_BUFFER, data.above);
+  attribute(gl, 6, 1, gl.FLOAT, 4, 0, false);
   buffer(gl, gl.ELEMENT_ARRAY_BUFFER, data.triangles);
   gl.bindVertexArray(null);
   return array;

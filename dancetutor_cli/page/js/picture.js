@@ -1,4 +1,4 @@
-// The dancer's part of the page: canvas, cameras, one dancer or two, the ghost foot; and feet from above without WebGL.
+// The dancer's part of the page: canvas, cameras, one dancer or two, the next step's soles; feet from above without WebGL.
 
 import { beside, orbit, preset } from "./camera.js";
 import { lightsAt, marksOf } from "./feet.js";
@@ -13,7 +13,7 @@ const LEAST = 0.4; // of the pixels across that it keeps
  * @property {number} second
  * @property {string} camera
  * @property {boolean} both whether the second dancer is shown
- * @property {import("./chart.js").Row | null} next whose feet are shown as ghosts
+ * @property {import("./chart.js").Row | null} next whose feet are shown as soles on the pad
  * @property {boolean} playing
  */
 
@@ -48,9 +48,8 @@ export class Picture {
     /** @type {Map<string, import("./camera.js").Camera>} fitted cameras, by name and size */
     this.cameras = new Map();
     this.poses = motions.map((motion) => motion.pose());
-    this.ghostPose = motions[0].pose();
+    this.nextPose = motions[0].pose();
     this.skins = motions.map(() => new Float32Array(12 * doc.body.parents.length));
-    this.ghostSkin = new Float32Array(12 * doc.body.parents.length);
     this.lights = new Float32Array(4 * chart.columns);
     /** @type {(second: number, pose: import("./motion.js").Pose) => void} changes a pose: the author's other feet */
     this.amend = () => {};
@@ -166,15 +165,15 @@ export class Picture {
       if (k === 0) this.amend(wanted.second, pose);
       motion.skin(pose, this.skins[k]);
       const root = pair ? pair.between(pose.at(0)) : pose.at(0);
-      const marks = marksOf(this.doc, pose);
-      const ghost = k === 0 && !pair && this.viewer ? this.ghost(wanted.next) : null;
+      const marks = marksOf(this.doc, pose, this.lights);
       const left = Math.round((k * width) / count);
       const wide = Math.round(((k + 1) * width) / count) - left;
       views.push({
         camera: this.camera(wanted.camera, wide, height, root), box: /** @type {[number, number, number, number]} */ ([left, 0, wide, height]),
         skin: this.skins[k], root, lights: this.lights, other: pair?.skin ?? null,
-        marks: ghost && !marks.slice(2).some((mark) => mark.near > 0) ? [...marks.slice(0, 2), ...ghost.marks] : pair ? [...marks.slice(0, 2), ...pair.marks.slice(0, 2)] : marks, // of two the feet, not the palms
-        ghost,
+        marks: pair ? [...marks.slice(0, 2), ...pair.marks.slice(0, 2)] : marks, // of two the feet, not the palms
+        middles: /** @type {[number, number][]} */ ((pair ? [pose.at(0), pair.root] : [root]).map((at) => [at[0], at[2]])),
+        soles: k === 0 && !pair && this.viewer ? this.soles(wanted.next) : [null, null],
       });
     }
     if (this.viewer) return this.viewer.draw(views, hurried && this.simple);
@@ -190,23 +189,20 @@ export class Picture {
     motion.skin(pose, this.skins[1]);
     const at = pose.at(0);
     return {
-      skin: this.skins[1], marks: marksOf(this.doc, pose),
+      skin: this.skins[1], marks: marksOf(this.doc, pose, this.lights), root: at,
       between: (/** @type {number[]} */ root) => /** @type {[number, number, number]} */ (root.map((x, k) => (x + at[k]) / 2)),
     };
   }
 
   /** Where the feet of the next row will be. @param {import("./chart.js").Row | null} next */
-  ghost(next) {
-    if (!next) return null;
+  soles(next) {
+    if (!next) return [null, null];
     const motion = this.motions[0];
-    motion.sample(next.second, this.ghostPose);
-    motion.forward(this.ghostPose);
-    this.amend(next.second, this.ghostPose);
-    motion.skin(this.ghostPose, this.ghostSkin);
-    const feet = [0, 1].map((limb) => next.steps.some((step) => step.limb === limb));
-    // Its place on the floor is ringed as feet that stand are: the boot alone, cut off at the ankle, looks like a jar.
-    const marks = marksOf(this.doc, this.ghostPose).slice(0, 2).map((mark, limb) => ({ ...mark, near: feet[limb] ? Math.max(mark.near, 0) : -1, strength: feet[limb] ? 1 : 0 }));
-    return { skin: this.ghostSkin, feet, marks };
+    motion.sample(next.second, this.nextPose);
+    motion.forward(this.nextPose);
+    this.amend(next.second, this.nextPose);
+    const marks = marksOf(this.doc, this.nextPose, this.lights);
+    return [0, 1].map((limb) => (next.steps.some((step) => step.limb === limb) && marks[limb].near >= 0 ? marks[limb] : null));
   }
 
   /** Fewer pixels where drawing is slow, as with WebGL in software. @param {boolean} playing */

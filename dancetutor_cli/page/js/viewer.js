@@ -1,4 +1,4 @@
-// The picture: stage, shadow, dancer and ghost foot in WebGL 2, with the dancer's shaders of the films.
+// The picture: stage, shadow, dancer and the next step's soles in WebGL 2, with the dancer's shaders of the films.
 
 import { axes, matrix } from "./camera.js";
 import { bind, build, drawPart, makeMesh, makeRoom, numbers, shadowMap, skinTexture, tileTexture } from "./gl.js";
@@ -8,7 +8,7 @@ const SHADOW_REACH = 2.5; // metres of the world that the shadow map shows (vide
 const CAST_DEPTH = [-2, 6];
 const MOST_JOINTS = 256;
 const OFF_SURFACE = [0.012, 0.006];
-const GHOST = 0.55; // how much of the ghost foot is there
+const NOWHERE = -100; // the ground of a sole that is not there
 const COLOURS = /** @type {const} */ (["floor", "floor_far", "floor_line", "wall", "wall_top", "strip", "pad", "pad_side", "panel",
   "panel_blank", "groove", "arrow"]);
 
@@ -21,7 +21,8 @@ const COLOURS = /** @type {const} */ (["floor", "floor_far", "floor_line", "wall
  * @property {[number, number, number]} root
  * @property {import("./feet.js").Mark[]} marks four: left foot, right foot, palms
  * @property {Float32Array} lights four numbers a panel
- * @property {{skin: Float32Array, feet: boolean[]} | null} ghost
+ * @property {[number, number][]} middles x and z of those who dance, where their shadows are darkest
+ * @property {(import("./feet.js").Mark | null)[]} soles where the left and the right foot of the next step will stand
  */
 
 export class Viewer {
@@ -80,16 +81,8 @@ export class Viewer {
       this.drawStage(view, world, cast);
       bodies.forEach((skin, who) => {
         this.setJoints(skin);
-        this.drawBody(view, world, cast, null, who);
+        this.drawBody(view, world, cast, who);
       });
-      if (view.ghost) {
-        this.setJoints(view.ghost.skin);
-        gl.enable(gl.BLEND);
-        gl.blendColor(0, 0, 0, GHOST);
-        gl.blendFunc(gl.CONSTANT_ALPHA, gl.ONE_MINUS_CONSTANT_ALPHA);
-        this.drawBody(view, world, cast, view.ghost.feet);
-        gl.disable(gl.BLEND);
-      }
       gl.disable(gl.SCISSOR_TEST);
     }
   }
@@ -170,8 +163,13 @@ export class Viewer {
     gl.uniform3f(at.contact, look.light.contact, look.light.contact_soft, look.stage.glow);
     gl.uniform1f(at.radius, stage.sole);
     gl.uniform4fv(at.foot, view.marks.flatMap((m) => m.line));
-    gl.uniform3fv(at.foot_state, view.marks.flatMap((m) => [m.ground, m.near, m.strength]));
+    gl.uniform4fv(at.foot_state, view.marks.flatMap((m) => [m.ground, m.near, m.strength, m.pressed]));
     gl.uniform3fv(at.foot_colour, view.marks.flatMap((m) => m.colour));
+    gl.uniform2fv(at.middles, [view.middles[0], view.middles[1] ?? view.middles[0]].flat());
+    gl.uniform3f(at.fade, stage.shadow_fade[0], stage.shadow_fade[1], look.light.shadow_far);
+    gl.uniform1f(at.beside, stage.ring_share);
+    gl.uniform4fv(at.sole, view.soles.flatMap((sole) => sole?.line ?? [0, 0, 0, 1]));
+    gl.uniform2fv(at.sole_ground, view.soles.map((sole) => sole?.ground ?? NOWHERE));
     bind(gl, 0, this.tiles, at.tile_of);
     gl.activeTexture(gl.TEXTURE1);
     gl.bindTexture(gl.TEXTURE_2D, this.lights);
@@ -183,11 +181,11 @@ export class Viewer {
   }
 
   /**
-   * The dancer and her outline; of a ghost only the feet of the sides that are asked for.
+   * The dancer and her outline.
    * @param {Shown} view @param {Float32Array} world @param {{sun: number[], light: Float32Array}} cast
-   * @param {boolean[] | null} ghost @param {number} [who] the first or the second of two
+   * @param {number} who the first or the second of two
    */
-  drawBody(view, world, cast, ghost, who = 0) {
+  drawBody(view, world, cast, who) {
     const gl = this.gl;
     const { camera } = view;
     const toon = this.doc.look.toon;
@@ -207,7 +205,7 @@ export class Viewer {
     gl.uniform2f(at.rim, toon.rim, toon.rim_from);
     gl.uniform3fv(at.shade, toon.shade.map((/** @type {number} */ c) => c / 255));
     gl.uniform3fv(at.outline_colour, toon.outline.map((/** @type {number} */ c) => c / 255));
-    gl.uniform1f(at.has_shadow, ghost || this.simple ? 0 : 1);
+    gl.uniform1f(at.has_shadow, this.simple ? 0 : 1);
     bind(gl, 2, this.map.texture, at.shadow);
     gl.bindVertexArray(this.mesh);
     const depth = Math.max(dot(minus(view.root, camera.position), axes(camera).forward), 0.05);
@@ -216,8 +214,7 @@ export class Viewer {
       gl.uniform1f(at.outline, outline);
       gl.cullFace(cull);
       for (const part of this.doc.body.parts) {
-        if ((ghost || camera.feetOnly) && !part.feet) continue;
-        if (ghost && !ghost[part.side]) continue;
+        if (camera.feetOnly && !part.feet) continue;
         bind(gl, 3, this.skins[part.skin[who]], at.skin);
         gl.uniform3fv(at.tint, part.tint[who]);
         gl.uniform1f(at.least, part.limb ? toon.limbs : 0);

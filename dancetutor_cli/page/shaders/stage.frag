@@ -18,11 +18,16 @@ uniform sampler2DShadow shadow;
 uniform mat4 light;
 uniform float dark;
 uniform float spread;
+uniform vec2 middles[2];      // where those stand who cast the shadow
+uniform vec3 fade;            // metres from there over which the shadow grows light, and what is left of it
 uniform vec3 contact;
 uniform float radius;
-uniform vec4 foot[4];
-uniform vec3 foot_state[4];
+uniform vec4 foot[4];         // heel x, z, toe x, z
+uniform vec4 foot_state[4];   // ground, nearness to it (< 0: no foot), strength of the mark, how much it presses a panel
 uniform vec3 foot_colour[4];
+uniform float beside;         // of its mark that a foot keeps beside the panel that it presses
+uniform vec4 sole[2];         // where the next step's feet will stand, left and right: heel x, z, toe x, z
+uniform vec2 sole_ground;     // height of the ground there; none far below
 
 out vec4 colour;
 
@@ -101,6 +106,31 @@ float from_foot(vec2 p, vec4 f) {
     return length(p - f.xy - along * way);
 }
 
+// Metres from the edge of a sole of a foot of size 1 from above, negative inside: the shape of overlay/diagram.py.
+const float SOLE = 0.305;  // metres of that size
+
+float from_sole(vec2 p, vec4 f, float mirror) {
+    vec2 ahead = normalize(f.zw - f.xy);
+    vec2 q = (p - 0.5 * (f.xy + f.zw)) / SOLE;
+    float y = dot(q, ahead), x = dot(q, vec2(-ahead.y, ahead.x));
+    float along = clamp(y / 0.3, -1.0, 1.0);
+    float bend = 0.02 * mirror * (along * along - 0.3);
+    return SOLE * (length(vec2(x - bend, max(abs(y) - 0.26, 0.0))) - 0.15 - 0.022 * along);
+}
+
+vec3 with_soles(vec3 value, float footprint) {
+    for (int k = 0; k < 2; ++k) {
+        if (abs(world.y - sole_ground[k]) > 0.03) {
+            continue;
+        }
+        float d = from_sole(world.xz, sole[k], k == 0 ? 1.0 : -1.0);
+        value = mix(value, vec3(0.03, 0.035, 0.06), 0.6 * clamp(0.5 - (d - 0.012 * SOLE) / footprint, 0.0, 1.0));
+        value = mix(value, vec3(1.0), 0.7 * clamp(0.5 - (d + 0.005 * SOLE) / footprint, 0.0, 1.0));
+        value = mix(value, foot_colour[k], 0.8 * clamp(0.5 - (d + 0.03 * SOLE) / footprint, 0.0, 1.0));
+    }
+    return value;
+}
+
 void main() {
     if (kind == 2) {
         colour = vec4(palette[7], 1.0);
@@ -115,7 +145,10 @@ void main() {
     int column = -1;
     float glow = 0.0, white = 0.0;
     vec3 value = kind == 1 ? pad_colour(world.xz, footprint, column, glow, white) : floor_colour(world.xz, footprint);
-    float keep = dark > 0.0 ? 1.0 - dark * shadowed(world) : 1.0;
+    float away = min(distance(world.xz, middles[0]), distance(world.xz, middles[1]));
+    float left = 1.0 - (1.0 - fade.z) * smoothstep(fade.x, fade.y, away);
+    float keep = dark > 0.0 ? 1.0 - dark * left * shadowed(world) : 1.0;
+    vec4 lit = column >= 0 ? texelFetch(lights, ivec2(column, 0), 0) : vec4(0.0);
     float ring = 0.0;
     vec3 ring_colour = vec3(0.0);
     for (int f = 0; f < 4; ++f) {
@@ -128,15 +161,17 @@ void main() {
         float planted = smoothstep(0.88, 0.95, near);
         float band = clamp((0.0040 + 0.0060 * planted - abs(d - (0.0220 - 0.0090 * planted))) / footprint + 0.5, 0.0, 1.0);
         band *= foot_state[f].z;
+        float pressed = foot_state[f].w;
+        float on = column >= 0 && distance(lit.rgb, foot_colour[f]) < 0.004 ? lit.a * pressed : 0.0;
+        band *= on > 0.0 ? 1.0 : 1.0 - (1.0 - beside) * pressed;
         if (band > ring) {
             ring = band;
-            ring_colour = foot_colour[f];
+            ring_colour = mix(foot_colour[f], vec3(1.0), on);
         }
     }
     value *= keep;
-    vec4 lit = column >= 0 ? texelFetch(lights, ivec2(column, 0), 0) : vec4(0.0);
     float shine = glow * lit.a * contact.z;
     value = mix(value, lit.rgb * (0.80 + 0.20 * keep), shine);
     value = mix(value, vec3(1.0), white * lit.a * contact.z * step(1e-6, shine));
-    colour = vec4(mix(value, ring_colour, ring), 1.0);
+    colour = vec4(mix(with_soles(value, footprint), ring_colour, ring), 1.0);
 }

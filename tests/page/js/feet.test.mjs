@@ -37,3 +37,22 @@ test("a note that nobody plays lights no panel, until it is given to a foot", as
   assert.ok(lightOf(given, 0, 1, 0.4).level > 0.3);
   assert.equal(lightOf(given, 0, 1, 0.4).limb, 1);
 });
+
+test("a foot presses the lit panel of its own colour that is under its sole", async () => {
+  const { marksOf } = await import("../../../dancetutor_cli/page/js/feet.js?reduce=0");
+  const none = [null, null, null];
+  const doc = {
+    body: { marks: [{ joints: [0, 0], at: [[0, 0, -0.1], [0, 0, 0.1]] }, ...none] },
+    look: { light: { contact_height: 0.22 }, stage: { pad_height: 0.1, mark: 1 } },
+    stage: { low: [-1, 0, -1], high: [1, 0, 1] }, style: { limbs_rgb: [[255, 140, 0], [0, 200, 220], [1, 1, 1], [2, 2, 2]] },
+    pad: { panels: [[1, 0], [1, 2]], centre: [1, 1], width: 0.3 },
+  };
+  const at = (/** @type {number} */ z, /** @type {number} */ y) => ({ at: () => [0, y, z], turned: () => [1, 0, 0, 0] });
+  const lights = (/** @type {number[]} */ colour) => new Float32Array([0, 0, 0, 0, ...colour.map((c) => c / 255), 0.8]);
+  const pressed = (/** @type {number} */ z, /** @type {number} */ y, /** @type {number[]} */ colour) =>
+    marksOf(doc, at(z, y), lights(colour))[0].pressed;
+  assert.ok(Math.abs(pressed(0.3, 0, [255, 140, 0]) - 0.8) < 1e-6, "on it");
+  assert.equal(pressed(-0.3, 0, [255, 140, 0]), 0, "on another panel");
+  assert.equal(pressed(0.3, 0, [0, 200, 220]), 0, "lit by the other foot");
+  assert.equal(pressed(0.3, 0.1, [255, 140, 0]), 0, "over it");
+});
