@@ -157,6 +157,31 @@ def test_she_waits_until_each_row_is_pressed(browser: Browser) -> None:
     assert "2 hit" in text(browser, ".score") and "1 wrong" in text(browser, ".score")
 
 
+def test_a_mat_that_calls_its_arrows_axes_plays_along_and_lets_go_when_it_is_pulled_out(browser: Browser) -> None:
+    browser.run(pad_script() + "window.pad.axes = [0, 0, 1]")  # a third one rests at its end
+    browser.turn(0.1)
+    browser.run("window.pad.axes[0] = -1")
+    browser.turn(0.1)
+    assert said(browser) == "Nothing you step on is judged yet: choose Play along (p)."
+    browser.run("window.pad.axes[0] = 0")
+    browser.key("Home")
+    browser.key("w", "KeyW")
+    browser.key(" ", "Space")
+    browser.turn(9)
+    assert said(browser).startswith("waiting") and second(browser) == pytest.approx(2.0, abs=0.01)
+    browser.run("window.pad.axes[1] = 1")  # down: the row is left
+    browser.turn(0.1)
+    assert "1 wrong" in text(browser, ".score")
+    browser.run("window.pad.axes[1] = 0; window.pad.axes[0] = -1")
+    browser.turn(0.1)
+    assert "1 hit" in text(browser, ".score") and "1 wrong" in text(browser, ".score")
+    held = "document.querySelector('canvas[data-held]').dataset.held"
+    assert browser.run(held) == "[0]"
+    browser.run("navigator.getGamepads = () => [null]")
+    browser.turn(0.1)
+    assert browser.run(held) == "[]"
+
+
 def test_she_waits_in_every_pass_of_a_loop(browser: Browser, page_file: Path) -> None:
     """Waiting is switched on at the loop's end: no row behind it is waited for; the next pass waits at its first."""
     browser.open(page_file, "#m1-1@2")

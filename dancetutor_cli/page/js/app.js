@@ -45,6 +45,7 @@ export class App {
     this.input = new Input(doc.pad.names, this.settings, doc.pad.directions);
     this.input.onPress = (press) => {
       this.fresh = true;
+      if (press.device === "pad" && !this.practice.along) this.notice = this.t("padIdle");
       this.practice.press(press.column, press.ago);
     };
     this.pace = scrollSpeed(this.chart.rowSeconds);

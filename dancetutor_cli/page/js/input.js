@@ -13,6 +13,11 @@ const KEYS = {
 const ARROWS = { 4: ["ArrowLeft", "ArrowDown", "ArrowUp", "ArrowRight"] };
 const CROSS = { left: 14, down: 13, up: 12, right: 15 }; // buttons of the standard mapping
 
+/** Numbers of buttons from which on both ends of a mat's axes count as such: many mats call their arrows axes. */
+const AXES = 64;
+const ENDS = { left: AXES, right: AXES + 1, up: AXES + 2, down: AXES + 3 };
+const PUSHED = 0.5; // of an axis' way
+
 const SIGNS = ["↑", "↗", "→", "↘", "↓", "↙", "←", "↖"]; // clockwise
 
 const LONGEST = 0.5; // seconds that a press may be old; a browser that counts otherwise is not believed
@@ -32,6 +37,8 @@ export class Input {
     this.settings = settings;
     /** @type {Map<string, boolean[]>} buttons that are down, by pad */
     this.down = new Map();
+    /** @type {Map<string, number[]>} where the axes of each pad were at first: what rests at an end is no panel */
+    this.rests = new Map();
     /** @type {boolean[]} panels that are down */
     this.held = panels.map(() => false);
     this.changed = false; // a panel went down or up since the last picture
@@ -79,6 +86,28 @@ export class Input {
     return `${pad.id.slice(0, 120)}/${this.panels.length}`;
   }
 
+  /** The panel of a button, -1 for none. @param {Gamepad} pad @param {number} number */
+  panelOf(pad, number) {
+    const column = this.buttons(pad).indexOf(number);
+    if (column >= 0 || number < AXES || this.settings.pads[this.padName(pad)]) return column;
+    return this.panels.findIndex((name) => ENDS[/** @type {keyof typeof ENDS} */ (name)] === number);
+  }
+
+  /** Which buttons of a pad are down, by number. @param {Gamepad} pad */
+  pressed(pad) {
+    const name = this.padName(pad);
+    const out = pad.buttons.map((button) => button.pressed || button.value > PUSHED);
+    if (pad.mapping === "standard") return out; // its sticks are no panels
+    const rests = this.rests.get(name) ?? [...pad.axes];
+    this.rests.set(name, rests);
+    pad.axes.forEach((value, k) => {
+      const counts = Math.abs(rests[k] ?? 0) < PUSHED && Math.abs(value) <= 1;
+      out[AXES + 2 * k] = counts && value < -PUSHED;
+      out[AXES + 2 * k + 1] = counts && value > PUSHED;
+    });
+    return out;
+  }
+
   /** The pads that are plugged in. @returns {Gamepad[]} */
   pads() {
     const found = navigator.getGamepads ? navigator.getGamepads() : [];
@@ -120,15 +149,21 @@ export class Input {
 
   /** Look at the pads; to be called for every picture. */
   poll() {
-    for (const pad of this.pads()) {
+    const pads = this.pads();
+    for (const name of this.down.keys()) {
+      if (pads.some((pad) => this.padName(pad) === name)) continue;
+      this.down.delete(name); // pulled out: nothing of it is held any more
+      this.rests.delete(name);
+      this.releaseAll();
+    }
+    for (const pad of pads) {
       const name = this.padName(pad);
       const before = this.down.get(name) ?? [];
-      const now = pad.buttons.map((button) => button.pressed || button.value > 0.5);
-      const buttons = this.buttons(pad);
+      const now = this.pressed(pad);
       now.forEach((is, number) => {
         if (is === Boolean(before[number])) return;
         if (is && this.learning) return this.learning(`${name}#${number}`);
-        const column = buttons.indexOf(number);
+        const column = this.panelOf(pad, number);
         if (column >= 0 && is) this.press(column, "pad", pad.timestamp);
         else if (column >= 0) this.release(column);
       });

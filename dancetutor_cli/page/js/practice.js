@@ -99,6 +99,7 @@ export class Practice {
   setAlong(on) {
     this.keep();
     if (!on) this.coach.on = false;
+    if (on && this.app.notice === this.app.t("padIdle")) this.app.notice = "";
     this.along = on;
     this.before = null;
     this.stray = "";
