@@ -181,6 +181,24 @@ def test_a_finger_lifts_only_its_own_lane(opened: Browser, page_file: Path, tmp_
     touch("touchStart", (1, xs[1]))
     touch("touchCancel")
     assert held() == []
+    touch("touchStart", (1, xs[0] - 40), (2, xs[3] + 60))  # beside the lanes: the nearest one
+    assert held() == [0, 3]
+    touch("touchEnd")
+    assert held() == []
+
+
+def test_a_finger_on_the_lanes_is_told_that_nothing_is_judged_yet(opened: Browser, page_file: Path) -> None:
+    opened.size(800, 900, touch=True)
+    opened.open(page_file)
+    opened.run("document.querySelector('#tab-along').click()")
+    xs, y = lanes_at(opened)
+    for kind, points in (("touchStart", [{"x": xs[0], "y": y}]), ("touchEnd", [])):
+        opened.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
+    opened.drawn()
+    assert said(opened).startswith("Nothing you step on is judged yet")
+    assert opened.run("document.querySelector('[aria-selected=true]').id") == "tab-along"
+    opened.key("p", "KeyP")
+    assert not said(opened).startswith("Nothing")
 
 
 def test_on_a_phone_lanes_are_called_by_their_arrows(opened: Browser, page_file: Path) -> None:

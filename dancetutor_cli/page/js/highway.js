@@ -238,11 +238,10 @@ export class Highway {
     }
   }
 
-  /** The lane at a place of the canvas, -1 for none. @param {number} px pixels of CSS @param {boolean} mirror */
+  /** The lane at a place of the canvas, the nearest one beside them: fingers are wide. @param {number} px pixels of CSS @param {boolean} mirror */
   columnAt(px, mirror) {
     const m = this.measure();
-    const place = Math.floor((px * m.ratio - m.left) / m.lane);
-    if (place < 0 || place >= this.chart.columns) return -1;
+    const place = clamp(Math.floor((px * m.ratio - m.left) / m.lane), 0, this.chart.columns - 1);
     return mirror ? this.chart.columns - 1 - place : place;
   }
 

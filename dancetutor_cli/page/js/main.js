@@ -99,8 +99,8 @@ function listenToLanes(app, lanes, ui) {
   /** @type {Map<number, number>} the lane that each finger is on */
   const fingers = new Map();
   lanes.addEventListener("pointerdown", (event) => {
-    const column = app.highway?.columnAt(event.clientX - lanes.getBoundingClientRect().left, app.mirrored) ?? -1;
-    if (!app.practice.along || column < 0) return;
+    if (!app.practice.along || !app.highway) return;
+    const column = app.highway.columnAt(event.clientX - lanes.getBoundingClientRect().left, app.mirrored);
     event.preventDefault();
     fingers.set(event.pointerId, column);
     lanes.setPointerCapture(event.pointerId); // wherever it is lifted, it is told here
@@ -116,6 +116,10 @@ function listenToLanes(app, lanes, ui) {
   }
   lanes.addEventListener("click", (event) => {
     if (app.practice.along) return;
+    if (document.querySelector("#tab-along[aria-selected=true]")) { // who looks there means to play, not to choose a note
+      app.notice = app.t("padIdle");
+      return app.tell("along");
+    }
     const box = lanes.getBoundingClientRect();
     const note = app.highway?.noteAt(event.clientX - box.left, event.clientY - box.top, app.highwayScene(app.second())) ?? -1;
     if (note >= 0) {
