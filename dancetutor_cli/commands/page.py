@@ -68,8 +68,8 @@ class PageWish:
 @click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad, as players of hard charts do.")
 @click.option(
     "--second",
-    metavar="next|PRESET|FILE.json",
-    help="A second dancer beside her: the next best play, another preset's, or one of a JSON file.",
+    metavar="next|PRESET|FILE",
+    help="A second dancer: the next best play, another preset's, one of a JSON file, or the motion of an .npz.",
 )
 @gait_option
 @form_option

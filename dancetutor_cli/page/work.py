@@ -17,6 +17,7 @@ from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.motion import shifted
 from dancetutor_cli.dance.performance import pad_of, perform, play_of_all, playable, pooled, solve
 from dancetutor_cli.dance.request import check_request, read_chart
+from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.feet import alternatives, load_pad, load_preset
 from dancetutor_cli.feet.play_json import read_play
 from dancetutor_cli.feet.solved import solve_song
@@ -44,6 +45,7 @@ MUSIC_TYPES = {".ogg": "audio/ogg", ".oga": "audio/ogg", ".mp3": "audio/mpeg", "
                ".flac": "audio/flac", ".opus": "audio/ogg"}  # fmt: skip
 MOST_MUSIC = 64_000_000  # bytes that are put into a page
 NEXT = "next"
+MOTION = ".npz"
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +53,8 @@ class PageRequest:
     """What page is wanted. Pickles, so that another process can make it.
 
     dance : which chart, and how it is danced; character : who; music : the song's file goes into the page
-    beside : what a second dancer plays: NEXT, the next best play, the name or file of a preset, or a play as JSON
+    beside : what a second dancer plays: NEXT, the next best play, the name or file of a preset, or a play as JSON; or
+        the .npz file of the motion that she has
     jobs : processes for the pieces of a long song
     """
 
@@ -88,12 +91,14 @@ class PageSubject:
     """What a page is about: its chart is read and solved.
 
     solved : each player's part, one for most charts; warnings : lines for people, of presets for other pads
+    second : the motion of a file that a second dancer has
     """
 
     request: PageRequest
     character: Character
     solved: tuple[Solved, ...]
     warnings: tuple[str, ...]
+    second: Motion | None = None
 
     @property
     def song(self) -> Song:
@@ -131,7 +136,8 @@ def look_up_page(request: PageRequest) -> PageSubject:
         raise UsageError(
             f"{request.dance.path}: --second is for one dancer, and the chart is for two: choose with --player"
         )
-    return PageSubject(request, character, solve(request.dance, choice), choice.warnings)
+    second = _second_motion(request)
+    return PageSubject(request, character, solve(request.dance, choice), choice.warnings, second)
 
 
 def pack_page(page: PageSubject) -> Page:
@@ -143,6 +149,7 @@ def pack_page(page: PageSubject) -> Page:
     music, warnings = _music(page.song, page.chart) if request.music else (None, ())
     beside = _second_play(page)
     motions = [motion for some in (solved, beside) if some for motion in _motions(request, some)]
+    motions += [] if page.second is None else [page.second]
     warnings = (*page.warnings, *warnings, *(note for motion in motions for note in motion.notes))
     fitted = [retarget(motion, page.character) for motion in motions]
     doc, blob = pack_content(_content(page, beside, fitted, music))
@@ -160,7 +167,7 @@ def _motions(request: PageRequest, solved: tuple[Solved, ...]) -> list[Motion]:
 def _second_play(page: PageSubject) -> tuple[Solved, ...]:
     """The other play that a second dancer dances: the next best, another preset's, or a file's; empty if none is."""
     wanted, path, one = page.request.beside, page.request.dance.path, page.solved[0]
-    if wanted is None:
+    if wanted is None or wanted.lower().endswith(MOTION):
         return ()
     assert one.play is not None and one.pad is not None
     if wanted.lower().endswith(".json"):
@@ -172,6 +179,19 @@ def _second_play(page: PageSubject) -> tuple[Solved, ...]:
     if len(found) < 2:
         raise UsageError(f"{path}: {one.chart.label}: there is no other way to play it")
     return (replace(one, play=found[1].play),)
+
+
+def _second_motion(request: PageRequest) -> Motion | None:
+    """The motion of a file, if a second dancer shall have that: of `animate`, or of a capture from `retarget`."""
+    from dancetutor_cli.formats.npz import read_npz
+
+    if request.beside is None or not request.beside.lower().endswith(MOTION):
+        return None
+    motion = read_npz(Path(request.beside))
+    if missing := set(dancer_skeleton().names) - set(motion.skeleton.names):
+        what = f"its skeleton has no {min(missing)}"
+        raise FileError(Path(request.beside), f"{what}; `dancetutor retarget` brings a capture onto the dancer's")
+    return motion
 
 
 def _content(
@@ -200,7 +220,9 @@ def _content(
         motions=motions,
         directions=pad.directions,
         second_name=Path(page.request.beside or "").stem,
-        second_rows=[row for one in beside for row in _differing(one.play, play)],
+        second_rows=[row for one in beside for row in _differing(one.play, play)]
+        if beside or len(solved) > 1
+        else _otherwise(motions[1:], play),
         passages=_passages(solved),
         flips=flips_of(play, pad, first.preset, overrides)
         if alone and (overrides := first.overrides) is not None
@@ -215,6 +237,13 @@ def _differing(other: Play | None, play: Play) -> list[int]:
     assert other is not None
     rows: list[int] = np.flatnonzero((other.limb != play.limb).any(axis=1)).tolist()
     return rows
+
+
+def _otherwise(motions: Sequence[Motion], play: Play) -> list[int]:
+    """Rows of a play that some motions' contacts, which know their rows, step with other limbs."""
+    limbs = play.limb
+    touches = [c for motion in motions for c in motion.contacts if c.row < len(limbs) and c.column < limbs.shape[1]]
+    return sorted({c.row for c in touches if limbs[c.row, c.column] != c.limb})
 
 
 def _findings(solved: tuple[Solved, ...]) -> Iterator[Finding]:

@@ -8,18 +8,25 @@ import json
 import re
 import struct
 import zlib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from page_song import write_song
 
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance.performance import perform, solve
+from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.film.words import move_words
+from dancetutor_cli.formats.npz import write_npz
 from dancetutor_cli.lint.rule import all_rules
 from dancetutor_cli.page.document import Blob, languages
-from dancetutor_cli.page.work import Page
+from dancetutor_cli.page.work import Page, PageRequest, make_page
+from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import config_path
 
 
@@ -118,6 +125,21 @@ def test_every_label_that_the_modules_use_exists() -> None:
         for key in re.findall(r'\bname: "(\w+)", keys:|slider\("(\w+)"', path.read_text("utf-8")):
             key = key[0] or f"setting-{key[1]}"
             assert key in known, f"{path.name}: {key}"
+
+
+def test_a_second_dancer_has_the_motion_of_a_file(page: Page, tmp_path: Path) -> None:
+    request = DanceRequest(write_song(tmp_path), Selection(), "thesis", fps=30.0)
+    [own] = perform(solve(request), request).motions()
+    other = replace(own.motion.contacts[0], limb=1 - own.motion.contacts[0].limb)
+    later = replace(own.motion, times=own.motion.times + 1.0, contacts=(other, *own.motion.contacts[1:]))
+    write_npz(tmp_path / "captured.npz", later)
+    made = unpacked(make_page(PageRequest(request, beside=str(tmp_path / "captured.npz"))).html)
+    assert [round(one["start"] - own.motion.times[0], 3) for one in made["motions"]] == [0.0, 1.0]
+    assert made["beside"] == {"name": "captured", "rows": [other.row]}
+    skeleton = replace(own.motion.skeleton, names=tuple(f"other_{name}" for name in own.motion.skeleton.names))
+    write_npz(tmp_path / "foreign.npz", replace(own.motion, skeleton=skeleton))
+    with pytest.raises(FileError, match=r"foreign\.npz: its skeleton has no .*; `dancetutor retarget`"):
+        make_page(PageRequest(request, beside=str(tmp_path / "foreign.npz")))
 
 
 def test_a_second_dancer_plays_other_feet(page: Page) -> None:
