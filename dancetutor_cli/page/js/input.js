@@ -31,13 +31,13 @@ export class Input {
    */
   constructor(panels, settings, ways = []) {
     this.ways = ways;
-    /** whether there are no keys to speak of: a phone, until one is pressed */
+    /** whether there are no keys to speak of: a phone or a mat, until one is pressed */
     this.touched = typeof matchMedia === "function" && matchMedia("(pointer: coarse)").matches;
     this.panels = panels;
     this.settings = settings;
     /** @type {Map<string, boolean[]>} buttons that are down, by pad */
     this.down = new Map();
-    /** @type {Map<string, number[]>} where the axes of each pad were at first: what rests at an end is no panel */
+    /** @type {Map<string, number[]>} where the axes of each pad rest: what has only been at an end so far is no panel */
     this.rests = new Map();
     /** @type {boolean[]} panels that are down */
     this.held = panels.map(() => false);
@@ -101,6 +101,7 @@ export class Input {
     const rests = this.rests.get(name) ?? [...pad.axes];
     this.rests.set(name, rests);
     pad.axes.forEach((value, k) => {
+      if (Math.abs(value) < PUSHED) rests[k] = value; // a mat may be stepped on as it is seen first
       const counts = Math.abs(rests[k] ?? 0) < PUSHED && Math.abs(value) <= 1;
       out[AXES + 2 * k] = counts && value < -PUSHED;
       out[AXES + 2 * k + 1] = counts && value > PUSHED;
@@ -176,6 +177,7 @@ export class Input {
     const ago = (performance.now() - at) / 1000;
     this.held[column] = true;
     this.changed = true;
+    if (device === "pad") this.touched = true; // its panels have arrows on them, and no letters
     this.onPress({ column, device, ago: ago > 0 && ago < LONGEST ? ago : 0 });
   }
 
