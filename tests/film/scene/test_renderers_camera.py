@@ -79,9 +79,23 @@ def test_three_quarter_stands_near(steps, least):
     assert feet[1] - head[1] > least * size[1]
 
 
+@pytest.mark.parametrize("kind", ["stand", "step", "jump"])
+@pytest.mark.parametrize("steps", ["dance-single", "pump-single", "dance-double"])
+def test_three_quarter_shows_her_face(steps, kind):
+    """It looked at the back of her head. From 30 degrees aside eyes and mouth are seen, and all of a cheek."""
+    scene, size = rs.scene(steps), (1280, 672)
+    joints, head = rs.pose(scene.character, kind), scene.character.skeleton.index("skullbase")
+    camera = scene.camera("three-quarter", size)
+    to_camera = np.array(camera.position) - joints[head, :3, 3]
+    angle = np.degrees(np.arccos(joints[head, :3, 2] @ to_camera / np.linalg.norm(to_camera)))
+    assert 20 < angle < 45, "neither from the front nor from the side"
+    behind = np.array(scene.camera("back", size).position) - joints[head, :3, 3]
+    assert joints[head, :3, 2] @ behind < 0, "from behind there is no face"
+
+
 @pytest.mark.parametrize(
     ("text", "turned"),
-    [("back", False), ("front", True), ("front-high", True), ("side", False), ("three-quarter", False), ("top", False),
+    [("back", False), ("front", True), ("front-high", True), ("side", False), ("three-quarter", True), ("top", False),
      ("1.5,1.8,-4/0,0.9,0", False), ("1.5,1.8,4/0,0.9,0", True), ("0,3,0/0,0,0", False)],
 )  # fmt: skip
 def test_who_sees_her_face_sees_the_pad_turned(text, turned):
