@@ -61,7 +61,7 @@ class Highway:
         self.by_time = scroll.mode == "C"
         self.spacing = scroll.factor(scroll_bpm) * geometry.lane * (-1 if geometry.down else 1)
         self.style = sprites.highway_style()
-        self.size = max(8, round(geometry.lane * self.style.arrow))
+        self.size = sprites.arrow_size(geometry.lane, self.style)
         # Which colour a note has: that of its quantisation, or of a chart for two of whose it is.
         self.colours = (*(self.style.quantisation[q] for q in QUANTISATIONS), *self.style.players)
         whose = len(QUANTISATIONS) + self.notes.player.astype(np.int64) - 1

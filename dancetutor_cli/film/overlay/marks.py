@@ -88,10 +88,11 @@ def lane_width_for_words(words: float, lane: float, box: tuple[int, int, int, in
 
 # The marks that say who steps a note: how large each is, where it stands on its arrow, which are left out.
 #
-# A mark stands on the arrow's tail, so that the head shows where it points. Where the notes of a lane are so dense that
-# marks would cover each other, they are smaller, those of the left foot stand on the left of the lane and those of the
-# right foot on the right, and of one foot's only as many are drawn as can be read. A cross, of a note that is let go,
-# stays in the middle, where it covers neither side's.
+# A mark stands on the arrow's tail, so that the head shows where it points. Where the arrows of a lane lie over each
+# other, it stands on the strip of its arrow that is seen, and is no higher than that. Where marks would cover each
+# other, they are smaller, those of the left foot stand on the left of the lane and those of the right foot on the
+# right, and of one foot's only as many are drawn as can be read; on diagonals they keep to the tail's side as long as
+# they can. A cross, of a note that is let go, stays in the middle, where it covers neither side's.
 
 MARK_SHARE, MARK_MOST = 0.04, 0.58  # an L or R is at least so many heights of the box, but at most so many lanes
 READ, READ_MOST = 16, 0.5  # pixels of a mark whose letter is 8 high, on diagonal arrows, too; at most so many lanes
@@ -104,13 +105,15 @@ STEPS = 8  # sizes are found for so many spacings in each doubling
 
 
 class Places(NamedTuple):
-    """The marks of all notes at some spacing, int16 (n,) each.
+    """The marks of all notes at some spacing, (n,) each.
 
-    size : pixels, 0 for none; side : -1 on the left of the lane, 1 on its right, 0 where it stands by itself
+    size : int16, pixels, 0 for none; side : int16, -1 on the left of the lane, 1 on its right, 0 where it stands by
+    itself; below : float64, pixels from the arrow's middle down to the mark's
     """
 
     size: NDArray[np.int16]
     side: NDArray[np.int16]
+    below: NDArray[np.float64]
 
 
 class Marks:
@@ -122,6 +125,7 @@ class Marks:
         self._notes, self.geometry, self._style, self._face = notes, geometry, style, face
         self._along = notes.second if by_time else notes.beat
         lane, high = geometry.lane, geometry.box[3] - geometry.box[1]
+        self._arrow = sprites.arrow_size(lane, style)
         self._read = max(6, min(READ, round(READ_MOST * lane)))
         self.full = max(self._read, round(max(style.mark * lane, min(MARK_SHARE * high, MARK_MOST * lane))))
         self.least = min(self.full, max(6, round(min(LEAST_SHARE * high, LEAST_MOST * lane))))
@@ -156,10 +160,10 @@ class Marks:
             return
         column, side, mine = int(self._notes.column[i]), int(places.side[i]), bool(self._on_mine[i])
         direction = None if mine else self.geometry.directions[column]
-        across, below = (side * SIDE_OFFSET * self.geometry.lane, 0.0) if side else self.behind(direction)
+        across = side * SIDE_OFFSET * self.geometry.lane if side else self.behind(direction)[0]
         badge = self._sprite(size, -1 if gone or mine else max(int(self._notes.limb[i]), -1))
         x, top = self.geometry.corner(column, y, badge.shape[0])
-        blit(frame, badge, x + across, top + below, 1.0, self.geometry.box[1::2])
+        blit(frame, badge, x + across, top + float(places.below[i]), 1.0, self.geometry.box[1::2])
 
     def _draw_sprite(self, size: int, limb: int) -> Sprite:
         """A mark on the soft shade that lifts it off its arrow."""
@@ -170,24 +174,45 @@ class Marks:
     def _find(self, spacing: int) -> Places:
         notes, apart = self._notes, 2.0 ** (spacing / STEPS)
         size, side = np.zeros(len(notes.second), np.int16), np.zeros(len(notes.second), np.int16)
+        below = np.zeros(len(notes.second))
         size[self._on_mine] = self.of(0.0)  # none is left out, however dense
         for column in np.unique(notes.column[self._marked]).tolist():
-            here = np.flatnonzero(self._marked & (notes.column == column))
-            usual = self.of(self.geometry.directions[column])
+            lane = np.flatnonzero(notes.column == column)
+            lane = lane[np.argsort(self._along[lane], kind="stable")]
+            strip = np.diff(self._along[lane] * apart, prepend=-np.inf)  # what is seen of an arrow that another is over
+            here, strip = lane[self._marked[lane]], strip[self._marked[lane]]
+            direction = self.geometry.directions[column]
+            usual = self.of(direction)
             size[here] = usual
             along = self._along[here] * apart
-            order = np.argsort(along, kind="stable")
-            here, along = here[order], along[order]
             gaps = np.diff(along, prepend=-np.inf, append=np.inf)
-            dense = np.minimum(gaps[:-1], gaps[1:]) < usual
+            near = np.minimum(gaps[:-1], gaps[1:])
+            dense = near < usual
             crosses = dense & (notes.limb[here] < 0)
             size[here[crosses]] = 0
             for left in (True, False):
                 one = dense & np.isin(notes.limb[here], (0, 2) if left else (1, 3))
                 size[here[one]] = self._thinned(along[one], usual, along[crosses])
                 side[here[one]] = -1 if left else 1
+            on_tail = near >= self.least if direction is not None and direction % 90 else np.zeros(len(here), np.bool_)
+            side[here[on_tail]] = 0
+            size[here] = np.minimum(size[here], np.maximum(strip, self.least)).astype(np.int16)
             size[here] = self._with_crosses(along, size[here], crosses, usual)
-        return Places(size, side)
+            tail = np.where(side[here] == 0, self.behind(direction)[1], 0.0)
+            below[here] = self._seen(tail, size[here], strip)
+        return Places(size, side, below)
+
+    def _seen(
+        self, tail: NDArray[np.float64], size: NDArray[np.int16], strip: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Where marks stand so that they cover no arrow that comes sooner: `tail`, or farther from that arrow.
+
+        tail : pixels down from the arrows' middles; size : of the marks; strip : what is seen of their arrows
+        """
+        way = -1.0 if self.geometry.down else 1.0
+        half = self._arrow / 2
+        least = half - np.minimum(strip, self._arrow) + size / 2
+        return np.asarray(way * np.where(size > 0, np.maximum(way * tail, np.minimum(least, half - size / 2)), 0.0))
 
     def _thinned(self, along: NDArray[np.float64], most: int, crosses: NDArray[np.float64]) -> NDArray[np.int16]:
         """Sizes of marks of one side of a lane at these places, at most `most` pixels: 0 where the last is near.
@@ -214,8 +239,9 @@ class Marks:
         for k in np.flatnonzero(crosses).tolist():
             first, last = np.searchsorted(along, (along[k] - most, along[k] + most), side="left").tolist()
             near = np.arange(first, last)[size[first:last] > 0]
-            room = np.min(2 * np.abs(along[near] - along[k]) - size[near], initial=most)
-            size[k] = room if room >= self.least else 0
+            away = along[near] - along[k]
+            room = np.min(-away[away <= 0], initial=most)  # marks stand as far from what comes sooner as they can
+            size[k] = room if room >= self.least and (size[near] <= np.abs(away)).all() else 0
         return size
 
 

@@ -72,6 +72,11 @@ def callout_words() -> dict[str, str]:
     return move_words(highway_style().callouts, config_path("highway.yaml"))
 
 
+def arrow_size(lane: float, style: HighwayStyle) -> int:
+    """Pixels of an arrow in a lane so wide."""
+    return max(8, round(lane * style.arrow))
+
+
 def _outline(size: float, direction: float | None) -> NDArray[np.float64]:
     """Corners of the note shape; direction in degrees clockwise from up. A diagonal fills its lane as others do."""
     if direction is None:

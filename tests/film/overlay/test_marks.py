@@ -9,6 +9,7 @@ import pytest
 from film_plans import film_plan
 
 from dancetutor_cli.chart.model import Kind
+from dancetutor_cli.feet.limbs import limb_colours
 from dancetutor_cli.film.overlay import sprites
 from dancetutor_cli.film.overlay.highway import Highway, Score
 from dancetutor_cli.film.overlay.marks import HighwayGeometry
@@ -78,7 +79,8 @@ def test_no_mark_covers_another_however_dense_notes_are(
     for n, i in enumerate(shown):
         for j in shown[n + 1 :]:
             least = (places.size[i] + places.size[j]) / 2 - 1
-            assert max(abs(middle[i] - middle[j]), (j - i) * apart * lane) >= least, (i, j)
+            down = (j - i) * apart * lane + places.below[j] - places.below[i]
+            assert max(abs(middle[i] - middle[j]), down) >= least, (i, j)
     assert (places.size[shown] >= marks.least).all()
     for limb in set(limbs) - {-1}:
         assert places.size[limbs.index(limb)] > 0, "the first of each foot is marked"
@@ -95,7 +97,8 @@ def test_marks_have_the_room_that_there_is(limbs: list[int]) -> None:
         for i in shown.tolist():
             for j in shown[shown > i].tolist():
                 if places.side[i] == places.side[j] or 0 in (places.side[i], places.side[j]):
-                    assert (j - i) * 0.25 * spacing >= (places.size[i] + places.size[j]) / 2 - 1e-6, (spacing, i, j)
+                    down = (j - i) * 0.25 * spacing + places.below[j] - places.below[i]
+                    assert down >= (places.size[i] + places.size[j]) / 2 - 1e-6, (spacing, i, j)
 
 
 def test_a_cross_is_seen_between_marks_where_there_is_room_for_it() -> None:
@@ -123,16 +126,56 @@ def test_notes_that_nobody_steps_have_no_mark() -> None:
 
 
 def test_an_arrow_that_comes_sooner_does_not_cover_a_mark() -> None:
-    """The second note's mark is as whole as it is alone."""
-    colours = []
+    """The second note's mark is as whole as it is alone, where it is then."""
+    seen = []
     for seconds in ([1.0, 1.45], [0.2, 1.45]):
         drawn = highway(seconds, [0, 1], 76.0, USUAL)
         frame = np.zeros((672, 400, 3), np.uint8)
         drawn.draw(frame, 0.0, 0.0)
-        x, y = drawn.geometry.left + 38, 1.45 * 76 + drawn.marks.behind(0.0)[1]
-        half = drawn.marks.full // 2 - 5
-        colours.append(frame[round(y) - half : round(y) + half, round(x) - half : round(x) + half])
-    assert (colours[0] == colours[1]).all()
+        places = drawn.marks.places(76.0)
+        x, y = drawn.geometry.left + 38, 1.45 * 76 + places.below[1]
+        half = places.size[1] // 2
+        here = frame[round(y) - half : round(y) + half, round(x) - half : round(x) + half].astype(int)
+        seen.append((np.abs(here - limb_colours().by_limb[1]).sum(axis=2) < 60).sum())
+    assert seen[0] > 150 and seen[0] == pytest.approx(seen[1], rel=0.06)
+
+
+DENSE = [
+    [0, 0, 0, 0, 0, 0], [1, 0, 1, 0, 1, 0], [0, 0, 1, 1, 0, 1], [-1, 0, 1, -1, 0, 1],
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("down", [False, True])
+@pytest.mark.parametrize("direction", [225.0, 315.0, None, 45.0, 135.0, 0.0, 90.0, 180.0])
+@pytest.mark.parametrize(("lane", "box"), [(40.0, NARROW), (76.0, USUAL), (139.0, PHONE)])
+def test_a_mark_on_dense_rows_covers_no_other_arrow(
+    lane: float, box: tuple[int, int, int, int], direction: float | None, down: bool
+) -> None:
+    """On Pump's diagonals it stood over the arrow that comes sooner, and beyond the lane's edge.
+
+    Down to the spacing at which a mark could not be read any more. Of an arrow under another one only a strip is seen:
+    the mark is on that strip of its own.
+    """
+    plan = film_plan(np.arange(1.0, 7.0))
+    alone = np.zeros(6, np.int16)
+    for limbs in DENSE:
+        notes = replace(plan.notes, column=alone, limb=np.array(limbs, np.int8))
+        score = Score(notes, replace(plan.presses, column=alone), plan.lines)
+        drawn = Highway(score, HighwayGeometry(box, lane, 0.0, (direction,), down), parse_scroll("C60"), 120.0, FACE)
+        marks, half, way = drawn.marks, drawn.size / 2, -1.0 if down else 1.0
+        for apart in np.linspace(marks.least * 1.1, 1.4 * lane, 25).tolist():
+            places = marks.places(apart)
+            middles = way * apart * np.arange(6)
+            shown = np.flatnonzero(places.size)
+            assert {limbs[i] for i in shown} >= set(limbs) - {-1}
+            for i in shown.tolist():
+                top, bottom = (middles[i] + places.below[i] + side * places.size[i] / 2 for side in (-1, 1))
+                assert top >= middles[i] - half - 1e-6 and bottom <= middles[i] + half + 1e-6, "on its own arrow"
+                for sooner in range(i):
+                    others = middles[sooner] - half, middles[sooner] + half
+                    assert bottom <= others[0] + 1e-6 or top >= others[1] - 1e-6, (apart, i, sooner)
+                across = places.side[i] * 0.25 * lane if places.side[i] else marks.behind(direction)[0]
+                assert abs(across) + places.size[i] / 2 <= lane / 2
 
 
 @pytest.mark.parametrize("limb", [0, 1])
