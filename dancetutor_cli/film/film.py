@@ -24,6 +24,7 @@ from dancetutor_cli.film.overlay.diagram import FeetDiagram, NextRows, PadMap, P
 from dancetutor_cli.film.overlay.header import Header, Lines, WordsRoom
 from dancetutor_cli.film.overlay.highway import Highway, Score
 from dancetutor_cli.film.overlay.marks import HighwayGeometry, lane_width_for_words
+from dancetutor_cli.film.overlay.phrases import standing_tags
 from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import Frame, darkened
@@ -85,7 +86,7 @@ class Film:
         tags = part.tags and beside.has_visible_callout(plan.callouts, plan.clock.passes)
         letters = beside.letters(scale)
         if tags:
-            told = beside.callout_texts(plan.callouts, callout_words().values())
+            told = beside.callout_texts(plan.callouts, (*callout_words().values(), *standing_tags()))
             lane = lane_width_for_words(beside.room_for(told, letters, self.face), lane, box, self.columns)
         geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned, tags, letters)
         scroll = plan.look.scroll or parse_scroll(part.scroll)

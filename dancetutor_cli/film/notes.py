@@ -69,6 +69,7 @@ class Callout:
     severity : "move", "info", "warning" or "error"; begin : second from which it is called out; end : where it is over
     tag : fewer words, for the place beside the notes
     further : where the passage's other moves begin, second and beat, and the tag of each
+    why : its reason, where there is room for it
     """
 
     second: float
@@ -79,6 +80,7 @@ class Callout:
     end: float
     tag: str
     further: tuple[tuple[float, float, str], ...] = ()
+    why: str = ""
 
 
 @dataclass(frozen=True, slots=True)

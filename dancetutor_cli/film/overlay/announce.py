@@ -152,10 +152,14 @@ class Calls:
         self._ends = np.array([max(one.end, one.second) + CALL_STAYS for one in callouts])
         self._sprite = lru_cache(maxsize=32)(self._plate)
 
-    def _plate(self, text: str, severity: str, tag: str = "") -> Sprite:
+    def _plate(self, text: str, severity: str, tag: str = "", why: str = "") -> Sprite:
+        """why : the reason, which stands there if it has room in two lines of letters that are large enough"""
         size = 24 * self.scale
         width, height = self.box[2] - self.box[0] - (FLAG_EDGE + 0.1) * size, self.box[3] - self.box[1]
-        lines, size = _phrases(text, size, (width, height), self.face, tag)
+        lines, fits = _two_lines(f"{text}: {why}", size, width, self.face) if why else ([], 0.0)
+        if fits < CALL_LEAST * size:
+            lines, fits = _phrases(text, size, (width, height), self.face, tag)
+        size = fits
         return flag(lines, size, self.style.callout[severity], self.face, _foot_colour(text))
 
     def _current_calls(self, second: float) -> list[Callout]:
@@ -166,7 +170,7 @@ class Calls:
         """Draw what goes on at `second`, and what comes next."""
         y = float(self.box[1])
         for one in self._current_calls(second):
-            label = self._sprite(one.text, one.severity, one.tag)
+            label = self._sprite(one.text, one.severity, one.tag, one.why)
             if y > self.box[1] and y + label.shape[0] > self.box[3]:
                 break  # it would cover what stands below; the tag beside the notes says it, too
             x = self.box[2] - label.shape[1]

@@ -16,7 +16,8 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import MOVE
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
 from dancetutor_cli.film.notes import Callout
-from dancetutor_cli.film.words import IMPLIED_BY_BRACKET, MINE, filled, short_words
+from dancetutor_cli.film.overlay.phrases import Phrase, crossing_phrase, plain, stepped_phrase
+from dancetutor_cli.film.words import IMPLIED_BY_BRACKET, MINE, filled
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -52,47 +53,68 @@ class CallStyle:
     turned: bool = False
 
 
-@dataclass
-class _Passage:
-    """Moves that follow each other closely. words : what is said -> how often, in order"""
+class _Move(NamedTuple):
+    """first, last : ticks; weight : index into `_ORDER`"""
 
     first: int
     last: int
-    words: dict[str, int] = field(default_factory=dict)
+    phrase: Phrase
     weight: int = 0
-    moves: list[tuple[int, str]] = field(default_factory=list)
 
-    def takes(self, tick: int, said: str, weight: int, told: _TickTable) -> bool:
-        """Is a move at `tick` part of it?"""
-        second = told.second
+
+@dataclass
+class _Passage:
+    """Moves that follow each other closely. kinds : name of a move -> its phrases, in order"""
+
+    first: int
+    last: int
+    kinds: dict[str, list[Phrase]] = field(default_factory=dict)
+    weight: int = 0
+    moves: list[_Move] = field(default_factory=list)
+
+    def takes(self, move: _Move, told: _TickTable) -> bool:
+        """Is a move part of it?"""
+        second, tick, name = told.second, move.first, move.phrase.move
 
         def within(since: int, most: tuple[int, float]) -> bool:
             return tick - since <= most[0] or second[tick] - second[since] <= most[1]
 
         near = within(self.last, JOIN) and second[tick] - second[self.last] < REST and within(self.first, LONGEST)
         near = near and not told.parted(self.last, tick)
-        short = len(self.words) < KINDS and len(", ".join([*self.words, said])) <= LETTERS
-        return near and weight == self.weight and (said in self.words or short)
+        short = len(self.kinds) < KINDS and len(", ".join([*self.kinds, name])) <= LETTERS
+        return near and move.weight == self.weight and (name in self.kinds or short)
+
+    def add(self, move: _Move) -> None:
+        """Take a move in."""
+        self.last = max(self.last, move.last)
+        self.kinds.setdefault(move.phrase.move, []).append(move.phrase)
+        self.moves.append(move)
 
     def text(self) -> str:
-        return ", ".join(said if count == 1 else f"{said} ×{count}" for said, count in self.words.items())
+        several = self.kinds.values()
+        return ", ".join(some[0].counted(len(some), len({one.said for one in some}) == 1) for some in several)
+
+    def why(self) -> str:
+        """The reason, if it is the same for all of it."""
+        found = {move.phrase.why for move in self.moves}
+        return found.pop() if len(found) == 1 and len(self.kinds) == 1 else ""
 
     def tag(self, further: int) -> str:
         """What it begins with, for the narrow place beside the notes, whose markers say which foot it is.
 
         further : how many of its other moves have tags of their own; where all have, this one counts none
         """
-        said, count = next(iter(self.words.items()))
-        counted = count > 1 and further + 1 < len(self.moves)
-        return f"{short_words(said)} ×{count}" if counted else short_words(said)
+        some = next(iter(self.kinds.values()))
+        counted = len(some) > 1 and further + 1 < len(self.moves)
+        return f"{some[0].tag} ×{len(some)}" if counted else some[0].tag
 
     def further(self, second: Mapping[int, float]) -> list[tuple[int, str]]:
         """Tick and tag of each other move that is well apart from the one before it."""
         found, before = [], self.first
-        for tick, said in self.moves:
-            if second[tick] - second[before] >= MIN_GAP:
-                found.append((tick, short_words(said)))
-                before = tick
+        for move in self.moves:
+            if second[move.first] - second[before] >= MIN_GAP:
+                found.append((move.first, move.phrase.tag))
+                before = move.first
         return found
 
 
@@ -135,21 +157,22 @@ def callouts_of(
     findings = list(_findings(about.findings(), codes=not style.findings)) if style.findings or ticks or mined else []
     why = {} if style.findings else dict(_reasons(ticks, findings))
     under = {} if style.findings else {tick: said for tick, _, said, _ in findings if _OF_MINES in said}
-    found = [*_moves(about.pad, play, style, why), *(findings if style.findings else ())]
-    found += ((tick, tick, style.words[MINE] + (f" ({under[tick]})" if tick in under else ""), 0) for tick in mined)
+    found = list(_moves(about.pad, play, style, why))
+    if style.findings:
+        found += (_Move(first, last, plain(said), weight) for first, last, said, weight in findings)
+    mine = style.words.get(MINE, "")
+    found += (_Move(tick, tick, plain(mine + (f" ({under[tick]})" if tick in under else ""))) for tick in mined)
     timing = about.chart.timing
-    asked = sorted({tick for first, last, *_ in found for tick in (first, last)})
+    asked = sorted({tick for move in found for tick in move[:2]})
     seconds = dict(zip(asked, timing.seconds(np.array(asked, dtype=np.int64)).tolist(), strict=True))
     told = _TickTable(seconds, [] if play is None else _jumps(play))
     passages: list[_Passage] = []
-    for first, last, said, weight in sorted(found):
-        here = next((p for p in reversed(passages[-2:]) if p.takes(first, said, weight, told)), None)
+    for move in sorted(found):
+        here = next((p for p in reversed(passages[-2:]) if p.takes(move, told)), None)
         if here is None:
-            here = _Passage(first, last, weight=weight)
+            here = _Passage(move.first, move.last, weight=move.weight)
             passages.append(here)
-        here.last = max(here.last, last)
-        here.words[said] = here.words.get(said, 0) + 1
-        here.moves.append((first, said))
+        here.add(move)
     ticks = np.array([(p.first, p.last) for p in passages], dtype=np.int64).reshape(-1, 2)
     starts, ends = timing.seconds(ticks[:, 0]), timing.seconds(ticks[:, 1])
     beats = scrolls.drawn_beats(ticks[:, 0] / TICKS_PER_BEAT)
@@ -172,6 +195,7 @@ def callouts_of(
             float(end),
             passage.tag(len(passage.further(seconds))),
             tuple(further(passage)),
+            passage.why(),
         )
         for passage, start, beat, begin, end in zip(passages, starts, beats, begins, ends, strict=True)
     )
@@ -191,30 +215,32 @@ def _reasons(ticks: Iterable[int], findings: Iterable[tuple[int, int, str, int]]
             yield tick, here[0] if here else passage
 
 
-def _moves(
-    pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[int, str]
-) -> Iterator[tuple[int, int, str, int]]:
-    """First and last tick of each move, what is said, and that it is no finding; why : what is added, by tick."""
+def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[int, str]) -> Iterator[_Move]:
+    """What is said of each move; why : what is added, by tick."""
     words = style.words
     if play is None or pad is None:
         return
     ticks = play.rows.tick.tolist()
-    crossed: dict[str, int] = {}  # kind of crossover -> where it began, of one that goes on
+    crossed: dict[str, tuple[int, Phrase]] = {}  # kind of crossover -> where it began, of one that goes on
     known: set[str] = set()  # kinds of it that are told, or that its half turn tells; a full one is a half one, too
     for row, names in enumerate(moves_and_turns(play)):
         now = next((name for name in _CROSSED if name in names), "")
         if not now:
-            yield from ((first, ticks[row - 1], words[kind], 0) for kind, first in crossed.items())
+            yield from (_Move(first, ticks[row - 1], phrase) for first, phrase in crossed.values())
             crossed, known = {}, set()
         elif now not in known and now in words and not {*HALF_TURNS}.intersection(names).intersection(words):
-            crossed[now] = ticks[row]
+            full = now == _CROSSED[0]
+            crossed[now] = ticks[row], plain(words[now]) if full else crossing_phrase(words[now], play, row, pad)
         known |= {now, _CROSSED[-1]} if now else set()
         told = {n for n in names if n in words and n not in _CROSSED}
         for name in sorted(told - IMPLIED_BY_BRACKET if "bracket" in told else told):
             reason = f" ({why[ticks[row]]})" if name == MOVE and ticks[row] in why else ""
+            if "{" not in words[name] and not reason:
+                yield _Move(ticks[row], ticks[row], stepped_phrase(words[name], name, play.limb[row].tolist()))
+                continue
             for said in filled(words[name], name, (play, row), pad, style.turned):
-                yield ticks[row], ticks[row], said + reason, 0
-    yield from ((first, ticks[-1], words[kind], 0) for kind, first in crossed.items())
+                yield _Move(ticks[row], ticks[row], plain(said + reason))
+    yield from (_Move(first, ticks[-1], phrase) for first, phrase in crossed.values())
 
 
 def _jumps(play: Play) -> list[int]:

@@ -66,7 +66,7 @@ def test_crossovers_in_a_row_are_one_passage_with_a_count() -> None:
 def test_the_first_of_quick_moves_has_the_count_in_its_tag() -> None:
     """The others stand too close for tags of their own."""
     (one,) = called(moves(*((0.5 * k, "footswitch-up") for k in range(4))))
-    assert (one.text, one.tag) == ("footswitch: swap feet ×4", "swap feet ×4")
+    assert (one.text, one.tag) == ("footswitch: swap to left foot ×4", "swap feet ×4")
     assert len(one.further) == 1
 
 
@@ -120,20 +120,20 @@ def test_an_uncrossed_jump_or_a_rest_parts_what_is_called_out() -> None:
 
 def test_moves_that_follow_closely_are_joined_and_others_are_not() -> None:
     found = called(moves((0.0, "crossover-half"), (1.0, "footswitch-up"), (20.0, "footswitch-up")))
-    assert [one.text for one in found] == ["crossover, footswitch: swap feet", "footswitch: swap feet"]
+    assert [one.text for one in found] == ["crossover, footswitch: swap to left foot", "footswitch: swap to left foot"]
     assert found[0].tag == "crossover", "the place beside the notes is narrow"
 
 
 def test_nothing_is_called_out_for_longer_than_four_measures() -> None:
     found = called(moves(*((float(beat), "footswitch-up") for beat in range(40))))
-    assert [one.text for one in found] == [f"footswitch: swap feet ×{times}" for times in (17, 17, 6)]
+    assert [one.text for one in found] == [f"footswitch: swap to left foot ×{times}" for times in (17, 17, 6)]
 
 
 def test_at_a_chart_of_false_tempo_seconds_join_them() -> None:
     """Pump's charts may run at 312 BPM and more: a measure there is less than a second."""
     quick = moves(*((float(beat), "footswitch-up") for beat in (0, 4, 8)))
     quick.chart.timing = SimpleNamespace(seconds=lambda t: np.asarray(t) / 48 * 60 / 312)
-    assert [one.text for one in called(quick)] == ["footswitch: swap feet ×3"]
+    assert [one.text for one in called(quick)] == ["footswitch: swap to left foot ×3"]
 
 
 def test_a_bracket_says_which_foot_and_which_part_of_it() -> None:
@@ -216,8 +216,8 @@ def test_other_words_for_a_time_are_refused_in_one_line(text: str) -> None:
 def test_findings_are_for_authors_who_ask_for_them() -> None:
     finding = SimpleNamespace(beat=4.0, note_column=0, severity="warning", name="fast-step")
     what = moves((8.0, "footswitch"))
-    assert [one.text for one in called(what, [finding])] == ["footswitch: swap feet"]
+    assert [one.text for one in called(what, [finding])] == ["footswitch: swap to left foot"]
     assert [(one.text, one.severity) for one in called(what, [finding], findings=True)] == [
         ("fast step", "warning"),
-        ("footswitch: swap feet", "move"),
+        ("footswitch: swap to left foot", "move"),
     ]

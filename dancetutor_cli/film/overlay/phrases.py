@@ -1,0 +1,111 @@
+"""What a call says of a move beside its name: which foot, in front or behind, and why; the sentences are data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dancetutor_cli.film.words import WHO, short_words
+from dancetutor_cli.run.reading import config_path
+from dancetutor_cli.run.yaml_files import load
+
+if TYPE_CHECKING:
+    from dancetutor_cli.feet.pads import Pad
+    from dancetutor_cli.feet.play import Play
+
+FRONT, BACK, JUMP = "crossover-front", "crossover-back", "crossover-jump"
+JUST = 2.0  # seconds ago at most, that a foot "has just stepped"
+
+
+@dataclass(frozen=True, slots=True)
+class _Calls:
+    """configs/calls.yaml. said, tags : by name of a move; why : by reason; several : of a passage of crossovers"""
+
+    said: dict[str, str]
+    tags: dict[str, str]
+    why: dict[str, str]
+    several: str
+
+
+@cache
+def _calls() -> _Calls:
+    return load(config_path("calls.yaml"), _Calls)
+
+
+class Phrase(NamedTuple):
+    """A move in words. move : its name for people, the same for all of its kind; said : with foot and way
+
+    tag : for the place beside the notes; why : a reason, or ""; several : how a count of different ones is written
+    """
+
+    move: str
+    said: str
+    tag: str
+    why: str = ""
+    several: str = ""
+
+    def counted(self, count: int, alike: bool) -> str:
+        """So many of them in a row; alike : all are said as this one is."""
+        if count == 1:
+            return self.said
+        if alike or not self.several:
+            return f"{self.said if alike else self.move} ×{count}"
+        return self.several.replace("{move}", self.move).replace("{count}", str(count)).replace("{said}", self.said)
+
+
+def plain(said: str) -> Phrase:
+    """Words that stand for themselves."""
+    return Phrase(said, said, short_words(said))
+
+
+def standing_tags() -> tuple[str, ...]:
+    """The tags that are the same in every film."""
+    return tuple(_calls().tags.values())
+
+
+def stepped_phrase(move: str, name: str, limbs: list[int]) -> Phrase:
+    """A move of the one foot that steps, for example a footswitch. limbs : of its row"""
+    feet = {limb for limb in limbs if limb in (0, 1)}
+    said = _calls().said.get(name)
+    if said is None or len(feet) != 1:
+        return plain(move)
+    return Phrase(move, said.replace("{who}", WHO[feet.pop()]), _calls().tags.get(name, short_words(move)))
+
+
+def crossing_phrase(move: str, play: Play, row: int, pad: Pad) -> Phrase:
+    """A crossover where it begins: which foot crosses, in front or behind, and why it is that foot.
+
+    move : its name for people; play, row : where it begins. That it is in front, towards the screen, is said by
+    `feet.solver`; of two feet that jump the one nearer to the screen is in front.
+    """
+    calls, feet = _calls(), [foot for foot in (0, 1) if foot in play.limb[row]]
+    if len(feet) == 2:
+        ahead = np.asarray(pad.panels)[play.feet[row]][:, 1]
+        name, foot = JUMP, int(np.argmax(ahead))
+        if ahead[0] == ahead[1]:
+            return plain(move)
+    else:
+        names = [name for name in (FRONT, BACK) if name in play.moves[row]]
+        if not feet or not names:
+            return plain(move)
+        (foot,), name = feet, names[0]
+    who, other = WHO[foot], WHO[1 - foot]
+    reason = "" if name == JUMP else _reason(play, row, foot)
+    why = calls.why.get(reason, "").replace("{other}", other).replace("{who}", who)
+    return Phrase(move, calls.said[name].replace("{who}", who), calls.tags[name], why, calls.several)
+
+
+def _reason(play: Play, row: int, foot: int) -> str:
+    """Why it is this foot that crosses: a key of `why` in configs/calls.yaml, or ""."""
+    rows, other = play.rows, 1 - foot
+    before = slice(0, row)
+    if ((play.limb[before] == other) & (rows.hold_end[before] > rows.tick[row])).any():
+        return "hold"
+    stepped = np.flatnonzero((play.limb[before] >= 0).any(axis=1))
+    if len(stepped) == 0 or rows.second[row] - rows.second[stepped[-1]] > JUST:
+        return ""
+    last = play.limb[stepped[-1]]
+    return "turn" if other in last and foot not in last else ""

@@ -1,0 +1,180 @@
+"""Which foot crosses, in front or behind, and why: said as the dancer's feet do it."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance.motion import Cut, Motion, sample
+from dancetutor_cli.dance.performance import perform, solve
+from dancetutor_cli.dance.request import DanceRequest
+from dancetutor_cli.dance.rig.body import joint_matrices
+from dancetutor_cli.feet import load_pad
+from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.solved import Solved
+from dancetutor_cli.film.choices import Ahead
+from dancetutor_cli.film.overlay.callouts import CalloutSubject, CallStyle, callouts_of
+from dancetutor_cli.film.overlay.phrases import Phrase, crossing_phrase
+from dancetutor_cli.film.overlay.sprites import callout_words
+from dancetutor_cli.film.scroll import parse_segments
+
+HEAD = "#TITLE:Crossed;\n#OFFSET:0;\n#BPMS:0=100;\n#NOTES:{}::Hard:9::\n{};\n"
+# Each two measures, a step a beat, left and right in turn; a star begins a hold that lasts over the next step.
+PATTERNS = {
+    "dance-single": ("L D R D L", "L U R U L", "R D L D R", "R U L U R", "L *D R", "R *D L", "R *U L", "L *U R"),
+    "pump-single": ("DL C DR C DL", "DR C DL C DR", "UR C UL C UR", "UL C UR C UL", "DL C UR C DL"),
+}
+COLUMNS = {"dance-single": ("L", "D", "U", "R"), "pump-single": ("DL", "UL", "C", "UR", "DR")}
+JUMP = {"dance-single": "1001", "pump-single": "10001"}  # before each pattern: her feet are apart then
+
+
+def written(folder: Path, steps: str) -> Path:
+    """A chart of all patterns."""
+    names, lines = COLUMNS[steps], []
+    for pattern in PATTERNS[steps]:
+        rows = [list(JUMP[steps]), *(["0"] * len(names) for _ in range(7))]
+        held = None
+        for beat, name in enumerate(pattern.split(), 1):
+            rows[beat][names.index(name.strip("*"))] = "2" if name.startswith("*") else "1"
+            held = beat if name.startswith("*") else held
+        if held is not None:
+            rows[held + 2][names.index(pattern.split()[held - 1].strip("*"))] = "3"
+        lines += ["".join(row) for row in rows]
+    path = folder / f"{steps}.sm"
+    measures = ["\n".join(lines[k : k + 4]) for k in range(0, len(lines), 4)]
+    path.write_text(HEAD.format(steps, "\n,\n".join(measures)))
+    return path
+
+
+class Danced(NamedTuple):
+    """solved : of a chart of hand; motion : how she dances it"""
+
+    solved: Solved
+    motion: Motion
+
+
+@pytest.fixture(scope="module", params=PATTERNS)
+def danced(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Danced:
+    """Every pattern in turn."""
+    wanted = DanceRequest(written(tmp_path_factory.mktemp("crossed"), request.param), Selection(index=0), fps=60.0)
+    (solved,) = some = solve(wanted)
+    assert solved.play is not None
+    second = solved.play.rows.second
+    whole = Cut(float(second[0]) - 1.0, float(second[-1]) + 0.5)
+    return Danced(solved, perform(some, wanted, 1.0).motions(whole)[0].motion)
+
+
+def passes(motion: Motion, second: float, foot: int) -> float | None:
+    """How far a foot is nearer to the screen than the other one as it passes it, metres; None: it never does.
+
+    second : when it lands; from the ball joints of the half second before, across the pad
+    """
+    skeleton = motion.skeleton
+    rotations, root = sample(motion, np.arange(second - 0.55, second + 0.02, 1 / 120))
+    joints = joint_matrices(skeleton, rotations, root)
+    left, right = (joints[:, skeleton.index(f"{side}_metatarsal"), :3, 3] for side in "lr")
+    apart = left[:, 0] - right[:, 0]  # her left is where x is greater
+    crossed = np.flatnonzero((apart[:-1] > 0) & (apart[1:] <= 0))
+    if len(crossed) == 0:
+        return None
+    ahead = (left - right)[crossed[-1], 2]
+    return float(ahead if foot == 0 else -ahead)
+
+
+def crossings(play: Play) -> list[int]:
+    """Rows at which legs are crossed by one foot, and were not before."""
+    crossed = [any(name.startswith("crossover") for name in names) for names in play.moves]
+    begins = [row + 1 for row, (before, now) in enumerate(pairwise(crossed)) if now and not before]
+    return [row for row in begins if len({0, 1} & set(play.limb[row].tolist())) == 1]
+
+
+def test_calls_say_which_foot_crosses_and_whether_in_front_as_the_feet_do(danced: Danced) -> None:
+    solved = danced.solved
+    play, pad = solved.play, solved.pad
+    assert play is not None and pad is not None
+    found = crossings(play)
+    ways = set()
+    for row in found:
+        (foot,) = {0, 1} & set(play.limb[row].tolist())
+        ahead = passes(danced.motion, float(play.rows.second[row]), foot)
+        assert ahead is not None and abs(ahead) > 0.05
+        said = crossing_phrase("crossover", play, row, pad)
+        way = "in front" if ahead > 0 else "behind"
+        assert said.said == f"{('left', 'right')[foot]} foot crosses {way}"
+        assert said.tag == f"cross {way}"
+        ways.add((foot, way))
+    assert len(found) >= 4 and ways == {(foot, way) for foot in (0, 1) for way in ("in front", "behind")}
+
+
+def test_a_call_says_why(danced: Danced) -> None:
+    """Because the other foot is on a hold, else because it has just stepped."""
+    solved = danced.solved
+    play, pad = solved.play, solved.pad
+    assert play is not None and pad is not None
+    style = CallStyle(callout_words(), Ahead(0.5))
+    called = callouts_of(CalloutSubject(solved.chart, pad, tuple), play, style, parse_segments(""))
+    by_second = {round(one.second, 3): one for one in called}
+    reasons = set()
+    for row in crossings(play):
+        one = by_second[round(float(play.rows.second[row]), 3)]
+        if one.text.startswith("half turn"):
+            continue
+        (foot,) = {0, 1} & set(play.limb[row].tolist())
+        other, tick = 1 - foot, int(play.rows.tick[row])
+        holds = any(
+            play.limb[r, c] == other and play.rows.hold_end[r, c] > tick for r in range(row) for c in range(len(pad))
+        )
+        reason = "is on the hold" if holds else "has just stepped"
+        assert one.why == f"{('left', 'right')[other]} foot {reason}"
+        assert " crosses " in one.text
+        reasons.add(reason)
+    holds_too = bool((play.rows.hold_end >= 0).any())
+    assert reasons == {"has just stepped", *(["is on the hold"] if holds_too else [])}
+
+
+def rows(*some: tuple[tuple[str, ...], dict[int, int], tuple[int, int]], steps: str = "dance-single") -> Any:
+    """A play of rows of (moves, column -> limb, where the feet stand), a second apart."""
+    pad = load_pad(steps)
+    assert pad is not None
+    limb = np.full((len(some), len(pad)), -1, np.int8)
+    for number, (_, pressed, _) in enumerate(some):
+        for column, who in pressed.items():
+            limb[number, column] = who
+    of_rows = SimpleNamespace(
+        second=np.arange(float(len(some))), tick=96 * np.arange(len(some)), hold_end=np.full(limb.shape, -1)
+    )
+    feet = np.array([stand for *_, stand in some])
+    return SimpleNamespace(rows=of_rows, limb=limb, feet=feet, moves=tuple(names for names, *_ in some)), pad
+
+
+def test_a_jump_that_crosses_names_the_foot_in_front() -> None:
+    half = ("crossover-half", "jump")
+    play, pad = rows(((), {0: 0, 3: 1}, (0, 3)), (half, {3: 0, 1: 1}, (3, 1)))
+    assert crossing_phrase("crossover", play, 1, pad).said == "feet cross, left foot in front"
+    play, pad = rows(((), {0: 0, 3: 1}, (0, 3)), (half, {3: 0, 2: 1}, (3, 2)))
+    assert crossing_phrase("crossover", play, 1, pad) == Phrase(
+        "crossover", "feet cross, right foot in front", "feet cross", "", "{move} ×{count}: first {said}"
+    )
+
+
+def test_a_foot_that_steps_twice_has_no_such_reason() -> None:
+    half = ("crossover-front", "crossover-half")
+    twice, pad = rows(((), {0: 0}, (0, 1)), (half, {3: 0}, (3, 1)))
+    assert crossing_phrase("crossover", twice, 1, pad).why == ""
+    turn, pad = rows(((), {0: 0}, (0, 3)), ((), {1: 1}, (0, 1)), (half, {3: 0}, (3, 1)))
+    assert crossing_phrase("crossover", turn, 2, pad).why == "right foot has just stepped"
+    turn.rows.second[2] = 9.0
+    assert crossing_phrase("crossover", turn, 2, pad).why == "", "long ago"
+
+
+def test_crossovers_of_both_feet_are_counted_and_the_first_is_told() -> None:
+    left = Phrase("crossover", "left foot crosses in front", "cross in front", "", "{move} ×{count}: first {said}")
+    assert left.counted(1, True) == left.said
+    assert left.counted(3, True) == "left foot crosses in front ×3"
+    assert left.counted(3, False) == "crossover ×3: first left foot crosses in front"
