@@ -66,8 +66,8 @@ class Film:
             left, top, _, bottom = self._box("progress")
             captions.strip_ground(self.base[top:bottom, left:], self.scale * strip.text)
         self.highway = self._highway() if self.layout.highway else None
-        if self.layout.screen:
-            width, height = self.layout.screen.pixels
+        if (screen := self.layout.screen_for(self._breadth)) is not None:
+            width, height = screen.pixels
             self.screen_base = np.zeros((height, width, 3), dtype=np.uint8)
         if self.highway:
             self.highway.background(self.screen_base if self.layout.screen else self.base)
@@ -226,7 +226,7 @@ class Film:
 
     @cached_property
     def _screen(self) -> Television | None:
-        part = self.layout.screen
+        part = self.layout.screen_for(self._breadth)
         return None if part is None else Television(part.centre, part.size, self._dancer.camera, self._dancer.still())
 
     @cached_property

@@ -102,6 +102,8 @@ class PracticePart:
 class WideBoxes:
     """Other boxes for pads of more than five panels; None where the part stays where it is. region : the dancer's.
 
+    screen : another place of it
+
     lanes : share of the highway's width that they take at most
     """
 
@@ -116,6 +118,7 @@ class WideBoxes:
     feet: Box | None = None
     next: Box | None = None
     lanes: Annotated[float, Bounds(0.1, 1)] | None = None
+    screen: ScreenPart | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,9 +151,14 @@ class Layout:
     def box(self, name: str, size: tuple[int, int], columns: int) -> PixelBox:
         """The box of a part ("dancer", "highway" ...) in pixels: of the picture, or, for the highway, of the screen
         that it is shown on."""
-        if name == "highway" and self.screen is not None:
-            size = self.screen.pixels
+        if name == "highway" and (screen := self.screen_for(columns)) is not None:
+            size = screen.pixels
         return pixels(self._other(name, columns) or getattr(self, name).box, size)
+
+    def screen_for(self, columns: int) -> ScreenPart | None:
+        """The screen in the room, if there is one."""
+        wide = None if self.wide is None or columns <= WIDE_PAD else self.wide.screen
+        return self.screen and (wide or self.screen)
 
     def region(self, columns: int) -> Box:
         """The share of her box that the dancer fills, if there is one."""

@@ -26,7 +26,7 @@ SHOULDER_SHARE = (
     0.75  # of the room that a line lower down takes at most where she stands next to it: her shoulders are wider
 )
 LINE = 1.25  # height of a line, in sizes of its letters
-NARROWEST = 0.45  # of the room that lines have at least, wherever she is
+NARROWEST, LEAST = 0.45, 0.2  # of the room that lines have at least, wherever she is; of their box, if that is less
 SUBTITLE = 0.68  # size of a subtitle that stands below its title, in the title's
 TIGHT = 0.2  # of a line's size that the next one of a title is nearer than the font has it
 _BRACKETED = re.compile(r"(.*?\S)(?:\s+(?=[(\[~～〜])|\s*(?=[（【「]))(.*[)\]~～〜）】」])")
@@ -93,6 +93,7 @@ class Header:
         self.lines: list[tuple[Sprite, float, float]] = []
         self._scale, self._face, self._taken = scale, face, room.taken
         self._left, self._right = box[0], box[0] + room.share * (box[2] - box[0])
+        self._least = min(NARROWEST * room.share, LEAST) * (box[2] - box[0])
         title_size, small = 33 * scale, 19 * scale
         self.bottom = float(box[1])
         self._title(words, title_size)
@@ -124,7 +125,7 @@ class Header:
         low, high = sorted((self.bottom, self.bottom + height))
         here = self._taken[(self._taken[:, 1] < high) & (self._taken[:, 3] > low)]
         room = self._right - self._left
-        return float(max(NARROWEST * room, min(room, here[:, 0].min(initial=np.inf) - self._left)))
+        return float(max(self._least, min(room, here[:, 0].min(initial=np.inf) - self._left)))
 
     def _title(self, words: Words, size: float) -> None:
         """All in one line; or the title, and below it, smaller, the subtitle or what stands in brackets at its end."""
