@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from dancetutor_cli.character.gltf import load_dancer
 from dancetutor_cli.character.mesh import PREFIX, rest_vertices, with_partner
 from dancetutor_cli.dance.motion import sample
-from dancetutor_cli.dance.rig.body import joint_matrices
+from dancetutor_cli.dance.rig.body import BALL_AHEAD, HALF_SHOE, joint_matrices
 from dancetutor_cli.film.clock import Moment
 from dancetutor_cli.film.picture import FootFromAbove, Frame
 from dancetutor_cli.film.scene import renderer
 from dancetutor_cli.film.scene.camera import WHOLE, Camera, Region, preset, with_pan_range
 from dancetutor_cli.film.scene.look import default_look
 from dancetutor_cli.film.scene.props import GlassBar, bar_matrix, stands_before, with_bar
-from dancetutor_cli.film.scene.scene import PANEL, FootMark, FrameState, Scene, foot_marks
+from dancetutor_cli.film.scene.scene import PANEL, TOE_AHEAD, FootMark, FrameState, Scene, foot_marks
 from dancetutor_cli.film.scene.visibility import Silhouette, draw_hidden_feet
 
 if TYPE_CHECKING:
@@ -184,6 +184,18 @@ def _smooth(values: Array, seconds: float) -> Array:
 AWAY = 0.3  # metres from where she steps: she walks, and does not sway as she waits
 
 
+def sole_line(mark: FootMark) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Both ends of the line in the middle of a shoe, world (x, z): around the sole's middle, which stands on its panel.
+
+    A mark's line goes from the ankle to the ball, whose middle is farther back.
+    """
+    heel, toe = np.array(mark.heel), np.array(mark.toe)
+    along = (toe - heel) / max(float(np.linalg.norm(toe - heel)), 1e-9)
+    middle = toe - (TOE_AHEAD + BALL_AHEAD) * along
+    (x, z), (u, v) = (middle - HALF_SHOE * along).tolist(), (middle + HALF_SHOE * along).tolist()
+    return (x, z), (u, v)
+
+
 @dataclass(frozen=True, slots=True)
 class Shot:
     """How the dancer is taken. size : (width, height); camera : by name or place; kind : the renderer
@@ -325,7 +337,7 @@ class Dancer:
         if mark is None:
             return None
         cx, cy = self.scene.pad.centre
-        heel, toe = ((cx - x / PANEL, cy + z / PANEL) for x, z in (mark.heel, mark.toe))
+        heel, toe = ((cx - x / PANEL, cy + z / PANEL) for x, z in sole_line(mark))
         return FootFromAbove(heel, toe, mark.height)
 
     def joints(self, moments: Sequence[Moment]) -> NDArray[np.float64]:

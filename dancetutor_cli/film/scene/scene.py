@@ -127,7 +127,8 @@ def _flat(x0: float, z0: float, x1: float, z1: float, y: float) -> list[tuple[fl
 FAR_AWAY = 1e6  # metres: a dancer who is farther away is a mistake
 _JUMP = 0.10  # metres above her own height that a camera shows: a jump
 SOLE_RADIUS = 0.052  # metres: a sole is drawn on the floor as all points so near to the line from heel to toe
-_HEEL, _TOE = (0.0, -0.022), (0.0, 0.022)  # how far that line reaches beyond ankle and ball, (x, z) at rest
+TOE_AHEAD = 0.022  # metres that this line reaches beyond the ball, and beyond the ankle
+_HEEL, _TOE = (0.0, -TOE_AHEAD), (0.0, TOE_AHEAD)  # the same, (x, z) at rest
 
 
 @dataclass(frozen=True, slots=True)
