@@ -22,11 +22,15 @@ from dancetutor_cli.chart.model import Kind, ReadWarning
 PLAYERS = b"XYZxyz"
 TEXTS = {
     "{": "notes in {...} are StepF2's: here each is one note, the other games read them letter by letter",
+    "D": "DL and DM are StepManiaX's: the end of a hold from which the foot is lifted, and a row of mines up to a 3; "
+    "other games read them letter by letter",
     "X": "X, Y and Z are steps of several players in StepF2, of whom the first or the second has none here: no notes",
 }
 _SEVERAL = "the chart is for {} players ({} mark their notes, as in StepF2); each has feet of their own"
 _NOTE = re.compile(rb"\{([0-4MLFKXYZxyz])\|[A-Za-z]\|([01])\|[0-9]\}")
 FAKE_HEAD = ord("f")  # of a hold that is none, so that its end goes with it
+MINES_HEAD = ord("m")
+_STEPMANIAX = {b"DL": ord("3"), b"DM": MINES_HEAD}  # two letters that are one note
 _FAKED = {b"0": "0", b"2": "f", b"3": "3", b"4": "f", b"x": "f", b"y": "f", b"z": "f"}
 _COLUMNS = (5, 6, 10)  # of Pump's pads
 _BOTH_PADS = 10
@@ -50,10 +54,12 @@ def player_of(letter: int) -> int:
 
 
 def note_at(text: bytes, at: int, columns: int) -> tuple[int, int, str] | None:
-    """The letter of StepF2's note at an offset of a row, where it ends, which of `TEXTS` it is; None if it is none."""
+    """The letter of a note of StepF2's or StepManiaX's at an offset of a row, where it ends, which of `TEXTS` it is."""
     if found := _NOTE.match(text, at):
         letter = _FAKED.get(found[1], "F") if found[2] == b"1" else found[1].decode("ascii")
         return ord(letter), found.end(), "{"
+    if (letters := text[at : at + 2]) in _STEPMANIAX:
+        return _STEPMANIAX[letters], at + 2, "D"
     if columns in _COLUMNS and text[at] in PLAYERS:
         return text[at], at + 1, "X"
     return None
@@ -63,6 +69,7 @@ def note_at(text: bytes, at: int, columns: int) -> tuple[int, int, str] | None:
 
 TAIL = 100  # the cell '3', which is no note of its own
 OTHERS_HEAD = 102  # of a hold of another player (StepF2): no note here, nor is its end
+ROW_OF_MINES = 103  # StepManiaX: mines from here to a tail; read as one at either end
 _KEYSOUND, _HOLD, _ROLL = int(Kind.KEYSOUND), int(Kind.HOLD), int(Kind.ROLL)
 _MOST_COLUMNS = 64
 _MOST = 20  # warnings of one sort; the rest is only counted
@@ -110,15 +117,17 @@ def joined(cells: Cells, warnings: Sequence[list[ReadWarning]]) -> Cells:
         lane = cells.lane
     acting = np.flatnonzero(cells.kind != _KEYSOUND)
     kind, column = cells.kind[acting], lane[acting]
-    others = kind == OTHERS_HEAD
-    head, tail = (kind == _HOLD) | (kind == _ROLL) | others, kind == TAIL
+    others, mines = kind == OTHERS_HEAD, kind == ROW_OF_MINES
+    head, tail = (kind == _HOLD) | (kind == _ROLL) | others | mines, kind == TAIL
     if not head.any() and not tail.any():
         return cells
     pair = np.flatnonzero(head[:-1] & tail[1:] & (column[:-1] == column[1:]))
     cells.end[acting[pair]] = cells.tick[acting[pair + 1]]
+    cells.end[acting[mines]] = -1
+    cells.kind[acting[mines]] = cells.kind[acting[pair[mines[pair]] + 1]] = Kind.MINE
     open_head, lone_tail = head.copy(), tail.copy()
     open_head[pair] = False
-    open_head[others] = False
+    open_head[others | mines] = False
     lone_tail[pair + 1] = False
     for which, code, text in (
         (open_head, "unmatched-head", "a hold or roll has no end and is dropped"),

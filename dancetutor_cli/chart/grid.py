@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart import cells as stepf2
-from dancetutor_cli.chart.cells import OTHERS_HEAD, TAIL, Cells, report
+from dancetutor_cli.chart.cells import OTHERS_HEAD, ROW_OF_MINES, TAIL, Cells, report
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Kind, MeasureTable, ReadWarning, RowTable
 
 _LF, _CR, _COMMA, _BRACKET = 10, 13, 44, 91
@@ -25,7 +25,7 @@ _KIND[list(b"01234MLFK")] = (
 )  # fmt: skip
 # As what the letters of several players are read: in most charts as nobody's notes, in one for them as theirs.
 _NOBODYS = {letter: int(Kind.EMPTY) if chr(letter).isupper() else OTHERS_HEAD for letter in stepf2.PLAYERS}
-_NOBODYS[stepf2.FAKE_HEAD] = OTHERS_HEAD
+_NOBODYS |= {stepf2.FAKE_HEAD: OTHERS_HEAD, stepf2.MINES_HEAD: ROW_OF_MINES}
 OF_PLAYERS = _NOBODYS | {letter: int(Kind.TAP if chr(letter).isupper() else Kind.HOLD) for letter in stepf2.PLAYERS}
 
 
@@ -180,7 +180,8 @@ class Grid:
             foreign.pop("X", None)
         for what, found_at in foreign.items():
             message = f"{stepf2.TEXTS[what]}: {len(found_at)} row{'' if len(found_at) == 1 else 's'}"
-            part.warnings.append(ReadWarning("stepf2-note", message, found_at[0]))
+            code = "stepmaniax-note" if what == "D" else "stepf2-note"
+            part.warnings.append(ReadWarning(code, message, found_at[0]))
         for (code, text), found_at in findings.items():
             report(part.warnings, code, text, np.array(found_at))
         for which, code, text in (

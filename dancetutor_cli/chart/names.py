@@ -15,7 +15,10 @@ COLUMNS = {
     "dance-solodouble": 12, "dance-threedouble": 6,
 }  # fmt: skip
 
-_OLD_STEPS_TYPES = {"para": "para-single", "ez2-single-hard": "ez2-single"}
+_OTHER_NAMES = {
+    "para": "para-single", "ez2-single-hard": "ez2-single",
+    "smx-dual": "smx-double6", "smx-full": "smx-double10",  # as editors call StepManiaX's modes
+}  # fmt: skip
 
 DIFFICULTIES = ("Beginner", "Easy", "Medium", "Hard", "Challenge", "Edit")
 
@@ -30,14 +33,14 @@ _OLD_DIFFICULTIES = _BY_NAME | {
 
 
 def steps_type(text: str) -> str:
-    """The steps type in lower case, old names brought to those of today."""
+    """The steps type in lower case; of old names and of several for one thing the one that is used here."""
     name = text.strip().lower()
-    return _OLD_STEPS_TYPES.get(name, name)
+    return _OTHER_NAMES.get(name, name)
 
 
 def is_routine(steps_type: str) -> bool:
     """Whether `&` splits the note data between players."""
-    return steps_type.endswith("-routine")
+    return steps_type.endswith(("-routine", "-team"))
 
 
 def is_lights(steps_type: str) -> bool:

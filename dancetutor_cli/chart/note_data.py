@@ -184,7 +184,7 @@ def _table(players: list[Cells], timing: Timing) -> NoteTable:
 
 # Steps type of a chart for two -> that of the pad on which each of them stands.
 OWN_PADS = {"dance-couple": "dance-single", "pump-couple": "pump-single"}
-ONE_PAD = {"dance-routine": "dance-double", "pump-routine": "pump-double"}
+ONE_PAD = {"dance-routine": "dance-double", "pump-routine": "pump-double", "smx-team": "smx-double10"}
 
 
 def parts(chart: Chart, player: int | None = None) -> tuple[Chart, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
@@ -140,7 +140,7 @@ class SongReader:
                 index=index, steps_type=head.steps_type, difficulty=head.difficulty, meter=head.meter,
                 description=head.description, columns=value.form.columns, notes=read.notes, rows=read.rows,
                 measures=read.measures, timing=value.timing, notes_span=value.span, line=head.line, tags=head.tags,
-                warnings=(*head.warnings, *read.warnings),
+                warnings=(*head.warnings, *_unexpected(read.warnings, head.steps_type)),
             )  # fmt: skip
             self.charts.append(with_players(chart, read, self.data))
 
@@ -185,6 +185,12 @@ class SongReader:
 
     def _on_one_line(self, tag: Tag) -> bool:
         return not re.search(rb"[\r\n]", self.data[tag.start : tag.spans[-1][1]])
+
+
+def _unexpected(warnings: Iterable[ReadWarning], steps_type: str) -> Iterator[ReadWarning]:
+    """What is odd in note data: the notes of a game are not where its own charts have them."""
+    own = "stepmaniax-note" if steps_type.startswith("smx-") else ""
+    return (warning for warning in warnings if warning.code != own)
 
 
 def _meter(value: str, line: int, warnings: list[ReadWarning]) -> int:

@@ -19,8 +19,8 @@ from dancetutor_cli.feet.overrides import CellOverride, FeetProblem, Overrides, 
 _STEP = np.zeros(256, dtype=bool)
 _STEP[list(b"124Ll")] = True
 _SPECIAL = np.zeros(256, dtype=bool)
-_SPECIAL[list(b"[\\{" + PLAYERS)] = True
-_FOREIGN = re.compile(rb"[{%b]" % PLAYERS)  # StepF2's notes: not a letter for each column, or whose it is
+_SPECIAL[list(b"[\\{D" + PLAYERS)] = True
+_FOREIGN = re.compile(rb"[{%b]|D[LM]" % PLAYERS)  # not a letter for each column (StepF2, StepManiaX), or whose it is
 _STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
 _KEYSOUND = re.compile(rb"\[[^\]]*\]?")
 

@@ -33,7 +33,7 @@ class DropReason(IntEnum):
 # Cost presets: which rules of play hold and what each undesired thing costs, from configs/presets/*.yaml.
 
 DEFAULT_PRESET = "itg"
-_DEFAULTS = {"pump": "pump"}  # by the first word of the steps type; DEFAULT_PRESET for all others
+_DEFAULTS = {"pump": "pump", "smx": "smx"}  # by the first word of the steps type; DEFAULT_PRESET for all others
 MAX_WEIGHT = 1_000_000
 _WORDS = tuple(sorted({name.partition("-")[0] for name in COLUMNS}))
 Curve = tuple[tuple[int, int], ...]  # (milliseconds, cost), by milliseconds

@@ -14,6 +14,7 @@ from dancetutor_cli.run.reading import config_path
 
 STEPS_TYPES = (
     "dance-single", "dance-double", "dance-solo", "dance-threepanel", "pump-single", "pump-halfdouble", "pump-double",
+    "smx-beginner", "smx-single", "smx-double6", "smx-double10",
 )  # fmt: skip
 DEMO = """
 demo-pad:
@@ -104,6 +105,10 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
         ("dance-double", [0.0, 3.0]),
         ("pump-double", [0.0, 3.0]),
         ("pump-halfdouble", [0.0, 3.0]),
+        ("smx-beginner", [0.0]),
+        ("smx-single", [0.0]),
+        ("smx-double6", [0.0, 3.0]),
+        ("smx-double10", [0.0, 3.0]),
     ],
 )
 def test_squares_of_nine_panels(steps_type: str, middles: list[float]) -> None:

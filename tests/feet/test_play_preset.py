@@ -16,7 +16,7 @@ from dancetutor_cli.feet.solver.vocabulary import MODELS
 from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.run.reading import config_path
 
-NAMES = ["beginner", "ddr", "itg", "pump", "stamina", "thesis"]
+NAMES = ["beginner", "ddr", "itg", "pump", "smx", "stamina", "thesis"]
 
 
 def written(folder: Path, text: str) -> Path:
@@ -116,7 +116,8 @@ def test_a_preset_knows_for_which_pads_it_was_made(tmp_path: Path) -> None:
     made = {name: feet.load_preset(name).pads for name in NAMES}
     assert made == {
         "pump": ("pump",),
-        "beginner": ("dance", "pump"),
+        "beginner": ("dance", "pump", "smx"),
+        "smx": ("smx",),
         **dict.fromkeys(("ddr", "itg", "stamina", "thesis"), ("dance",)),
     }
     mine = feet.load_preset(written(tmp_path, "extends: itg\npads: [pump-double, dance]\n"))

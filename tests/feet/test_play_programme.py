@@ -40,26 +40,29 @@ def every_way(rows: Rows, pad: Pad, preset: Preset) -> Ways:
 
 
 @st.composite
-def few_rows(draw: st.DrawFn) -> Rows:
+def few_rows(draw: st.DrawFn, columns: int = 4) -> Rows:
     words = []
     held: set[int] = set()
-    for _ in range(draw(st.integers(1, 6))):
+    for _ in range(draw(st.integers(1, 6 if columns == 4 else 4))):
         word = ""
-        for p in range(4):
+        for p in range(columns):
             cell = draw(st.sampled_from("3....") if p in held else st.sampled_from("......112M4r"))
             held = held - {p} if cell == "3" else held | {p} if cell == "2" else held
             word += cell
         words.append(word)
-    words.append("".join("3" if p in held else "." for p in range(4)))
+    words.append("".join("3" if p in held else "." for p in range(columns)))
     return rows_of(" ".join(words), gap=draw(st.sampled_from([6, 12, 24, 96])))
 
 
-@pytest.mark.parametrize("name", ["thesis", "itg", "ddr", "pump"])
-def test_against_every_way(name: str) -> None:
-    pad, preset = pad_of("dance-single"), PRESETS[name]
+@pytest.mark.parametrize(
+    ("steps_type", "name"),
+    [*(("dance-single", name) for name in ("thesis", "itg", "ddr", "pump")), ("smx-single", "smx")],
+)
+def test_against_every_way(steps_type: str, name: str) -> None:
+    pad, preset = pad_of(steps_type), PRESETS[name]
 
     @settings(max_examples=60, deadline=None)
-    @given(few_rows())
+    @given(few_rows(len(pad)))
     def check(rows: Rows) -> None:
         if len(rows):
             check_rows(rows, pad, preset)
@@ -73,7 +76,8 @@ def check_rows(rows: Rows, pad: Pad, preset: Preset) -> None:
     found = feet.solve(rows, pad, preset)
     assert found.total == least
     assert found.margin is not None and found.ambiguity is not None
-    chosen = [way for way, cost in ways.items() if cost == least and codes(way) == found.limb.tolist()]
+    wanted = found.limb.tolist()
+    chosen = [way for way, cost in ways.items() if cost == least and codes(way, len(pad)) == wanted]
     assert chosen
     for row in range(len(rows)):
         others = {way: cost for way, cost in ways.items() if way[row] != chosen[0][row]}
@@ -95,14 +99,14 @@ def check_alternatives(rows: Rows, pad: Pad, preset: Preset, ways: Ways) -> None
         assert list(other.rows) == differing
 
 
-def codes(way: tuple[int, ...]) -> list[list[int]]:
-    """Packed limb codes as the limbs of `Play.limb`, on four panels."""
+def codes(way: tuple[int, ...], panels: int) -> list[list[int]]:
+    """Packed limb codes as the limbs of `Play.limb`."""
     limbs = {0: -1, 1: 0, 2: 1, 3: 2, 4: 3, 5: -2}
-    return [[limbs[action >> 3 * p & 7] for p in range(4)] for action in way]
+    return [[limbs[action >> 3 * p & 7] for p in range(panels)] for action in way]
 
 
 def codes_cost(limb: np.ndarray, ways: Ways) -> int:
-    return next(cost for way, cost in ways.items() if codes(way) == limb.tolist())
+    return next(cost for way, cost in ways.items() if codes(way, limb.shape[1]) == limb.tolist())
 
 
 def test_alternatives_say_what_decides() -> None:

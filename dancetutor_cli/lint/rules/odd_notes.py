@@ -20,8 +20,8 @@ class OddNotes(ReaderRule):
     """Rows are too short or too long, characters are unknown, or rows are so close that one overwrites the other.
 
     The games read around it, each in its own way, and so does the program, as ITGmania does. What StepF2 writes for
-    itself, and charts for several players, are told as an info. The same in several rows of a chart is one finding, and
-    a file without line breaks is one.
+    itself, StepManiaX's notes in charts of other games, and charts for several players are told as an info. The same in
+    several rows of a chart is one finding, and a file without line breaks is one.
 
     Bad:
 
@@ -50,9 +50,10 @@ class OddNotes(ReaderRule):
             "row-collision",
             "several-players",
             "stepf2-note",
+            "stepmaniax-note",
         }
     )
-    usual = frozenset({"several-players", "stepf2-note"})
+    usual = frozenset({"several-players", "stepf2-note", "stepmaniax-note"})
 
     def check(self, subject: FileSubject | ChartSubject) -> Iterable[Finding]:
         """One finding for each that is odd, with its lines; of charts without line breaks one in the file's first."""
