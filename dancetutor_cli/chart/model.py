@@ -115,7 +115,8 @@ class Chart:
     players : of a chart for several what each of them steps, see `chart.note_data`; else empty
     player : of such a part whose it is, from 1, else 0; written : the chart that it is a part of, without `players`;
         first_column : its first column there
-    marked : letters mark whose a note is (StepF2); of such a chart and of its parts
+    marked : letters of rows do not tell steps alone: they mark whose a note is (StepF2; of such a chart and of its
+        parts), or are those of a .ucs
     """
 
     index: int
@@ -152,7 +153,7 @@ class Chart:
 
 @dataclass(frozen=True, slots=True)
 class Song:
-    """One .sm or .ssc file. `data` are its bytes; everything else was read from them.
+    """One .sm, .ssc or .ucs file. `data` are its bytes; everything else was read from them.
 
     encoding : "ascii", "utf-8", "utf-8-sig", or a guess: "cp932", "cp949", "cp1252"
     title, subtitle, artist, music : on one line and safe to print (no control characters, no terminal escapes)
@@ -160,7 +161,7 @@ class Song:
     """
 
     path: Path
-    format: str  # "sm" or "ssc"
+    format: str  # "sm", "ssc" or "ucs"
     data: bytes
     encoding: str
     title: str

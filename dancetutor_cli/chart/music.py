@@ -17,7 +17,8 @@ SUFFIXES = (".ogg", ".oga", ".mp3", ".wav", ".flac", ".opus")
 def music_file(song: Song, chart: Chart | None = None) -> Path:
     """The music of a song, or of one of its charts that names its own.
 
-    A name is found in any case, like the games do on Windows; with an empty tag it is the only audio file there.
+    A name is found in any case, like the games do on Windows; with an empty tag it is the only audio file there;
+    that of a .ucs is called like it.
 
     Raises
     ------
@@ -28,7 +29,7 @@ def music_file(song: Song, chart: Chart | None = None) -> Path:
     folder = song.path.parent.resolve()
     name = ((chart.tags.get("MUSIC") if chart else None) or song.music).strip()
     if not name:
-        return _only_audio_file(song, folder)
+        return _only_audio_file(song, folder) if song.format != "ucs" else _of_same_name(song, folder)
     if suspicious_music(name):
         raise FileError(
             song.path, f"music '{quote(name)}' is refused: it must be a plain file name in the song's folder"
@@ -68,6 +69,13 @@ def other_case(folder: Path, name: str) -> str | None:
         current = current / told[-1]
     found = "/".join(told)
     return None if found == name.replace("\\", "/") else found
+
+
+def _of_same_name(song: Song, folder: Path) -> Path:
+    """The audio file that is called like a file that has no tags, "CS001.mp3"; else the only one there."""
+    wanted = _plain(song.path.stem)
+    audio = [name for name in _names(folder) if name.lower().endswith(SUFFIXES) and _plain(Path(name).stem) == wanted]
+    return _inside(song, folder / min(audio), folder) if audio else _only_audio_file(song, folder)
 
 
 def _only_audio_file(song: Song, folder: Path) -> Path:

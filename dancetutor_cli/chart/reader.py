@@ -1,4 +1,4 @@
-"""From the bytes of a .sm or .ssc file to a `Song`: the values of its tags, its charts, and what is odd in it."""
+"""From the bytes of a chart file to a `Song`: the values of its tags, its charts, and what is odd in it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from dancetutor_cli.chart.note_data import NoteForm, Value, read_notes, width_of
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.chart.timing_tags import number
 from dancetutor_cli.run.errors import ChartError, FileError, NoChartsError
-from dancetutor_cli.run.files import EDIT_SUFFIX
+from dancetutor_cli.run.files import CHART_SUFFIXES, EDIT_SUFFIX, UCS_SUFFIX
 from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
 
 # What both formats share: the values of a song's tags, making charts of note data, and what is odd in a file.
@@ -210,8 +210,9 @@ def suspicious_music(name: str) -> bool:
     return plain.startswith(("/", "-", "~")) or ":" in plain or "|" in plain or ".." in plain.split("/")
 
 
-# From the bytes of a .sm or .ssc file to a `Song`.
+# From the bytes of a chart file to a `Song`.
 
+_KINDS = f"{', '.join(CHART_SUFFIXES[:-1])} or {CHART_SUFFIXES[-1]}"
 _ALIASES = {"FREEZES": "STOPS", "NOTES2": "NOTES"}
 _SM_FIELDS = ("STEPSTYPE", "DESCRIPTION", "DIFFICULTY", "METER", "RADARVALUES")
 _NUL_TEXT = re.compile(rb"\A\s*(?:[^\0]\0){4}|\A\s*(?:\0[^\0]){4}")
@@ -233,8 +234,8 @@ def _why_unreadable(path: Path, error: FileError) -> str:
         if not readable:
             return "the folder cannot be read"
         # Commands that take folders search them first; what comes here has no charts, or one file was wanted.
-        inside = any(entry.suffix.lower() in (".sm", ".ssc") for entry in path.rglob("*"))
-        return "is a folder; name one of its files" if inside else "no .sm or .ssc file in this folder or below it"
+        inside = any(entry.suffix.lower() in CHART_SUFFIXES for entry in path.rglob("*"))
+        return "is a folder; name one of its files" if inside else f"no {_KINDS} file in this folder or below it"
     return error.message.removeprefix("cannot be read: ")
 
 
@@ -243,10 +244,13 @@ def parse(data: bytes, path: Path) -> Song:
     path = Path(path)
     if wide := _wide_encoding(data):
         raise ChartError(path, f"the text is {wide}, which no game reads: no charts; save it as UTF-8", 1)
+    if (suffix := path.suffix.lower()) == UCS_SUFFIX:
+        from dancetutor_cli.chart.ucs import read_ucs
+
+        return read_ucs(data, path)
     tags = [Tag(_ALIASES.get(tag.name, tag.name), tag.start, tag.spans) for tag in msd.scan(data)]
     if not tags:
         raise ChartError(path, "no charts: the file has no tags like #TITLE:...;", 1)
-    suffix = path.suffix.lower()
     is_ssc = suffix == ".ssc" or (suffix == EDIT_SUFFIX and any(tag.name == "NOTEDATA" for tag in tags))
     reader = (_Ssc if is_ssc else _Sm)(data, path, tags)
     song = reader.song()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli import chart
 from dancetutor_cli.run.errors import DancetutorError, UsageError
-from dancetutor_cli.run.files import SONG_SUFFIXES
+from dancetutor_cli.run.files import CHART_SUFFIXES, SONG_SUFFIXES
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
@@ -22,7 +22,7 @@ _RESOURCE_FORK = "._"  # what macOS leaves beside files on foreign disks; the ga
 
 
 def find_files(paths: Sequence[Path], exclude: Sequence[str] = ()) -> list[Path]:
-    """The chart files that paths name: a file as it is, a folder with every .sm and .ssc below it, sorted; none twice.
+    """The chart files that paths name: a file as it is, a folder with every one below it, sorted; none twice.
 
     exclude : patterns of what is left out of folders, see `is_excluded`
 
@@ -89,11 +89,13 @@ def _is_outside(link: Path, folders: Sequence[Path]) -> bool:
 
 def is_chart_name(name: str) -> bool:
     """Whether a file of this name in a song's folder is a chart file."""
-    return name.lower().endswith(SONG_SUFFIXES) and not name.startswith(_RESOURCE_FORK)
+    return name.lower().endswith(CHART_SUFFIXES) and not name.startswith(_RESOURCE_FORK)
 
 
 def twin(path: Path) -> Path | None:
     """The .ssc beside a .sm of the same name, or the .sm beside a .ssc; None if there is none. Games load the .ssc."""
+    if path.suffix.lower() not in SONG_SUFFIXES:
+        return None
     other = ".sm" if path.suffix.lower() == ".ssc" else ".ssc"
     for candidate in (path.with_suffix(other), path.with_suffix(other.upper())):
         if os.path.isfile(candidate):  # noqa: PTH113 (Path.is_file may raise)

@@ -93,7 +93,7 @@ class _LazyGroup(click.Group):
 def cli(context: click.Context) -> None:
     """Find the feet of a stepchart, lint it, annotate it, and make a dancer play it.
 
-    Charts are .sm and .ssc files of StepMania, ITGmania and their kin.
+    Charts are .sm and .ssc files of StepMania, ITGmania and their kin, and .ucs files of Pump.
     """
     if context.invoked_subcommand is None:
         from pathlib import Path

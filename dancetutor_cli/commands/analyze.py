@@ -161,7 +161,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 def command(**options: Any) -> int:  # fmt: skip
     """Find the feet of charts and lint them.
 
-    PATH is a .sm or .ssc file, a folder that is searched for them, or - for standard input.
+    PATH is a .sm, .ssc or .ucs file, a folder that is searched for them, or - for standard input.
 
     Exit status: 0 no findings, 1 findings, 2 something could not be read or run.
     """

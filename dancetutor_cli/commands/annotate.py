@@ -93,8 +93,8 @@ class AnnotateWish:
 def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -> int:
     """Write L/R foot markers into chart files, or take them out.
 
-    PATH is a .sm or .ssc file, or a folder that is searched for them. Only comments are added, byte by byte;
-    --strip gives back the file as it was.
+    PATH is a .sm, .ssc or .ucs file, or a folder that is searched for them. Only comments are added, byte by
+    byte; --strip gives back the file as it was. A .ucs takes none: its feet go into NAME.feet.txt beside it.
 
     Exit status: 0 done, 1 --check found something, 2 something could not be read or written.
     """

@@ -16,6 +16,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.files import UCS_SUFFIX
 from dancetutor_cli.run.trust import exclude
 
 # The names that options take, for the Tab key: asked for only while a shell completes.
@@ -122,6 +123,13 @@ def within_folders(paths: Sequence[Path], files: Sequence[Path]) -> list[Path]:
 Source = tuple[Path, bytes | None]  # a chart file, and what standard input had of it
 
 
+def _suffix_of(data: bytes) -> str:
+    """By what a chart's format is told where no name tells it."""
+    if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b":":
+        return UCS_SUFFIX
+    return ".ssc" if b"#NOTEDATA" in data.upper() else ".sm"
+
+
 def sources(paths: tuple[Path, ...], stdin_filename: Path | None, exclude: Sequence[str] = ()) -> list[Source]:
     """The chart files that the paths mean, without those left out; standard input with its bytes."""
     from dancetutor_cli.chart import find_files
@@ -132,7 +140,7 @@ def sources(paths: tuple[Path, ...], stdin_filename: Path | None, exclude: Seque
         if sys.stdin is None:
             raise UsageError("standard input (-) is closed; send a chart to it, or name a file")
         data = sys.stdin.buffer.read()
-        name = "stdin.ssc" if b"#NOTEDATA" in data.upper() else "stdin.sm"
+        name = f"stdin{_suffix_of(data)}"
         return [(stdin_filename or Path(name), data)]
     if stdin_filename is not None:
         raise UsageError("--stdin-filename names the chart on standard input: give - as PATH")

@@ -66,8 +66,8 @@ def preset_option(command: _Command) -> _Command:
         "--preset",
         shell_complete=named(folder("presets")),
         metavar="NAME|FILE",
-        help="Cost preset of the solver.  [default: as dancetutor.yaml says, else pump for pump-*, smx for smx-*, itg for "
-        "others]",
+        help="Cost preset of the solver.  [default: as dancetutor.yaml says, else pump for pump-*, smx for smx-*, itg "
+        "for others]",
     )
     return option(command)
 

@@ -13,6 +13,7 @@ from dancetutor_cli.chart.pack_files import EDITOR_FILE, song_stems
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.overrides import CellOverride, FeetProblem
 from dancetutor_cli.run.errors import FileError, MissingFileError
+from dancetutor_cli.run.files import UCS_SUFFIX
 from dancetutor_cli.run.reading import CHART_LIMIT, parse_json, read_bytes
 
 FILE_NAME = EDITOR_FILE
@@ -65,6 +66,8 @@ def read_sme(song: Song, chart: Chart) -> ChartData:
 def editor_file(song: Path) -> Path | None:
     """The `data.sme` beside a chart file, if there is one, be it only a link."""
     path = song.parent / FILE_NAME
+    if song.suffix.lower() == UCS_SUFFIX:  # it is about the charts of the song beside it
+        return None
     return path if os.path.lexists(path) else None  # most often none, and an error takes many times as long to raise
 
 

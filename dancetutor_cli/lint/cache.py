@@ -16,7 +16,7 @@ from dancetutor_cli.chart.pack_files import feet_fingerprint
 from dancetutor_cli.lint.analysis import AnalyzeTask
 from dancetutor_cli.lint.results import FileResult, from_bytes, to_bytes
 from dancetutor_cli.run.errors import FileError
-from dancetutor_cli.run.files import SONG_SUFFIXES
+from dancetutor_cli.run.files import CHART_SUFFIXES, SONG_SUFFIXES
 from dancetutor_cli.run.fingerprint import program_stamp
 from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
 from dancetutor_cli.run.trust import results_folder
@@ -109,7 +109,7 @@ def _listing(folder: Path) -> str:
     lines = []
     for entry in sorted(os.scandir(folder), key=lambda e: e.name):
         with suppress(OSError):  # a circle of links
-            if entry.is_file() and not entry.name.lower().endswith(SONG_SUFFIXES):
+            if entry.is_file() and not entry.name.lower().endswith(CHART_SUFFIXES):
                 stat = entry.stat()
                 lines.append(f"{entry.name} {stat.st_size} {stat.st_mtime_ns}")
     return "\n".join(lines)

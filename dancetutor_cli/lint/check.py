@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.lint.findings import RANKS, Finding
-from dancetutor_cli.lint.rule import ChartRule, FileRule, ReaderRule, all_rules
+from dancetutor_cli.lint.rule import ChartRule, FileRule, ReaderRule, Rule, all_rules
 from dancetutor_cli.lint.rule_settings import Options, Settings
 from dancetutor_cli.run.errors import FileError, MissingFileError
 from dancetutor_cli.run.files import encoded, write_atomic
@@ -40,7 +40,7 @@ def check_file(subject: FileSubject, settings: Settings) -> tuple[Finding, ...]:
     for code, options in settings.for_file(subject.song.path).items():
         if code in _rules_of_files():
             rule = _rules_of_files()[code](options)
-            findings += () if rule.is_silent(subject) else rule.check(subject)
+            findings += () if _has_nothing_to_say(rule, subject) else rule.check(subject)
     return _in_order(findings)
 
 
@@ -86,11 +86,15 @@ def check_rule(code: str, rules: Rules, subject: ChartSubject, settings: Setting
 
 def _run_rule(rule: ChartRule | ReaderRule, subject: ChartSubject) -> list[Finding]:
     """What a rule finds; of a chart for two what is true of it as a whole is told with the first player's."""
-    if rule.is_silent(subject):
+    if _has_nothing_to_say(rule, subject):
         return []
     found = rule.check(subject)
     about_all = subject.chart.player <= 1
     return [one for one in found if (about_all or one.beat is not None) and not _silenced(one, subject)]
+
+
+def _has_nothing_to_say(rule: Rule, subject: FileSubject | ChartSubject) -> bool:
+    return (rule.about_tags and subject.song.format == "ucs") or rule.is_silent(subject)
 
 
 def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:

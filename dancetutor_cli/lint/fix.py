@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from dancetutor_cli.feet.preset import Preset
     from dancetutor_cli.lint.mend import AppliedFix, FixSession, SkippedFinding
 
+NEVER_WRITTEN = "a .ucs file is never written; mend it in its editor"
+
 
 @dataclass(frozen=True, slots=True)
 class FixOrder:
@@ -63,12 +65,15 @@ def fix_file(order: FixOrder) -> FixOutcome:
 
 
 def _fix(order: FixOrder) -> FixOutcome:
-    from dancetutor_cli.lint.mend import FixSession
+    from dancetutor_cli.lint.mend import FixSession, SkippedFinding
 
     task = order.task
+    song = load_song(task)
+    if song.format == "ucs":
+        label = song.charts[0].label
+        return FixOutcome(unfixed=tuple(SkippedFinding(label, finding, NEVER_WRITTEN) for finding, _ in order.findings))
     if order.write:
         remove_leftovers(task.path.parent)
-    song = load_song(task)
 
     def preset_of(chart: Chart) -> Preset:
         return preset_for(chart, task.path, task.presets)

@@ -25,6 +25,7 @@ class PictureRule(FileRule):
     """
 
     tag: ClassVar[str]
+    about_tags = True
 
     @classmethod
     def fault(cls, option: str, value: Any) -> str | None:

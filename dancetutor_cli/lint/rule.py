@@ -33,11 +33,13 @@ class Rule(ABC):
     The code's first digit is the family (`FAMILIES`). Severity and options come from configs/lint/default.yaml;
     `options` is what holds for the chart in hand. `codes` : warnings of the reader that the rule is about.
     `about_feet` : whether a finding is true only if the feet are these; where they are unsure it is no warning
+    `about_tags` : whether it is about what .sm and .ssc say of a song; a .ucs says nothing of it
     """
 
     code: ClassVar[str]
     name: ClassVar[str]
     about_feet: ClassVar[bool] = False
+    about_tags: ClassVar[bool] = False
     codes: ClassVar[frozenset[str]] = frozenset()
 
     def __init__(self, options: Mapping[str, Any]) -> None:

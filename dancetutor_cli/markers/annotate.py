@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +14,18 @@ from dancetutor_cli.chart.edits import apply, unified
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.lint.configuration import mismatch, preset_for
 from dancetutor_cli.markers import background, edit
-from dancetutor_cli.markers.comments import BACKGROUND, EDIT, FILE_STYLES, SIDECAR, FileChange, Lack
+from dancetutor_cli.markers.comments import (
+    BACKGROUND,
+    EDIT,
+    FILE_STYLES,
+    MEASURE,
+    ROWS,
+    SIDECAR,
+    TEXT,
+    UCS_STYLES,
+    FileChange,
+    Lack,
+)
 from dancetutor_cli.run.errors import FileError, NoChartsError
 from dancetutor_cli.run.files import ChangedError, back_up, make_folder, remove_leftovers, write_atomic
 
@@ -101,15 +112,30 @@ def _attempt(item: Item, order: Order, second: bool) -> AnnotateOutcome:
 
 
 def _annotate(item: Item, order: Order, second: bool) -> AnnotateOutcome:
-    beside = [style for style in order.styles if style in FILE_STYLES and (style == SIDECAR or not second)]
+    song = reader.load(item.source)
+    if song.format == "ucs":
+        order, beside = _order_of_ucs(item.source, order)
+        second = False
+    else:
+        beside = [style for style in order.styles if style in FILE_STYLES and (style == SIDECAR or not second)]
     if order.into_file and not order.strip and EDIT in beside:
         beside.remove(EDIT)
-    work = _Work(item, order, reader.load(item.source), tuple(beside))
+    work = _Work(item, order, song, tuple(beside))
     if order.strip:
         work.strip()
     else:
         work.write()
     return work.outcome()
+
+
+def _order_of_ucs(path: Path, order: Order) -> tuple[Order, list[str]]:
+    """What of an order can be done for a .ucs, into which nothing is written; FileError if nothing of it."""
+    wanted = [TEXT if style in (MEASURE, ROWS) else style for style in order.styles]
+    beside = [style for style in UCS_STYLES if style in wanted]
+    if not beside and not order.strip:
+        there = "measure (a text beside it) and sidecar"
+        raise FileError(path, f"a .ucs file has no place for the markers {', '.join(wanted)}; choose {there}")
+    return replace(order, styles=(), into_file=False), beside
 
 
 class _Work:

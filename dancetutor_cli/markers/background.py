@@ -15,7 +15,7 @@ from dancetutor_cli.chart.edits import Splice, apply, unchanged
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.msd import Tag, blanked, scan
 from dancetutor_cli.run.errors import FileError, UsageError
-from dancetutor_cli.run.files import back_up, remove_leftovers, write_atomic
+from dancetutor_cli.run.files import UCS_SUFFIX, back_up, remove_leftovers, write_atomic
 
 # The entry of a film in `#BGCHANGES`, which the games play behind the notes: put in beside what is there, and out.
 #
@@ -147,7 +147,7 @@ def _beats(value: bytes) -> Iterator[float]:
 
 def files_of_song(path: Path) -> list[Path]:
     """The chart files that get the entry: a file that was named alone, of a folder of one song its .sm and .ssc."""
-    return [path] if not path.is_dir() else find_files([path])
+    return [path] if not path.is_dir() else [file for file in find_files([path]) if file.suffix.lower() != UCS_SUFFIX]
 
 
 def check_place(film: Path, files: Sequence[Path]) -> None:
@@ -155,6 +155,8 @@ def check_place(film: Path, files: Sequence[Path]) -> None:
 
     check_name(film.name)
     for file in files:
+        if file.suffix.lower() == UCS_SUFFIX:
+            raise UsageError(f"{file}: a .ucs file names no film; leave --into-file out")
         if film.resolve().parent != file.resolve().parent:
             raise UsageError(f"{film}: with --into-file the film lies in the song's folder, beside {file.name}")
 

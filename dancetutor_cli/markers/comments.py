@@ -20,8 +20,10 @@ from dancetutor_cli.feet.play import Play
 # What the styles of annotation share: what is asked for, the feet of a chart, and the files that would change.
 
 MEASURE, ROWS, SIDECAR, SMEDITOR, EDIT, THEME = "measure", "rows", "sidecar", "smeditor", "edit", "theme"
+TEXT = "text"  # what `measure` and `rows` are for a file that takes no comments
 BACKGROUND = "background"  # no style of feet: what `render --background --into-file` has entered, to be taken out
 FILE_STYLES = (SIDECAR, SMEDITOR, EDIT, THEME)  # styles that write files beside the chart file
+UCS_STYLES = (TEXT, SIDECAR)  # those of a .ucs, into which nothing is written
 STYLES = (MEASURE, ROWS, SIDECAR, SMEDITOR, EDIT, THEME)
 STRIPPED = (*STYLES, BACKGROUND)
 

@@ -25,6 +25,7 @@ from dancetutor_cli.markers.comments import (
     ROWS,
     SIDECAR,
     SMEDITOR,
+    TEXT,
     THEME,
     ChartFeet,
     FileChange,
@@ -36,7 +37,7 @@ from dancetutor_cli.markers.comments import (
 from dancetutor_cli.run.errors import FileError, MissingFileError
 from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
 
-# The styles that write beside a chart file: the sidecar, SMEditor's `data.sme`, `.edit` files and a theme's cues.
+# The styles that write beside a chart file: sidecar, text, SMEditor's `data.sme`, `.edit` files and a theme's cues.
 
 FilePlan = tuple[FileChange, list[Lack]]
 
@@ -52,6 +53,12 @@ def write(style: str, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> It
         new = sidecar.write_sidecar(path, old, song, feet)
         why = [(one.chart, sidecar.lack(path, old, song, one.chart, new)) for one in feet]
         yield FileChange(path, old, new), [Lack(text, chart.line) for chart, text in why if text]
+    elif style == TEXT:
+        path = folder / sidecar.text_path(song.path).name
+        old = _present(path, song)
+        new = sidecar.write_text(path, old, song, feet)
+        lacks = [] if old == new else [Lack(f"{path.name} is {'missing' if old is None else 'stale'}")]
+        yield FileChange(path, old, new), lacks
     elif style == SMEDITOR:
         path = folder / sme.FILE_NAME
         _one_song(song, path)
@@ -84,6 +91,11 @@ def strip(style: str, song: Song, charts: Sequence[Chart]) -> Iterator[FilePlan]
         path = sidecar.sidecar_path(song.path)
         old = _read(path)
         yield _removed(path, old, sidecar.strip_sidecar(path, old, song, charts))
+    elif style == TEXT:
+        path = sidecar.text_path(song.path)
+        old = _read(path)
+        sidecar.check_text(path, old)
+        yield _removed(path, old, None)
     elif style == SMEDITOR:
         path = song.path.parent / sme.FILE_NAME
         old = _read(path)

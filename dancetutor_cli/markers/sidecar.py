@@ -1,4 +1,4 @@
-"""Feet in files beside the chart: `SONG.dancetutor.json`, and SMEditor's `data.sme`."""
+"""Feet in files beside the chart: `SONG.dancetutor.json`, `SONG.feet.txt` of a .ucs, and SMEditor's `data.sme`."""
 
 from __future__ import annotations
 
@@ -128,6 +128,41 @@ def _dump(files: dict[str, Any]) -> bytes:
         blocks.append(f'  {json.dumps(name, ensure_ascii=False)}: {{"charts": [\n{lines}]}}')
     head = f'{{"schema": {_SCHEMA}, "program": "dancetutor", "files": {{\n'
     return encoded(head + ",\n".join(blocks) + "}}\n")
+
+
+# The style of a .ucs for people: `SONG.feet.txt`, the file line by line with the feet behind its rows, "..M.X  ..L.R".
+#
+# Nothing but rows may stand in a .ucs, so nothing is written into it. Lines have the same numbers in both files.
+
+TEXT_SUFFIX = ".feet.txt"
+_OURS = b"feet by dancetutor, preset "  # begins its last line
+
+
+def text_path(song: Path) -> Path:
+    """The text with the feet of a .ucs."""
+    return song.with_name(song.stem + TEXT_SUFFIX)
+
+
+def write_text(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> bytes:
+    """The content of the text; FileError if what lies there is not ours."""
+    check_text(path, old)
+    lines = [line.rstrip(b"\r\n") for line in song.data.splitlines(keepends=True)]
+    newline = b"\r\n" if b"\r\n" in song.data else b"\n"
+    for one in feet:
+        columns = one.chart.columns
+        for row, steps, letters in zip(one.rows.row.tolist(), one.rows.steps, one.letters, strict=True):
+            told = iter(letters.encode("ascii"))
+            cells = bytes(next(told) if step else ord(".") for step in steps[:columns].tolist())
+            at = int(one.chart.rows.line[row]) - 1
+            lines[at] = lines[at].rstrip() + b"  " + cells
+    preset = ", ".join(dict.fromkeys(one.play.preset for one in feet)).encode()
+    return newline.join([*lines, _OURS + preset, b""])
+
+
+def check_text(path: Path, old: bytes | None) -> None:
+    """FileError if a file that lies where the text goes is not ours."""
+    if old is not None and not old.rstrip().rpartition(b"\n")[2].startswith(_OURS):
+        raise FileError(path, "is not of dancetutor's; move it away or choose --markers sidecar")
 
 
 # The style `smeditor`: feet as overrides in `data.sme`, which SMEditor reads and shows.

@@ -18,6 +18,8 @@ from dancetutor_cli.run.errors import FileError, UsageError
 # What the files of charts are called, in lower case.
 
 SONG_SUFFIXES = (".sm", ".ssc")
+UCS_SUFFIX = ".ucs"  # of Pump: one chart, without a song's tags
+CHART_SUFFIXES = (*SONG_SUFFIXES, UCS_SUFFIX)
 EDIT_SUFFIX = ".edit"  # either form; its charts are Edits, whatever it says
 
 
@@ -312,7 +314,7 @@ def check_file(path: Path, suffixes: Sequence[str] = (), *, or_device: bool = Fa
     or_device : or it may be a device or a pipe, whatever that is called
     """
     suffix = path.suffix.lower()
-    if suffix in (*SONG_SUFFIXES, EDIT_SUFFIX):
+    if suffix in (*CHART_SUFFIXES, EDIT_SUFFIX):
         raise FileError(path, "is a chart's name, and this would take its place; give another")
     device = or_device and path.exists() and not path.is_file() and not path.is_dir()
     if suffixes and suffix not in suffixes and not device:

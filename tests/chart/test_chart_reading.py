@@ -104,7 +104,7 @@ def test_errors_name_the_cause(data: bytes, name: str, part: str) -> None:
 def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="no such file"):
         chart.load(tmp_path / "missing.sm")
-    with pytest.raises(FileError, match=r"no \.sm or \.ssc file"):
+    with pytest.raises(FileError, match=r"no \.sm, \.ssc or \.ucs file"):
         chart.load(tmp_path)
     with pytest.raises(FileError):
         chart.load(Path("nul\0.sm"))

@@ -46,7 +46,7 @@ def test_what_cannot_be_looked_into_stands_for_itself(tmp_path: Path) -> None:
     found = find_files([tmp_path / "missing.sm", tmp_path / "a", tmp_path / "empty"])
     assert found == [tmp_path / "missing.sm", tmp_path / "a" / "y.ssc", tmp_path / "empty"]
     for path in (found[0], found[2]):
-        with pytest.raises(FileError, match=r"no such file|no \.sm or \.ssc"):
+        with pytest.raises(FileError, match=r"no such file|no \.sm, \.ssc or \.ucs"):
             chart.load(path)
 
 

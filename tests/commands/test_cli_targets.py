@@ -272,7 +272,7 @@ def test_a_folder_without_charts_is_one_line_and_makes_nothing(
     assert run(command, "empty", "-o", "out") == 2
     said = capsys.readouterr()
     lines = [line for line in said.err.splitlines() if "compil" not in line]
-    assert (said.out, lines) == ("", ["dancetutor: empty: no .sm or .ssc file in this folder or below it"])
+    assert (said.out, lines) == ("", ["dancetutor: empty: no .sm, .ssc or .ucs file in this folder or below it"])
     assert not Path("out").exists()
     (Path("empty") / "bad.sm").write_text("no tags")
     assert run(command, "empty", "-o", "out") == 2

@@ -150,7 +150,7 @@ def test_the_action_is_a_composite_one_github_can_read() -> None:
 @pytest.mark.parametrize("hook", HOOKS, ids=lambda hook: str(hook["id"]))
 def test_hooks_take_the_files_that_pre_commit_gives(hook: dict[str, Any], charts: Path) -> None:
     assert {"id", "name", "entry", "language", "files"} <= set(hook) and hook["language"] == "python"
-    for name, taken in (("a/x.sm", True), ("X.SSC", True), ("x.smx", False), ("x.sm.old", False)):
+    for name, taken in (("a/x.sm", True), ("X.SSC", True), ("x.ucs", True), ("x.smx", False), ("x.sm.old", False)):
         assert bool(re.search(hook["files"], name)) == taken
     program, *words = shlex.split(hook["entry"])
     program = str(SCRIPTS / (f"{program}.exe" if os.name == "nt" else program))

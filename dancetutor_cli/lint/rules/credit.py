@@ -20,6 +20,7 @@ class Credit(ChartRule):
 
     code = "DT502"
     name = "credit"
+    about_tags = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each chart without an author."""

@@ -20,6 +20,7 @@ class OddTag(ReaderRule):
     codes = frozenset(
         {
             "odd-offset",
+            "odd-directive",
             "odd-meter",
             "odd-difficulty",
             "odd-time-signature",

@@ -22,6 +22,7 @@ class Slots(FileRule):
 
     code = "DT512"
     name = "slots"
+    about_tags = True
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """One finding that names all that is missing."""

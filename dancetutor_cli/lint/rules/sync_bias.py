@@ -24,6 +24,7 @@ class SyncBias(SyncRule):
 
     code = "DT601"
     name = "sync-bias"
+    about_tags = True
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """Those of its syncs, and one for a file without #OFFSET."""

@@ -20,6 +20,7 @@ class Title(FileRule):
 
     code = "DT501"
     name = "title"
+    about_tags = True
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """One finding for each tag that is wrong."""

@@ -1,0 +1,385 @@
+"""Andamiro's User Custom Steps (.ucs), a text of Pump charts, to a `Song`: blocks, each with tempo and rows of its own.
+
+    :Format=1
+    :Mode=Single           Double; S-Performance and D-Performance stand on the same pads
+    :BPM=150               a block: beats a minute,
+    :Delay=480             milliseconds before its first row; of the first block from the start of the music,
+    :Beat=4                beats a measure,
+    :Split=2               rows a beat
+    X....                  a letter for each panel: X a step; M, H, W the head, the body and the end of a hold
+    ..M.M
+
+There is no document of the format; this is what its editors and converters agree on. A file holds one chart, and
+neither title nor meter: the one is the file's name, the other looked for in it ("Song S17.ucs").
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from bisect import bisect_left
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+
+from dancetutor_cli.chart import msd
+from dancetutor_cli.chart.cells import report
+from dancetutor_cli.chart.model import (
+    TICKS_PER_BEAT,
+    TICKS_PER_MEASURE,
+    Chart,
+    Kind,
+    MeasureTable,
+    NoteTable,
+    ReadWarning,
+    RowTable,
+    Song,
+)
+from dancetutor_cli.chart.timing import Timing
+from dancetutor_cli.chart.timing_tags import MAX_BEAT, number
+from dancetutor_cli.run.errors import ChartError
+
+# Lines -> blocks and rows.
+
+_MODES = {
+    "single": ("pump-single", 5), "double": ("pump-double", 10),
+    "s-performance": ("pump-single", 5), "d-performance": ("pump-double", 10),
+}  # fmt: skip
+_BLOCK = ("BPM", "Delay", "Beat", "Split")
+_NAMES = {name.lower(): name for name in ("Format", "Mode", *_BLOCK)}
+_LETTERS = b".XMHW"
+_MOST_ROWS = 1_000_000
+_FINEST = 1000  # rows a beat
+_LONGEST = 86_400  # seconds
+_OVERTAKEN = Fraction(1, 1000)  # seconds that are left to rows which a later block would come before
+_LEVEL = re.compile(r"(?<![a-z])(?:s|d|sp|dp|hd)(\d{1,2})(?!\d)", re.IGNORECASE)  # in a file's name
+
+
+@dataclass(slots=True)
+class _Block:
+    """line : of its first tag; delay : seconds before it; first, count : its rows among those of the file"""
+
+    line: int
+    bpm: Fraction
+    delay: Fraction
+    split: int
+    first: int
+    count: int = 0
+
+    @property
+    def row_seconds(self) -> Fraction:
+        return 60 / self.bpm / self.split
+
+
+@dataclass(slots=True)
+class _Text:
+    """What a file says. spans : (line, start, end) of each row"""
+
+    path: Path
+    data: bytes
+    format: str = ""
+    mode: str = ""
+    blocks: list[_Block] = field(default_factory=list)
+    spans: list[tuple[int, int, int]] = field(default_factory=list)
+    warnings: list[ReadWarning] = field(default_factory=list)
+
+    def read(self) -> None:
+        """Take down blocks and rows; ChartError for the first line that is none."""
+        head: dict[str, tuple[str, int]] = {}
+        pause, lines = Fraction(0), 0
+        for line, start, text in _lines(self.data):
+            lines = line
+            if text.startswith(b":"):
+                name, value = self._tag(line, text)
+                if name in head:
+                    self.warnings.append(ReadWarning("odd-timing", "a block without rows; its delay counts", line))
+                    pause += self._block(head).delay
+                    head = {}
+                if name in _BLOCK:
+                    head[name] = value, line
+                continue
+            if head:
+                self.blocks.append(block := self._block(head))
+                block.delay += pause
+                pause, head = Fraction(0), {}
+            self._row(line, start, text)
+        if not self.blocks:
+            raise ChartError(self.path, "no charts: the file has no block with rows", max(lines, 1))
+        if head:
+            self.warnings.append(ReadWarning("odd-timing", "the last block has no rows", lines))
+
+    def _tag(self, line: int, text: bytes) -> tuple[str, str]:
+        """A line `:Name=value`; the name as it is known, "" for one that is not."""
+        given, equals, value = msd.decode(text[1:], msd.encoding_of(text)).partition("=")
+        name, value = _NAMES.get(given.strip().lower(), ""), value.strip()
+        if not equals or not given.strip():
+            raise ChartError(self.path, f"':{msd.quote(given)}' is no line like :BPM=150", line)
+        if not name:
+            message = f":{msd.quote(given.strip())} is no line that the game knows; it is not used"
+            self.warnings.append(ReadWarning("odd-directive", message, line))
+        elif name == "Format":
+            if value != "1":
+                raise ChartError(self.path, f"format '{msd.quote(value)}' is unknown; there is :Format=1", line)
+            self.format = value
+        elif name == "Mode":
+            if value.lower() not in _MODES:
+                there = "Single, Double, S-Performance, D-Performance"
+                raise ChartError(self.path, f"mode '{msd.quote(value)}' is unknown; there are {there}", line)
+            if self.spans:
+                raise ChartError(self.path, "the mode changes after rows: a file holds one chart", line)
+            self.mode = value
+        return name, value
+
+    def _block(self, head: dict[str, tuple[str, int]]) -> _Block:
+        line = min(line for _, line in head.values())
+        if lacking := [f":{name}=" for name in _BLOCK if name not in head]:
+            raise ChartError(self.path, f"the block that begins here has no {' and no '.join(lacking)}", line)
+        bpm, delay, beat, split = (self._number(name, *head[name]) for name in _BLOCK)
+        if bpm <= 0:
+            raise ChartError(self.path, f"BPM {float(bpm):g} is not above 0", head["BPM"][1])
+        for name, value, most in (("Beat", beat, _FINEST), ("Split", split, _FINEST)):
+            if value.denominator != 1 or not 1 <= value <= most:
+                raise ChartError(self.path, f":{name}={head[name][0]} is no whole number of 1 to {most}", head[name][1])
+        return _Block(line, bpm, delay / 1000, int(split), len(self.spans))
+
+    def _number(self, name: str, value: str, line: int) -> Fraction:
+        """A decimal; some editors write a comma for its point."""
+        found, clean = number(value.replace(",", "."))
+        if not clean:
+            raise ChartError(self.path, f":{name}='{msd.quote(value)}' is no number", line)
+        return found
+
+    def _row(self, line: int, start: int, text: bytes) -> None:
+        if not (self.format and self.mode and self.blocks):
+            lacks = ":Format=1" if not self.format else ":Mode=" if not self.mode else ":BPM=, :Delay=, :Beat=, :Split="
+            raise ChartError(self.path, f"'{_shown(text)}' stands here, where no {lacks} has come yet", line)
+        columns = _MODES[self.mode.lower()][1]
+        if wrong := text.strip(_LETTERS):
+            column = text.index(wrong[:1])
+            raise ChartError(self.path, f"'{_shown(wrong[:1])}' is no step: a row is of . X M H W", line, column + 1)
+        if len(text) != columns:
+            raise ChartError(self.path, f"a row of {len(text)} letters; mode {self.mode} has {columns}", line)
+        if len(self.spans) == _MOST_ROWS:
+            raise ChartError(self.path, f"more than {_MOST_ROWS} rows", line)
+        self.spans.append((line, start, start + len(text)))
+        self.blocks[-1].count += 1
+
+
+def _lines(data: bytes) -> Iterator[tuple[int, int, bytes]]:
+    """Line, offset and text of each line that is not blank, without blanks around it."""
+    at = 0
+    for line, raw in enumerate(data.splitlines(keepends=True), 1):
+        text = raw.lstrip(b" \t\xef\xbb\xbf" if line == 1 else b" \t")
+        start = at + len(raw) - len(text)
+        at += len(raw)
+        if text := text.rstrip():
+            yield line, start, text
+
+
+def _shown(text: bytes) -> str:
+    return "".join(chr(one) if 32 <= one < 127 else f"\\x{one:02x}" for one in text[:20])
+
+
+# Rows -> steps and holds.
+#
+# Each letter is a panel that is pressed at its row; what hangs together is a hold. Rows of `.` between M and W hide
+# its body and end nothing. What lacks its M begins with its first row, what lacks its W ends with its last.
+
+
+@dataclass(slots=True)
+class _Hold:
+    first: int
+    last: int
+
+
+@dataclass(slots=True)
+class _Steps:
+    """notes : (row, column, kind, row of the end or -1); the rest are rows for warnings"""
+
+    notes: list[tuple[int, int, Kind, int]] = field(default_factory=list)
+    headless: list[int] = field(default_factory=list)
+    endless: list[int] = field(default_factory=list)
+
+    def read(self, rows: Sequence[bytes], columns: int) -> None:
+        """Find the steps and holds of all rows."""
+        held: dict[int, _Hold] = {}
+        empty = b"." * columns
+        for row, text in enumerate(rows):
+            if text == empty:
+                continue
+            for column, letter in enumerate(text.decode("ascii")):
+                if letter != ".":
+                    self._press(row, column, letter, held)
+        for column, hold in sorted(held.items()):
+            self._cut(column, hold)
+
+    def _press(self, row: int, column: int, letter: str, held: dict[int, _Hold]) -> None:
+        hold = held.pop(column, None)
+        if letter in "XM" and hold is not None:
+            self._cut(column, hold)
+            hold = None
+        if letter == "X":
+            self.notes.append((row, column, Kind.TAP, -1))
+            return
+        if hold is None:
+            hold = _Hold(row, row)
+            if letter != "M":
+                self.headless.append(row)
+        hold.last = row
+        if letter == "W":
+            self._end(column, hold)
+        else:
+            held[column] = hold
+
+    def _cut(self, column: int, hold: _Hold) -> None:
+        self.endless.append(hold.first)
+        self._end(column, hold)
+
+    def _end(self, column: int, hold: _Hold) -> None:
+        long = hold.last > hold.first
+        self.notes.append((hold.first, column, Kind.HOLD if long else Kind.TAP, hold.last if long else -1))
+
+
+# Blocks -> ticks and timing. Seconds are exact; beats are those of the file wherever 1/48 beat can tell them.
+
+
+@dataclass(slots=True)
+class _Clock:
+    """ticks : of each row that something begins or ends in; altered : whether a BPM is not one of the file's"""
+
+    ticks: dict[int, int] = field(default_factory=dict)
+    bpms: list[tuple[int, Fraction]] = field(default_factory=list)
+    delays: list[tuple[int, Fraction]] = field(default_factory=list)
+    altered: bool = False
+    overtaken: list[int] = field(default_factory=list)
+
+    def run(self, blocks: Sequence[_Block], rows: Sequence[int]) -> None:
+        """Lay the blocks one behind the other. rows : those that something begins or ends in, ascending"""
+        start = 0
+        for block, following in zip(blocks, [*blocks[1:], None], strict=True):
+            inside = rows[bisect_left(rows, block.first) : bisect_left(rows, block.first + block.count)]
+            start = self._lay(block, start, [row - block.first for row in inside], following)
+
+    def _lay(self, block: _Block, start: int, filled: Sequence[int], following: _Block | None) -> int:
+        """One block; returns the tick of the next one.
+
+        Where 1/48 beat does not tell the rows apart that hold something, a beat is counted as several: as rows of 32nds
+        are counted at twice the BPM. What comes after the last of them, a shorter pause included, has a BPM that lets
+        the next block begin on a whole tick at its very time.
+        """
+        spacing = Fraction(TICKS_PER_BEAT, block.split)
+        if any((row * spacing).denominator != 1 for row in filled):
+            spacing = Fraction(TICKS_PER_BEAT // math.gcd(TICKS_PER_BEAT, block.split))
+        self.ticks.update((block.first + row, start + int(row * spacing)) for row in filled)
+        last = filled[-1] if filled else 0
+        here = start + int(last * spacing)
+        end = max(start + round(block.count * spacing), here + 1)
+        rest = (block.count - last) * block.row_seconds
+        pause = following.delay if following is not None else Fraction(0)
+        if pause < 0:
+            rest += pause
+            if rest <= 0 and following is not None:
+                self.overtaken.append(following.line)
+                rest = _OVERTAKEN
+        elif pause > 0:
+            self.delays.append((end, pause))
+        if here > start:
+            self._tempo(start, spacing / block.row_seconds, block.bpm)
+        self._tempo(here, (end - here) / rest, block.bpm)
+        return end
+
+    def _tempo(self, tick: int, ticks_per_second: Fraction, written: Fraction) -> None:
+        bpm = 60 * ticks_per_second / TICKS_PER_BEAT
+        self.altered |= bpm != written
+        if not self.bpms or self.bpms[-1][1] != bpm:
+            self.bpms.append((tick, bpm))
+
+
+# From the bytes of a .ucs file to a `Song`.
+
+
+def read_ucs(data: bytes, path: Path) -> Song:
+    """Read the bytes of a .ucs file. Raises `ChartError`, with line, for the first thing that is none of the format."""
+    text = _Text(path, data)
+    text.read()
+    steps_type, columns = _MODES[text.mode.lower()]
+    steps, clock = _Steps(), _Clock()
+    steps.read([data[start:end] for _, start, end in text.spans], columns)
+    rows = sorted({row for first, _, _, end in steps.notes for row in (first, end) if row >= 0})
+    clock.run(text.blocks, rows)
+    timing = _timing(text, clock)
+    warnings = list(text.warnings)
+    line_of = np.array([line for line, _, _ in text.spans], dtype=np.int64)
+    for code, found, message in (
+        ("unmatched-head", steps.endless, "a hold has no end, W; it is read up to its last H"),
+        ("unmatched-tail", steps.headless, "a hold has no head, M; it is read from here on"),
+    ):
+        report(warnings, code, message, line_of[sorted(found)])
+    told = "a negative delay begins this block before the notes above it; it is read as 1 ms behind them"
+    report(warnings, "odd-timing", told, np.array(clock.overtaken, dtype=np.int64))
+    chart = Chart(
+        index=0, steps_type=steps_type, difficulty="Edit", meter=_level(path),
+        description=text.mode if "-" in text.mode else "", columns=columns, notes=_note_table(steps, clock, line_of),
+        rows=_row_table(text, clock, rows), measures=_measure_table(clock, rows), timing=timing,
+        notes_span=(text.spans[0][1], len(data)), line=text.blocks[0].line, tags=_tags(text, clock),
+        warnings=tuple(warnings), marked=True,
+    )  # fmt: skip
+    return Song(
+        path=path, format="ucs", data=data, encoding=msd.encoding_of(data), title=msd.one_line(path.stem), subtitle="",
+        artist="", music="", tags={}, timing=timing, charts=(chart,), warnings=(),
+    )  # fmt: skip
+
+
+def _level(path: Path) -> int:
+    """The meter in a file's name, "Song D22.ucs"; 0 without one."""
+    found = _LEVEL.findall(path.stem)
+    return int(found[-1]) if found else 0
+
+
+def _timing(text: _Text, clock: _Clock) -> Timing:
+    first, last = text.blocks[0], text.blocks[-1]
+    length = sum((block.count * block.row_seconds + abs(block.delay) for block in text.blocks), Fraction(0))
+    if length > _LONGEST or clock.bpms[-1][0] > MAX_BEAT * TICKS_PER_BEAT:
+        raise ChartError(text.path, "is longer than every song: more than a day, or 20 million beats", last.line)
+    return Timing(bpms=tuple(clock.bpms), delays=tuple(clock.delays), offset=-first.delay)
+
+
+def _tags(text: _Text, clock: _Clock) -> dict[str, str]:
+    """The tempos of the file, where the timing has others to count by."""
+    if not clock.altered:
+        return {}
+    lasting = [block.bpm for block in text.blocks if 2 * block.count * block.row_seconds >= 1]
+    shown = lasting or [block.bpm for block in text.blocks]
+    return {"DISPLAYBPM": ":".join(f"{float(bpm):g}" for bpm in sorted({min(shown), max(shown)}))}
+
+
+def _note_table(steps: _Steps, clock: _Clock, line_of: np.ndarray) -> NoteTable:
+    notes = sorted((clock.ticks[row], column, kind, end, row) for row, column, kind, end in steps.notes)
+    return NoteTable(
+        tick=np.array([note[0] for note in notes], dtype=np.int64),
+        column=np.array([note[1] for note in notes], dtype=np.int16),
+        kind=np.array([note[2] for note in notes], dtype=np.uint8),
+        end=np.array([clock.ticks.get(note[3], -1) for note in notes], dtype=np.int64),
+        line=line_of[[note[4] for note in notes]].astype(np.int32),
+        judged=np.ones(len(notes), dtype=bool),
+    )
+
+
+def _row_table(text: _Text, clock: _Clock, rows: Sequence[int]) -> RowTable:
+    """The rows in which something begins or ends."""
+    spans = np.array([text.spans[row] for row in rows], dtype=np.int64).reshape(-1, 3)
+    tick = np.array([clock.ticks[row] for row in rows], dtype=np.int64)
+    line, start, end = spans[:, 0].astype(np.int32), spans[:, 1], spans[:, 2]
+    return RowTable(start, end, line, tick, (tick // TICKS_PER_MEASURE).astype(np.int32))
+
+
+def _measure_table(clock: _Clock, rows: Sequence[int]) -> MeasureTable:
+    """Measures of four beats; nothing opens them in the file."""
+    ticks = np.array([clock.ticks[row] for row in rows], dtype=np.int64)
+    count = int(ticks.max(initial=0)) // TICKS_PER_MEASURE + 1
+    first = ticks.searchsorted(np.arange(count + 1) * TICKS_PER_MEASURE).astype(np.int32)
+    nowhere = np.zeros(count, dtype=np.int64)
+    return MeasureTable(nowhere, nowhere.astype(np.int32), first[:-1], np.diff(first))
