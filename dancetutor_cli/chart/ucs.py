@@ -76,7 +76,7 @@ class _Block:
 
 @dataclass(slots=True)
 class _Text:
-    """What a file says. spans : (line, start, end) of each row"""
+    """What a file says. spans : (line, start, end) of each row; unknown, rowless : lines for warnings"""
 
     path: Path
     data: bytes
@@ -84,7 +84,8 @@ class _Text:
     mode: str = ""
     blocks: list[_Block] = field(default_factory=list)
     spans: list[tuple[int, int, int]] = field(default_factory=list)
-    warnings: list[ReadWarning] = field(default_factory=list)
+    unknown: list[int] = field(default_factory=list)
+    rowless: list[int] = field(default_factory=list)
 
     def read(self) -> None:
         """Take down blocks and rows; ChartError for the first line that is none."""
@@ -95,7 +96,7 @@ class _Text:
             if text.startswith(b":"):
                 name, value = self._tag(line, text)
                 if name in head:
-                    self.warnings.append(ReadWarning("odd-timing", "a block without rows; its delay counts", line))
+                    self.rowless.append(line)
                     pause += self._block(head).delay
                     head = {}
                 if name in _BLOCK:
@@ -109,7 +110,7 @@ class _Text:
         if not self.blocks:
             raise ChartError(self.path, "no charts: the file has no block with rows", max(lines, 1))
         if head:
-            self.warnings.append(ReadWarning("odd-timing", "the last block has no rows", lines))
+            self.rowless.append(lines)
 
     def _tag(self, line: int, text: bytes) -> tuple[str, str]:
         """A line `:Name=value`; the name as it is known, "" for one that is not."""
@@ -118,8 +119,7 @@ class _Text:
         if not equals or not given.strip():
             raise ChartError(self.path, f"':{msd.quote(given)}' is no line like :BPM=150", line)
         if not name:
-            message = f":{msd.quote(given.strip())} is no line that the game knows; it is not used"
-            self.warnings.append(ReadWarning("odd-directive", message, line))
+            self.unknown.append(line)
         elif name == "Format":
             if value != "1":
                 raise ChartError(self.path, f"format '{msd.quote(value)}' is unknown; there is :Format=1", line)
@@ -311,15 +311,16 @@ def read_ucs(data: bytes, path: Path) -> Song:
     rows = sorted({row for first, _, _, end in steps.notes for row in (first, end) if row >= 0})
     clock.run(text.blocks, rows)
     timing = _timing(text, clock)
-    warnings = list(text.warnings)
     line_of = np.array([line for line, _, _ in text.spans], dtype=np.int64)
+    warnings: list[ReadWarning] = []
     for code, found, message in (
-        ("unmatched-head", steps.endless, "a hold has no end, W; it is read up to its last H"),
-        ("unmatched-tail", steps.headless, "a hold has no head, M; it is read from here on"),
+        ("odd-directive", text.unknown, "this is no line that the game knows; it is not used"),
+        ("odd-timing", text.rowless, "a block ends here without rows; of its tags the delay alone counts"),
+        ("odd-timing", clock.overtaken, "this block begins before the notes above it; it is read as 1 ms behind them"),
+        ("unmatched-head", line_of[sorted(steps.endless)], "a hold has no end, W; it is read up to its last H"),
+        ("unmatched-tail", line_of[sorted(steps.headless)], "a hold has no head, M; it is read from here on"),
     ):
-        report(warnings, code, message, line_of[sorted(found)])
-    told = "a negative delay begins this block before the notes above it; it is read as 1 ms behind them"
-    report(warnings, "odd-timing", told, np.array(clock.overtaken, dtype=np.int64))
+        report(warnings, code, message, np.asarray(found, dtype=np.int64))
     chart = Chart(
         index=0, steps_type=steps_type, difficulty="Edit", meter=_level(path),
         description=text.mode if "-" in text.mode else "", columns=columns, notes=_note_table(steps, clock, line_of),
