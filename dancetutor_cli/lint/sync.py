@@ -188,7 +188,7 @@ def _judgement(rows: _Rows, lags: Seconds, cycle: float, contrast: Curve, mean: 
     first, last = (_peak(lags, fine[thirds == third].sum(axis=0), near) for third in (0, 2))
     # Middles of the first and the last third lie so far apart that they show this part of the slope.
     drift = last - first + slope * 2 / 3
-    confidence = _confidence(_Choice(lags, whole, worth, best, near), contrast + 0.5 * mean, fine)
+    confidence = _confidence(_Choice(lags, whole, worth, best, near, rows.beat), contrast + 0.5 * mean, fine)
     if is_odd:
         confidence = min(confidence, _ODD)
     sync = sync_of(_peak(lags, fine.sum(axis=0), near) * 1000, confidence, drift * 1000, rows.beat * 1000)
@@ -237,6 +237,7 @@ class _Choice(NamedTuple):
     """A bias out of `lags`. whole : float64 (l,), how well each fits the song, -inf where it may not be
 
     worth : the same, less what speaks against unusual ones; best : index of the chosen one; near : of those around it
+    beat : the usual one, seconds
     """
 
     lags: Seconds
@@ -244,13 +245,22 @@ class _Choice(NamedTuple):
     worth: Seconds
     best: int
     near: NDArray[np.int64]
+    beat: float
+
+    def is_same(self, lags: Seconds, near: float) -> NDArray[np.bool_]:
+        """Which biases say what the best one says: half a beat too late is half a beat too early, a beat further on."""
+        away = np.abs(lags - self.lags[self.best])
+        if abs(float(self.lags[self.best])) > self.beat / 4:
+            away = np.minimum(away, np.abs(away - self.beat))
+        same: NDArray[np.bool_] = away <= near
+        return same
 
 
 def _confidence(choice: _Choice, rhythm: Curve, fine: Curve) -> float:
     """The least of five: what is left to the best rival, how far the peak stands out, its height, how far parts of the
     song spread, and how many of them have it for their own best."""
-    lags, whole, worth, best, near = choice
-    far = np.abs(lags - lags[best]) > _NEAR
+    lags, whole, worth, best, near, _ = choice
+    far = ~choice.is_same(lags, _NEAR)
     inside = whole[np.isfinite(whole)]
     deviation = float(np.median(np.abs(inside - np.median(inside)))) * 1.4826 + 1e-9
     parts = fine.reshape(_PARTS, -1, len(lags)).sum(axis=1)
@@ -261,6 +271,6 @@ def _confidence(choice: _Choice, rhythm: Curve, fine: Curve) -> float:
         "height": float(whole[best] - np.median(inside)) / deviation,
         "spread": -float(np.median(np.abs(peaks - np.median(peaks)))) * 1.4826,
         "peak": float(whole[best]),
-        "parts": float((np.abs(lags[own] - lags[best]) < _NEAR).mean()),
+        "parts": float(choice.is_same(lags[own], _NEAR).mean()),
     }
     return min(float(np.clip((measured[name] - low) / (high - low), 0, 1)) for name, (low, high) in _RAMPS.items())

@@ -27,5 +27,5 @@ class BeatOff(SyncRule):
         if sync.bias_ms is None or not sync.beat_off:
             return None
         side = "after" if sync.bias_ms > 0 else "before"
-        change = f"change #OFFSET by {-sync.bias_ms / 1000:+.3f}"
+        change = f"change #OFFSET by {-sync.bias_ms / 1000:+.3f}, or as much the other way"
         return f"the music is {abs(sync.bias_ms):.1f} ms {side} the beats, about half a beat; {change}"
