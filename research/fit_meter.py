@@ -14,7 +14,7 @@ from __future__ import annotations
 import argparse
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -35,7 +35,7 @@ from dancetutor_cli.lint.meter.estimate import (
     tagged_scale,
 )
 from dancetutor_cli.lint.meter.features import Feature
-from dancetutor_cli.lint.meter.model import Curve, MeterModel, Scale, model_of
+from dancetutor_cli.lint.meter.model import Curve, Interval, MeterModel, Scale, model_of
 from dancetutor_cli.run.reading import config_path
 
 Floats = NDArray[np.float64]
@@ -180,13 +180,12 @@ class Fit:
                     slopes = [left.pop(0) for _ in at[1:]]
                     meters = np.concatenate([[0.0], np.cumsum(np.array(slopes) * np.diff(at))])
                     if meters[-1] >= 0.01:
-                        curves.append(Curve(feature, at, tuple(round(float(x), 2) for x in meters)))
+                        curves.append(Curve(*feature, at, tuple(round(float(x), 2) for x in meters)))
                 if curves:
                     terms[term] = tuple(curves)
-            interval = intervals.get(name, ((), (9.0,), (9.0,)))
-            scales.append(
-                Scale(name, ABOUT[name], charts, round(float(found[0]), 2), terms, *interval, MOST.get(name, np.inf))
-            )
+            interval = Interval(*intervals.get(name, ((), (9.0,), (9.0,))))
+            start, most = round(float(found[0]), 2), MOST.get(name, np.inf)
+            scales.append(Scale(ABOUT[name], charts, start, terms, interval, most, name))
         return model_of(tuple(scales), alone, WANTED)
 
 
@@ -328,11 +327,10 @@ def yaml_of(pad: str, model: MeterModel) -> str:
         for term, curves in scale.terms.items():
             lines.append(f"      {term}:\n")
             for curve in curves:
-                of = curve.feature
                 at, meters = (", ".join(f"{x:g}" for x in row) for row in (curve.at, curve.meters))
-                lines.append(f"        - {{of: {of.thing}, seconds: {of.seconds:g}, how: {of.kind},\n")
+                lines.append(f"        - {{of: {curve.of}, seconds: {curve.seconds:g}, how: {curve.how},\n")
                 lines.append(f"           at: [{at}],\n           meters: [{meters}]}}\n")
-        rows = (("up_to", scale.up_to), ("below", scale.below), ("above", scale.above))
+        rows = asdict(scale.interval).items()
         said = ", ".join(f"{name}: [{', '.join(f'{x:g}' for x in row)}]" for name, row in rows)
         lines.append(f"    interval: {{{said}}}\n")
     lines.append(f"alone: [{model.alone[0]:g}, {model.alone[1]:g}]\n")

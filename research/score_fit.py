@@ -317,7 +317,7 @@ def yaml_of(model: ScoreModel, charts: Sequence[Rated]) -> str:
     for term, weights in model.terms.items():
         lines.append(f"  {term}:\n")
         lines += [
-            f"    - {{of: {one.of}, weight: {one.weight:g}, from: {one.low:g}, to: {one.high:g}}}\n" for one in weights
+            f"    - {{of: {one.of}, weight: {one.weight:g}, from: {one.from_:g}, to: {one.to:g}}}\n" for one in weights
         ]
     used = {one.of for weights in model.terms.values() for one in weights}
     lines.append("pads:\n")

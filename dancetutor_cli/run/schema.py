@@ -262,7 +262,8 @@ def _keys_of(kind: Any) -> dict[str, _Key]:
             origin = get_origin(hint)
             is_container = origin in (dict, tuple, Union, types.UnionType) or is_dataclass(hint)
             is_needed = field.default is MISSING and field.default_factory is MISSING
-            name = field.name.replace("_", "-") if getattr(kind, "HYPHENS", False) else field.name
+            name = field.name.removesuffix("_")  # `from_`: Python has the word for itself
+            name = name.replace("_", "-") if getattr(kind, "HYPHENS", False) else name
             out[name] = _Key(field.name, hints[field.name], is_needed, is_container)
     return out
 
@@ -292,6 +293,8 @@ def _mapping(source: MarkedYaml, keys: Keys, data: Any, inner: tuple[Any, ...], 
 
 def _list(source: MarkedYaml, keys: Keys, data: Any, hint: Any) -> tuple[Any, ...]:
     inner = get_args(_marks(hint)[0])
+    if inner == (float, Ellipsis) and all(type(number) in (int, float) for number in data):
+        return tuple(map(float, data))  # most lists
     if inner[-1] is Ellipsis:
         inner = inner[:1] * len(data)
     if len(data) != len(inner):

@@ -10,8 +10,7 @@ import yaml
 
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import MAX_DEPTH, SETTINGS_LIMIT, read_bytes, shown_key
-from dancetutor_cli.run.schema import Keys, T, convert
-from dancetutor_cli.run.schema import MarkedYaml as MarkedYaml  # lint/meter/model.py has it from here
+from dancetutor_cli.run.schema import Keys, MarkedYaml, T, convert
 
 # A YAML mapping with the line of every key, so that an error can say where in the file it is.
 #

@@ -51,12 +51,15 @@ def test_the_curves_of_a_term_add_up_and_scales_stay_apart(tmp_path: Path) -> No
     [
         ("[0, 1, 1.5]", "[0, 1, 0.5]", 8, "must not fall"),
         ("at: [0, 2, 4]", "at: [0, 4, 2]", 8, "each above"),
-        ("of: steps", "of: stpes", 8, "'of' is one of steps"),
+        ("of: steps", "of: stpes", 8, "there is no 'stpes' .did you mean steps"),
+        ("at: [0, 2, 4]", "at: [0]", 8, "each above"),
+        ("seconds: 5", "seconds: -5", 8, "0 or more"),
+        ("meters: [0, 1, 1.5]", "meters: [0, 1]", 8, "must have 3 numbers"),
         ("how: peak", "how: count", 8, "0 for a count"),
         ("below: [1, 1]", "below: [1]", 9, "2 numbers"),
-        ("start: 1", "start: one", 2, "numbers"),
+        ("start: 1", "start: one", 5, "start must be a number, not 'one'"),
         ("charts: 3", "chart: 3", 4, "unknown key 'chart'"),
-        ("alone: [3, 4]", "alone: 3", 10, "2 numbers"),
+        ("alone: [3, 4]", "alone: 3", 10, "a list .a number, a number., not 3"),
     ],
 )
 def test_what_is_wrong_is_named_with_its_line(tmp_path: Path, right: str, wrong: str, line: int, says: str) -> None:
@@ -73,7 +76,7 @@ def test_a_scale_may_end(tmp_path: Path) -> None:
 
 
 def test_a_model_without_scales_is_none(tmp_path: Path) -> None:
-    with pytest.raises(FileError, match="'scales'"):
+    with pytest.raises(FileError, match="scales is missing"):
         load_model(model_of(tmp_path, "alone: [1, 1]\n"))
 
 
@@ -84,4 +87,4 @@ def test_the_models_of_the_package_rise_and_say_what_they_are() -> None:
         model = load_model(path)
         for scale in model.scales:
             assert scale.about and scale.charts >= 30
-            assert min(scale.below) > 0 and max(scale.above) < 9  # nine: nothing was measured
+            assert min(scale.interval.below) > 0 and max(scale.interval.above) < 9  # nine: nothing was measured

@@ -85,9 +85,9 @@ def test_where_the_level_is_an_estimate_the_interval_is_wider(tmp_path: Path) ->
     ("right", "wrong", "line", "says"),
     [
         ("levels: [1, 10]", "levels: [10, 1]", 1, "each above"),
-        ("interval: [0.2, 0.3]", "interval: [0.2]", 2, "2 numbers"),
-        ("of: odd waits", "of: odd wait", 5, "'of' is one of odd waits"),
-        ("weight: 2", "wait: 2", 5, "has the keys"),
+        ("interval: [0.2, 0.3]", "interval: [0.2]", 2, "a list .a number, a number., not .0.2"),
+        ("of: odd waits", "of: odd wait", 5, "there is no 'odd wait' .did you mean odd waits"),
+        ("weight: 2", "wait: 2", 5, "unknown key 'wait'"),
         ("to: 0.5}", "to: 0}", 5, "above 'from'"),
         ("weight: 0.1", "weight: -0.1", 9, "never makes a chart easier"),
         ("      speed: [0, 0.9]\n", "", 13, "lacks speed"),

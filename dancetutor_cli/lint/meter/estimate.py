@@ -154,8 +154,9 @@ class _Misses:
 
 
 def _interval(scale: Scale, meter: float) -> tuple[float, float]:
-    band = sum(meter > end for end in scale.up_to)
-    return max(meter - scale.below[band], 0.0), min(meter + scale.above[band], scale.most)
+    interval = scale.interval
+    band = sum(meter > end for end in interval.up_to)
+    return max(meter - interval.below[band], 0.0), min(meter + interval.above[band], scale.most)
 
 
 def on_scale(one: MeteredChart, name: str, known: bool, *, faster: bool = True) -> Estimate:

@@ -4,19 +4,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.lint.meter.features import HOWS, THINGS, Feature
-from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import config_path
-from dancetutor_cli.run.yaml_files import MarkedYaml, read
+from dancetutor_cli.run.schema import (
+    NOT_IN_FILES,
+    Entries,
+    Keys,
+    MarkedYaml,
+    Names,
+    NotNegative,
+    Parsed,
+    Text,
+    convert,
+)
+from dancetutor_cli.run.yaml_files import read
 
 # Steps type -> file of configs/meter/. Two players' charts and other pads have no model: nobody's meters to learn from.
 _PADS = {
@@ -28,13 +38,45 @@ _PADS = {
 }
 
 
+def rising(numbers: Any) -> Any:
+    """A list as it is; ValueError unless each of its numbers is above the one before."""
+    pairs = pairwise(numbers if isinstance(numbers, list) else ())
+    if any(isinstance(a, int | float) and isinstance(b, int | float) and b <= a for a, b in pairs):
+        raise ValueError
+    return numbers
+
+
+Rising = Annotated[tuple[float, ...], Entries(2), Parsed(rising, "a list of numbers, each above the one before")]
+
+
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """Meters that a feature adds: straight between the points (`at`, `meters`), both rising; on as at the end."""
+    """Meters that a feature adds: straight between the points (`at`, `meters`), both rising; on as at the end.
 
-    feature: Feature
-    at: tuple[float, ...]
+    of, seconds, how : the feature, see `Feature`
+    """
+
+    of: Annotated[str, Names(THINGS)]
+    seconds: NotNegative
+    how: Annotated[str, Names(HOWS)]
+    at: Rising
     meters: tuple[float, ...]
+
+    @property
+    def feature(self) -> Feature:
+        return Feature(self.of, self.seconds, self.how)
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """80 of 100 labels lie from `below` under the estimate to `above` over it, by bands.
+
+    up_to : estimate at which each band ends, one less than there are bands
+    """
+
+    up_to: tuple[float, ...]
+    below: tuple[float, ...]
+    above: tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,24 +84,28 @@ class Scale:
     """How a community numbers its charts.
 
     start : meter of a chart that asks for nothing; terms : name -> its curves, whose meters are added
-    up_to : estimate at which each band of the interval ends, one less than there are bands
-    below, above : of each band, how far under and over the estimate 80 of 100 labels lie
     most : the highest meter that its charts have: where a scale ends, so do estimates; endless where it does not
     """
 
-    name: str
-    about: str
+    about: Text
     charts: int
     start: float
-    terms: Mapping[str, tuple[Curve, ...]]
-    up_to: tuple[float, ...]
-    below: tuple[float, ...]
-    above: tuple[float, ...]
+    terms: Annotated[dict[Text, tuple[Curve, ...]], Entries(1)]
+    interval: Interval
     most: float = math.inf
+    name: Annotated[str, NOT_IN_FILES] = ""
 
     def meter(self, terms: Mapping[str, float]) -> float:
         """The estimate of a chart of which the terms add so much."""
         return min(self.start + sum(terms.values()), self.most)
+
+
+@dataclass(frozen=True, slots=True)
+class _ModelFile:
+    """What a file of configs/meter/ holds."""
+
+    scales: Annotated[dict[Text, Scale], Entries(1)]
+    alone: tuple[float, float]
 
 
 class _Pieces(NamedTuple):
@@ -108,14 +154,36 @@ def model_for(steps_type: str) -> MeterModel | None:
 def load_model(path: Path) -> MeterModel:
     """Read a model; FileError names the line of what cannot be."""
     source = read(path)
-    source.only((), ("scales", "alone"))
-    scales = source.data.get("scales")
-    if not isinstance(scales, dict) or not scales:
-        raise FileError(path, "'scales' must be a mapping of names to scales", 1)
-    found = tuple(_scale(source, name) for name in scales)
-    alone = numbers_at(source, ("alone",), source.data.get("alone"), 2)
-    curves = [curve for scale in found for curves in scale.terms.values() for curve in curves]
-    return model_of(found, (alone[0], alone[1]), tuple(dict.fromkeys(curve.feature for curve in curves)))
+    file = convert(source, _ModelFile)
+    for name, scale in file.scales.items():
+        _check(source, ("scales", name), scale)
+    scales = tuple(replace(scale, name=name) for name, scale in file.scales.items())
+    curves = [curve for scale in scales for curves in scale.terms.values() for curve in curves]
+    return model_of(scales, file.alone, tuple(dict.fromkeys(curve.feature for curve in curves)))
+
+
+def _check(source: MarkedYaml, keys: Keys, scale: Scale) -> None:
+    """What the numbers of a scale must be beside each other."""
+    for side in ("below", "above"):
+        if len(getattr(scale.interval, side)) != (bands := len(scale.interval.up_to) + 1):
+            raise source.error((*keys, "interval", side), f"'{side}' must have {bands} numbers, one more than 'up_to'")
+    for term, curves in scale.terms.items():
+        for n, curve in enumerate(curves):
+            if fault := _fault(curve):
+                raise source.error((*keys, "terms", term, n), fault)
+
+
+def _fault(curve: Curve) -> str:
+    """What is wrong with a curve; "" if nothing."""
+    if len(curve.meters) != len(curve.at):
+        return f"'meters' must have {len(curve.at)} numbers, as many as 'at'"
+    if any(b < a for a, b in pairwise(curve.meters)):
+        return "'meters' must not fall: what is played faster is never easier"
+    if (curve.seconds == 0) != (curve.how == "count"):
+        return "'seconds' must be above 0, and 0 for a count"
+    if curve.how != "mean" and curve.of != "steps":
+        return "only steps have a peak or a count; of others 'how' is mean"
+    return ""
 
 
 def model_of(scales: tuple[Scale, ...], alone: tuple[float, float], wanted: tuple[Feature, ...]) -> MeterModel:
@@ -133,52 +201,3 @@ def model_of(scales: tuple[Scale, ...], alone: tuple[float, float], wanted: tupl
     feature, low_ends, widths, slopes = (np.array(column, dtype=np.float64) for column in zip(*rows, strict=True))
     pieces = _Pieces(feature.astype(np.int64), low_ends, widths, slopes, np.array(starts))
     return MeterModel(scales, alone, wanted, pieces)
-
-
-def _scale(source: MarkedYaml, name: str) -> Scale:
-    keys = ("scales", name)
-    source.only(keys, ("about", "charts", "start", "most", "terms", "interval"))
-    said = source.data["scales"][name]
-    terms = said.get("terms")
-    if not isinstance(terms, dict) or not terms:
-        raise source.error((*keys, "terms"), "'terms' must be a mapping of names to lists of curves")
-    source.only((*keys, "interval"), ("up_to", "below", "above"))
-    interval = said["interval"]
-    up_to = numbers_at(source, (*keys, "interval", "up_to"), interval.get("up_to"), None)
-    below, above = (
-        numbers_at(source, (*keys, "interval", side), interval.get(side), len(up_to) + 1) for side in ("below", "above")
-    )
-    start, charts = numbers_at(source, keys, [said.get("start"), said.get("charts")], 2)
-    most = numbers_at(source, keys, [said["most"]], 1)[0] if "most" in said else math.inf
-    curves = {
-        term: tuple(_curve(source, (*keys, "terms", term, n), one) for n, one in enumerate(listed))
-        for term, listed in terms.items()
-    }
-    return Scale(name, str(said.get("about", "")), int(charts), start, curves, up_to, below, above, most)
-
-
-def _curve(source: MarkedYaml, keys: tuple[str | int, ...], said: Any) -> Curve:
-    if not isinstance(said, dict) or set(said) != {"of", "seconds", "how", "at", "meters"}:
-        raise source.error(keys, "a curve has the keys of, seconds, how, at, meters")
-    if said["of"] not in THINGS or said["how"] not in HOWS:
-        raise source.error(keys, f"'of' is one of {', '.join(THINGS)}; 'how' one of {', '.join(HOWS)}")
-    at = numbers_at(source, keys, said["at"], None)
-    meters = numbers_at(source, keys, said["meters"], len(at))
-    if len(at) < 2 or any(b <= a for a, b in pairwise(at)):
-        raise source.error(keys, "'at' must have two numbers or more, each above the one before")
-    if any(b < a for a, b in pairwise(meters)):
-        raise source.error(keys, "'meters' must not fall: what is played faster is never easier")
-    seconds = numbers_at(source, keys, [said["seconds"]], 1)[0]
-    if seconds < 0 or (seconds == 0) != (said["how"] == "count"):
-        raise source.error(keys, "'seconds' must be above 0, and 0 for a count")
-    if said["how"] != "mean" and said["of"] != "steps":
-        raise source.error(keys, "only steps have a peak or a count; of others 'how' is mean")
-    return Curve(Feature(said["of"], seconds, said["how"]), at, meters)
-
-
-def numbers_at(source: MarkedYaml, keys: tuple[str | int, ...], given: Any, length: int | None) -> tuple[float, ...]:
-    """A list of numbers, of this length if one is asked for."""
-    right = isinstance(given, Sequence) and all(isinstance(x, int | float) and not isinstance(x, bool) for x in given)
-    if not right or (length is not None and len(given) != length):
-        raise source.error(keys, f"must be a list of {'' if length is None else f'{length} '}numbers")
-    return tuple(map(float, given))

@@ -6,15 +6,15 @@ from bisect import bisect
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from dancetutor_cli.lint.findings import ScoreEstimate
-from dancetutor_cli.lint.meter.model import numbers_at
+from dancetutor_cli.lint.meter.model import Rising
 from dancetutor_cli.lint.meter.oddities import ODDITIES, TIMED, Oddities
 from dancetutor_cli.run.reading import config_path
-from dancetutor_cli.run.yaml_files import MarkedYaml, read
+from dancetutor_cli.run.schema import Entries, Names, Text, convert
+from dancetutor_cli.run.yaml_files import read
 
 _CHANGES = "timing changes"  # the term that stops and changes of tempo share
 _WORTH = 0.02  # levels that a term has to add to stand on the bill; less goes into its "rest"
@@ -30,12 +30,30 @@ class Level(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Weight:
-    """Levels that one of `ODDITIES` adds: `weight` for each unit from `low` on, `high` at most."""
+    """Levels that one of `ODDITIES` adds: `weight` for each unit above `from_`, up to `to`."""
 
-    of: str
+    of: Annotated[str, Names(ODDITIES)]
     weight: float
-    low: float
-    high: float
+    from_: float
+    to: float
+
+
+@dataclass(frozen=True, slots=True)
+class _PadEntry:
+    """What the file says of a steps type, see `ScoreModel`."""
+
+    start: float
+    usual: dict[Annotated[str, Names(ODDITIES)], tuple[float, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class _ModelFile:
+    """What configs/score.yaml holds, see `ScoreModel`. interval : its `below` and `above`"""
+
+    levels: Rising
+    interval: tuple[float, float]
+    terms: Annotated[dict[Text, tuple[Weight, ...]], Entries(1)]
+    pads: Annotated[dict[Text, _PadEntry], Entries(1)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +83,7 @@ class ScoreModel:
         for term, weights in self.terms.items():
             sum_ = 0.0
             for one in weights:
-                x = min(max(oddities.numbers[_PLACE[one.of]], one.low), one.high)
+                x = min(max(oddities.numbers[_PLACE[one.of]], one.from_), one.to)
                 row = usual.get(one.of)
                 sum_ += one.weight * (x if row is None else x - (row[before] + part * (row[after] - row[before])))
             if term == _CHANGES:
@@ -113,46 +131,22 @@ def _shipped() -> ScoreModel:
 def load_score_model(path: Path) -> ScoreModel:
     """Read a model; FileError names the line of what cannot be."""
     source = read(path)
-    source.only((), ("levels", "pads", "terms", "interval"))
-    levels = numbers_at(source, ("levels",), source.data.get("levels"), None)
-    if len(levels) < 2 or any(b <= a for a, b in pairwise(levels)):
-        raise source.error(("levels",), "'levels' must have two numbers or more, each above the one before")
-    below, above = numbers_at(source, ("interval",), source.data.get("interval"), 2)
-    terms = {
-        term: tuple(_weight(source, ("terms", term, n), one) for n, one in enumerate(listed))
-        for term, listed in _mapping(source, (), "terms").items()
-    }
-    played = {one.of for weights in terms.values() for one in weights} - {*TIMED}
-    start, usual = {}, {}
-    for pad in _mapping(source, (), "pads"):
-        source.only(("pads", pad), ("start", "usual"))
-        start[pad] = numbers_at(source, ("pads", pad, "start"), [source.data["pads"][pad].get("start")], 1)[0]
-        said = _mapping(source, ("pads", pad), "usual")
-        source.only(("pads", pad, "usual"), ODDITIES)
-        if lacking := sorted(played - {*said}):
-            raise source.error(("pads", pad, "usual"), f"'usual' lacks {', '.join(lacking)}")
-        usual[pad] = {of: numbers_at(source, ("pads", pad, "usual", of), row, len(levels)) for of, row in said.items()}
-    return ScoreModel(levels, start, usual, terms, below, above)
-
-
-def _mapping(source: MarkedYaml, keys: tuple[str, ...], name: str) -> dict[str, Any]:
-    inside: Any = source.data
-    for key in keys:
-        inside = inside[key]
-    found = inside.get(name)
-    if not isinstance(found, dict) or not found:
-        raise source.error((*keys, name), f"'{name}' must be a mapping of names to values")
-    return found
-
-
-def _weight(source: MarkedYaml, keys: tuple[str | int, ...], said: Any) -> Weight:
-    if not isinstance(said, dict) or set(said) != {"of", "weight", "from", "to"}:
-        raise source.error(keys, "a weight has the keys of, weight, from, to")
-    if said["of"] not in ODDITIES:
-        raise source.error(keys, f"'of' is one of {', '.join(ODDITIES)}")
-    weight, low, high = numbers_at(source, keys, [said["weight"], said["from"], said["to"]], 3)
-    if low >= high:
-        raise source.error(keys, "'to' must be above 'from'")
-    if said["of"] in TIMED and (weight < 0 or low != 0):
-        raise source.error(keys, "an oddity of the timing counts from 0 on, and never makes a chart easier")
-    return Weight(said["of"], weight, low, high)
+    file = convert(source, _ModelFile)
+    for term, weights in file.terms.items():
+        for n, weight in enumerate(weights):
+            if weight.from_ >= weight.to:
+                raise source.error(("terms", term, n), "'to' must be above 'from'")
+            if weight.of in TIMED and (weight.weight < 0 or weight.from_ != 0):
+                message = "an oddity of the timing counts from 0 on, and never makes a chart easier"
+                raise source.error(("terms", term, n), message)
+    played = {one.of for weights in file.terms.values() for one in weights} - {*TIMED}
+    for pad, entry in file.pads.items():
+        keys = ("pads", pad, "usual")
+        if lacking := sorted(played - {*entry.usual}):
+            raise source.error(keys, f"'usual' lacks {', '.join(lacking)}")
+        for of, row in entry.usual.items():
+            if len(row) != len(file.levels):
+                raise source.error((*keys, of), f"'{of}' must have {len(file.levels)} numbers, as many as 'levels'")
+    start = {pad: entry.start for pad, entry in file.pads.items()}
+    usual = {pad: entry.usual for pad, entry in file.pads.items()}
+    return ScoreModel(file.levels, start, usual, file.terms, *file.interval)
