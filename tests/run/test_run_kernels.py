@@ -18,7 +18,7 @@ from dancetutor_cli.commands.doctor import _cache
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.lint.configuration import PresetChoice
 from dancetutor_cli.run import trust
-from dancetutor_cli.run.kernels import compiling, store, target
+from dancetutor_cli.run.kernels import compiling, store
 
 MODULE = """
 from dancetutor_cli.run.kernels.compiling import njit
@@ -273,7 +273,7 @@ def test_doctor_counts_the_kernels_of_each_place(tmp_path: Path, monkeypatch: py
     monkeypatch.setattr("dancetutor_cli.run.reading.PACKAGE", package)
     monkeypatch.setattr(store, "PACKAGE", package)
     monkeypatch.setattr(store, "kernel_folder", lambda: store.KernelFolder(mine, True, ""))
-    head = bytes(2 * store.CHECKSUM) + target.maker()
+    head = bytes(2 * store.CHECKSUM) + store.maker()
     for name in ("a.f.1.kernel", "a.f.2.kernel", "b.f.1.kernel"):
         (package / name).write_bytes(head)
     assert _cache().message == f"2 kernels in {package}, new ones go into {mine}"

@@ -17,7 +17,7 @@ from module_file import loaded
 from numpy.typing import NDArray
 
 from dancetutor_cli.run.errors import DancetutorError
-from dancetutor_cli.run.kernels import compiling, native, store, target
+from dancetutor_cli.run.kernels import compiling, native, store
 from dancetutor_cli.run.kernels.native import Kernel, MachineCode
 
 MODULE = """
@@ -132,12 +132,12 @@ def test_what_was_made_of_other_code_or_for_another_processor_is_not_used(
     kernel(folder, "enter", "# more")(values)
     assert compiled == ["enter"] * 2
     for name, other in (("processor", ("another", "")), ("_version", "0.1"), ("_settings", {"NUMBA_OPT": "0"})):
-        before = target.maker()
+        before = store.maker()
         with monkeypatch.context() as changed:
-            changed.setattr(target, name, lambda *_, other=other: other)
-            target.maker.cache_clear()
-            assert target.maker() != before, name
-        target.maker.cache_clear()
+            changed.setattr(store, name, lambda *_, other=other: other)
+            store.maker.cache_clear()
+            assert store.maker() != before, name
+        store.maker.cache_clear()
     monkeypatch.setattr(store, "maker", lambda: bytes(32))
     kernel(folder, "enter", "# more")(values)
     assert compiled == ["enter"] * 3
@@ -230,7 +230,7 @@ def lacking(function: FunctionType, args: tuple[Any, ...], results: int) -> Mach
     [
         (compiling, "machine_code", fails),
         (compiling, "machine_code", lacking),
-        (compiling, "_njit", fails),
+        (compiling, "njit", fails),
         (native, "_load", fails),
     ],
 )
@@ -286,4 +286,4 @@ def test_threads_do_not_disturb_each_other(folder: Path) -> None:
 def test_versions_are_read_off_the_names_of_folders() -> None:
     from importlib.metadata import version
 
-    assert [target._version(name) for name in target.COMPILERS] == [version(name) for name in target.COMPILERS]
+    assert [store._version(name) for name in store.COMPILERS] == [version(name) for name in store.COMPILERS]

@@ -10,20 +10,19 @@ import pickle
 import sys
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from importlib import import_module
 from itertools import count
 from pathlib import Path
 from types import FunctionType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from llvmlite import binding
 
-from dancetutor_cli.run.kernels import target
 from dancetutor_cli.run.kernels.native import INNER_KERNELS, RESULTS, MachineCode
-from dancetutor_cli.run.kernels.store import StoredCode
+from dancetutor_cli.run.kernels.store import StoredCode, pin, processor
 
 _ASKS_FOR_BLAS = "numba.np.arraymath"  # the module of numba that imports the next one, once, for a third of a second
 _BLAS = "scipy.linalg"  # for what no kernel uses
@@ -32,15 +31,13 @@ _BLAS = "scipy.linalg"  # for what no kernel uses
 @contextmanager
 def without_module(name: str) -> Iterator[None]:
     """In here there is no module of a name to import, whether it has been imported before or not."""
-    missing = object()
-    module: Any = sys.modules.get(name, missing)
+    present = {key: module for key, module in sys.modules.items() if key == name}
     sys.modules[name] = None  # type: ignore[assignment]  # the import system reads it as "there is none"
     try:
         yield
     finally:
         del sys.modules[name]
-        if module is not missing:
-            sys.modules[name] = module
+        sys.modules.update(present)
 
 
 # numba reads `.numba_config.yaml` in the current folder, as it is imported and whenever it compiles. A stranger's file
@@ -62,43 +59,37 @@ _results: Any = import_module("numba.core.compiler").CompileResult
 _dumps: Any = import_module("numba.core.serialize").dumps
 _types: Any = numba.types
 _plain: Any = numba.njit  # what it says of its options has not all that are used here
-target.pin(_core.config)
+pin(_core.config)
 
 
-def _njit(
-    function: Callable[..., Any] | None = None, *, cache: bool = False, counted: bool = True, **options: Any
-) -> Any:
-    """`numba.njit`. cache : keep the kernel in `store`
+F = TypeVar("F")
+
+
+def njit(*, cache: bool = False, counted: bool = True, **options: Any) -> Callable[[F], F]:
+    """`numba.njit`; a kernel has the types that it says. cache : keep it in `store`
 
     counted : False for a kernel that makes no arrays and only looks at those it is given: references to them are not
         counted. numba counts one up and down wherever an array is taken out of a tuple or handed on, by a call each,
         also inside of loops: in the solver's rules that took half of the time.
     """
-    if function is None:
-        return lambda later: _njit(later, cache=cache, counted=counted, **options)
     if not counted:
         options["_nrt"] = False
-    compiled = _plain(no_cfunc_wrapper=True, **options)(function)  # that one is for ctypes
-    if cache:
-        compiled._cache = _KeptOverloads(function)
+
+    def compiled(function: F) -> F:
+        kernel: Any = _plain(no_cfunc_wrapper=True, **options)(function)  # that one is for ctypes
+        if cache:
+            kernel._cache = _KeptOverloads(function)
+        return kernel  # type: ignore[no-any-return]
+
     return compiled
-
-
-F = TypeVar("F")
-if TYPE_CHECKING:  # a kernel has the types that it says, as with numba's own
-
-    def njit(**options: Any) -> Callable[[F], F]: ...
-else:
-    njit = _njit
 
 
 def inner_kernel(function: F) -> F:
     """A kernel that only kernels call, never Python: there it would crash.
 
-    It is compiled into each of them, and they are kept. tests/test_kernels.py looks at all modules for such calls.
+    It is compiled into each of them, and they are kept. tests/run/test_run_kernels.py looks for such calls.
     """
-    made: F = _njit(no_cpython_wrapper=True)(function)
-    return made
+    return njit(no_cpython_wrapper=True)(function)
 
 
 class _KeptOverloads:
@@ -121,10 +112,8 @@ class _KeptOverloads:
         with without_module(_BLAS):
             if _is_for_target(context.codegen()):
                 for body in self.kept.read(f"{self._function} {signature}"):
-                    try:
+                    with suppress(Exception):
                         return _results._rebuild(context, *pickle.loads(body))
-                    except Exception:
-                        continue
             import_module(_ASKS_FOR_BLAS)
         return None
 
@@ -137,13 +126,12 @@ class _KeptOverloads:
 
 def _is_for_target(codegen: Any) -> bool:
     """Whether numba compiles for the processor that stands in what is kept; whoever imported it first decides that."""
-    return tuple(codegen.magic_tuple()[1:]) == target.processor()
+    return tuple(codegen.magic_tuple()[1:]) == processor()
 
 
 def is_kept(kernel: Any) -> bool:
-    """Whether machine code of a kernel, as it is now, is there from an earlier run or came with the package."""
-    overloads = getattr(kernel, "_cache", None)
-    return isinstance(overloads, _KeptOverloads) and overloads.kept.is_there()
+    """Whether there is machine code of a kernel as it is now, of an earlier run or of a wheel; for one with `cache`."""
+    return bool(kernel._cache.kept.is_there())
 
 
 def machine_code(function: FunctionType, args: tuple[Any, ...], results: int) -> MachineCode:
@@ -151,7 +139,7 @@ def machine_code(function: FunctionType, args: tuple[Any, ...], results: int) ->
     with without_module(_BLAS):
         import_module(_ASKS_FOR_BLAS)
     names: dict[str, Any] = {"array_at": _array_at, "int64": np.int64}
-    names["kernel"] = _njit(function, counted=False, no_cpython_wrapper=True)
+    names["kernel"] = _kernel(function, no_cpython_wrapper=True)
     places = count(RESULTS)
     call = f"kernel({', '.join(_expression(one, places, names) for one in args)})"
     given = f"{', '.join(f'words[{n}]' for n in range(results))} = " if results else ""
@@ -162,14 +150,12 @@ def machine_code(function: FunctionType, args: tuple[Any, ...], results: int) ->
     ]
     exec("\n".join(lines), names)
     signature = (_types.int64,)
-    compiled = _njit(names["entry"], counted=False, no_cpython_wrapper=True)
-    with _inner_kernels(function):
-        compiled.compile(signature)
+    compiled = njit(counted=False, no_cpython_wrapper=True)(names["entry"])
+    compiled.compile(signature)
     module = binding.parse_assembly(compiled.inspect_llvm(signature))
     declared = [one.name for one in module.functions if one.is_declaration and not one.name.startswith("llvm.")]
-    name, features = target.processor()
     host = binding.Target.from_triple(binding.get_process_triple())
-    machine = host.create_target_machine(name, features, opt=3, reloc="static", codemodel="jitdefault", jit=True)
+    machine = host.create_target_machine(*processor(), opt=3, reloc="static", codemodel="jitdefault", jit=True)
     entry = compiled.overloads[signature].fndesc.llvm_func_name
     return MachineCode(entry, sorted(declared), machine.emit_object(module))
 
@@ -206,25 +192,12 @@ def _array_at(context: Any, address: Any, shape: Any, number: Any) -> Any:
     return kind(address, shape, number), generate
 
 
-@contextmanager
-def _inner_kernels(caller: FunctionType) -> Iterator[None]:
-    """In here the inner kernels, plain functions for everybody else, are what numba makes of them, in their modules."""
-    spaces = {id(one.__globals__): one.__globals__ for one in (*INNER_KERNELS, caller)}
-    replaced = [
-        (space, name, value)
-        for space in spaces.values()
-        for name, value in list(space.items())
-        if isinstance(value, FunctionType) and value in INNER_KERNELS
-    ]
-    for space, name, value in replaced:
-        space[name] = _of_inner_kernel(value)
-    try:
-        yield
-    finally:
-        for space, name, value in replaced:
-            space[name] = value
-
-
 @cache
-def _of_inner_kernel(function: FunctionType) -> Any:
-    return _njit(function, counted=False, **INNER_KERNELS[function])
+def _kernel(function: FunctionType, **options: Any) -> Any:
+    """What numba makes of a kernel; its inner kernels, plain functions for everybody else, are made the same way."""
+    names = dict(function.__globals__)
+    for name in function.__code__.co_names:
+        inner = names.get(name)
+        if isinstance(inner, FunctionType) and inner in INNER_KERNELS:
+            names[name] = _kernel(inner, **INNER_KERNELS[inner])
+    return njit(counted=False, **options)(FunctionType(function.__code__, names, function.__name__))

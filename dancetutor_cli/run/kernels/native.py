@@ -2,7 +2,7 @@
 
 What is kept of such a kernel is one object file. LLVM alone (llvmlite) loads it in a few milliseconds, `ctypes` calls
 it, with one array of whole numbers: two places for results, then each argument in order, tuples opened. A number stands
-for itself, an array as the address of its first item, by the buffer protocol, and its shape. Where no such code is kept
+for itself, an array as the address of its first item and its shape. Where no such code is kept
 `compiling` makes it; where that fails, and for arguments that it does not take, the function runs as Python.
 """
 
@@ -26,19 +26,16 @@ from dancetutor_cli.run.kernels.store import StoredCode
 
 RESULTS = 2  # places for what a kernel gives, before its arguments
 _OBJECT_FILES = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\x64\x86", b"\x64\xaa")  # what those of the systems start with
-_start: Any = (ctypes.c_char * 0).from_buffer  # nothing of an array but where it begins, so that empty ones do, too
-_address = ctypes.addressof
 _Unused: Any = ctypes.c_void_p * 2  # where a kernel puts what it gives (nothing), and numba an exception's number
 _prototype: Any = ctypes.PYFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
 
-INNER_KERNELS: dict[FunctionType, dict[str, Any]] = {}  # those that kernels call, with numba's options
+INNER_KERNELS: dict[Callable[..., Any], dict[str, Any]] = {}  # those that kernels call, with numba's options
 F = TypeVar("F", bound=Callable[..., Any])
 Kind = tuple[np.dtype[Any], int] | None  # of an array: its numbers and dimensions, row by row; None: a whole number
 
 
 def inner_kernel(function: F, **options: Any) -> F:
     """A kernel that kernels call. For everybody else it stays the function that it is."""
-    assert isinstance(function, FunctionType)
     INNER_KERNELS[function] = options
     return function
 
@@ -84,7 +81,7 @@ class Kernel:
             words = _words(arguments, self._last)
         if words is None or self._last is None:
             return self._as_python(args)
-        if status := self._last.run(_Unused(), _Unused(), _address(_start(words))):
+        if status := self._last.run(_Unused(), _Unused(), words.ctypes.data):
             raise self._error(status)
         given = words[:RESULTS].tolist()
         return None if self._results == 0 else given[0] if self._results == 1 else tuple(given)
@@ -157,26 +154,13 @@ def _words(arguments: list[Any], loaded: LoadedCode | None) -> NDArray[np.int64]
             if kind is None:
                 words.append(index(one))
                 continue
-            dtype, dimensions = kind
-            try:
-                address = _address(_start(one))
-            except TypeError:
-                address = _address_to_read(one)
-            shape = one.shape
-            if one.dtype != dtype or len(shape) != dimensions or address % dtype.itemsize:
+            address = one.__array_interface__["data"][0]
+            if (one.dtype, one.ndim) != kind or not one.flags.c_contiguous or address % one.itemsize:
                 return None
-            words.append(address)
-            words += shape
+            words += (address, *one.shape)
         return np.array(words, dtype=np.int64)
     except (AttributeError, TypeError, ValueError, OverflowError):
         return None
-
-
-def _address_to_read(array: NDArray[Any]) -> int:
-    """Where items begin that must not be written. TypeError if they do not lie row by row."""
-    if array.flags.writeable or not array.flags.c_contiguous:
-        raise TypeError("not in a row")
-    return array.ctypes.data
 
 
 def _load(code: MachineCode, kinds: tuple[Kind, ...]) -> LoadedCode:
@@ -184,7 +168,7 @@ def _load(code: MachineCode, kinds: tuple[Kind, ...]) -> LoadedCode:
     from llvmlite import binding
 
     if not code.data.startswith(_OBJECT_FILES) or not all(map(binding.address_of_symbol, code.needs)):
-        raise ImportError("no machine code for this process")  # of which LLVM would end it
+        raise ImportError("no machine code for this process")  # LLVM would end it
     binding.initialize_native_target()
     binding.initialize_native_asmprinter()
     triple = binding.get_process_triple()
