@@ -12,6 +12,7 @@ WRITTEN_BY_USERS = {  # fields named after an option or a key of a settings file
     "commands/page.py: PageWish.beside",
     "page/work.py: PageRequest.beside",
     "dance/settings_feet.py: WalkSettings.beside",
+    "lint/meter/model.py: Curve.how",
 }
 
 

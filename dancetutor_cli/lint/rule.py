@@ -1,4 +1,4 @@
-"""The abstract bases of rules, and all rules by code and name: one small class per file under `rules/`."""
+"""The abstract bases of rules, and all rules by code and name: one small class each, by theme under `rules/`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject
 
 
-# The abstract bases of rules: one small class per file under `rules/`, its docstring is its documentation.
+# The abstract bases of rules: a rule is a small class under `rules/`, its docstring is its documentation.
 
 BY_METER = "by-meter"  # what `max_seconds` says where the table of times is to decide
 EPSILON = 1e-6

@@ -1,4 +1,4 @@
-"""DT213: passages whose feet the solver is least sure of."""
+"""Feet that cannot be found, that nothing tells apart, or that are not as the author says."""
 
 from __future__ import annotations
 
@@ -10,6 +10,79 @@ from dancetutor_cli.lint.rule import ChartRule
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
+
+
+class NoPad(ChartRule):
+    """This steps type has no entry in configs/pads.yaml: the chart is read, but its feet are not known.
+
+    Bad: a kb7-single chart, which is played with fingers.
+
+    Better: add the pad's panels to configs/pads.yaml, or leave such charts out with --steps-type.
+    """
+
+    code = "DT103"
+    name = "no-pad"
+
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """One finding if there is no play."""
+        if subject.play is None:
+            message = f"steps type '{subject.chart.steps_type}' has no pad: no feet"
+            yield self.finding(message, subject.at_chart())
+
+
+class FeetWish(ChartRule):
+    """A pinned measure or an override in data.sme contradicts the notes, or itself, and is left out of account.
+
+    Bad: `{dt1! LR}` on a measure of three rows.
+
+    Better: one letter, or one pair of brackets, for each row that holds a step: `{dt1! LR(LR)}`.
+    """
+
+    code = "DT111"
+    name = "feet-wish"
+
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """One finding for each contradiction."""
+        for problem in subject.problems:
+            yield self.finding(problem.message, {**subject.at_line(problem.line), "column": problem.column or 1})
+
+
+class AmbiguousStart(ChartRule):
+    """A step can be played as well with the other foot: players will begin the chart, or a passage, on different feet.
+
+    A tie is a play with the other foot that costs the same. Inside a chart only those steps are reported on which the
+    feet of what follows depend, and not those after a jump that can be turned round.
+
+    Bad:
+
+        0100
+        0010
+        0100
+        0010
+
+    Better: a panel of one side says which foot begins.
+
+        1000  L
+        0100  R
+        0010  L
+        0001  R
+    """
+
+    code = "DT207"
+    name = "ambiguous-start"
+
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether no row costs the same with other limbs."""
+        return subject.feet is None or not subject.feet.ties()
+
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """One finding for each run of rows that are ties, at its first."""
+        for row, resolved in subject.ties():
+            begins = row == subject.step_rows[0]
+            if (begins or not resolved) and not subject.is_jump(row):
+                after = "the rows after it are stepped the same way" if resolved else "what follows depends on it"
+                verb = "begin" if begins else "come"
+                yield self.finding(f"either foot can {verb} here at the same cost; {after}", subject.at_row(row))
 
 
 class UnsureFeet(ChartRule):

@@ -1,11 +1,13 @@
-"""DT204: the feet cross where the chart is too easy for it."""
+"""Feet that cross, that stay crossed, or that cross a foot that holds."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.rule import EPSILON, Occurrence, TimedRule
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.rule import EPSILON, ChartRule, Occurrence, TimedRule
 
 if TYPE_CHECKING:
     import numpy as np
@@ -115,3 +117,97 @@ def _in_passing(subject: ChartSubject, row: int) -> bool:
 def _onwards(before: list[int], after: list[int], x: NDArray[np.float64]) -> bool:
     """Whether of two single steps the later one is not farther back."""
     return len(before) == len(after) == 1 and bool(x[after[0]] >= x[before[0]] - EPSILON)
+
+
+class CrossedRun(ChartRule):
+    """The feet stay crossed over many rows, so the dancer plays with her side or her back to the screen.
+
+    `max_rows`: the longest run of rows with crossed feet that is not reported.
+    `max_seconds`: only rows at most this far apart make a run; with more time nobody stays crossed. Nor past a rest of
+    about twice the pace of the passage, in the run or shortly before it, from which the other foot goes on uncrossed.
+    Of the 7,100 times that players crossed their feet in 168,000 labelled rows, 31 were longer than five rows, and in
+    nine of ten no step came later than 0.45 s after the one before.
+
+    Bad (max_rows = 1, max_seconds = 0.6):
+
+        1000  L
+        0100  R
+        0001  L
+        0100  R
+
+    Better (max_rows = 1, max_seconds = 0.6):
+
+        1000  L
+        0001  R
+        0100  L
+        0001  R
+    """
+
+    code = "DT205"
+    name = "crossed-run"
+    about_feet = True
+
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether the feet are never crossed."""
+        return subject.feet is None or not subject.feet.crossed_runs()
+
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """One finding for each run that is too long, at its first row."""
+        from dancetutor_cli.lint.other_foot import exchanged_is_uncrossed, segment
+
+        longest, most = self.options["max_seconds"] + EPSILON, self.options["max_rows"]
+        for rows in subject.feet.crossed_rows(most + 1) if subject.feet else ():
+            start = int(subject.step_rows.searchsorted(rows[0]))
+            slow = [n for n, row in enumerate(rows) if n and subject.pause(row) > longest]
+            anew = [n for n in range(1, len(rows)) if subject.beginnings.anew(longest)[start + n]]
+            for first, after in pairwise(sorted({0, *slow, *anew, len(rows)})):
+                begun = segment(subject, start + first, longest)[0]
+                danced = subject.step_rows[begun : start + after]
+                if after - first > most and not exchanged_is_uncrossed(subject, danced):
+                    yield self.finding(f"the feet stay crossed for {after - first} rows", subject.at_row(rows[first]))
+
+
+class HeldCrossover(TimedRule):
+    """One foot steps across the other, which has to stay on a hold: neither a switch nor a turn gets her out of it.
+
+    In a crossover the foot that is crossed goes on with the next step; here it cannot, and the other one has to come
+    back the way it went. Crossings at most four measures apart are one finding: a foot that goes round a held one
+    turns her again and again.
+
+    `max_seconds`: only steps at most this long after the step before count; with more time she turns and comes back.
+
+    Bad (max_seconds = 0.6):
+
+        0020  R
+        1000  L
+        0001  L
+        0030
+
+    Better (max_seconds = 0.6):
+
+        0020  R
+        1000  L
+        0100  L
+        0030
+    """
+
+    code = "DT215"
+    name = "held-crossover"
+    passage_beats = 16
+
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether the feet are never crossed, or nothing is held."""
+        return subject.feet is None or not subject.feet.has_holds or not subject.feet.crossed_runs()
+
+    def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
+        """Each single step after which the feet are newly crossed, while the other foot holds."""
+        if subject.play is None or subject.feet is None:
+            return
+        limbs = subject.play.limb
+        for row in self.quick(subject, [first for first, _ in subject.feet.crossed_runs()]):
+            pressed = subject.pressed(row)
+            foot = int(limbs[row].max())
+            if len(pressed) == 1 and foot <= 1 and subject.feet.holds(1 - foot, row):
+                feet = ("left", "right") if foot == 0 else ("right", "left")
+                said = f"the {feet[0]} foot crosses the {feet[1]} one, which a hold keeps on its panel"
+                yield Occurrence(row, subject.pause(row), said)

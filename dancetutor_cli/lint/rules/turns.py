@@ -1,15 +1,17 @@
-"""DT202: the body turns all the way round."""
+"""The body turns far: spins, turns within a jump, half turns at once."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.rule import EPSILON, MoveRule, Occurrence
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.rule import EPSILON, ChartRule, MoveRule, Occurrence
 from dancetutor_cli.lint.rules.fast_step import burst
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
+
 
 UNCROSSED = 90.0  # degrees that the body may be turned without the feet being crossed
 SIDEWAYS = 140.0  # degrees: one foot is across the other, more beside it than before it
@@ -154,3 +156,73 @@ def _between_mines(subject: ChartSubject, row: int) -> bool:
     from dancetutor_cli.lint.foot_questions import WALL
 
     return subject.play is not None and int(subject.play.rows.mines[row].sum()) >= WALL
+
+
+class JumpSpin(ChartRule):
+    """The feet land on a jump only after turning past the dancer's back: a spin in the air.
+
+    Both feet leave the pad, so unlike in a spin nothing guides the turn, and the screen is out of sight while landing.
+
+    Bad:
+
+        1000  L
+        0100  R
+        0001  L
+        0011  RL
+
+    Better:
+
+        1000  L
+        0100  R
+        0010  L
+        1001  LR
+    """
+
+    code = "DT203"
+    name = "jump-spin"
+    about_feet = True
+
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether she never spins."""
+        return not subject.has("spin")
+
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """One finding for each spin that ends in a jump."""
+        for row in subject.rows_with("spin"):
+            if subject.is_jump(row):
+                yield self.finding("the body turns beyond 180 degrees within this jump", subject.at_row(row))
+
+
+class HalfTurn(ChartRule):
+    """Between two rows the body turns by 180 degrees at once, from facing one side of the room to facing the other.
+
+    `max_seconds`: only rows at most this long after the step before count; with more time she turns as she likes.
+
+    Bad (max_seconds = 0.6):
+
+        0100  L
+        0010  R
+        0110  RL
+        0000
+
+    Better (max_seconds = 0.6):
+
+        0100  L
+        0010  R
+        0110  LR
+        0000
+    """
+
+    code = "DT304"
+    name = "half-turn"
+    about_feet = True
+
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether the body never turns so."""
+        return subject.feet is None or not subject.feet.half_turns()
+
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """One finding for each half turn."""
+        for row in subject.feet.half_turns() if subject.feet else ():
+            if subject.pause(row) <= self.options["max_seconds"] + EPSILON:
+                yield self.finding("the body turns by 180 degrees at once", subject.at_row(row))

@@ -1,0 +1,178 @@
+"""Holds without an end or a way out of them, and mines where a foot is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.rule import EPSILON, ChartRule, Occurrence, ReaderRule, TimedRule
+from dancetutor_cli.lint.rules.odd_notes import OddNotes
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject, FileSubject
+
+_NEAR = 2  # measures
+
+
+class BrokenHold(ReaderRule):
+    """A hold has no end, an end has no head, or a note stands inside a hold: the games drop one of the two.
+
+    Where a row near it is misread (DT102) nothing is said: its head or end may stand there.
+
+    Bad:
+
+        2000
+        0000
+        1000
+        3000
+
+    Better:
+
+        2000  L
+        3000
+        1000  L
+        0001  R
+    """
+
+    code = "DT106"
+    name = "broken-hold"
+    codes = frozenset({"unmatched-head", "unmatched-tail"})
+
+    def check(self, subject: FileSubject | ChartSubject) -> Iterable[Finding]:
+        """One finding for each line, but those within two measures of a misread row."""
+        from dancetutor_cli.lint.subject import ChartSubject
+
+        found = list(super().check(subject))
+        if not found or not isinstance(subject, ChartSubject):
+            return found
+        misread = [
+            place["measure"] for _, place in subject.warnings(OddNotes.codes - OddNotes.usual) if "measure" in place
+        ]
+        return [
+            one for one in found if not any(abs(one.measure - at) <= _NEAR for at in misread if one.measure is not None)
+        ]
+
+
+class MineUnderHold(TimedRule):
+    """A mine comes under a foot that can hardly step aside: the weight is on a panel that is held down.
+
+    The foot holds the panel beside it, or the other foot holds one, and the step was just now. Before a wall of three
+    mines or more everybody waits between the panels. `max_seconds`: just now means at most this long before the mine:
+    who taps a panel has left it after about a tenth of a second; by-meter: what at most `share` per cent of the charts
+    of a meter have.
+
+    Bad (max_seconds = 1.5):
+
+        0001  R
+        2000  L
+        000M
+        3000
+
+    Better (max_seconds = 1.5):
+
+        0001  R
+        2000  L
+        00M0
+        3000
+    """
+
+    code = "DT303"
+    name = "mine-under-hold"
+    times = "mine-under-hold"
+
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether there are no mines or no holds."""
+        return subject.feet is None or not (subject.feet.has_mines and subject.feet.has_holds)
+
+    def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
+        """Each row with such a mine, with the time since the foot's step; none where it cannot leave at all."""
+        told: set[int] = set()
+        for row, column, foot, seconds in subject.feet.mines_under_pinned_feet() if subject.feet else ():
+            message = f"a mine under the {('left', 'right')[foot]} foot, which a hold keeps from stepping aside"
+            if row not in told and seconds <= self.longest(subject) + EPSILON:  # once for a row, not for each foot
+                told.add(row)
+                yield Occurrence(row, seconds, message, column)
+
+
+class StuckHold(ChartRule):
+    """There is no way to release a hold: a mine waits on its panel, or the limb is needed elsewhere at once.
+
+    `mine_seconds`: a mine on the same panel at most this long after the end of the hold is reported.
+    `min_seconds`: the least time between the end of the hold and the limb's next step on another panel; 0: any will do,
+    because the games are content with a hold that is left shortly before its end.
+
+    Bad (mine_seconds = 0.6):
+
+        2000  L
+        3000
+        M001  R
+        0000
+
+    Better (mine_seconds = 0.6):
+
+        2000  L
+        3000
+        0001  R
+        M000
+    """
+
+    code = "DT306"
+    name = "stuck-hold"
+    about_feet = True
+
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether there are no holds."""
+        return subject.feet is None or not subject.feet.has_holds
+
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """One finding for each such mine, and for each step that comes too early."""
+        feet = subject.feet
+        for row, column, seconds in feet.mines_after_holds(self.options["mine_seconds"]) if feet else ():
+            message = f"a mine lies on this panel {seconds * 1000:.0f} ms after the end of its hold"
+            yield self.finding(message, subject.at_row(row, column))
+        for row, column, seconds in feet.releases(self.options["min_seconds"]) if feet else ():
+            late = f"{max(seconds, 0) * 1000:.0f} ms"
+            name = feet.limb_name(row, column) if feet else ""
+            message = f"the {name} holds another panel until {late} before this step"
+            yield self.finding(message, subject.at_row(row, column))
+
+
+class MineInTheWay(ChartRule):
+    """A mine lies on the panel that a foot comes to, so close before the step that it may be hit.
+
+    `max_seconds`: mines at most this long before the step count; the games' mine window is about 0.07 s.
+
+    Bad (max_seconds = 0.6):
+
+        1000  L
+        000M
+        0001  R
+        0000
+
+    Better (max_seconds = 0.6):
+
+        1000  L
+        00M0
+        0001  R
+        0000
+    """
+
+    code = "DT307"
+    name = "mine-in-the-way"
+    about_feet = True
+
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether there are no mines."""
+        return subject.feet is None or not subject.feet.has_mines
+
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """One finding for each row with such a step."""
+        limit = self.options["max_seconds"]
+        told: set[int] = set()
+        for row, column, seconds in sorted(subject.feet.mines_before_steps(limit)) if subject.feet else ():
+            if row in told:  # once for a row, not for each foot
+                continue
+            told.add(row)
+            message = f"a mine lies on this panel {seconds * 1000:.0f} ms before the foot arrives"
+            yield self.finding(message, subject.at_row(row, column))

@@ -1,0 +1,200 @@
+"""More panels at once than two feet take: brackets, hands, and what no limbs can do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.feet.preset import HAND, DropReason
+from dancetutor_cli.lint.rule import EPSILON, MoveRule, Occurrence, TimedRule
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject
+
+_NEAR = 0.3  # seconds
+
+
+class LowBracket(TimedRule):
+    """One foot has to press two panels in a chart whose players do not know brackets yet.
+
+    Where three panels are down at once it is a hand (DT302). Two panels again and again are jumps, however quick; so
+    are those of which a foot has just stepped one. It is one finding for a chart.
+
+    `least_meter`: the meter from which on brackets are expected. `max_seconds`: only rows at most this long after the
+    step before count, less than a 16th at 150 BPM; with more time players jump. `most_quick`: in a chart in which more
+    per cent of the steps are so quick only the number is low, and nothing is said.
+
+    Bad (least_meter = 10, max_seconds = 0.6, most_quick = 100):
+
+        1000  L
+        0011  Rr
+        1000  L
+        0001  R
+
+    Better (least_meter = 10, max_seconds = 0.6, most_quick = 100):
+
+        1000  L
+        0001  R
+        1000  L
+        0001  R
+    """
+
+    code = "DT210"
+    name = "low-bracket"
+    passage_beats = math.inf
+
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether there is no bracket."""
+        return not subject.has("bracket")
+
+    def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
+        """Each bracket in a chart of so low a meter."""
+        meter, feet = subject.chart.meter, subject.feet
+        if meter >= self.options["least_meter"] or self._quick_throughout(subject):
+            return
+        for row in subject.rows_with("bracket"):
+            if feet and feet.down[row] < 3 and not _jumped(subject, row):
+                pause = subject.pause(row)
+                said = f"two panels {1000 * pause:.0f} ms after a step, too quick for a jump: a bracket"
+                yield Occurrence(row, pause, f"{said} in a chart of meter {meter}")
+
+    def _quick_throughout(self, subject: ChartSubject) -> bool:
+        """Whether so many steps are as quick that the players of this chart are no beginners."""
+        longest = self.longest(subject) + EPSILON
+        quick = [subject.pause(row) <= longest for row in subject.step_rows.tolist()]
+        return bool(100 * sum(quick) > self.options["most_quick"] * len(quick))
+
+
+def _jumped(subject: ChartSubject, row: int) -> bool:
+    """Whether the step before is on one of the panels, or that before or after on two, too, and near."""
+    rows = subject.step_rows
+    at = int(rows.searchsorted(row))
+    near = [one for one in (at - 1, at + 1) if 0 <= one < len(rows) and subject.pause(int(rows[max(one, at)])) <= _NEAR]
+    pairs = any(len(subject.pressed(int(rows[one]))) > 1 for one in near)
+    return pairs or bool(at and {*subject.pressed(row)} & {*subject.pressed(int(rows[at - 1]))})
+
+
+_GIMMICK = 99  # the meter
+_SLIP = 0.02  # seconds between two rows that are meant as one
+
+
+class Unplayable(MoveRule):
+    """No limb is left for a step of this row: both feet and both hands press something already.
+
+    Those at most two measures apart are one finding. In a chart whose meter is the 99 of gimmicks, or where the rows
+    come less than 20 ms apart, it is an info: nobody is surprised. An info is also where a hand would have to be down
+    again within 0.4 s: a foot may bracket instead. The dancer of the films lets such steps go, like those for which a
+    foot would have to leap (DT305).
+
+    Bad: five panels at once.
+
+        10000000  L
+        11111000  LRLR?
+        10000000  L
+        00010000  R
+
+    Better: two panels.
+
+        10000000  L
+        10001000  LR
+        10000000  L
+        00010000  R
+    """
+
+    code = "DT301"
+    name = "unplayable"
+    move = "unplayable"
+    about_feet = False
+    passage_beats = 8
+
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether there is a limb for every step, and no hand in a hurry."""
+        return super().is_silent(subject) and not _hands(subject)
+
+    def rows(self, subject: ChartSubject) -> Iterable[int]:
+        """Rows with such a step."""
+        return sorted({*subject.rows_with(self.move), *_hands(subject)})
+
+    def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
+        """A gimmick says so by its meter or its rows, and where only a hand is in a hurry a foot may bracket."""
+        gimmick = subject.chart.meter == _GIMMICK or any(subject.pause(row) < _SLIP for row in rows)
+        return gimmick or not any(subject.unplayed(row) for row in rows)
+
+    def representative(self, subject: ChartSubject, rows: list[int]) -> int:
+        """The first with a step that no limb is left for: a hand in a hurry beside it is the lesser fault."""
+        return next((place for place, row in enumerate(rows) if subject.unplayed(row)), 0)
+
+    def message(self, subject: ChartSubject, row: int) -> str:
+        """How many steps are left over."""
+        if count := subject.unplayed(row):
+            return f"no limb is left for {count} step{'s' if count > 1 else ''} of this row"
+        return f"a hand would have to be down again less than {HAND:g} s after it was"
+
+
+def _hands(subject: ChartSubject) -> set[int]:
+    """Rows in which a hand would have to be down again at once."""
+    return {row for row, _, why in subject.too_quick if why == DropReason.HAND}
+
+
+_STUB = 2  # rows
+_SCALE = "itg"  # of meters, on which `least_meter` is measured
+
+
+class Hand(MoveRule):
+    """Three panels are down at once: a foot brackets two of them, or a hand helps; these players do neither yet.
+
+    The games count such rows as hands. Held panels count. Those at most two measures apart are one finding.
+
+    Off for most charts; configs/lint/default.yaml switches it on for the lower difficulties. `least_meter`: the meter
+    from which on hands are expected, whatever the difficulty says. A chart of meter 1 that plays like such a meter
+    (docs/meter.md) has no meter yet, and one of a single row is a stub: nothing is said of them.
+
+    Bad (least_meter = 10):
+
+        1000  L
+        0100  R
+        1101  L>R
+        0000
+
+    Better (least_meter = 10):
+
+        1000  L
+        0100  R
+        1001  LR
+        0000
+    """
+
+    code = "DT302"
+    name = "hand"
+    move = "hand"
+    about_feet = False  # it is the number of panels that asks for it
+    passage_beats = 8
+
+    def is_silent(self, subject: ChartSubject) -> bool:
+        """Whether three panels are never down."""
+        return subject.feet is None or not (subject.has(self.move) or subject.feet.triples())
+
+    def rows(self, subject: ChartSubject) -> Iterable[int]:
+        """Rows with a step in which a third panel is down, and those in which the solver uses a hand."""
+        if subject.feet is None or len(subject.step_rows) < _STUB:
+            return []
+        from dancetutor_cli.lint.figures import hand_rows
+
+        found = hand_rows(subject)
+        return found if found and not self._expected(subject) else []
+
+    def _expected(self, subject: ChartSubject) -> bool:
+        """Whether the players of this chart know hands; a label of 1 may stand for nothing."""
+        chart, least = subject.chart, self.options["least_meter"]
+        if chart.meter >= least:
+            return True
+        if chart.meter > 1 or subject.play is None:
+            return False
+        sized = subject.sized()
+        return sized is not None and sized.on.get(_SCALE, 0.0) >= least
+
+    def message(self, subject: ChartSubject, row: int) -> str:
+        """Whether a bracket would do."""
+        bracketed = self.move not in (subject.play.moves[row] if subject.play else ())
+        return "three panels at once: " + ("a bracket, or a hand" if bracketed else "a hand has to press one")

@@ -1,0 +1,151 @@
+"""What the tags of a song say: its pictures, titles, tempo and folder."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.pictures import PictureRule
+from dancetutor_cli.lint.rule import ChartRule, FileRule
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject, FileSubject
+
+_TAGS = ("MUSIC", "BANNER", "BACKGROUND", "CDTITLE", "JACKET", "LYRICSPATH")
+
+
+class LetterCase(FileRule):
+    """A tag names a file with other capitals than it has: found on Windows and in the games, but not everywhere.
+
+    Bad: #MUSIC:Song.OGG; beside song.ogg. Better: #MUSIC:song.ogg;
+    """
+
+    code = "DT112"
+    name = "letter-case"
+
+    def check(self, subject: FileSubject) -> Iterable[Finding]:
+        """One finding for each tag."""
+        from dancetutor_cli.chart.music import other_case
+
+        folder = subject.song.path.parent
+        for tag in _TAGS:
+            name = subject.song.tags.get(tag, "").strip()
+            if name and (there := other_case(folder, name)):
+                yield self.finding(f"#{tag} names {name}, and the file is called {there}", subject.tag_place(tag))
+
+
+class BannerSize(PictureRule):
+    """#BANNER is empty, names a file that is not there or empty, or a picture of an unusual size.
+
+    `required`: whether a song without the tag is reported. `sizes`: the sizes that are accepted, as "418x164";
+    `proportions`: sizes with an accepted proportion. Of an empty list every one is accepted. Films have no size here.
+
+    Bad: #BANNER:nowhere.png; Better: a picture of 418x164 beside the song.
+    """
+
+    code = "DT504"
+    name = "banner-size"
+    tag = "BANNER"
+
+
+class BackgroundSize(PictureRule):
+    """#BACKGROUND is empty, names a file that is not there or empty, or a picture of an unusual size.
+
+    `required`: whether a song without the tag is reported. `sizes`: the sizes that are accepted, as "1920x1080";
+    `proportions`: sizes with an accepted proportion. Of an empty list every one is accepted. Films have no size here.
+
+    Bad: #BACKGROUND:nowhere.png; Better: a picture of 1920x1080 beside the song.
+    """
+
+    code = "DT505"
+    name = "background-size"
+    tag = "BACKGROUND"
+
+
+class BpmRange(ChartRule):
+    """A BPM of the chart's timing is below or above the limits. Off by default; contests switch it on.
+
+    `min_bpm`, `max_bpm`: the limits.
+
+    Bad for a contest of 60 to 200 BPM: #BPMS:0=240; Better: #BPMS:0=120;
+    """
+
+    code = "DT507"
+    name = "bpm-range"
+
+    def check(self, subject: ChartSubject) -> Iterable[Finding]:
+        """At most one finding: the first tempo outside."""
+        for bpm in subject.tempos():
+            if not self.options["min_bpm"] <= bpm <= self.options["max_bpm"]:
+                low, high = self.options["min_bpm"], self.options["max_bpm"]
+                yield self.finding(f"a tempo of {bpm:g} BPM, not {low:g} to {high:g}", subject.at_chart())
+                break
+
+
+class CdTitle(PictureRule):
+    """#CDTITLE is empty, names a file that is not there or is empty, or a picture of an unusual size.
+
+    `required`: whether a song without the tag is reported. `proportions`: of width and height that are accepted.
+    `sizes`: the sizes that are accepted; an empty list accepts every size.
+
+    Bad: #CDTITLE:nowhere.png; Better: a picture beside the song, or in the pack's folder: ../pack.png.
+    """
+
+    code = "DT511"
+    name = "cdtitle"
+    tag = "CDTITLE"
+
+
+_SCRIPTS = ("CJK", "HIRAGANA", "KATAKANA", "HANGUL", "CYRILLIC", "ARABIC", "HEBREW", "THAI", "DEVANAGARI", "GREEK")
+_LEAST = {"GREEK": 3}  # letters of a word: single ones stand for something else
+
+
+class Translit(FileRule):
+    """Title, subtitle or artist is in another script than the Latin one, and nothing says how it is read.
+
+    Players who cannot read it search in vain, and some fonts of the games do not have its letters.
+
+    Bad: #TITLE:\u65e5\u672c; without #TITLETRANSLIT. Better: #TITLETRANSLIT:Nihon;
+    """
+
+    code = "DT513"
+    name = "translit"
+
+    def check(self, subject: FileSubject) -> Iterable[Finding]:
+        """One finding for each tag."""
+        for tag in ("TITLE", "SUBTITLE", "ARTIST"):
+            value = subject.song.tags.get(tag, "")
+            if _is_other_script(value) and not subject.song.tags.get(f"{tag}TRANSLIT", "").strip():
+                yield self.finding(f"#{tag} is in another script, and #{tag}TRANSLIT is empty", subject.tag_place(tag))
+
+
+def _is_other_script(text: str) -> bool:
+    import unicodedata
+
+    if text.isascii():
+        return False
+    scripts = [unicodedata.name(letter, "").split(" ")[0].split("-")[0] for letter in text if letter.isalpha()]
+    return any(scripts.count(script) >= _LEAST.get(script, 1) for script in _SCRIPTS)
+
+
+_ROOTS = ("songs", "additionalsongs")
+
+
+class SongFolder(FileRule):
+    """The song's folder lies directly in Songs, or the file does: the games look for songs in the folders of packs.
+
+    Bad: Songs/My Song/song.ssc. Better: Songs/My Pack/My Song/song.ssc
+    """
+
+    code = "DT514"
+    name = "song-folder"
+
+    def check(self, subject: FileSubject) -> Iterable[Finding]:
+        """At most one finding."""
+        folder = subject.song.path.absolute().parent
+        if folder.name.lower() in _ROOTS:
+            yield self.finding(f"the file lies directly in {folder.name}, in no folder of a pack", subject.place())
+        elif folder.parent.name.lower() in _ROOTS:
+            said = f"the song's folder lies directly in {folder.parent.name}, in no folder of a pack"
+            yield self.finding(said, subject.place())

@@ -1,0 +1,214 @@
+"""Feet that change on a panel: footswitches, sideswitches, holdswitches and quick ones."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.lint.rule import EPSILON, MoveRule, Occurrence, TimedRule
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.subject import ChartSubject
+
+_RUN = 8  # steps that are a run
+_LONGER = 1.4  # times the pace of the run: a pause before it, in which a foot is chosen
+
+
+class Footswitch(MoveRule):
+    """One foot takes over the panel that the other stands on, in a chart whose players do not know footswitches yet.
+
+    Off for most charts; configs/lint/default.yaml switches it on for the lowest difficulties.
+
+    `max_seconds`: only steps at most this long after the step before count; with more time the same foot steps again.
+    by-meter: what at most `share` per cent of the charts of a meter have. Two steps on one panel are a jack to these
+    players, whatever foot the pattern after them wants. So it is told only where the author means a switch, by a mine
+    at it or feet laid down, or where eight such quick steps, none of them on the panel before it, follow without a
+    rest: who jacks it runs into those with the wrong foot. Nor where it can be danced as a jack without crossing.
+
+    Bad (max_seconds = 0.6):
+
+        1000  L
+        0100  R
+        01M0  L
+        0001  R
+
+    Better (max_seconds = 0.6):
+
+        1000  L
+        0100  R
+        0010  L
+        0001  R
+    """
+
+    code = "DT212"
+    name = "footswitch"
+    move = "footswitch"
+    times = "footswitch"
+    description = "a foot takes over the panel of the other: footswitch"
+
+    def rows(self, subject: ChartSubject) -> Iterable[int]:
+        """Footswitches on one panel; what a bracket does beside it is DT210's."""
+        found = self.quick(subject, subject.rows_with(self.move))
+        return [row for row in found if not subject.brackets(row) and self._is_switched(subject, row)]
+
+    def _is_switched(self, subject: ChartSubject, row: int) -> bool:
+        """Whether players know that they have to switch, or run into what follows with the wrong foot."""
+        from dancetutor_cli.lint.other_foot import goes_on_the_other_foot, has_mine_since_step
+
+        if has_mine_since_step(subject, row):
+            return True
+        quick = self.longest(subject)
+        if not _is_laid_down(subject, row) and not _leads_a_run(subject, row, quick):
+            return False
+        return not goes_on_the_other_foot(subject, row, quick, jacked=True)
+
+
+def _is_laid_down(subject: ChartSubject, row: int) -> bool:
+    """Whether people have said whose foot it is."""
+    assert subject.play is not None
+    return subject.overrides is not None and bool((subject.overrides.ticks == subject.play.rows.tick[row]).any())
+
+
+def _leads_a_run(subject: ChartSubject, row: int, quick: float) -> bool:
+    """Whether enough single steps, each quick and on another panel than the one before, follow without a breath."""
+    at = int(subject.step_rows.searchsorted(row))
+    rows = subject.step_rows[at : at + _RUN + 1].tolist()
+    pressed = [subject.pressed(one) for one in rows]
+    return (
+        len(rows) > _RUN
+        and subject.pause(row) < _LONGER * subject.pause(rows[1])
+        and all(len(one) == 1 for one in pressed)
+        and all(one != two for one, two in pairwise(pressed))
+        and all(subject.pause(one) <= quick + EPSILON for one in rows[1:])
+    )
+
+
+class Sideswitch(MoveRule):
+    """One foot takes over the left or right panel that the other stands on, so the body has to turn sideways for it.
+
+    `max_seconds`: only steps at most this long after the step before count; with more time the same foot steps again, a
+    jack. So it does in a passage of jacks, where a panel just before is stepped on twice, and where the steps up to the
+    next rest go uncrossed after it; unless a mine at it asks for the switch. What a bracket does beside it is DT210's.
+
+    Bad (max_seconds = 0.6):
+
+        0001  R
+        0001  L
+        0100  R
+        1000  L
+
+    Better (max_seconds = 0.6):
+
+        0001  R
+        0010  L
+        0100  R
+        1000  L
+    """
+
+    code = "DT208"
+    name = "sideswitch"
+    move = "sideswitch"
+    description = "a foot takes over a side panel from the other: sideswitch"
+
+    def rows(self, subject: ChartSubject) -> Iterable[int]:
+        """Quick ones that nobody dances as a jack."""
+        from dancetutor_cli.lint.other_foot import goes_on_the_other_foot, has_mine_since_step, led_by_a_jack
+
+        quick = self.longest(subject)
+        return [
+            row
+            for row in self.quick(subject, subject.rows_with(self.move))
+            if not subject.brackets(row)
+            and (
+                has_mine_since_step(subject, row)
+                or not (led_by_a_jack(subject, row) or goes_on_the_other_foot(subject, row, quick, jacked=True))
+            )
+        ]
+
+
+class Holdswitch(MoveRule):
+    """A hold has to be handed from one foot to the other while it lasts.
+
+    Bad: the right foot takes over the left panel, so that the left foot can step down.
+
+        2000  L
+        0001  R
+        0100  L
+        3001  L
+
+    Better: one foot holds, the other steps.
+
+        2000  L
+        0001  R
+        0100  R
+        3001  R
+    """
+
+    code = "DT211"
+    name = "holdswitch"
+    move = "holdswitch"
+    description = "the feet change on a held panel: holdswitch"
+
+
+class JumpFootswitch(MoveRule):
+    """In this jump a foot that already stands on one of its panels has to change to another one, and quickly.
+
+    `max_seconds`: only jumps at most this long after the step before count; with more time nobody notices. by-meter:
+    what at most `share` per cent of the charts of a meter have.
+
+    Bad (max_seconds = 0.6): the right foot has just come to the panel that the left foot needs.
+
+        1000  L
+        0001  R
+        0100  R
+        0110  LR
+
+    Better (max_seconds = 0.6):
+
+        1000  L
+        0001  R
+        0010  R
+        0110  LR
+    """
+
+    code = "DT206"
+    name = "jump-footswitch"
+    move = "jump-footswitch"
+    times = "jump-footswitch"
+    description = "a foot changes panels within this jump: jump footswitch"
+
+
+class SwitchJack(TimedRule):
+    """Several quick steps on one panel, which players read as a jack, but the feet have to change in it.
+
+    Who jacks them all with one foot comes out on the wrong one and doublesteps. `min_rows`: so many steps on the panel
+    at least; two are a plain footswitch. `max_seconds`: only steps at most this long after the step before count; with
+    more time players see which foot is due.
+
+    Bad (max_seconds = 0.6):
+
+        0001  R
+        0100  L
+        0100  R
+        0100  R
+
+    Better (max_seconds = 0.6):
+
+        0001  R
+        0100  L
+        0100  L
+        0100  L
+    """
+
+    code = "DT214"
+    name = "switch-jack"
+
+    def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
+        """Each run, at the first step for which the feet change; how quick it is says the slowest step in it."""
+        least = max(self.options["min_rows"], 2)
+        for rows, limbs in subject.feet.switching_runs(least, self.longest(subject)) if subject.feet else ():
+            if limbs[0] != limbs[-1]:  # otherwise who jacks them all comes out on the right foot
+                change = next(at for at in range(1, len(rows)) if limbs[at] != limbs[at - 1])
+                said = f"the feet change in {len(rows)} quick steps on one panel: footswitch or jack?"
+                yield Occurrence(rows[change], max(map(subject.pause, rows[1:])), said)

@@ -1,0 +1,119 @@
+"""Whether the music is at the beats: half a beat off, drifting, or mixed in a pack."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from dancetutor_cli.lint.rule import PackRule, PackSong, SyncRule
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.pack_files import PackIni
+    from dancetutor_cli.lint.findings import Sync
+    from dancetutor_cli.lint.subject import FileSubject
+
+
+class SyncDrift(SyncRule):
+    """The music moves against the beats from the first to the last third: the tempo is a little off.
+
+    `most`: ms of drift that are no finding. Needs `--sync`; `--plot FILE.svg` shows where.
+
+    Bad: #BPMS:0=140.01; for music of 140 BPM: 9 ms in two minutes. Better: #BPMS:0=140;
+    """
+
+    code = "DT602"
+    name = "sync-drift"
+    tag = "BPMS"
+
+    def message(self, sync: Sync, subject: FileSubject) -> str | None:
+        """How much, and by how much a steady tempo would be off."""
+        drift = sync.drift_ms
+        if drift is None or abs(drift) <= self.options["most"]:
+            return None
+        return f"the music drifts by {drift:+.1f} ms from the first to the last third{self._tempo(drift, subject)}"
+
+    def _tempo(self, drift: float, subject: FileSubject) -> str:
+        found = subject.sync.judgement if subject.sync else None
+        bpms = {bpm for _, bpm in subject.song.timing.bpms}
+        if found is None or found.sync.drift_ms != drift or len(bpms) > 1:
+            return ""
+        bpm = float(next(iter(bpms)))
+        right = bpm * (1 - drift / 1000 / ((found.last - found.first) * 2 / 3))
+        return f": the tempo is {right:.3f} BPM rather than {bpm:.3f}"
+
+
+class BeatOff(SyncRule):
+    """The music is more than a quarter beat off: on-beats of the chart are off-beats of the music.
+
+    Needs `--sync`.
+
+    Bad: #OFFSET:0.250; at 120 BPM with music that is at the beats. Better: #OFFSET:0.000;
+    """
+
+    code = "DT603"
+    name = "beat-off"
+
+    def message(self, sync: Sync, subject: FileSubject) -> str | None:
+        """By how much."""
+        if sync.bias_ms is None or not sync.beat_off:
+            return None
+        side = "after" if sync.bias_ms > 0 else "before"
+        change = f"change #OFFSET by {-sync.bias_ms / 1000:+.3f}, or as much the other way"
+        return f"the music is {abs(sync.bias_ms):.1f} ms {side} the beats, about half a beat; {change}"
+
+
+_KINDS = {"null": "null", "itg": "ITG"}
+_LISTED = 5
+
+
+class MixedSync(PackRule):
+    """Some songs of the pack are at the beats (null) and some 9 ms after them (ITG): no setting suits both.
+
+    `least`: songs of the rarer kind that are a finding. Needs `--sync`.
+
+    Bad: ten songs at 0 ms and two at 9 ms. Better: all at one of them, and #OFFSET of the others changed.
+    """
+
+    code = "DT604"
+    name = "mixed-sync"
+
+    def check_pack(self, songs: Sequence[PackSong], ini: PackIni | None) -> str | None:
+        """The songs of the rarer kind."""
+        kinds = {kind: [one.folder for one in songs if one.sync.kind == kind] for kind in _KINDS}
+        rarer, usual = sorted(kinds, key=lambda kind: len(kinds[kind]))
+        if len(kinds[rarer]) < self.options["least"]:
+            return None
+        more = f" and {len(kinds[rarer]) - _LISTED} more" if len(kinds[rarer]) > _LISTED else ""
+        listed = f"{', '.join(kinds[rarer][:_LISTED])}{more}"
+        many, few = (_count(len(kinds[kind]), _KINDS[kind]) for kind in (usual, rarer))
+        return f"of the songs {many}, and {few}: {listed}"
+
+
+def _count(count: int, kind: str) -> str:
+    return f"{count} {'is' if count == 1 else 'are'} {kind}"
+
+
+_SHARE = 0.6  # of the songs that are null or ITG
+_KINDS_OF_INI = {"NULL": "null", "ITG": "itg"}
+
+
+class PackSync(PackRule):
+    """`SyncOffset` of the pack's Pack.ini says NULL and most songs are ITG, or the other way round.
+
+    ITGmania shifts the songs by what it says. `least`: sure songs that decide. Needs `--sync`.
+
+    Bad: SyncOffset=ITG with songs at 0 ms. Better: SyncOffset=NULL
+    """
+
+    code = "DT605"
+    name = "pack-sync"
+
+    def check_pack(self, songs: Sequence[PackSong], ini: PackIni | None) -> str | None:
+        """What it says and what the songs are."""
+        said = "" if ini is None else ini.sync.upper()
+        decided = [one for one in songs if one.sync.kind in _KINDS_OF_INI.values()]
+        others = [one for one in decided if one.sync.kind != _KINDS_OF_INI.get(said)]
+        if said not in _KINDS_OF_INI or len(decided) < self.options["least"] or len(others) < _SHARE * len(decided):
+            return None
+        (is_said,) = (name for name in _KINDS_OF_INI if name != said)
+        return f"Pack.ini says SyncOffset={said}, but {len(others)} of {len(decided)} songs are {is_said}"
