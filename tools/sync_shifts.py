@@ -22,9 +22,8 @@ from dancetutor_cli.chart import find_files, load
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.music import music_file
 from dancetutor_cli.lint.findings import Sync
-from dancetutor_cli.lint.onsets import Onsets
 from dancetutor_cli.lint.song_sync import hear
-from dancetutor_cli.lint.sync import Judgement, judge
+from dancetutor_cli.lint.sync import Judgement, Onsets, judge
 
 SHIFTS = (9, -9, 25, -60)  # ms
 TEMPO = Fraction("1.0005")

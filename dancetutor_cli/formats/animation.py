@@ -44,7 +44,10 @@ class Animation:
 
 @dataclass(frozen=True)
 class AnimatedDancer:
-    """One dancer of an animation, as `formats.writers.Dance` describes it. number : which one; character : who"""
+    """One dancer of an animation, as a format may want her; motion and moves are made when they are first wanted.
+
+    number : which one; character : who dances
+    """
 
     animation: Animation
     number: int

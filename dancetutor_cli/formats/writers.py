@@ -8,44 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from dancetutor_cli.character.mesh import Character
-    from dancetutor_cli.dance.motion import Bar, Motion
-    from dancetutor_cli.dance.plan import Plan
-
-
-class Dance(Protocol):
-    """What a format may ask for; motion and moves are made when they are first asked for."""
-
-    @property
-    def title(self) -> str:
-        """Of the song."""
-
-    @property
-    def label(self) -> str:
-        """Of the chart, for people."""
-
-    @property
-    def section(self) -> tuple[float, float]:
-        """First and last second that is wanted."""
-
-    @property
-    def character(self) -> Character:
-        """Who dances."""
-
-    @property
-    def motion(self) -> Motion:
-        """The motion, for the character's skeleton."""
-
-    @property
-    def place(self) -> tuple[float, float]:
-        """Where the middle of her pad is, (x, z) in metres: off the origin if she is one of two on two pads."""
-
-    @property
-    def moves(self) -> tuple[Plan, Bar | None]:
-        """What moves when, and the bar that she holds; needs no motion."""
+    from dancetutor_cli.dance.motion import Motion
+    from dancetutor_cli.formats.animation import AnimatedDancer
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,25 +22,25 @@ class MotionFormat:
     has_motion : whether it holds a motion, so that it matters who dances
     """
 
-    write: Callable[[Path, Dance], str]
+    write: Callable[[Path, AnimatedDancer], str]
     has_motion: bool = True
 
 
-def _glb(path: Path, dance: Dance) -> str:
+def _glb(path: Path, dance: AnimatedDancer) -> str:
     from dancetutor_cli.formats.glb import write_glb
 
     write_glb(path, dance.character, dance.motion)
     return _keys(dance.motion)
 
 
-def _npz(path: Path, dance: Dance) -> str:
+def _npz(path: Path, dance: AnimatedDancer) -> str:
     from dancetutor_cli.formats.npz import write_npz
 
     write_npz(path, dance.motion)
     return _keys(dance.motion)
 
 
-def _bvh(path: Path, dance: Dance) -> str:
+def _bvh(path: Path, dance: AnimatedDancer) -> str:
     from dancetutor_cli.formats.bvh import frame_count, write_bvh
 
     motion = dance.motion
@@ -82,7 +49,7 @@ def _bvh(path: Path, dance: Dance) -> str:
     return f"{frame_count(motion, motion.fps)} frames, {end - start:.1f} s from second {start:.3f} of the music"
 
 
-def _moves(path: Path, dance: Dance) -> str:
+def _moves(path: Path, dance: AnimatedDancer) -> str:
     from dancetutor_cli.formats.moves_json import moves_data, write_moves
 
     plan, bar = dance.moves

@@ -14,8 +14,7 @@ from dancetutor_cli.chart.music import music_file
 from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.lint.findings import Sync, sync_of
-from dancetutor_cli.lint.onsets import Onsets, onsets
-from dancetutor_cli.lint.sync import Judgement, judge
+from dancetutor_cli.lint.sync import Judgement, Onsets, judge, onsets
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.ffmpeg import EncoderError
 

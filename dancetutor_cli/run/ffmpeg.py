@@ -219,8 +219,3 @@ def run(arguments: Sequence[str], what: str) -> None:
     """Run ffmpeg to its end; EncoderError with its own message if it fails."""
     with Process(arguments, what) as process:
         process.finish()
-
-
-def bare_start() -> None:
-    """Check that ffmpeg starts at all; raises otherwise."""
-    run(["-version"], "starting")

@@ -21,8 +21,8 @@ from dancetutor_cli.lint import song_sync
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
 from dancetutor_cli.lint.configuration import PresetChoice, load_configuration, with_assignments, with_selection
 from dancetutor_cli.lint.findings import sync_of
-from dancetutor_cli.lint.onsets import Onsets
 from dancetutor_cli.lint.rule import PackRule, all_rules
+from dancetutor_cli.lint.sync import Onsets
 
 CASES = Path(__file__).parent / "cases"
 KNOWN = {"rows", "pin", "notes", "steps-type", "difficulty", "meter", "bpms", "tags", "files", "analyse", "preset",

@@ -15,9 +15,8 @@ from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.audio import Sound
 from dancetutor_cli.commands.analyze import command
 from dancetutor_cli.lint.findings import Sync, sync_of
-from dancetutor_cli.lint.onsets import Onsets, onsets
 from dancetutor_cli.lint.song_sync import hear, song_sync
-from dancetutor_cli.lint.sync import Judgement, judge
+from dancetutor_cli.lint.sync import Judgement, Onsets, judge, onsets
 from dancetutor_cli.run.errors import FileError
 
 DEMO = Path(__file__).resolve().parent.parent.parent / "charts" / "two_left_feet" / "two_left_feet.sm"
