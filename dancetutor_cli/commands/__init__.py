@@ -1,9 +1,16 @@
-"""The command line: one file per subcommand, imported only when it is called."""
+"""The command line: one module per subcommand, imported only when it is called.
+
+analyze                       with pack, fixing and settings, for its options about packs, `--fix` and settings
+render                        with render_batch, for folders
+chart_options, film_options, arguments, help_groups   options that several commands have, their types and groups
+first_run                     what is said before work that compiles
+"""
 
 from __future__ import annotations
 
 import importlib
 import os
+from pathlib import Path
 
 import click
 
@@ -96,8 +103,6 @@ def cli(context: click.Context) -> None:
     Charts are .sm and .ssc files of StepMania, ITGmania and their kin, and .ucs files of Pump.
     """
     if context.invoked_subcommand is None:
-        from pathlib import Path
-
         from dancetutor_cli.commands.first_run import first_steps
 
         click.echo(first_steps(Path()))

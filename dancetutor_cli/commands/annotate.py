@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.chart import find_files
+from dancetutor_cli.chart.selection import Selection, note_bytes
 from dancetutor_cli.commands.arguments import GivenPath, into, within_folders
 from dancetutor_cli.commands.chart_options import (
     exclude_option,
@@ -21,7 +22,7 @@ from dancetutor_cli.commands.chart_options import (
 )
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
-from dancetutor_cli.reports.terminal import JoinedWarnings, coloured
+from dancetutor_cli.reports.terminal import JoinedWarnings, coloured, safe
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.files import check_folder
 
@@ -98,7 +99,6 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
 
     Exit status: 0 done, 1 --check found something, 2 something could not be read or written.
     """
-    from dancetutor_cli.chart import find_files
     from dancetutor_cli.lint.configuration import choice_of
     from dancetutor_cli.markers.annotate import Order
 
@@ -127,8 +127,6 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
     talk = _Talk(order, wish.check, wish.quiet, JoinedWarnings(every=wish.verbose))
     talk.begin()
     if not wish.strip:
-        from dancetutor_cli.chart.selection import note_bytes
-
         announce_compiling(
             choice_of(wish.preset),
             lambda: sum(note_bytes(item.source, Selection()) for song in songs for item in song),
@@ -290,6 +288,4 @@ def _details(outcome: AnnotateOutcome) -> str:
 
 
 def _safe(text: str) -> str:
-    from dancetutor_cli.reports.terminal import safe
-
     return safe(text)

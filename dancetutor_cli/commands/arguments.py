@@ -17,6 +17,7 @@ from click.shell_completion import CompletionItem
 
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import UCS_SUFFIX
+from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.trust import exclude
 
 # The names that options take, for the Tab key: asked for only while a shell completes.
@@ -52,8 +53,6 @@ def folder(name: str) -> Callable[[], Iterable[str]]:
     """The files of a folder of configs, without their suffix."""
 
     def names() -> Iterable[str]:
-        from dancetutor_cli.run.reading import config_path
-
         return [path.stem for path in config_path(name).glob("*.yaml")]
 
     return names

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import sys
 import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,7 +12,7 @@ from pathlib import Path
 import click
 
 from dancetutor_cli.commands.help_groups import GroupedCommand
-from dancetutor_cli.run.errors import DancetutorError
+from dancetutor_cli.run.errors import DancetutorError, UnavailableError, install_command
 
 # The checks of `doctor`: each looks at one thing that rendering needs, and never raises.
 
@@ -68,7 +69,6 @@ def _cpu() -> Check:
 
 def _gl() -> Check:
     from dancetutor_cli.film.scene.gl.available import gpu_device, require_gl
-    from dancetutor_cli.run.errors import UnavailableError
 
     try:
         require_gl()
@@ -83,7 +83,6 @@ def _gl() -> Check:
 
 def _physics() -> Check:
     from dancetutor_cli.dance.physics.style import engine, is_installed
-    from dancetutor_cli.run.errors import install_command
 
     if not is_installed():
         return Check("physics", "without", "no engine for styles and retarget", install_command("physics"))
@@ -93,7 +92,6 @@ def _physics() -> Check:
 def _ffmpeg() -> Check:
     import subprocess
 
-    from dancetutor_cli.run.errors import UnavailableError
     from dancetutor_cli.run.ffmpeg import MEND, executable
 
     try:
@@ -188,7 +186,6 @@ def command(as_json: bool) -> None:
 
     Exit status 0 if videos can be made, 2 if not.
     """
-    import sys
 
     checks = examine()
     if as_json:

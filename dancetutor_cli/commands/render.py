@@ -23,7 +23,7 @@ from dancetutor_cli.commands.chart_options import (
 from dancetutor_cli.commands.film_options import film_options, film_request
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
-from dancetutor_cli.film.media.film_formats import FILES
+from dancetutor_cli.film.media.film_formats import FILES, FORMATS, PICTURES, target_of
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import check_file, check_folder, make_folder, one_of
 
@@ -169,7 +169,6 @@ def _one_film(path: Path, output: Path | None, options: dict[str, Any]) -> Path:
 def _render_one(
     path: Path, output: Path | None, folder: Path | None, yes: bool, quiet: bool, options: dict[str, Any]
 ) -> None:
-    from dancetutor_cli.film.media.film_formats import FORMATS, PICTURES, target_of
     from dancetutor_cli.film.work.request import look_up
     from dancetutor_cli.lint.configuration import choice_for
 
@@ -223,7 +222,6 @@ def _make(
 ) -> None:
     from dancetutor_cli.film import film as extras
     from dancetutor_cli.film.media.encoder import Encoding, choose
-    from dancetutor_cli.film.media.film_formats import PICTURES
     from dancetutor_cli.film.work.planning import PreparedFilm, prepare
     from dancetutor_cli.film.work.render import make_film
     from dancetutor_cli.reports.terminal import FilmProgress

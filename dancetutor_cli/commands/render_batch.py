@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 import click
 
 from dancetutor_cli.commands.film_options import film_request
-from dancetutor_cli.reports.terminal import JoinedWarnings
+from dancetutor_cli.reports.terminal import FilmProgress, JoinedWarnings, failures_table, safe
 from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.run.files import check_file, check_folder, encoded, make_folder
 from dancetutor_cli.run.foreign_text import json_without_commands
@@ -31,7 +31,6 @@ def render_batch(
     """Make a film of every chart below `path` that matches. Exits with 2 if one of them failed."""
     from dancetutor_cli.film.work.batch import Batch, film_list
     from dancetutor_cli.film.work.records import find_records
-    from dancetutor_cli.reports.terminal import FilmProgress, safe
     from dancetutor_cli.run.pool import default_jobs
 
     if options["scheduler"]:  # its workers have a working folder of their own
@@ -128,8 +127,6 @@ def _write(results: TextIO | None, line: dict[str, Any]) -> None:
 
 
 def _tell(outcome: FilmOutcome, progress: FilmProgress, quiet: bool, number: int, count: int) -> None:
-    from dancetutor_cli.reports.terminal import safe
-
     name = outcome.job.output.name
     text = {"done": "done", "skipped": "is there already", "failed": f"FAILED: {outcome.error}"}[outcome.status]
     if not quiet or outcome.status == "failed":
@@ -153,8 +150,6 @@ def _sum_up(outcomes: list[FilmOutcome], unreadable: list[UnreadableFile], witho
             parts.append(f"{len(without)} {'songs have' if len(without) > 1 else 'song has'} no such chart")
         click.echo(", ".join(parts), err=True)
     if failed or unreadable:
-        from dancetutor_cli.reports.terminal import failures_table
-
         rows = [(str(bad.path), "", bad.error) for bad in unreadable]
         rows += [(str(one.job.request.path), one.job.label, one.error or "") for one in failed]
         failures_table(rows)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -84,7 +85,6 @@ def _rule_lines(rules: _Rules, before: _Rules) -> Iterator[str]:
 
 def _quoted(value: object) -> str:
     """A value as YAML writes it on one line."""
-    import json
 
     return json.dumps(value, ensure_ascii=False)
 

@@ -9,6 +9,7 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.lint.configuration import PresetChoice, mismatch, preset_for
 from dancetutor_cli.lint.findings import AUTO, AlternativeResult, Cause, Figures, Finding
@@ -319,8 +320,6 @@ def solved(song: Song, charts: tuple[Chart, ...], task: AnalyzeTask) -> Iterator
 
 
 def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
-    from dancetutor_cli.chart.names import is_lights
-
     yield from (warning.message for warning in song.warnings)
     for result in charts:
         if is_lights(result.steps_type):  # nobody dances them

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dancetutor_cli.chart.names import is_lights
+from dancetutor_cli.chart.pack_files import find_settings_file
 from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.rule import ChartRule, FileRule, ReaderRule, Rule, all_rules
 from dancetutor_cli.lint.rule_settings import Options, Settings
@@ -99,7 +100,6 @@ def _has_nothing_to_say(rule: Rule, subject: FileSubject | ChartSubject) -> bool
 
 def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:
     """What the linter finds in a chart, with the configuration that holds for its file."""
-    from dancetutor_cli.chart.pack_files import find_settings_file
     from dancetutor_cli.lint.configuration import load_configuration
 
     settings = load_configuration(find_settings_file(subject.song.path.absolute().parent), found=True).settings

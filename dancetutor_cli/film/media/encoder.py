@@ -13,6 +13,7 @@ from dancetutor_cli.film.choices import Quality
 from dancetutor_cli.film.media.film_formats import FORMATS, PICTURES, FilmFormat, JoinJob
 from dancetutor_cli.run import ffmpeg
 from dancetutor_cli.run.errors import FileError, UnavailableError
+from dancetutor_cli.run.pictures import picture_bytes
 
 if TYPE_CHECKING:
     from dancetutor_cli.film.picture import Frame
@@ -147,7 +148,6 @@ def encode_segment(frames: Iterable[Frame], encoding: Encoding, path: Path, firs
 
 def save_picture(frame: Frame, path: Path) -> None:
     """Write one frame as PNG."""
-    from dancetutor_cli.run.pictures import picture_bytes
 
     try:
         path.write_bytes(picture_bytes(frame, compress_level=2))

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from dancetutor_cli.chart import find_files, twin
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.media.film_formats import PICTURES
@@ -125,7 +126,6 @@ def film_list(batch: BatchRequest) -> FilmList:
 
 def chart_files(paths: Sequence[Path], exclude: Sequence[str] = ()) -> Iterator[Path]:
     """Chart files; of a song with both kinds the .ssc, as the games do. exclude : as `find_files` has it"""
-    from dancetutor_cli.chart import find_files, twin
 
     for path in find_files(paths, exclude):
         if path.suffix.lower() == ".sm" and path not in paths and twin(path) is not None:

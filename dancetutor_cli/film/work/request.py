@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.character.gltf import BUILT_IN
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE
 from dancetutor_cli.chart.music import find_music
-from dancetutor_cli.chart.pack_files import feet_fingerprint
+from dancetutor_cli.chart.pack_files import feet_fingerprint, find_settings_file
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_request, read_chart, section_of
 from dancetutor_cli.feet.play import Play
@@ -189,7 +189,6 @@ def film_key(request: FilmRequest, subject: FilmSubject, encoding: Encoding) -> 
 
 def _findings(path: Path) -> str:
     """Which findings are called out in the picture: dancetutor.yaml says so, and files that it extends."""
-    from dancetutor_cli.chart.pack_files import find_settings_file
     from dancetutor_cli.lint.configuration import load_configuration
 
     return load_configuration(find_settings_file(path.absolute().parent), found=True).settings.fingerprint()

@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.film.media.encoder import Encoding, join
+from dancetutor_cli.character import load_dancer
+from dancetutor_cli.feet import load_pad
+from dancetutor_cli.film.media.encoder import Encoding, encode_segment, join
 from dancetutor_cli.film.media.film_formats import PICTURES
 from dancetutor_cli.film.work.records import FilmRecord, digest_of, move_segment, new_work_name, remove_work
-from dancetutor_cli.film.work.request import FilmRequest, look_up
+from dancetutor_cli.film.work.request import FilmRequest, film_key, look_up
 from dancetutor_cli.run.errors import DancetutorError, FileError
 from dancetutor_cli.run.files import place_of
 from dancetutor_cli.run.pool import Report, Task
@@ -110,8 +112,6 @@ def warm_up(report: Report) -> None:
 
     That is to import what drawing needs and to fetch its kernels, or compile them, by drawing a tiny room.
     """
-    from dancetutor_cli.character import load_dancer
-    from dancetutor_cli.feet import load_pad
     from dancetutor_cli.film import film  # noqa: F401
     from dancetutor_cli.film.media import yuv  # noqa: F401
     from dancetutor_cli.film.scene import (
@@ -131,7 +131,6 @@ def warm_up(report: Report) -> None:
 
 def render_segment(report: Report, plan: PlanFile, segment: Segment, encoding: Encoding) -> str:
     """Draw and encode one segment; returns its SHA-256, "" for pictures. Its file appears whole or not at all."""
-    from dancetutor_cli.film.media.encoder import encode_segment
 
     film = _film(plan)
     part = segment.path
@@ -248,7 +247,6 @@ def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> O
 
     earlier : what is kept of that run; work : name of the folder to make beside the output, for what is not finished
     """
-    from dancetutor_cli.film.work.request import film_key
 
     subject = look_up(job.request)
     frames = subject.clock.frames

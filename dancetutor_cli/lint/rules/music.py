@@ -110,7 +110,6 @@ class MusicFormat(FileRule):
         """At most one finding."""
         from dancetutor_cli.chart.audio import read_head
         from dancetutor_cli.chart.music import music_file
-        from dancetutor_cli.run.errors import FileError
 
         try:
             path = music_file(subject.song)
