@@ -104,7 +104,7 @@ def number(_context: click.Context, _option: click.Parameter, value: float) -> f
 
 
 def section_option(command: _Command) -> _Command:
-    """Add --section; the function gets keyword argument `section`, to be given to `lint.part`."""
+    """Add --section; the function gets keyword argument `section`, to be given to `lint.passages`."""
     option = click.option(
         "--section",
         metavar="START:END",

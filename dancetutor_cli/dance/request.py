@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from dancetutor_cli import chart as charts
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.settings import USUAL, load_settings
-from dancetutor_cli.lint.part import check_part, part_of
+from dancetutor_cli.lint.passages import check_part, part_of
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.fingerprint import NAMED
 

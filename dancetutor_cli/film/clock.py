@@ -153,7 +153,7 @@ class Practice:
 
 
 def parse_rates(text: str) -> tuple[float, ...]:
-    """ "0.5,0.75,1.0" to numbers; UsageError outside `lint.part.SLOWEST` to `FASTEST`."""
+    """ "0.5,0.75,1.0" to numbers; UsageError outside `SLOWEST` to `FASTEST`."""
     try:
         rates = tuple(float(part) for part in text.split(","))
     except ValueError:

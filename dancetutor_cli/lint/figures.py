@@ -98,9 +98,9 @@ def with_causes(findings: Sequence[Finding], causes: Sequence[Cause], panels: Se
 
 def tech_counts(subject: ChartSubject) -> dict[str, int]:
     """How often each of `TECH_COUNTS` happens; all 0 for a chart without a play."""
-    if subject.play is None or subject.pad is None:
+    if subject.feet is None:
         return dict.fromkeys(TECH_COUNTS, 0)
-    return subject.shared.candidates.tech_counts[subject.shared.number]
+    return subject.feet.candidates.tech_counts[subject.feet.number]
 
 
 def hand_rows(subject: ChartSubject) -> list[int]:
@@ -110,17 +110,15 @@ def hand_rows(subject: ChartSubject) -> list[int]:
 
 def tech_rows(subject: ChartSubject) -> dict[str, NDArray[np.int64]]:
     """The rows of the play that are counted as each of `TECH_COUNTS`, one for each time, in order."""
-    if subject.play is None or subject.pad is None:
+    if subject.feet is None:
         return {name: np.zeros(0, dtype=np.int64) for name in TECH_COUNTS}
-    candidates, number = subject.shared
+    candidates, number = subject.feet.candidates, subject.feet.number
     return {name: candidates.plays.own(np.sort(candidates.techniques[name]), number) for name in TECH_COUNTS}
 
 
 def facing_counts(subject: ChartSubject) -> tuple[int, ...]:
     """Rows with a step by how far she faces away from the screen, see `Figures.facing`; () without a play."""
-    if subject.play is None or subject.pad is None:
-        return ()
-    return subject.shared.candidates.facing_counts[subject.shared.number]
+    return () if subject.feet is None else subject.feet.candidates.facing_counts[subject.feet.number]
 
 
 # The rows around a finding, to be drawn beside it.

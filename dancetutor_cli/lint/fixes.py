@@ -12,7 +12,7 @@ from dancetutor_cli.chart.cells import PLAYERS
 from dancetutor_cli.chart.edits import Splice
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Kind, NoteTable
 from dancetutor_cli.lint.findings import Finding
-from dancetutor_cli.lint.note_questions import Notes
+from dancetutor_cli.lint.note_facts import NoteFacts
 from dancetutor_cli.lint.suggest import Suggestion
 
 # Where the characters of notes stand in a file, and the fix: some of them replaced, with what that must come to.
@@ -198,7 +198,7 @@ def _off_grid(data: bytes, chart: Chart, grid: Sequence[int]) -> Iterator[Fix]:
     """Runs of rows that go to the nearest row of the grid as they are, each by less than 3 ms."""
     known = notes_of(chart.notes)
     steps = np.unique(chart.notes.tick[chart.notes.kind != Kind.MINE])
-    for first, line, count in Notes(chart).off_grid(grid):
+    for first, line, count in NoteFacts(chart).off_grid(grid):
         start = int(steps.searchsorted(first))
         ticks = [tick for tick in steps[start:].tolist() if not _is_on(tick, grid)][:count]
         moves = {tick: to for tick in ticks if (to := _nearest(chart, tick, steps, grid)) is not None}

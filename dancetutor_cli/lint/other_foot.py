@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.feet.play import Play
-from dancetutor_cli.lint.foot_questions import WALL
+from dancetutor_cli.lint.play_facts import WALL
 from dancetutor_cli.lint.rule import EPSILON
 
 if TYPE_CHECKING:

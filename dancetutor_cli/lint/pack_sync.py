@@ -1,4 +1,4 @@
-"""What is wrong with the syncs of a pack's songs together: rules that need all of its results."""
+"""What is wrong with the syncs of a pack's songs together: rules that need all of its results; without numpy."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +21,10 @@ from dancetutor_cli.feet.play import SAME_TIME, Ambiguity, StepKind, too_quick
 from dancetutor_cli.feet.preset import LEAP, DropReason, Preset
 from dancetutor_cli.feet.solved import Solved, solve_song
 from dancetutor_cli.lint.candidates import Candidates
-from dancetutor_cli.lint.foot_questions import Feet
-from dancetutor_cli.lint.note_questions import Notes, PlacedChart
+from dancetutor_cli.lint.meter.oddities import Oddities, timing_oddities
+from dancetutor_cli.lint.note_facts import NoteFacts, PlacedChart
 from dancetutor_cli.lint.other_foot import Beginnings
+from dancetutor_cli.lint.play_facts import PlayFacts
 from dancetutor_cli.run.errors import FileError
 
 if TYPE_CHECKING:
@@ -36,13 +37,6 @@ if TYPE_CHECKING:
 # Charts that are looked at together, so that what rules ask of one is answered for all of them at once.
 
 
-class SharedPlays(NamedTuple):
-    """Plays that are looked at together, and which of them is meant."""
-
-    candidates: Candidates
-    number: int
-
-
 def share_plays(subjects: Iterable[ChartSubject]) -> None:
     """Let charts share their work: what is asked of one is answered for those on the same pad at once."""
     of_pads: dict[str, list[ChartSubject]] = defaultdict(list)
@@ -53,7 +47,7 @@ def share_plays(subjects: Iterable[ChartSubject]) -> None:
         assert alike[0].pad is not None
         candidates = Candidates([subject.play for subject in alike if subject.play is not None], alike[0].pad)
         for number, subject in enumerate(alike):
-            vars(subject)["shared"] = SharedPlays(candidates, number)
+            vars(subject)["feet"] = PlayFacts(candidates, number, subject.chart.timing)
 
 
 # What a rule looks at: a file, or one chart with its play.
@@ -119,47 +113,38 @@ class ChartSubject(PlacedChart):
     problems: tuple[FeetProblem, ...] = ()
 
     @cached_property
-    def feet(self) -> Feet | None:
-        """Questions about the play, where there is one."""
-        return None if self.play is None or self.pad is None else Feet(*self.shared, self.chart.timing)
+    def feet(self) -> PlayFacts | None:
+        """Facts about the play, where there is one; of this chart alone, unless `share_plays` has put them here."""
+        if self.play is None or self.pad is None:
+            return None
+        return PlayFacts(Candidates((self.play,), self.pad), 0, self.chart.timing)
 
     @cached_property
-    def shared(self) -> SharedPlays:
-        """Plays that are looked at together, and which of them is this one; for charts with a play.
-
-        Only this one, unless `share_plays` has been told of others.
-        """
-        assert self.play is not None and self.pad is not None
-        return SharedPlays(Candidates((self.play,), self.pad), 0)
-
-    @cached_property
-    def notes(self) -> Notes:
-        """Questions about the notes."""
-        return Notes(self.chart)
+    def notes(self) -> NoteFacts:
+        """Facts about the notes."""
+        return NoteFacts(self.chart)
 
     @cached_property
     def counts(self) -> Mapping[str, int]:
         """Name of the move -> rows of the play in which it happens."""
-        return {} if self.play is None else self.shared.candidates.plays.counts[self.shared.number]
+        return {} if self.feet is None else self.feet.candidates.plays.counts[self.feet.number]
 
     def sized(self, rate: float = 1.0) -> MeteredChart | None:
         """The chart's meters on every scale, for music that plays so fast; None without a play or a model."""
         from dancetutor_cli.lint.meter.estimate import size
 
-        if self.play is None:
+        if self.feet is None:
             return None
-        candidates, number = self.shared
-        ask = partial(candidates.features, number)
+        ask = partial(self.feet.candidates.features, self.feet.number)
         return size(self.chart.steps_type, (self.chart.meter, self.chart.difficulty), ask, rate)
 
     def oddities(self) -> Oddities:
         """What the chart is scored by; for charts with a play."""
-        from dancetutor_cli.lint.meter.oddities import Oddities, timing_oddities
 
         assert self.play is not None
-        candidates, number = self.shared
+        assert self.feet is not None
         timing = timing_oddities(self.chart.timing, self.play.rows.tick[self.step_rows])
-        return Oddities((*candidates.oddities[number], *timing.numbers), timing)
+        return Oddities((*self.feet.candidates.oddities[self.feet.number], *timing.numbers), timing)
 
     @property
     def row_count(self) -> int:
@@ -179,27 +164,26 @@ class ChartSubject(PlacedChart):
 
     def has(self, move: str) -> bool:
         """Whether a move of this name or of a kind of it happens in the play."""
-        return self.play is not None and self.shared.candidates.plays.having(move)[self.shared.number]
+        return self.feet is not None and self.feet.candidates.plays.having(move)[self.feet.number]
 
     def least_seconds(self, move: str) -> float:
         """The least time (s) from a step to a row with such a move; endless where there is none."""
-        return math.inf if self.play is None else self.shared.candidates.plays.least_seconds(move)[self.shared.number]
+        return math.inf if self.feet is None else self.feet.candidates.plays.least_seconds(move)[self.feet.number]
 
     def rows_with(self, move: str) -> list[int]:
         """Rows with a move of this name or of a kind of it: "crossover" finds "crossover-half" too."""
-        if not self.has(move):
+        if self.feet is None or not self.has(move):
             return []
-        plays, number = self.shared.candidates.plays, self.shared.number
-        rows: list[int] = plays.own(plays.rows_with(move), number).tolist()
+        plays = self.feet.candidates.plays
+        rows: list[int] = plays.own(plays.rows_with(move), self.feet.number).tolist()
         return rows
 
     @cached_property
     def too_quick(self) -> tuple[tuple[int, int, DropReason], ...]:
         """Row, column and reason of each note whose limb cannot be there in time: the dancer lets it go."""
-        if self.play is None or self.pad is None:
+        if self.play is None or self.pad is None or self.feet is None:
             return ()
-        candidates, number = self.shared
-        if candidates.least_foot_seconds[number] > LEAP + SAME_TIME and not self.has("hand"):
+        if self.feet.candidates.least_foot_seconds[self.feet.number] > LEAP + SAME_TIME and not self.has("hand"):
             return ()
         return tuple(too_quick(self.play, self.pad))
 

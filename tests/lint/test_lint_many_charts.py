@@ -6,7 +6,7 @@ import time
 from types import SimpleNamespace
 from typing import Any
 
-from dancetutor_cli.lint.note_questions import _by_key
+from dancetutor_cli.lint.note_facts import _by_key
 
 MANY = 20_000
 

@@ -14,7 +14,7 @@ from dancetutor_cli.__main__ import main
 from dancetutor_cli.chart.timing import FASTEST, SLOWEST
 from dancetutor_cli.feet import load_preset
 from dancetutor_cli.film.clock import parse_rates
-from dancetutor_cli.lint.part import check_part, part_of
+from dancetutor_cli.lint.passages import check_part, part_of
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.reading import charts_path
 

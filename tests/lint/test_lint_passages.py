@@ -10,8 +10,7 @@ import pytest
 
 from dancetutor_cli import chart as charts
 from dancetutor_cli.feet import Play, load_preset
-from dancetutor_cli.lint.part import check_part, part_of
-from dancetutor_cli.lint.passages import Passage, hardest, passage_settings
+from dancetutor_cli.lint.passages import Passage, check_part, hardest, part_of, passage_settings
 from dancetutor_cli.lint.subject import solved_chart
 from dancetutor_cli.page.document import languages
 from dancetutor_cli.page.facts import sentence

@@ -41,7 +41,7 @@ class DifferingPair(FileRule):
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """One finding for the pair, at the first chart that is different or missing."""
-        from dancetutor_cli.lint.note_questions import differences
+        from dancetutor_cli.lint.note_facts import differences
 
         if found := list(differences(subject.song)):
             _, line, index = found[0]

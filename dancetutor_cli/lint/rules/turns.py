@@ -12,7 +12,6 @@ from dancetutor_cli.lint.rules.fast_step import burst
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
-
 UNCROSSED = 90.0  # degrees that the body may be turned without the feet being crossed
 SIDEWAYS = 140.0  # degrees: one foot is across the other, more beside it than before it
 _REST = 0.25  # seconds
@@ -153,7 +152,7 @@ def _goes_round(subject: ChartSubject, row: int) -> bool:
 
 def _between_mines(subject: ChartSubject, row: int) -> bool:
     """Whether mines leave the dancer no panel but the one: every step is meant."""
-    from dancetutor_cli.lint.foot_questions import WALL
+    from dancetutor_cli.lint.play_facts import WALL
 
     return subject.play is not None and int(subject.play.rows.mines[row].sum()) >= WALL
 

@@ -1,4 +1,4 @@
-"""Questions rules ask about the play of a chart: crossed runs, travels, mines under feet.
+"""Facts about the play of one chart, as rules need them: crossed runs, travels, mines under feet.
 
 Rows are numbers of rows of the play. Limbs: 0 left foot, 1 right foot, 2 left hand, 3 right hand.
 """
@@ -25,14 +25,15 @@ _LIMB_NAMES = {Limb.LEFT_FOOT: "left foot", Limb.RIGHT_FOOT: "right foot", Limb.
                Limb.RIGHT_HAND: "right hand"}  # fmt: skip
 
 
-class Feet:
+class PlayFacts:
     """One of several plays that are looked at together, and its timing.
 
-    Most answers are "nowhere", and `candidates` knows them for all plays at once.
+    Most rules find nothing in most charts: `candidates` has the rows that they would have to look at, worked out for
+    all plays at once, and this class the part of the play with this number.
     """
 
     def __init__(self, candidates: Candidates, number: int, timing: Timing) -> None:
-        self._candidates, self._number = candidates, number
+        self.candidates, self.number = candidates, number
         plays = self._plays = candidates.plays
         self._first, self._after = plays.first[number], plays.first[number + 1]
         self._play = plays.play(number)
@@ -55,17 +56,17 @@ class Feet:
     @property
     def has_mines(self) -> bool:
         """Whether there are mines."""
-        return self._plays.with_mines[self._number]
+        return self._plays.with_mines[self.number]
 
     @property
     def has_holds(self) -> bool:
         """Whether there are holds."""
-        return self._plays.with_holds[self._number]
+        return self._plays.with_holds[self.number]
 
     @cached_property
     def stepped(self) -> NDArray[np.int64]:
         """Rows with a step, also if nobody presses it."""
-        return self._plays.own(self._plays.stepped, self._number)
+        return self._plays.own(self._plays.stepped, self.number)
 
     @cached_property
     def pauses(self) -> NDArray[np.float64]:
@@ -83,11 +84,11 @@ class Feet:
 
     def triples(self) -> list[int]:
         """Rows with a step in which three panels or more are down."""
-        return self._candidates.triples[self._number]
+        return self.candidates.triples[self.number]
 
     def doublesteps(self) -> list[int]:
         """Rows of doublesteps that follow freely (see there) and do not cross the feet."""
-        return self._candidates.free_doublesteps[self._number]
+        return self.candidates.free_doublesteps[self.number]
 
     def crossed(self, row: int) -> bool:
         """Whether the feet are crossed after a row."""
@@ -112,7 +113,7 @@ class Feet:
 
         Each comes at most `max_seconds` after the one before. Only of plays in which the feet change so quickly.
         """
-        if self._candidates.least_switch_seconds[self._number] > max_seconds + EPSILON:
+        if self.candidates.least_switch_seconds[self.number] > max_seconds + EPSILON:
             return
         rows, here = self._play.rows, slice(self._first, self._after)
         lone = np.flatnonzero(self._plays.lone[here])
@@ -128,7 +129,7 @@ class Feet:
 
     def crossed_runs(self) -> list[tuple[int, int]]:
         """First row and number of rows of every run of stepped rows with crossed feet."""
-        return self._candidates.crossed_runs[self._number]
+        return self.candidates.crossed_runs[self.number]
 
     def holds(self, foot: int, row: int) -> bool:
         """Whether a hold that a foot pressed before a row is still down in it."""
@@ -136,7 +137,7 @@ class Feet:
 
     def ties(self) -> list[int]:
         """First row of every run of rows with steps that cost the same with other limbs."""
-        return self._candidates.ties[self._number]
+        return self.candidates.ties[self.number]
 
     def unsure_passages(self, below: float) -> list[list[tuple[int, float]]]:
         """Runs of (row, confidence) less than `below`, with a few surer rows between them left out; none if unknown."""
@@ -156,7 +157,7 @@ class Feet:
 
     def half_turns(self) -> list[int]:
         """Rows to which the body turns by 180 degrees, jumps too. Before the first row she may stand as she likes."""
-        return self._candidates.half_turns[self._number]
+        return self.candidates.half_turns[self.number]
 
     def triple_steps(self, min_seconds: float, max_seconds: float) -> Iterator[tuple[int, float]]:
         """Rows in which one foot steps, alone, for the third time in a row and always on a new panel.
@@ -165,9 +166,9 @@ class Feet:
         choice; nor do taps of rolls, steps around a mine, and steps less than `min_seconds` or more than `max_seconds`
         apart.
         """
-        if self._candidates.least_triple_seconds[self._number] > max_seconds + EPSILON:
+        if self.candidates.least_triple_seconds[self.number] > max_seconds + EPSILON:
             return
-        repeats, (low, high) = self._candidates.repeats, self._bounds(self._candidates.repeats.row)
+        repeats, (low, high) = self.candidates.repeats, self._bounds(self.candidates.repeats.row)
         count, last = 1, -1
         for place, row, seconds in zip(*(one[low:high].tolist() for one in repeats), strict=True):
             if not min_seconds - EPSILON <= seconds <= max_seconds + EPSILON:
@@ -189,7 +190,7 @@ class Feet:
 
         max_speed : panel widths per second; min_seconds : steps that come sooner after the foot's last do not count
         """
-        if self._candidates.least_travel_seconds[self._number] * max_speed >= 1.0 + EPSILON:
+        if self.candidates.least_travel_seconds[self.number] * max_speed >= 1.0 + EPSILON:
             return
         for one in self._plays.travels:
             low, high = self._bounds(one.row)

@@ -1,4 +1,4 @@
-"""Questions rules ask about the notes of a chart and the files they stand in: grid, kinds, places, pairs of files."""
+"""Facts about the notes of a chart and the files they stand in, for rules: grid, kinds, places, pairs of files."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from dancetutor_cli.chart.reader import load
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.run.errors import FileError
 
-# Questions rules ask about the notes of a chart: grid, kinds, what the game does not judge.
+# Facts about the notes of a chart: grid, kinds, what the game does not judge.
 
 _KINDS = {"mine": Kind.MINE, "roll": Kind.ROLL, "hold": Kind.HOLD, "lift": Kind.LIFT, "fake": Kind.FAKE,
           "keysound": Kind.KEYSOUND}  # fmt: skip
@@ -27,8 +27,8 @@ _IS_STEP, _IS_JUDGED = np.zeros(256, dtype=bool), np.zeros(256, dtype=bool)  # b
 _IS_STEP[list(_STEPS)] = _IS_JUDGED[[*_STEPS, Kind.MINE]] = True
 
 
-class Notes:
-    """The notes of a chart."""
+class NoteFacts:
+    """What rules need to know of the notes of a chart."""
 
     def __init__(self, chart: Chart) -> None:
         self._chart = chart
