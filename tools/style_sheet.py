@@ -21,8 +21,8 @@ from motion_sheet import AROUND, sheet
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.motion import Cut
 from dancetutor_cli.dance.performance import perform, solve
-from dancetutor_cli.dance.physics.style import style_names
 from dancetutor_cli.dance.request import DanceRequest
+from dancetutor_cli.run.reading import config_names
 
 
 def main() -> None:
@@ -31,7 +31,7 @@ def main() -> None:
     start, end = (float(x) for x in options.at.split(":"))
     request = DanceRequest(options.file, Selection(index=options.index, player=1))
     solved = solve(request)
-    names = style_names()
+    names = config_names("styles")
     random.Random(options.seed).shuffle(names)
     options.folder.mkdir(parents=True, exist_ok=True)
     key = []

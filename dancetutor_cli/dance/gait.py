@@ -20,7 +20,7 @@ from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.settings_feet import WalkSettings
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Degrees, Metres, Seconds
-from dancetutor_cli.run.reading import config_names, named_file
+from dancetutor_cli.run.reading import named_file
 from dancetutor_cli.run.yaml_files import load
 
 Array = NDArray[np.float64]
@@ -97,11 +97,6 @@ def blended(slow: Gait, quick: Gait, share: float) -> Gait:
     """The numbers of the blend; its period is (T2 - T1) share + T1."""
     values = {f.name: getattr(slow, f.name) for f in fields(Gait)}
     return Gait(**{name: (getattr(quick, name) - value) * share + value for name, value in values.items()})
-
-
-def gait_names() -> list[str]:
-    """The gaits that the program comes with."""
-    return config_names("gaits")
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,17 +28,12 @@ from dancetutor_cli.dance.settings_feet import (
     StepSettings,
     WalkSettings,
 )
-from dancetutor_cli.run.reading import config_names, config_path, named_file
+from dancetutor_cli.run.reading import config_path, named_file
 from dancetutor_cli.run.yaml_files import load
 
 # Forms: how a player stands and turns, as files that name a few numbers of the motion; see `configs/forms`.
 
 USUAL = "usual"  # the form of who asks for none: the numbers of `configs/motion.yaml`
-
-
-def form_names() -> list[str]:
-    """The forms that the program comes with."""
-    return config_names("forms")
 
 
 # The numbers of the motion: read from `configs/motion.yaml` and from a file of changes, checked, and given names.

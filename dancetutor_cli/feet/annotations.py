@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.cells import PLAYERS
 from dancetutor_cli.chart.model import Chart, Kind, Song
 from dancetutor_cli.feet.limbs import MARKER, MEANING, Limb, NotationError, Part, Token, parse
-from dancetutor_cli.feet.overrides import CellOverride, FeetProblem, Overrides, contradictions
+from dancetutor_cli.feet.overrides import CellOverride, FeetProblem
 
 # Where feet stand in note data: the steps of each row, and the comments on the lines that open measures.
 
@@ -120,18 +120,6 @@ class _Pin:
     line: int
     offset: int
     text: bytes
-
-
-def read_pins(song: Song, chart: Chart) -> tuple[Overrides, tuple[FeetProblem, ...]]:
-    """The feet that the author has pinned in a chart, and what is contradictory in them.
-
-    A measure whose letters do not fit its rows is left out as a whole; of the others only rows that contradict
-    themselves or what came before.
-    """
-    said, problems = pinned(song, chart)
-    good, contradictory = contradictions(chart, said)
-    cells = {(s.tick, s.column): (s.limb, s.part) for s in good}
-    return Overrides.of(cells), (*problems, *contradictory)
 
 
 def pinned(song: Song, chart: Chart) -> tuple[list[CellOverride], list[FeetProblem]]:

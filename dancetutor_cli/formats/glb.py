@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.gltf import read_character
 from dancetutor_cli.character.mesh import Character, Mesh
 from dancetutor_cli.character.surfaces import linear_from_srgb
 from dancetutor_cli.dance.motion import Motion
@@ -130,11 +129,6 @@ _COMPONENTS = {"|u1": _BYTE, "<i2": _SHORT, "<u2": _USHORT, "<u4": _UINT, "<f4":
 _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 _VERTICES, _INDICES = 34962, 34963
 MOST_PER_SECOND = 29_700  # bytes of an animation with exact legs: two minutes and the dancer's mesh stay below 5 MB
-
-
-def read_glb(path: Path) -> Character:
-    """The character in a .glb file, as stored. Raises FileError, one line, for a file it cannot use."""
-    return read_character(path)
 
 
 def write_glb(path: Path, character: Character, motion: Motion | None = None) -> None:

@@ -15,6 +15,7 @@ from PIL import Image
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.character import load_character
 from dancetutor_cli.character.container import read_container, read_nodes
+from dancetutor_cli.character.gltf import read_character
 from dancetutor_cli.character.humanoid import find_humanoid
 from dancetutor_cli.character.mesh import rest_vertices
 from dancetutor_cli.chart.selection import Selection
@@ -25,7 +26,6 @@ from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.scene.renderer import MOST_JOINTS, create
 from dancetutor_cli.film.scene.scene import Scene
 from dancetutor_cli.film.work.request import film_key, look_up
-from dancetutor_cli.formats.glb import read_glb
 
 SONG = "#TITLE:T;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n x:\n Hard:\n 9:\n 0:\n"
 
@@ -48,7 +48,7 @@ def run(*arguments: object) -> int:
 def test_animate_writes_the_asked_mesh(song: Path, tmp_path: Path, name: str) -> None:
     target = tmp_path / "out.glb"
     assert run("animate", song, "-o", target, "--section", "0:1", "--character", name) == 0
-    written, wanted = read_glb(target), load_character(name)
+    written, wanted = read_character(target), load_character(name)
     assert [len(m.positions) for m in written.meshes] == [len(m.positions) for m in wanted.meshes]
     for mine, theirs in zip(written.meshes, wanted.meshes, strict=True):
         np.testing.assert_allclose(mine.positions, theirs.positions, atol=1e-6)
@@ -59,7 +59,7 @@ def test_a_users_character_moves_on_its_own_skeleton(shared_data: Path, song: Pa
     for suffix in ("glb", "bvh"):
         target = tmp_path / f"out.{suffix}"
         assert run("animate", song, "-o", target, "--section", "0:1", "--character", character) == 0
-    assert read_glb(tmp_path / "out.glb").skeleton.names == load_character(str(character)).skeleton.names
+    assert read_character(tmp_path / "out.glb").skeleton.names == load_character(str(character)).skeleton.names
     bvh = (tmp_path / "out.bvh").read_text()
     assert bvh.count("JOINT") + 1 == len(load_character(str(character)).skeleton.names)
 

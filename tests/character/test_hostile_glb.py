@@ -18,8 +18,7 @@ import pytest
 from glb_edit import edited, joined, parts_of
 
 from dancetutor_cli.character import load_character
-from dancetutor_cli.character.gltf import unit_normals
-from dancetutor_cli.formats.glb import read_glb
+from dancetutor_cli.character.gltf import read_character, unit_normals
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import PACKAGE
 
@@ -178,7 +177,7 @@ def test_a_cut_off_file(tmp_path: Path) -> None:
     for size in (15, 21, 1000, len(data) // 2, len(data) - 5):
         path.write_bytes(data[:size])
         with pytest.raises(FileError):
-            read_glb(path)
+            read_character(path)
 
 
 def test_a_picture_that_unpacks_to_gigabytes(tmp_path: Path) -> None:

@@ -12,10 +12,10 @@ from glb_edit import edited, joined, parts_of
 
 from dancetutor_cli.character import load_character
 from dancetutor_cli.character.container import Container
+from dancetutor_cli.character.gltf import read_character
 from dancetutor_cli.character.mesh import Character, Material, Mesh, rest_vertices
 from dancetutor_cli.character.surfaces import drawable, open_pieces, srgb_from_linear
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.formats.glb import read_glb
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import PACKAGE
 
@@ -108,7 +108,7 @@ def test_an_open_surface_is_seen_from_both_sides() -> None:
 
 
 def test_closed_pieces_need_no_second_side() -> None:
-    mannequin = read_glb(SOURCE).meshes[1]
+    mannequin = read_character(SOURCE).meshes[1]
     card = square(Material("x", (1, 1, 1, 1)))
     places = np.concatenate([mannequin.positions, card.positions + 5])
     triangles = np.concatenate([mannequin.triangles, card.triangles + len(mannequin.positions)])
@@ -156,7 +156,7 @@ def test_sparse_accessors_replace_the_rows_they_name() -> None:
 def test_quantised_meshes(tmp_path: Path) -> None:
     """KHR_mesh_quantization: positions as 16-bit integers; the inverse bind matrices scale them back."""
     document, binary = parts_of(SOURCE.read_bytes())
-    plain = read_glb(SOURCE)
+    plain = read_character(SOURCE)
     step = 2.0 / 32767
     data = bytearray(binary)
     skin = document["accessors"][document["skins"][0]["inverseBindMatrices"]]
@@ -179,7 +179,7 @@ def test_quantised_meshes(tmp_path: Path) -> None:
     document["extensionsRequired"] = ["KHR_mesh_quantization"]
     path = tmp_path / "q.glb"
     path.write_bytes(joined(document, bytes(data)))
-    np.testing.assert_allclose(rest_vertices(read_glb(path)), rest_vertices(plain), atol=step)
+    np.testing.assert_allclose(rest_vertices(read_character(path)), rest_vertices(plain), atol=step)
     assert load_character(str(path)).skeleton.names == load_character(str(edited_copy(tmp_path))).skeleton.names
 
 
@@ -203,7 +203,7 @@ def test_materials_of_the_file_are_kept(tmp_path: Path) -> None:
         document["extensionsRequired"] = ["KHR_texture_transform", "KHR_materials_pbrSpecularGlossiness"]
 
     path = edited(SOURCE, tmp_path / "x.glb", change)
-    plain, read = read_glb(SOURCE).meshes, read_glb(path).meshes
+    plain, read = read_character(SOURCE).meshes, read_character(path).meshes
     assert (read[0].material.cutoff, read[0].material.double_sided) == (0.25, True)
     worn = [m.material for m in read if m.material.cutoff == 0.5]
     assert worn and worn[0].base_color == (1, 0, 0, 0.5) and not worn[0].double_sided
@@ -235,12 +235,12 @@ def test_strips_and_fans_are_triangles_that_face_one_way(tmp_path: Path, mode: i
     document["buffers"][0]["byteLength"] = len(binary) + 56
     path = tmp_path / "x.glb"
     path.write_bytes(joined(document, binary + corners.tobytes() + indices.tobytes()))
-    mesh = read_glb(path).meshes[-1]
+    mesh = read_character(path).meshes[-1]
     assert len(mesh.triangles) == 2 and area(mesh) == pytest.approx(0.16, rel=1e-5)
     np.testing.assert_allclose(mesh.normals, np.tile([0, 0, 1], (4, 1)), atol=1e-6)
 
 
 def test_many_large_textures_are_reduced_together(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("dancetutor_cli.character.surfaces.ALL_TEXELS", 128 * 128)
-    texture = read_glb(SOURCE).meshes[0].material.texture
+    texture = read_character(SOURCE).meshes[0].material.texture
     assert texture is not None and max(texture.shape) <= 128

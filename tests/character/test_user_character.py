@@ -11,6 +11,7 @@ from glb_edit import edited, joined, parts_of
 
 from dancetutor_cli.character import load_character
 from dancetutor_cli.character.container import read_container, read_nodes
+from dancetutor_cli.character.gltf import read_character
 from dancetutor_cli.character.humanoid import REQUIRED, find_humanoid, words_of
 from dancetutor_cli.character.mesh import Character
 from dancetutor_cli.character.retarget import retarget
@@ -18,7 +19,6 @@ from dancetutor_cli.dance.motion import Contact, Motion
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import palm_points, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton, dancer_skeleton
-from dancetutor_cli.formats.glb import read_glb
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import PACKAGE
 
@@ -193,7 +193,7 @@ def test_skins_that_bind_the_same_joint_differently(tmp_path: Path) -> None:
     next(n for n in document["nodes"] if n["name"] == "left shoe")["skin"] = 1
     path = tmp_path / "x.glb"
     path.write_bytes(joined(document, binary + added))
-    plain, two = read_glb(SOURCE), read_glb(path)
+    plain, two = read_character(SOURCE), read_character(path)
     assert len(two.skeleton.names) > len(plain.skeleton.names)
     moved = rest_vertices(two) - rest_vertices(plain)
     at = 0

@@ -16,10 +16,10 @@ from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
-from dancetutor_cli.dance.settings import USUAL, default_settings, form_names, load_settings
+from dancetutor_cli.dance.settings import USUAL, default_settings, load_settings
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.run.errors import FileError, UsageError
-from dancetutor_cli.run.reading import charts_path, config_path
+from dancetutor_cli.run.reading import charts_path, config_names, config_path
 from dancetutor_cli.run.yaml_files import read
 
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
@@ -59,7 +59,7 @@ def body_turn(motion: Motion) -> float:
 
 
 def test_the_forms_are_these_and_each_changes_something() -> None:
-    assert set(form_names()) == set(FORMS)
+    assert set(config_names("forms")) == set(FORMS)
     usual = default_settings()
     assert all((load_settings(None, form) == usual) == (form == USUAL) for form in FORMS)
 

@@ -10,11 +10,11 @@ from typing import Annotated, get_args, get_origin, get_type_hints
 import pytest
 
 from dancetutor_cli.dance import units
-from dancetutor_cli.dance.gait import Gait, gait_names, load_gait
+from dancetutor_cli.dance.gait import Gait, load_gait
 from dancetutor_cli.dance.plan import LEAST_FLIGHT
 from dancetutor_cli.dance.settings import MotionSettings, default_settings, load_settings
 from dancetutor_cli.run.errors import FileError, UsageError
-from dancetutor_cli.run.reading import config_path
+from dancetutor_cli.run.reading import config_names, config_path
 
 
 def test_every_number_has_a_sentence() -> None:
@@ -73,7 +73,7 @@ def test_a_file_that_is_not_there_is_said(tmp_path: Path) -> None:
 
 
 def test_a_new_gait_is_one_file(tmp_path: Path) -> None:
-    assert gait_names() == ["flat", "heels"]
+    assert config_names("gaits") == ["flat", "heels"]
     path = tmp_path / "strut.yaml"
     path.write_text(config_path("gaits/flat.yaml").read_text("utf-8").replace("arms: 0.11", "arms: 0.30"), "utf-8")
     slow, quick = load_gait(str(path))

@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.dance.physics.style import PARTS, Follower, Spring, load_style, style_names
+from dancetutor_cli.dance.physics.style import PARTS, Follower, Spring, load_style
 from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
+from dancetutor_cli.run.reading import config_names
 
 
 def written(folder: Path, text: str) -> str:
@@ -14,7 +15,7 @@ def written(folder: Path, text: str) -> str:
     return str(path)
 
 
-@pytest.mark.parametrize("name", style_names())
+@pytest.mark.parametrize("name", config_names("styles"))
 def test_styles_that_come_with_the_program_load(name: str) -> None:
     style = load_style(name)
     assert style.name == name and set(style.springs) == set(PARTS) == set(style.density) == set(style.force)

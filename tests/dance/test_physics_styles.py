@@ -14,14 +14,14 @@ from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.performance import perform, solve
 from dancetutor_cli.dance.physics.pipeline import Wishes, through_ragdoll
-from dancetutor_cli.dance.physics.style import load_style, style_names
+from dancetutor_cli.dance.physics.style import load_style
 from dancetutor_cli.dance.pieces import MARGIN, RagdollStyle, Span, piece_of
 from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.quality.figures import MotionReport
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig.body import world_transforms
-from dancetutor_cli.run.reading import charts_path
+from dancetutor_cli.run.reading import charts_path, config_names
 
 APART = 0.02  # metres of mean joint distance between any two
 FACE = (
@@ -63,7 +63,7 @@ def of_the_demo(difficulty: str, start: float, end: float, bar: bool = False) ->
 def danced() -> dict[str, Motion]:
     turns = (0, 3, 1, 2, 0, 3, 2, 1, 0, 3)
     events = [(1.0 + 0.3 * k, {c: (plays.L, plays.R)[k % 2]}) for k, c in enumerate(turns)]
-    return {name: by_hand(events).motion(name) for name in style_names()}
+    return {name: by_hand(events).motion(name) for name in config_names("styles")}
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +78,7 @@ def reports(danced: dict[str, Motion]) -> dict[str, MotionReport]:
 
 
 def test_there_are_the_five_of_the_thesis_and_its_input() -> None:
-    assert style_names() == ["feminine", "fierce", "heavy", "lazy", "neutral"]
+    assert config_names("styles") == ["feminine", "fierce", "heavy", "lazy", "neutral"]
 
 
 def test_any_two_styles_are_apart(danced: dict[str, Motion]) -> None:
@@ -90,7 +90,7 @@ def test_any_two_styles_are_apart(danced: dict[str, Motion]) -> None:
     assert min(apart.values()) >= APART, apart
 
 
-@pytest.mark.parametrize("name", style_names())
+@pytest.mark.parametrize("name", config_names("styles"))
 def test_contacts_feet_limits_and_limbs_are_as_good_as_without(reports: dict[str, MotionReport], name: str) -> None:
     figures = ("contact error", "contacts missed", "plant slide", "penetration", "frames past joint limits")
     overlaps = ("limb in torso", "foot in foot", "leg in leg", "arm in arm", "arm in leg", "hair in back")
@@ -98,14 +98,14 @@ def test_contacts_feet_limits_and_limbs_are_as_good_as_without(reports: dict[str
         assert reports[name][figure].met, (name, reports[name][figure])
 
 
-@pytest.mark.parametrize("name", style_names())
+@pytest.mark.parametrize("name", config_names("styles"))
 def test_she_neither_falls_nor_jerks_nor_floats_in_any_style(reports: dict[str, MotionReport], name: str) -> None:
     jerks = tuple(f"jerk of the {part}" for part in ("root", "left hand", "right hand", "head"))
     for figure in ("balance", "knee angle", "residual force, median", *jerks):
         assert reports[name][figure].met, (name, reports[name][figure])
 
 
-@pytest.mark.parametrize("name", style_names())
+@pytest.mark.parametrize("name", config_names("styles"))
 def test_in_the_hardest_passage_arms_neither_whip_nor_go_through_her(hard: Passage, name: str) -> None:
     plain, made = report(hard.motion()), report(hard.motion(name))
     for figure in ("contact error", "contacts missed", "plant slide", "penetration", "frames past joint limits"):
@@ -144,7 +144,7 @@ def test_palms_press_their_panels_on_time_in_every_style() -> None:
         (2.5, {0: plays.L, 3: plays.R, 1: plays.LH}),
         (3.5, {0: plays.L}),
     ]
-    for name in style_names():
+    for name in config_names("styles"):
         measured = report(by_hand(events).motion(name))
         assert measured["contact error"].met and measured["contacts missed"].met, name
 

@@ -11,9 +11,10 @@ from hypothesis import strategies as st
 from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.feet import load_preset, overrides_for, solve_chart
-from dancetutor_cli.feet.annotations import read_pins
+from dancetutor_cli.feet.annotations import pinned
 from dancetutor_cli.feet.limbs import LETTERS, Limb, NotationError, Part, letter, marker
 from dancetutor_cli.feet.limbs import parse as parse_tokens
+from dancetutor_cli.feet.overrides import FeetProblem, Overrides, contradictions
 
 LEFT, RIGHT, LEFT_HAND, RIGHT_HAND = Limb.LEFT_FOOT, Limb.RIGHT_FOOT, Limb.LEFT_HAND, Limb.RIGHT_HAND
 HEAD = (
@@ -25,14 +26,21 @@ def song_of(measures: bytes) -> Song:
     return parse(HEAD.removesuffix(b"\n") + measures, Path("song.sm"))
 
 
+def read_pins(song: Song) -> tuple[Overrides, tuple[FeetProblem, ...]]:
+    """The pinned feet of the first chart, but those that contradict themselves or what came before; all problems."""
+    said, problems = pinned(song, song.charts[0])
+    good, contradictory = contradictions(song.charts[0], said)
+    return Overrides.of({(s.tick, s.column): (s.limb, s.part) for s in good}), (*problems, *contradictory)
+
+
 def cells(song: Song) -> dict[tuple[int, int], tuple[int, int]]:
-    overrides, problems = read_pins(song, song.charts[0])
+    overrides, problems = read_pins(song)
     assert problems == ()
     return overrides.cells()
 
 
 def problem(song: Song) -> tuple[str, str, int | None, int | None]:
-    _, (found,) = read_pins(song, song.charts[0])
+    _, (found,) = read_pins(song)
     return found.code, found.message, found.line, found.column
 
 
@@ -86,7 +94,7 @@ def test_contradictions_have_a_line_and_a_column(pin: bytes, rows: bytes, code: 
 
 def test_a_contradiction_drops_only_what_contradicts() -> None:
     song = song_of(b"//{dt1! (Ll)R}\n1001\n0010\n,//{dt1! LL}\n1000\n,//{dt1! L}\n0100\n;\n")
-    overrides, problems = read_pins(song, song.charts[0])
+    overrides, problems = read_pins(song)
     assert overrides.cells() == {(96, 2): (RIGHT, Part.WHOLE), (384, 1): (LEFT, Part.WHOLE)}
     assert [p.line for p in problems] == [11, 8]
 

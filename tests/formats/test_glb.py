@@ -14,11 +14,12 @@ import pytest
 from glb_channels import channels_of
 
 from dancetutor_cli.character import load_character, load_dancer
+from dancetutor_cli.character.gltf import read_character
 from dancetutor_cli.character.mesh import Character, Material, Mesh
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-from dancetutor_cli.formats.glb import read_glb, write_glb
+from dancetutor_cli.formats.glb import write_glb
 from dancetutor_cli.run.errors import FileError
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -73,7 +74,7 @@ def a_motion(frames: int = 40, moving: int = 30, start: float = -0.5) -> Motion:
 def test_a_character_comes_back_as_it_was(tmp_path: Path) -> None:
     dancer = load_dancer()
     write_glb(tmp_path / "d.glb", dancer)
-    again = read_glb(tmp_path / "d.glb")
+    again = read_character(tmp_path / "d.glb")
     assert again.skeleton.names == dancer.skeleton.names
     np.testing.assert_array_equal(again.skeleton.parents, dancer.skeleton.parents)
     np.testing.assert_allclose(again.skeleton.offsets, dancer.skeleton.offsets, atol=1e-7)
@@ -183,7 +184,7 @@ def test_a_mesh_without_texture_or_with_many_vertices(tmp_path: Path, validator:
     inverse_bind = np.tile(np.eye(4), (len(skeleton.names), 1, 1))
     inverse_bind[:, :3, 3] = -skeleton.rest
     write_glb(tmp_path / "c.glb", Character("cloud", skeleton, (mesh,), inverse_bind))
-    again = read_glb(tmp_path / "c.glb")
+    again = read_character(tmp_path / "c.glb")
     np.testing.assert_array_equal(again.meshes[0].triangles, triangles)
     np.testing.assert_allclose(again.meshes[0].material.base_color, (0.8, 0.1, 0.1, 0.5), atol=1e-4)
     assert issues(validator, tmp_path / "c.glb")["numErrors"] == 0

@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from typing import Annotated, Any, Literal
 
 from dancetutor_cli.run.errors import FileError, UnavailableError, install_command
-from dancetutor_cli.run.reading import config_names, config_path, named_file
+from dancetutor_cli.run.reading import config_path, named_file
 from dancetutor_cli.run.schema import NOT_IN_FILES, THREE, Bounds, Names
 from dancetutor_cli.run.yaml_files import load
 
@@ -111,11 +111,6 @@ class Style:
     disabled: tuple[str, ...]
     follower: dict[Annotated[str, Names(FOLLOWED)], Follower]
     name: Annotated[str, NOT_IN_FILES] = ""
-
-
-def style_names() -> list[str]:
-    """The styles that the program comes with."""
-    return config_names("styles")
 
 
 @cache
