@@ -1,5 +1,16 @@
 """Bytes of a chart file -> Song and Chart; what a path means: packs, pairs of .sm and .ssc, selection, the music.
 
+    reader.load                   the way in; a file is read in four steps
+      |   msd                       its tags, with the place of each value
+      |   timing_tags, timing       when a beat is
+      |   grid, cells, note_data    measures and rows; what stands in their cells; notes
+    model.Song, model.Chart       what every other room works with
+
+    selection, pack_files         which charts a path means; settings files that lie beside them
+    music, audio                  which file is the song's music; its samples
+    density, hash, names          streams and tempos; how leaderboards know a chart; words of the games
+    edits                         the bytes of a file changed in places
+
 Names are looked up when they are used, so that finding files, and what games call things, needs no numpy.
 """
 

@@ -1,5 +1,15 @@
 """Who steps what: pads, limbs, what people said about them, cost presets, and the solver -> `Play`.
 
+    solved.solve_song             the one way to feet for every command
+      |   pads, preset              where panels are; what each undesired thing costs
+      |   song_feet                 what people laid down: annotations in the file, sme (SMEditor), dancetutor.yaml
+      |   overrides                 the same for one chart, and what of it cannot be danced
+      |   play.prepare_all          rows of notes
+      |   solver.solve              the play that costs least
+    solved.Solved                 a chart, its `play.Play`, its pad and preset
+
+    limbs, play_json              names and letters of limbs; plays in the JSON of `analyze`
+
 Names are looked up when they are used, so that importing the data model does not import numba.
 """
 

@@ -1,1 +1,19 @@
-"""Findings: a file per rule, what rules ask of a chart, configuration, baseline, suggestions and fixes, and meters."""
+"""Findings: rules and what they need to know of a chart, configuration, baseline, suggestions and fixes, and meters.
+
+run.LintRun                   a run of `analyze`: configuration and rule_settings for each file
+  |   analysis                  one file in, one `results.FileResult` out (cache keeps it)
+  |   subject                   what a rule looks at: a file, or a chart with its play
+  |   plays, candidates         plays of many charts as arrays; the rows that a rule would have to look at
+  |   play_facts, note_facts    the same of one chart; facts about its notes and their place in the file
+  |   check, rule, rules        rules are run over them; findings of the baseline left out
+  |   figures, passages         what else is said of a chart: other ways, counts; hardest parts, sections by name
+findings.Finding              what a rule reports
+
+suggest, edit_shape           small edits that would mend a finding, and what they leave of the chart's shape
+fixes, mend, fix              edits as bytes; put in and proved one by one; the work of `--fix` for one file
+sync, song_sync, pack_sync    music against beats: the method, a file, the songs of a pack
+meter                         how hard a chart is
+versions, snapshots           what changed between two versions of a pack, and where the older one comes from
+other_foot, techniques         ways with fewer crossed feet; technique counts beside the game's
+pictures                      what rules about banners and the like share
+"""

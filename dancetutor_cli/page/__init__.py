@@ -1,1 +1,8 @@
-"""The practice page: one HTML file in which the dancer plays a chart and waits for whoever learns it."""
+"""The practice page: one HTML file in which the dancer plays a chart and waits for whoever learns it.
+
+    work                          a request in, a page out; a folder of them
+    content, facts                chart, feet and dancer as data; what is said of them in words
+    document                      data, style and modules in one file that loads nothing
+
+The page itself is `js/`, `style.css` and `words/`; docs/page.schema.json says what the data are.
+"""
