@@ -36,14 +36,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _run(arguments: Sequence[str] | None) -> int:
     """The exit status."""
-    from dancetutor_cli.run.process import collect_seldom, leave_garbage, without_threads
+    from dancetutor_cli.run.process import forbid_blas_threads, reduce_garbage_collection, skip_last_collection
 
-    collect_seldom()
-    without_threads()
+    reduce_garbage_collection()
+    forbid_blas_threads()
     from dancetutor_cli.commands import cli
-    from dancetutor_cli.run.process import hear_again
+    from dancetutor_cli.run.process import catch_lost_interrupts
 
-    hear_again()
+    catch_lost_interrupts()
     output = sys.stdout
     try:
         status = cli.main(arguments, prog_name="dancetutor", standalone_mode=False)
@@ -54,7 +54,7 @@ def _run(arguments: Sequence[str] | None) -> int:
         status = _reader_gone()  # click has seen it, put another stream here and made 1 of it, which means findings
     except BaseException as error:
         status = _report_end(error)
-    leave_garbage()
+    skip_last_collection()
     return status if isinstance(status, int) else 0
 
 
@@ -63,7 +63,7 @@ def _report_end(error: BaseException) -> int:
     import click
 
     from dancetutor_cli.run.errors import DancetutorError
-    from dancetutor_cli.run.process import OUTPUT, is_interruption, leave_output, os_error_message
+    from dancetutor_cli.run.process import OUTPUT, drop_output, is_interruption, os_error_message
 
     if isinstance(error, click.exceptions.Exit):
         return error.exit_code
@@ -82,7 +82,7 @@ def _report_end(error: BaseException) -> int:
     elif isinstance(error, OSError):
         _say(os_error_message(error))
         if error.filename == OUTPUT:
-            leave_output()
+            drop_output()
     elif os.environ.get("DANCETUTOR_TRACEBACK"):
         raise error
     else:
@@ -94,9 +94,9 @@ def _report_end(error: BaseException) -> int:
 
 def _reader_gone() -> int:
     """The reader of a pipe has gone (`| head`); nobody is left to be told. A shell makes this of SIGPIPE."""
-    from dancetutor_cli.run.process import leave_output
+    from dancetutor_cli.run.process import drop_output
 
-    leave_output()
+    drop_output()
     return 141
 
 

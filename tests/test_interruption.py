@@ -15,7 +15,7 @@ from dancetutor_cli.__main__ import main
 from dancetutor_cli.commands import cli
 from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.pool import Report, Task, open_workers
-from dancetutor_cli.run.process import hear_again
+from dancetutor_cli.run.process import catch_lost_interrupts
 
 EARLY = "import sys, dancetutor_cli\nraise KeyboardInterrupt"
 KERNEL = """from dancetutor_cli.run.kernels.compiling import njit
@@ -144,7 +144,7 @@ def test_a_lost_ctrl_c_comes_again(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
-        hear_again()
+        catch_lost_interrupts()
         with pytest.raises(KeyboardInterrupt):
             _Lost().lose()
     finally:

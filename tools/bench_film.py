@@ -183,7 +183,7 @@ def pack_child(folder: str) -> None:
     from dancetutor_cli.film.work.request import FilmRequest
     from dancetutor_cli.film.work.segments import common_to_workers
     from dancetutor_cli.run.pool import default_jobs
-    from dancetutor_cli.run.processes import ProcessWorkers
+    from dancetutor_cli.run.worker_processes import ProcessWorkers
 
     class Watched(ProcessWorkers):
         """Adds up the time of all workers in which they had work."""

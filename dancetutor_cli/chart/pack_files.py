@@ -13,7 +13,7 @@ from typing import Annotated, Any, ClassVar
 from dancetutor_cli.chart import names
 from dancetutor_cli.run.errors import FileError, did_you_mean
 from dancetutor_cli.run.files import SONG_SUFFIXES
-from dancetutor_cli.run.reading import CHART_LIMIT, SETTINGS_LIMIT, leads_out, read_bytes, shown_key
+from dancetutor_cli.run.reading import CHART_LIMIT, SETTINGS_LIMIT, is_outside, read_bytes, shown_key
 from dancetutor_cli.run.schema import SEVERAL, Entries, Parsed, Texts
 
 # dancetutor.yaml: where it is looked for, which charts an entry of it is about, and what is wrong in it.
@@ -29,7 +29,7 @@ def find_settings_file(start: Path) -> Path | None:
 def check_not_a_link_out(path: Path) -> None:
     """Raise FileError if a dancetutor.yaml that lay there is a link that leads out of its folder: what is said of its
     mistakes would tell of a file that is none of its author's business."""
-    if path.is_symlink() and leads_out(path, path.parent):
+    if path.is_symlink() and is_outside(path, path.parent):
         raise FileError(path, "is a link that leads out of its folder; put a copy there, or name it with --config")
 
 

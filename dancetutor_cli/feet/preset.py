@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar
 from dancetutor_cli.chart.names import COLUMNS
 from dancetutor_cli.feet.solver.vocabulary import MODELS, MOST_MS
 from dancetutor_cli.run.errors import did_you_mean
-from dancetutor_cli.run.reading import config_names, config_path, is_regular, leads_out, named_file, shown_key
+from dancetutor_cli.run.reading import config_names, config_path, is_outside, is_regular, named_file, shown_key
 from dancetutor_cli.run.schema import Bounds, Entries, MarkedYaml, Meaning, Names, Parsed, Text, convert
 from dancetutor_cli.run.yaml_files import read
 
@@ -187,7 +187,7 @@ def _base(source: MarkedYaml, name: str, seen: tuple[Path, ...], confined: bool)
     path = config_path(f"presets/{name}.yaml") if name in preset_names() else beside
     if path.absolute() in seen:
         raise source.error(("extends",), f"'{name}' extends itself")
-    if confined and path == beside and leads_out(path, source.path.parent):
+    if confined and path == beside and is_outside(path, source.path.parent):
         raise source.error(("extends",), "'extends' leads out of the folder of this file; put it beside it")
     if not is_regular(path):
         there = ", ".join(preset_names())

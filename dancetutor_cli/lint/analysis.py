@@ -16,7 +16,7 @@ from dancetutor_cli.lint.findings import AUTO, AlternativeResult, Cause, Figures
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.run.errors import FileError, NoChartsError
-from dancetutor_cli.run.process import keep_what_is_there
+from dancetutor_cli.run.process import freeze_objects
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.density import Density
@@ -169,7 +169,7 @@ def analyze_files(tasks: Iterable[AnalyzeTask]) -> Iterator[FileResult]:
             raise
         if window.is_full:
             yield from window.results()
-            keep_what_is_there()  # everything that is needed is imported
+            freeze_objects()  # everything that is needed is imported
     yield from window.results()
 
 

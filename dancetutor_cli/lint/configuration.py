@@ -21,7 +21,7 @@ from dancetutor_cli.feet.preset import DEFAULT_PRESET, Preset, default_preset, l
 from dancetutor_cli.lint.rule import matching, named_singly
 from dancetutor_cli.lint.rule_settings import Layer, RulesKeys, Settings, layer_of, resolve_name
 from dancetutor_cli.run.errors import FileError, UsageError, did_you_mean
-from dancetutor_cli.run.reading import config_names, config_path, is_regular, leads_out, shown_key
+from dancetutor_cli.run.reading import config_names, config_path, is_outside, is_regular, shown_key
 from dancetutor_cli.run.schema import Bounds, Keys, MarkedYaml, Names, Text, Texts, convert
 from dancetutor_cli.run.yaml_files import parse_value, read
 
@@ -159,7 +159,7 @@ def _extended(source: MarkedYaml, name: str) -> Path:
     names = config_names("lint")
     if name in names and not is_regular(folder / name):
         return config_path(f"lint/{name}.yaml")
-    if leads_out(folder / name, folder):
+    if is_outside(folder / name, folder):
         raise source.error(("extends",), "'extends' leads out of the folder of this file; put what it names beside it")
     if not is_regular(folder / name):
         there = ", ".join(names)
@@ -183,7 +183,7 @@ def _apply(base: Configuration, source: MarkedYaml, *, confined: bool) -> Config
             overridden = (*overridden, (when, _preset(source, entry.preset, (*place, "preset"))))
     if file.feet:
         _check_feet(source)
-    if confined and file.baseline and leads_out(folder / file.baseline, folder):
+    if confined and file.baseline and is_outside(folder / file.baseline, folder):
         why = "'baseline' leads out of the folder of this file; put it beside it, or name it with --baseline"
         raise source.error(("baseline",), why)
     numbers = {name: getattr(file, name) for name in ("stream_rows", "sure_feet", "coin_toss", "sync")}
@@ -198,7 +198,7 @@ def _preset(source: MarkedYaml, name: str, place: Keys) -> str:
         return name
     folder = source.path.parent
     path = folder / name
-    if leads_out(path, folder):
+    if is_outside(path, folder):
         raise source.error(place, "'preset' leads out of the folder of this file; put the preset beside it")
     if path.suffix.lower() not in (".yaml", ".yml") and not is_regular(path):
         there, near = ", ".join(preset_names()), did_you_mean(name, preset_names())

@@ -71,7 +71,7 @@ def open_workers(jobs: int, report: Callable[[Any, int], None], common: str = ""
     """
     if jobs <= 1:
         return SerialWorkers(report)
-    from dancetutor_cli.run.processes import ProcessWorkers
+    from dancetutor_cli.run.worker_processes import ProcessWorkers
 
     return ProcessWorkers(jobs, report, common)
 

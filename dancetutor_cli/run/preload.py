@@ -1,4 +1,4 @@
-"""Imported by the server that worker processes are forked off: what they have in common, as `run.processes` names it.
+"""Imported by the server that worker processes are forked off: what they share, as `run.worker_processes` names it.
 
 Whatever that raises is left for the work that needs it, which says in one line what is wrong: here it would end the
 server with a traceback.
@@ -10,7 +10,7 @@ import os
 from contextlib import suppress
 from importlib import import_module
 
-from dancetutor_cli.run.processes import SHARED
+from dancetutor_cli.run.worker_processes import SHARED
 
 if common := os.environ.get(SHARED):
     with suppress(Exception):

@@ -24,12 +24,12 @@ from dancetutor_cli.run.foreign_text import GuardedText
 _SELDOM = 200_000  # new objects between two looks for garbage; Python's own 700 cost a tenth of a second of imports
 
 
-def collect_seldom() -> None:
+def reduce_garbage_collection() -> None:
     """Look for garbage in cycles seldom."""
     gc.set_threshold(_SELDOM, 10, 10)
 
 
-def without_threads() -> None:
+def forbid_blas_threads() -> None:
     """numpy makes a thread for each core as it is imported, for products of large matrices, of which there are none.
 
     To be called before that; holds for worker processes, too. A user who has said another number gets it.
@@ -37,13 +37,13 @@ def without_threads() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
-def keep_what_is_there() -> None:
+def freeze_objects() -> None:
     """What has been imported and made so far stays to the end: it is not looked through for garbage again."""
     if not gc.get_freeze_count():  # what is frozen is never freed in cycles, so that happens once
         gc.freeze()
 
 
-def leave_garbage() -> None:
+def skip_last_collection() -> None:
     """The process ends: no last look through every object that numba has made, which takes longer than a chart."""
     gc.freeze()
 
@@ -84,7 +84,7 @@ def open_streams() -> bool:
         return False
     sys.stdout, sys.stderr = _reopen_as(_NamedOutput, sys.stdout), _reopen_as(_Errors, sys.stderr)
     for stream in (sys.stdout, sys.stderr):
-        _say_what_it_can(stream)
+        _escape_missing_letters(stream)
     return True
 
 
@@ -105,14 +105,14 @@ def _reopen_as(kind: type[io.FileIO], stream: Any) -> Any:
     )  # fmt: skip
 
 
-def _say_what_it_can(stream: object) -> None:
+def _escape_missing_letters(stream: object) -> None:
     """On a console that is not UTF-8, letters that it lacks come as \\uXXXX: a title must not end the run."""
     encoding = str(getattr(stream, "encoding", None) or "utf-8").lower().replace("_", "-")
     if encoding not in ("utf-8", "utf8", "utf-16") and isinstance(stream, io.TextIOWrapper):
         stream.reconfigure(errors="backslashreplace")
 
 
-def leave_output() -> None:
+def drop_output() -> None:
     """Nothing more goes to standard output: what is left in its buffer would fail once more as the process ends."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
@@ -160,7 +160,7 @@ def _interrupt() -> None:
         _thread.interrupt_main()
 
 
-def hear_again() -> None:
+def catch_lost_interrupts() -> None:
     """From now on no Ctrl-C is lost in this process."""
     sys.unraisablehook = _Hook()
 

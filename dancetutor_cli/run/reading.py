@@ -94,7 +94,7 @@ def is_regular(path: Path) -> bool:
         return False
 
 
-def leads_out(path: Path, folder: Path) -> bool:
+def is_outside(path: Path, folder: Path) -> bool:
     """Whether a path leads out of a folder, by its name or by a link."""
     try:
         return not path.resolve().is_relative_to(folder.resolve())

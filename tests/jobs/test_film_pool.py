@@ -142,7 +142,7 @@ def test_a_server_that_is_killed_is_done_without(monkeypatch: pytest.MonkeyPatch
         def Process(**_: Any) -> Any:  # noqa: N802
             raise EOFError("no answer")
 
-    monkeypatch.setattr("dancetutor_cli.run.processes._server", lambda common: Killed)
+    monkeypatch.setattr("dancetutor_cli.run.worker_processes._server", lambda common: Killed)
     workers = open_workers(2, lambda key, n: None, COMMON)
     try:
         workers.submit(Task(1, double, (1,)))

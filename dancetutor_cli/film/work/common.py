@@ -10,9 +10,9 @@ from contextlib import suppress
 
 from dancetutor_cli.film.work import planning as planning
 from dancetutor_cli.film.work import segments
-from dancetutor_cli.run.process import collect_seldom
+from dancetutor_cli.run.process import reduce_garbage_collection
 
-collect_seldom()
+reduce_garbage_collection()
 with suppress(Exception):  # a film that needs what is missing will say so
     segments.warm_up(lambda units: None)
 gc.freeze()  # nobody looks through it for garbage, which would give each worker a copy

@@ -15,9 +15,9 @@ from dancetutor_cli.film.scene import dancer as dancer
 from dancetutor_cli.film.scene.geometry import pack
 from dancetutor_cli.film.scene.gl.available import load_pyrender
 from dancetutor_cli.run.errors import UnavailableError
-from dancetutor_cli.run.process import collect_seldom
+from dancetutor_cli.run.process import reduce_garbage_collection
 
-collect_seldom()
+reduce_garbage_collection()
 with suppress(UnavailableError):  # who draws will say so
     load_pyrender()
 pack(load_dancer())

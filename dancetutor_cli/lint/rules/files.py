@@ -129,10 +129,10 @@ class Attacks(FileRule):
 def _is_script(subject: FileSubject, name: str) -> bool:
     """Whether a change of the background is Lua: a file of it, or a folder in the song's with a default.lua."""
     from dancetutor_cli.chart.music import named_file
-    from dancetutor_cli.run.reading import is_regular, leads_out
+    from dancetutor_cli.run.reading import is_outside, is_regular
 
     if name.lower().endswith(".lua"):
         return True
     folder = subject.song.path.parent
     path = named_file(folder, name)
-    return not leads_out(path, folder) and is_regular(named_file(path, "default.lua"))
+    return not is_outside(path, folder) and is_regular(named_file(path, "default.lua"))

@@ -21,7 +21,7 @@ from typing import Any
 
 from dancetutor_cli.run.errors import UnavailableError
 from dancetutor_cli.run.pool import FinishedWork, Task, WorkFailedError, attempt
-from dancetutor_cli.run.process import collect_seldom, leave_garbage
+from dancetutor_cli.run.process import reduce_garbage_collection, skip_last_collection
 
 SHARED = "DANCETUTOR_WORKERS_SHARE"  # names the module to the server that workers are forked off
 _SAFE_PATH = "PYTHONSAFEPATH"
@@ -69,7 +69,7 @@ def _with_environment(name: str, value: str) -> Iterator[None]:
             os.environ[name] = before
 
 
-def _nothing_from_here() -> contextlib.AbstractContextManager[None]:
+def _without_current_folder() -> contextlib.AbstractContextManager[None]:
     """A process started in here takes no module from the folder it is started in, which may be a stranger's pack."""
     return _with_environment(_SAFE_PATH, "1")
 
@@ -86,7 +86,7 @@ def _server(common: str) -> Any:
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(["dancetutor_cli.run.preload"])
     try:
-        with _nothing_from_here(), _with_environment(SHARED, common), _uninterrupted():
+        with _without_current_folder(), _with_environment(SHARED, common), _uninterrupted():
             forkserver.ensure_running()
     except OSError:  # it needs a place for a socket
         return None
@@ -95,7 +95,7 @@ def _server(common: str) -> Any:
 
 def _worker(connection: Connection, common: str) -> None:
     """The loop of a worker process. The parent decides when it ends; a parent that dies ends it too."""
-    collect_seldom()
+    reduce_garbage_collection()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if common:
         with contextlib.suppress(Exception):  # the work that needs it will say what is wrong
@@ -104,7 +104,7 @@ def _worker(connection: Connection, common: str) -> None:
         while True:
             task = pickle.loads(connection.recv_bytes())
             if task is None:
-                leave_garbage()
+                skip_last_collection()
                 return
             # so that an encoder at work is ended first; not while modules are imported, whose C code would swallow it
             signal.signal(signal.SIGTERM, _leave)
@@ -162,7 +162,7 @@ class ProcessWorkers:
     def _started(self, context: Any, guard: contextlib.AbstractContextManager[None]) -> None:
         ours, theirs = context.Pipe()
         process = context.Process(target=_worker, args=(theirs, self.common), daemon=True)
-        with _nothing_from_here(), guard:
+        with _without_current_folder(), guard:
             process.start()
         theirs.close()
         self._workers.append(_Worker(process, ours))
