@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.chart.selection import Selection
@@ -121,32 +121,42 @@ _CHART = 50  # rows that a chart counts for, however short
 _OTHERS = 20  # charts of a file that are solved only because they tell the scale of its meters
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ResultOptions:
+    """What the results of a run shall hold besides findings; all of it but `want_rows` is part of a kept result's key.
+
+    want_rows : every row, for JSON; want_figures : densities and technical steps, for CSV
+    want_excerpts : the rows around each finding, for text; suggest : the edit that would mend it
+    alternatives : how many other plays
+    meter_scale, rate : the scale that meters are estimated on, and how fast the music plays for that
+    """
+
+    want_rows: bool = False
+    want_figures: bool = False
+    want_excerpts: bool = True
+    suggest: bool = False
+    alternatives: int = 0
+    meter_scale: str = AUTO
+    rate: float = 1.0
+
+    def options(self) -> dict[str, Any]:
+        """These fields alone, of whatever else has them."""
+        return {one.name: getattr(self, one.name) for one in fields(ResultOptions)}
+
+
 @dataclass(frozen=True, slots=True)
-class AnalyzeTask:
+class AnalyzeTask(ResultOptions):
     """What to do with one file. Pickles, so that another process can do it.
 
     presets : which cost preset each chart gets
-    want_rows : whether the result shall carry every row, for JSON
     data : the bytes to read in place of the file's, for standard input
-    suggest : whether findings shall tell which moved note would remove them
-    alternatives : how many other plays shall be told of
-    want_figures : whether the result shall carry densities and technical steps, for CSV
-    want_excerpts : whether findings shall carry the rows around them, for text
-    meter_scale, rate : the scale that meters are estimated on, and how fast the music plays for that
     """
 
     path: Path
     presets: PresetChoice
     selection: Selection
     settings: Settings
-    want_rows: bool = False
     data: bytes | None = None
-    suggest: bool = False
-    alternatives: int = 0
-    want_figures: bool = False
-    want_excerpts: bool = True
-    meter_scale: str = AUTO
-    rate: float = 1.0
 
 
 def analyze_file(task: AnalyzeTask) -> FileResult:

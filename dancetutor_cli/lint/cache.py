@@ -41,12 +41,8 @@ class ResultCache:
         except FileError:
             return None
         digest = hashlib.sha256(data)
-        wanted = (
-            task.presets, task.selection, task.suggest, task.alternatives, task.want_figures, task.want_excerpts,
-            task.meter_scale, task.rate,
-        )  # fmt: skip
-        asked = f"{task.path}|{task.path.absolute()}|{wanted}"
-        for part in (program_stamp(), asked, task.settings.fingerprint(), *self._dependencies(task.path)):
+        wanted = f"{task.path}|{task.path.absolute()}|{(task.presets, task.selection, task.options())}"
+        for part in (program_stamp(), wanted, task.settings.fingerprint(), *self._dependencies(task.path)):
             digest.update(b"\0" + part.encode("utf-8", "surrogateescape"))
         return digest.hexdigest()
 

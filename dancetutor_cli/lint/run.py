@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli.chart.pack_files import find_settings_file, places_of_feet
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_files, failed
+from dancetutor_cli.lint.analysis import AnalyzeTask, ResultOptions, analyze_files, failed
 from dancetutor_cli.lint.check import Baseline, Key, load_baseline
 from dancetutor_cli.lint.configuration import (
     Configuration,
@@ -21,7 +21,6 @@ from dancetutor_cli.lint.configuration import (
     with_assignments,
     with_selection,
 )
-from dancetutor_cli.lint.findings import AUTO
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.run.errors import DancetutorError
 
@@ -34,7 +33,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class LintRequest:
+class LintRequest(ResultOptions):
     """What the command line asks for; None where it says nothing and the configuration decides.
 
     config : file or name of a configuration; assignments : "key=value"; select, ignore : rules
@@ -50,13 +49,6 @@ class LintRequest:
     fail_on: str | None = None
     baseline: Path | None = None
     update_baseline: bool = False
-    want_rows: bool = False
-    want_figures: bool = False
-    want_excerpts: bool = True
-    suggest: bool = False
-    alternatives: int = 0
-    meter_scale: str = AUTO
-    rate: float = 1.0
     sync: bool = False
 
 
@@ -116,12 +108,8 @@ class LintRun:
 
     def task(self, path: Path, data: bytes | None = None) -> AnalyzeTask:
         """The piece of work for a file."""
-        settings = self.configuration(path).settings
-        request = self.request
-        return AnalyzeTask(
-            path, self.presets(path), request.selection, settings, request.want_rows, data, request.suggest,
-            request.alternatives, request.want_figures, request.want_excerpts, request.meter_scale, request.rate,
-        )  # fmt: skip
+        settings, request = self.configuration(path).settings, self.request
+        return AnalyzeTask(path, self.presets(path), request.selection, settings, data, **request.options())
 
     def with_packs(self, results: Iterable[FileResult]) -> Iterator[FileResult]:
         """The results, and behind them one for each pack whose songs together have findings."""
