@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -117,8 +117,10 @@ def hardest(play: Play, timing: Timing, settings: PassageSettings | None = None)
         taken[at : at + length] = True
         inside = rows[(measure - measure[0] >= at) & (measure - measure[0] < at + length)]
         first = int(measure[0]) + at
-        where = _PassagePlace(first, first + length, float(edges[at]), float(edges[at + length]), float(scores[at]))
-        out.append(_passage(play, inside, stepped[inside], where, settings))
+        start, end = float(edges[at]), float(edges[at + length])
+        counts = _counts(play, inside, stepped[inside], settings)
+        rate = len(inside) / (end - start)
+        out.append(Passage(first, first + length, start, end, float(scores[at]), rate, len(inside), **counts))
     return tuple(out)
 
 
@@ -173,44 +175,30 @@ def _weights(
     return np.asarray(out + settings.unsure * _unsure(play, rows, settings.close))
 
 
-class _PassagePlace(NamedTuple):
-    """Measures and seconds of a passage, and how hard it is; as in `Passage`."""
-
-    first: int
-    last: int
-    start: float
-    end: float
-    score: float
-
-
-def _passage(
-    play: Play, rows: NDArray[np.int64], stepped: NDArray[np.bool_], where: _PassagePlace, settings: PassageSettings
-) -> Passage:
-    """What happens in some rows; stepped : (rows, columns), where they have steps that are seen."""
+def _counts(
+    play: Play, rows: NDArray[np.int64], stepped: NDArray[np.bool_], settings: PassageSettings
+) -> dict[str, Any]:
+    """What happens in some rows, as in `Passage`; stepped : (rows, columns), where they have steps that are seen."""
 
     def count(*names: str) -> int:
         return int(_marks(play, rows, names).sum())
 
     crossing = rows[_begins(_marks(play, rows, _CROSSED))]
     limbs = play.limb[crossing]
-    by = [int((limbs == limb).any(axis=1).sum()) for limb in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
     two = (stepped.sum(axis=1) > 1) & ~_marks(play, rows, ("bracket",))
-    return Passage(
-        **where._asdict(),
-        rate=len(rows) / (where.end - where.start),
-        steps=len(rows),
-        crossovers=(by[0], by[1]),
-        turn=float(np.abs(play.facing[rows]).max(initial=0.0)),
-        spins=count("spin"),
-        brackets=count("bracket"),
-        footswitches=count(*_SWITCHES),
-        doublesteps=count("doublestep"),
-        jacks=count("jack"),
-        jumps=int(two.sum()),
-        hands=count("hand"),
-        stream=count("stream"),
-        unsure=int(_unsure(play, rows, settings.close).sum()),
-    )
+    return {
+        "crossovers": tuple(int((limbs == foot).any(axis=1).sum()) for foot in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)),
+        "turn": float(np.abs(play.facing[rows]).max(initial=0.0)),
+        "spins": count("spin"),
+        "brackets": count("bracket"),
+        "footswitches": count(*_SWITCHES),
+        "doublesteps": count("doublestep"),
+        "jacks": count("jack"),
+        "jumps": int(two.sum()),
+        "hands": count("hand"),
+        "stream": count("stream"),
+        "unsure": int(_unsure(play, rows, settings.close).sum()),
+    }
 
 
 # Which part of a chart a motion or a film is about: the same for `animate` and `render`.
