@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.feet.limbs import LIMBS, LimbColours, PartnerColours, limb_colours, partner_colours
+from dancetutor_cli.feet.limbs import LIMBS, PartnerColours, limb_colours, partner_colours
 
 # A character: triangle meshes skinned to a skeleton, ready for either renderer.
 
@@ -86,12 +86,12 @@ def on_foot(character: Character, mesh: Mesh, side: str) -> NDArray[np.bool_]:
     return np.asarray((mesh.weights * np.isin(mesh.joints, joints)).sum(axis=1) > 0.5)
 
 
-def with_foot_colours(character: Character, colours: LimbColours | None = None) -> Character:
+def with_foot_colours(character: Character) -> Character:
     """The character with feet in the colours that the notes' markers have.
 
     A foot is what hangs on ankle and toes alone; a mesh is cut there. Our own dancers wear these colours already.
     """
-    colours = colours or limb_colours()
+    colours = limb_colours()
     if any(mesh.material.name in SIDES.values() for mesh in character.meshes):
         return character
     meshes: list[Mesh] = []

@@ -14,6 +14,6 @@ fixes, mend, fix              edits as bytes; put in and proved one by one; the 
 sync, song_sync, pack_sync    music against beats: the method, a file, the songs of a pack
 meter                         how hard a chart is
 versions, snapshots           what changed between two versions of a pack, and where the older one comes from
-other_foot, techniques         ways with fewer crossed feet; technique counts beside the game's
+other_foot, techniques        ways with fewer crossed feet; technique counts beside the game's
 pictures                      what rules about banners and the like share
 """

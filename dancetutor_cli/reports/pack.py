@@ -34,6 +34,7 @@ _FEWEST_SONGS = 5
 _FEW = 2.0  # meters between label and estimate, from which on a chart stands out
 _LEAST_ROWS = 8  # with a technique that a chart stands out for
 _PLACES = 6  # of a rule in a file
+_NAMES = 3  # that a line lists
 _TIMES = 4.0  # how many times as much of a technique as the pack's charts of its meter have
 
 
@@ -215,10 +216,10 @@ def _much_of(charts: list[PackChart]) -> Iterator[tuple[float, str]]:
                 yield share / usual, said
 
 
-def _some(names: list[str], most: int = 3) -> str:
+def _some(names: list[str]) -> str:
     """The first names and how many more there are."""
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return ", ".join(names[:most]) + more
+    more = f" and {len(names) - _NAMES} more" if len(names) > _NAMES else ""
+    return ", ".join(names[:_NAMES]) + more
 
 
 # A pack in a few lines of text, at the end of a run over many songs.

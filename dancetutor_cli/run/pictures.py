@@ -48,9 +48,9 @@ def read_palette(path: Path) -> Pixels:
     return np.asarray(iio.imread(path, plugin="pillow", mode="RGB"), dtype=np.uint8).reshape(-1, 3)
 
 
-def write_webp(path: Path, frames: Iterable[Pixels], count: int, fps: int, quality: int = 72) -> None:
+def write_webp(path: Path, frames: Iterable[Pixels], count: int, fps: int) -> None:
     """A moving WebP that goes on for ever of `count` frames (h, w, 3); one is in memory at a time."""
-    _write(path, ".webp", _Frames(iter(frames), count), duration=1000.0 / fps, loop=0, quality=quality, method=2)
+    _write(path, ".webp", _Frames(iter(frames), count), duration=1000.0 / fps, loop=0, quality=72, method=2)
 
 
 def write_gif(path: Path, frames: Iterable[Pixels], palette: Pixels, fps: int) -> None:
