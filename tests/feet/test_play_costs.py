@@ -43,7 +43,8 @@ def price(picture: str, feet: str, term: str, row: int = -1, gap: int = 24, bpm:
         ("marked-footswitch", ".1.. .M.. .1..", ".R.. .... .L.."),
         ("sideswitch", "1... 1...", "L... R..."),
         ("jump-footswitch", "11.. .1.1", "LR.. .L.R"),
-        ("holdswitch", ".2.. ..1. .3..", ".L.. ..L. ...."),
+        ("holdswitch", "2... ...1 3...", "L... ...L"),
+        ("near-holdswitch", ".2.. ...1 ..1. .3..", ".L.. ...R ..L."),
         ("bracket-in-front", "1... ...1 1.1.", "L... ...R L.L."),
         ("bracket-in-front", "...1 1... ..11", "...R L... ..RR"),
         ("bracket-out-back", "1... ...1 11..", "L... ...R LL.."),
@@ -62,7 +63,8 @@ def price(picture: str, feet: str, term: str, row: int = -1, gap: int = 24, bpm:
     ],
 )
 def test_each_weight_alone(term: str, picture: str, feet: str) -> None:
-    assert price(picture, feet, term) == DISTINCT.weight(term)
+    row = len(feet.split()) - 1 if len(feet.split()) < len(picture.split()) else -1
+    assert price(picture, feet, term, row=row) == DISTINCT.weight(term)
 
 
 @pytest.mark.parametrize(
@@ -93,6 +95,7 @@ def test_each_weight_alone(term: str, picture: str, feet: str) -> None:
         ("bracket-again", "11.. ...1 11..", "LL.. ...R LL.."),
         ("held-again", "...1 2... .1.. 3...", "...R L... .L.."),
         ("held-tap", "21.. ...1 .1.. 3...", "LL.. ...R .L.."),
+        ("jump-again", "1..1 .11.", "L..R .LR."),
     ],
 )
 def test_each_curve_alone(term: str, picture: str, feet: str) -> None:
@@ -156,6 +159,10 @@ def test_a_hold_that_has_ended_since_the_last_row() -> None:
         ("other-split", "1... ...1 1.11", "L... ...R L.RR"),
         ("bracket", "11.. ...1 11..", "LL.. ...R LL.."),
         ("held-again", "...1 2... ...1 .1.. 3...", "...R L... ...R .L.."),  # the other foot has stepped
+        ("holdswitch", ".2.. ...1 ..1. .3..", ".L.. ...R ..L."),  # the other foot was beside it
+        ("near-holdswitch", "2... ...1 3...", "L... ...L"),  # it came from farther
+        ("jump-again", "1..1 1... .11.", "L..R L... .LR."),
+        ("jump-again", "1..1 11.1", "L..R LL.R"),  # a foot on two panels
     ],
 )
 def test_what_costs_nothing(term: str, picture: str, feet: str) -> None:

@@ -19,7 +19,7 @@ from dancetutor_cli.feet.solver.vocabulary import MODELS
     MARKED_DOUBLESTEP, MARKED_FOOTSWITCH, SIDESWITCH, JUMP_FOOTSWITCH, HOLDSWITCH, BRACKET_IN_FRONT, BRACKET_IN_BACK,
     BRACKET_OUT_BACK, BRACKET_ASIDE, TWISTED, CROSSOVER_JUMP, CROSSOVER_FULL, SPIN, TURN_135, TURN_180, FACING,
     FACING_ASIDE, STRETCH, LEAP, MINE, LIFTED, RELEASE, HAND, HAND_HOLD, HAND_BEHIND,
-    UNPLAYABLE, SPLIT_IN_FRONT, SPLIT_IN_BACK, SPLIT_OUT_BACK,
+    UNPLAYABLE, SPLIT_IN_FRONT, SPLIT_IN_BACK, SPLIT_OUT_BACK, NEAR_HOLDSWITCH,
 ) = range(len(MODELS["itg"].weights))  # fmt: skip
 _BIT = {name: 1 << bit for bit, name in enumerate(NAMES)}
 (
@@ -43,7 +43,7 @@ _WEIGHTS, _CURVES = len(MODELS["itg"].weights), len(MODELS["itg"].curves)
     _F_DOUBLESTEP, _F_NEAR, _F_RELEASED, _F_FREED, _F_EARLY_FREED, _F_FORCED, _F_GROWN, _F_JACK, _F_SWITCH, _F_BRACKET,
     _F_HELD_BRACKET, _F_BRACKET_JUMP, _F_JUMP, _F_AFTER_JUMP, _F_TELEPORT, _F_CROSSOVER, _F_CROSSOVER_START,
     _F_FREED_STEP, _F_MIDDLE_SWITCH, _F_RELEASED_SWITCH, _F_SHARED_JACK, _F_JUMP_MOVE, _F_JUMP_EXCHANGE, _F_OTHER_SPLIT,
-    _F_BRACKET_AGAIN, _F_HELD_AGAIN, _F_HELD_TAP,
+    _F_BRACKET_AGAIN, _F_HELD_AGAIN, _F_HELD_TAP, _F_JUMP_AGAIN,
 ) = (1 << _DISTANCE_BITS + i for i in range(_CURVES - 1))  # fmt: skip
 _ANKLE = 30  # 1/20 panels: a foot that goes farther than from corner to corner leaps
 _WIDE = 40  # 1/20 panels: feet farther apart than this are stretched
@@ -102,7 +102,7 @@ def charge_feet(before, s, pressed, ended, terms, rules):  # type: ignore[no-unt
             facts |= _F_TELEPORT
     if left and right:
         events |= EVENT_JUMP
-        facts |= _F_BRACKET_JUMP if brackets else _F_JUMP
+        facts |= _F_BRACKET_JUMP if brackets else _F_JUMP if before[LAST] else _F_JUMP | _F_JUMP_AGAIN
         for foot in range(2):
             old, other = g.mask[before[foot]], g.mask[before[1 - foot]]
             if old & pressed[1 - foot] & ~other and not before[LEFT_HELD + foot]:

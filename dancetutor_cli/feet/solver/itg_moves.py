@@ -17,6 +17,7 @@ from dancetutor_cli.feet.solver.itg_costs import (
     EVENT_UNPLAYABLE,  # fmt: skip
     HAND_HOLD,  # fmt: skip
     HOLDSWITCH,  # fmt: skip
+    NEAR_HOLDSWITCH,  # fmt: skip
     UNPLAYABLE,  # fmt: skip
     charge_feet,  # fmt: skip
     charge_hand,  # fmt: skip
@@ -152,7 +153,8 @@ def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-d
         s[LAST] = 1 if left else 2
     charge_mines(before, s, feet, row >> MINES & _MASK, terms, rules)
     if switched >= 0:
-        terms[HOLDSWITCH] = w[HOLDSWITCH]
+        near = g.near[before[LEFT_AT if pressed[1] else RIGHT_AT]] >> switched & 1  # where the foot that takes over was
+        terms[NEAR_HOLDSWITCH if near else HOLDSWITCH] = w[NEAR_HOLDSWITCH if near else HOLDSWITCH]
         events |= EVENT_HOLDSWITCH
     action = part = 0
     for p in range(g.place.shape[0]):

@@ -33,7 +33,7 @@ _ITG = (
     "marked-doublestep", "marked-footswitch", "sideswitch", "jump-footswitch", "holdswitch", "bracket-in-front",
     "bracket-in-back", "bracket-out-back", "bracket-aside", "twisted", "crossover-jump", "crossover-full", "spin",
     "turn-135", "turn-180", "facing", "facing-aside", "stretch", "leap", "mine", "lifted", "release", "hand",
-    "hand-hold", "hand-behind", "unplayable", "split-in-front", "split-in-back", "split-out-back",
+    "hand-hold", "hand-behind", "unplayable", "split-in-front", "split-in-back", "split-out-back", "near-holdswitch",
 )  # fmt: skip
 # `distance` comes last: the others happen or do not, it has a size
 _ITG_CURVES = (
@@ -41,7 +41,7 @@ _ITG_CURVES = (
     "forced-doublestep", "grown-bracket", "jack", "footswitch", "bracket", "held-bracket", "bracket-jump", "jump",
     "after-jump", "teleport", "crossover", "crossover-start", "freed-step", "middle-switch", "released-switch",
     "shared-jack", "jump-move", "jump-exchange", "other-split", "bracket-again", "held-again", "held-tap",
-    "distance",
+    "jump-again", "distance",
 )  # fmt: skip
 
 MODELS = {
