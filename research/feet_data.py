@@ -67,10 +67,10 @@ def load_pump() -> list[Labelled]:
     return _grouped(labels)
 
 
-def load_consensus(every: int = 1) -> list[Labelled]:
-    """Every n-th chart on which two independent programs agree."""
+def load_consensus(every: int = 1, first: int = 0) -> list[Labelled]:
+    """Every n-th chart on which two independent programs agree, from one on."""
     with gzip.open(FEET / "consensus.json.gz") as file:
-        entries = json.load(file)[::every]
+        entries = json.load(file)[first::every]
     with tempfile.TemporaryDirectory() as folder:
         with tarfile.open(SHARED / "charts" / "charts.tar.xz") as archive:
             unpack(archive, Path(folder))

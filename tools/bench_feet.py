@@ -37,7 +37,8 @@ def measure() -> list[Row]:
         whole, found = fit_weights.fit_of_all(task, preset)
         unseen = fit_weights.cross_validated(task, whole, preset, found)
         out += _rows(f"{task.preset}, song not seen, ", unseen, judged=True)
-        table = fit_weights.reliability(unseen, feet_data.folds)
+        fitted = fit_weights.fitted(preset, found)
+        _, table = fit_weights.how_sure([*unseen, *fit_weights.outcome(task.unseen, fitted)])
         many = [(said, right) for said, right, rows in table if rows >= 200]
         off = max(abs(said - right) for said, right in many)
         rows, steps = zip(*(_teleports(label, preset) for label in (*task.judged, *task.guard)), strict=True)

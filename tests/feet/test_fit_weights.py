@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -113,6 +114,31 @@ def test_numbers_of_a_preset_are_written_between_its_comments(tools: SimpleNames
     assert tools.weights.refreshed(text, preset, {0: 510, 10: 700}) == (
         "weights:\n  spin: 77  # turns on\ncurves:\n  # too\n  jack: {100: 5, 200: 0}\nconfidence: {0: 510, 10: 700}\n"
     )
+
+
+def test_a_preset_that_loses_rows_of_a_set_is_not_written(
+    tools: SimpleNamespace, jumper, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:  # type: ignore[no-untyped-def]
+    """Labels say that she jacks and crosses over; other charts, that no fit sees, have the feet of today's preset."""
+    weights = tools.weights
+    words = ("LRRLRLLR", "RLLRLRRL")
+    jacks = [replace(x, foot=np.array(["LR".index(f) for f in word])) for x, word in zip(jumper, words, strict=True)]
+    solved = [play.solve(label.rows, label.pad, ITG).limb[label.row, label.column] for label in jumper]
+    others = [replace(label, kind="other", foot=feet) for label, feet in zip(jumper, solved, strict=True)]
+    for name in ("itg.yaml", "pump.yaml"):
+        (tmp_path / name).write_text((weights.PRESETS / name).read_text(encoding="utf-8"), encoding="utf-8")
+    before = (tmp_path / "itg.yaml").read_text(encoding="utf-8")
+    monkeypatch.setattr(weights, "PRESETS", tmp_path)
+    monkeypatch.setattr(weights, "DOCS", tmp_path)
+    monkeypatch.setattr(weights, "FOLDS", {"itg": 2})
+    written = []
+    for unmade in (others, []):
+        task = weights.Task("itg", jacks, [], [], unmade, [], tools.fit.limits({}))
+        monkeypatch.setattr(weights, "tasks", lambda task=task: [task])
+        weights.fit_all(True, None, both=False)
+        written.append((tmp_path / "itg.yaml").read_text(encoding="utf-8") != before)
+    assert written == [False, True]
+    assert "itg stays as it is: the new one has fewer rows right, other " in capsys.readouterr().out
 
 
 def test_songs_stay_together_in_folds(tools: SimpleNamespace) -> None:
