@@ -39,7 +39,7 @@ EVERY = 3  # of so many charts of the consensus one is looked at: they are many,
 EVERY_UNSEEN = 9  # and so many, others, say how sure rows are
 FOLDS = {"itg": 4, "pump": 5}
 # no label on dance pads is a bracket after more than 0.4 s, and the consensus has programs' brackets there: people jump
-AT_LEISURE = dict.fromkeys(("bracket", "bracket-again"), np.interp(KNOTS, [370, 500, 700], [0.0, 2.2, 3.0]))
+AT_LEISURE = dict.fromkeys(("bracket", "bracket-again"), np.interp(KNOTS, [370, 500, 700], [0.0, 3.0, 3.7]))
 # what one foot does twice in a row is never easier for being quicker: it belongs into the slowest gap of a run
 SLOWEST_GAP = ("doublestep", "near-doublestep", "jack")
 # no label on dance pads brackets while crossed, and these pads have no centre panel: it costs what other switches do

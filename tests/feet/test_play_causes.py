@@ -23,7 +23,7 @@ def blamed(picture: str, gap: int = 24, preset: Preset = ITG) -> tuple[Play, tup
 
 @pytest.mark.parametrize("preset", [ITG, THESIS], ids=["itg", "thesis"])
 def test_a_hold_forces_the_other_foot(preset: Preset) -> None:
-    found, causes = blamed("2... ...1 ..1. .1.. 3... ...1", preset=preset)
+    found, causes = blamed("2... ...1 ..1. .1.. 3... 1...", preset=preset)
     assert letters(found).startswith("L... ...R ..R. .R..")
     assert causes == (Blame(2, True, "hold", 0, 0), Blame(3, True, "hold", 0, 0))
 
