@@ -105,6 +105,14 @@ def upper_envelope(times: Array, values: Array, span: float) -> Array:
     return np.asarray(np.interp(times, grid, np.convolve(highest, bell / bell.sum(), mode="valid")))
 
 
+def both_envelopes(times: Array, values: Array, span: float) -> Array:
+    """Values (f, d) of either sign, each spread as by `upper_envelope`: they come before their time, and go after it.
+
+    times : (f,) seconds; span : seconds
+    """
+    return np.stack([upper_envelope(times, x, span) - upper_envelope(times, -x, span) for x in values.T], axis=1)
+
+
 def no_faster(values: Array, rate: float, most: float) -> Array:
     """The path (n,) that changes by at most `most` per second and is least far from `values` (n,), `rate` per second.
 

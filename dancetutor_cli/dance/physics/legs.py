@@ -20,7 +20,7 @@ from dancetutor_cli.dance.smoothing import cubic, low_pass, upper_envelope
 Array = NDArray[np.float64]
 FROM, TO = np.radians(22.0), np.radians(7.0)  # bends of a knee: where the stretch grows slower, and where it ends
 ROUND = 0.01  # metres over which a foot in the air begins to come nearer
-SLOWLY = 0.20  # seconds that the last of a stretch takes to come and to go
+SLOWLY = 0.30  # seconds that the last of a stretch takes to come and to go
 SINK = 0.25  # seconds over which the pelvis sinks
 BENT = np.radians(20.0)  # of a knee that a rise leaves: straighter ones pop
 RISES, RISE = 12, 0.0008  # rounds of rising, and metres in each for a degree that an ankle is past its limit

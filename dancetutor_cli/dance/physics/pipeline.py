@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.timing import heard
 from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.physics.ankles import eased_ankles
+from dancetutor_cli.dance.physics.arms import clear_arms, push_arms_out
 from dancetutor_cli.dance.physics.legs import mass_of, restore_mass_path, risen, soft_legs
-from dancetutor_cli.dance.physics.plants import Plants, eased_ankles, flatten_toes, let_go, planted, tidied
+from dancetutor_cli.dance.physics.plants import Plants, flatten_toes, let_go, planted, tidied
 from dancetutor_cli.dance.physics.pushes import (
     Actor,
     Blow,
@@ -27,11 +29,13 @@ from dancetutor_cli.dance.physics.pushes import (
     with_push_notes,
 )
 from dancetutor_cli.dance.physics.ragdoll import NOMINAL, bones_of, place_points, points_of
-from dancetutor_cli.dance.physics.repin import AnkleTracks, clear_arms, feet_of, pin_hands, repinned, restrained
+from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, pin_hands, repinned, restrained
 from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN, Distances, Ragdoll, follow_all, simulate
+from dancetutor_cli.dance.physics.stands import stilled
 from dancetutor_cli.dance.physics.style import PARTS, Spring, Style
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import PARTS as MASSES
+from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond
 from dancetutor_cli.dance.smoothing import cubic, smooth, upper_envelope
 from dancetutor_cli.feet.limbs import Limb
@@ -42,7 +46,6 @@ from dancetutor_cli.run.errors import DancetutorError
 Array = NDArray[np.float64]
 Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 CORRECTIONS = ("knees", "feet", "limits")
-EASINGS = 3  # rounds of turning feet until their ankles are within limits
 GIVING_BACK = 8  # rounds of giving way less, where hips or ankles cannot
 AFTERMATH = 0.3  # seconds over which what befalls her begins to count, and ceases to 0.7 s later
 BEFORE = 1.0  # seconds of standing still before the first frame, in which springs come to rest
@@ -112,10 +115,13 @@ def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> 
     motion, feet, missed = recovered(motion, feet, root, wishes.pushes)
     if held_at.soles is not None:
         plants = let_go(skeleton, feet, _at_keys(held_at.soles.plants(), held_at.at, motion.times))
-        feet, held = planted(skeleton, feet, plants)
+        feet, _ = planted(skeleton, feet, plants)
+        hips = world_transforms(skeleton, rotations, root)[0][:, [skeleton.index(f"{s}_hip") for s in "lr"]]
+        feet, plants, held = stilled(skeleton, feet, plants, motion.times, hips)
         feet = flatten_toes(skeleton, rotations, feet, plants, held)
+    free = root
     if "knees" in corrections:
-        root, feet = soft_legs(skeleton, (rotations, root), feet, held, motion.times)
+        root, feet = soft_legs(skeleton, (rotations, free), feet, held, motion.times)
     if wishes.corrections:
         poses = repinned(skeleton, (rotations, root), feet)
     else:
@@ -126,17 +132,18 @@ def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> 
         if motion.grips:  # arms that are moved there have mass
             poses = restore_mass_path(skeleton, pin_hands(motion, poses, feet), feet, path, calm, share)
     if plants is not None:
-        root = risen(skeleton, poses, feet, plants, motion.times)
-        poses = repinned(skeleton, (rotations, root), feet)
-    for _ in range(EASINGS if plants is not None else 0):
-        assert plants is not None
-        feet, changed = eased_ankles(skeleton, poses[0], feet, plants, held)
-        if not changed:
-            break
-        poses = repinned(skeleton, (rotations, root), feet)
+        up = risen(skeleton, poses, feet, plants, motion.times) - poses[1]
+        poses = repinned(skeleton, (rotations, poses[1] + up), feet)
+        poses, feet, plants = eased_ankles(skeleton, poses, feet, plants, held, motion.times)
+        if "knees" in corrections:  # feet that were turned need other lengths of their legs
+            root, feet = soft_legs(skeleton, (poses[0], free + up), feet, held, motion.times)
+            poses = repinned(skeleton, (poses[0], root), feet)
+            poses, feet, plants = eased_ankles(skeleton, poses, feet, plants, held, motion.times)
     if wishes.pushes or wishes.trips:
         poses = _possible(motion, poses, feet)
     rotations, root = pin_hands(motion, poses, feet)
+    if "limits" in corrections:
+        rotations = push_arms_out(skeleton, (rotations, root), motion.times)
     if plants is not None:
         flatten_toes(skeleton, rotations, feet, plants, held)
         if style.limits:

@@ -1,4 +1,4 @@
-"""Feet that do not skate: soles stay where they were held, toes flat, ankles within their limits."""
+"""Feet that do not skate: soles stay where they were held, toes flat."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.physics.repin import AnkleTracks
 from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.dance.rig.body import sole_points, world_transforms
-from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond, within
+from dancetutor_cli.dance.rig.body import sole_points
+from dancetutor_cli.dance.rig.skeleton import Skeleton, within
 from dancetutor_cli.dance.smoothing import smooth
 
 # Feet that do not skate: where a sole was held to the floor it stays to the hair, and the way between is made to fit.
@@ -232,7 +232,7 @@ def _eased(pitch: Array, flat: Flags) -> Array:
     return out
 
 
-# What bends where feet are held: toes stay flat on the floor, ankles within their limits.
+# What bends where feet are held: toes stay flat on the floor.
 
 FRAMES = 8.0  # over which toes go flat and come back
 
@@ -268,18 +268,6 @@ def flatten_toes(skeleton: Skeleton, rotations: Array, feet: AnkleTracks, plants
     return AnkleTracks(places, feet.turns)
 
 
-def _pitched(turns: Array, wanted: Array, ball: Flags) -> Array:
-    """Turns (n, 4) of feet that stand on one end, pitched as `wanted`: any other turn would make that end slide.
-
-    ball : (n,) which of them stand on that end; the other end is up
-    """
-    ahead, towards = quat.rotate(turns, _AHEAD), quat.rotate(wanted, _AHEAD)
-    level = quat.from_axis_angle(_UP, np.arctan2(ahead[:, 0], ahead[:, 2]))
-    pitch = np.arcsin(np.clip(-towards[:, 1], -1.0, 1.0))
-    pitch = np.where(ball, np.maximum(pitch, 0.0), np.minimum(pitch, 0.0))
-    return quat.multiply(level, quat.from_axis_angle(np.array([1.0, 0.0, 0.0]), pitch))
-
-
 def _frames_to(flags: Flags) -> Array:
     """How many frames (f,) it is to the nearest flag."""
     at = np.flatnonzero(flags)
@@ -288,31 +276,3 @@ def _frames_to(flags: Flags) -> Array:
     frames = np.arange(len(flags))
     k = np.clip(np.searchsorted(at, frames), 1, len(at) - 1) if len(at) > 1 else np.zeros(len(flags), dtype=np.int64)
     return np.asarray(np.minimum(np.abs(frames - at[k]), np.abs(frames - at[np.maximum(k - 1, 0)])), dtype=np.float64)
-
-
-def eased_ankles(
-    skeleton: Skeleton, rotations: Array, feet: AnkleTracks, plants: Plants, held: Array
-) -> tuple[AnkleTracks, bool]:
-    """Feet whose ankles stay within their limits, and whether any had to be turned; those that lie flat do not turn.
-
-    rotations : local (f, j, 4) with legs that end in `feet`; a foot held at one end turns about it
-    """
-    places, turns, changed = feet.places.copy(), feet.turns.copy(), False
-    world = world_transforms(skeleton, rotations, np.zeros((len(rotations), 3)))[1]
-    for side in (0, 1):
-        name, sole = f"{'lr'[side]}_talocrural", Sole(skeleton, side)
-        ankle = skeleton.index(name)
-        past = np.flatnonzero(beyond(skeleton, name, rotations[:, ankle]) > -0.5)
-        past = past[~(plants.heel & plants.ball)[past, side]]
-        if not len(past):
-            continue
-        shank = world[past, skeleton.parents[ankle]]
-        turn = quat.multiply(shank, within(skeleton, name, rotations[past, ankle], 0.6))
-        stands = (plants.heel | plants.ball)[past, side]
-        turn = np.where(stands[:, None], _pitched(turns[past, side], turn, plants.ball[past, side]), turn)
-        anchor = np.where(plants.ball[past, side][:, None], sole.ball, sole.heel)
-        moved = quat.rotate(turns[past, side], anchor) - quat.rotate(turn, anchor)
-        places[past, side] += held[past, side][:, None] * moved
-        turns[past, side] = turn
-        changed = True
-    return cleared(skeleton, AnkleTracks(places, turns), held), changed

@@ -1,4 +1,4 @@
-"""What physics leaves a little off, closed afterwards: feet, joint limits, arms in the trunk, hands on the bar."""
+"""What physics leaves a little off, closed afterwards: feet, joint limits, hands on the bar."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.ragdoll import Bone, bend_and_twist, bones_of, hinge_axis
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
-from dancetutor_cli.dance.rig.limbs import HAND, Capsule, arm_in_torso, depth, leg_capsules
+from dancetutor_cli.dance.rig.limbs import arm_in_torso
 from dancetutor_cli.dance.rig.skeleton import LIMITS, Skeleton, beyond, within
-from dancetutor_cli.dance.smoothing import smooth, upper_envelope
+from dancetutor_cli.dance.smoothing import both_envelopes, smooth, upper_envelope
 
 # Feet back where they were: physics alone lets them slide by half a centimetre, so legs are closed by IK afterwards.
 #
@@ -23,6 +23,7 @@ from dancetutor_cli.dance.smoothing import smooth, upper_envelope
 # ragdoll bent them. Where a leg would have to be longer than it is, the pelvis gives way.
 
 Array = NDArray[np.float64]
+Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 STRAIGHTEST = np.radians(6.0)  # a knee stays bent by so much
 REACH_ROUNDS = 40  # of pulling the pelvis until both legs reach
 
@@ -135,13 +136,13 @@ def restrained(skeleton: Skeleton, rotations: Array, times: Array, calm: Array |
                 continue
             joint = skeleton.index(mirrored)
             given = out[:, joint]
-            back = _rotation_vectors(quat.multiply(_clipped(skeleton, mirrored, given, hinges), quat.conjugate(given)))
+            back = quat.to_vector(quat.multiply(_clipped(skeleton, mirrored, given, hinges), quat.conjugate(given)))
             if not back.any():
                 continue
-            early = np.stack([_early(times, back[:, axis]) for axis in range(3)], axis=1)
+            early = both_envelopes(times, np.clip(back, -MOST, MOST), SLOWLY)  # one that stopped at once would jerk
             if calm is not None:
                 early *= calm[:, None]
-            out[:, joint] = _clipped(skeleton, mirrored, quat.multiply(_turns(early), given), hinges)
+            out[:, joint] = _clipped(skeleton, mirrored, quat.multiply(quat.from_vector(early), given), hinges)
     return out
 
 
@@ -155,27 +156,6 @@ def _clipped(skeleton: Skeleton, name: str, turns: Array, hinges: Mapping[int, B
     return out if bone is None else _forward(bone, out)
 
 
-def _early(times: Array, back: Array) -> Array:
-    """What comes back (f,) about one axis, coming and going slowly: a joint that stopped at once would be a jerk."""
-    ahead, behind = (upper_envelope(times, np.minimum(part, MOST), SLOWLY) for part in (back, -back))
-    return np.asarray(ahead - behind)
-
-
-def _rotation_vectors(turns: Array) -> Array:
-    """Rotation vectors (f, 3), radians, of turns (f, 4); exactly 0 where there is none."""
-    turns = np.where(turns[:, :1] < 0, -turns, turns)
-    size = np.linalg.norm(turns[:, 1:], axis=1)
-    angle = 2.0 * np.arctan2(size, turns[:, 0])
-    return np.where(angle[:, None] > 1e-7, turns[:, 1:] * (angle / np.maximum(size, 1e-12))[:, None], 0.0)
-
-
-def _turns(vectors: Array) -> Array:
-    """Turns (f, 4) of rotation vectors (f, 3)."""
-    size = np.linalg.norm(vectors, axis=1)
-    axis = np.where(size[:, None] > 1e-12, vectors / np.maximum(size, 1e-12)[:, None], [1.0, 0.0, 0.0])
-    return quat.from_axis_angle(axis, size)
-
-
 def _forward(bone: Bone, turns: Array) -> Array:
     """Turns (f, 4) of an elbow, where they bend it backward no further than elbows do."""
     bend, twist = bend_and_twist(bone, turns).T
@@ -185,60 +165,6 @@ def _forward(bone: Bone, turns: Array) -> Array:
     straight = quat.from_axis_angle(bone.hinge, np.full(len(past), ELBOW))
     out[past] = quat.multiply(straight, quat.from_axis_angle(bone.along, twist[past]))
     return out
-
-
-# Arms out of trunk, legs and each other: where a style sends them there, they go back to where the input has them.
-#
-# The input's arms are seen from the trunk, as local turns are: what was clear of the trunk there is clear of it here.
-
-Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
-ALLOWED = 0.003  # metres that an arm may be in something: clothes and skin give way
-DEEPER = 0.002  # metres by which it must be deeper than in the input to be a fault of the style
-APART_ROUNDS, APART_STEP = 10, 0.3  # of going back, and the part of the way in each
-APART_SPAN = 0.4  # seconds around a touch in which an arm goes back and comes again
-_ARM = ("sternoclavicular", "shoulder", "elbow", "radiocarpal")
-_RADII = (0.045, 0.036, 0.026)  # of shoulder, elbow and wrist, metres
-
-
-def clear_arms(skeleton: Skeleton, given: Array, poses: Poses, feet: AnkleTracks, times: Array) -> Array:
-    """Local rotations (f, j, 4) of poses whose arms are as clear of everything as in the input.
-
-    given : local rotations (f, j, 4) of the input; feet : where the legs end; times : (f,) seconds
-    """
-    rotations = poses[0]
-    before = _depths(skeleton, (given, poses[1]), feet)
-    for _ in range(APART_ROUNDS):
-        deep = _depths(skeleton, (rotations, poses[1]), feet)
-        past = (deep > ALLOWED) & (deep > before + DEEPER)
-        if not past.any():
-            break
-        rotations = rotations.copy()
-        for k, side in enumerate("lr"):
-            share = APART_STEP * np.minimum(upper_envelope(times, past[:, k].astype(np.float64), APART_SPAN), 1.0)
-            for joint in (skeleton.index(f"{side}_{name}") for name in _ARM):
-                rotations[:, joint] = quat.slerp(rotations[:, joint], given[:, joint], share)
-    return rotations
-
-
-def _depths(skeleton: Skeleton, poses: Poses, feet: AnkleTracks) -> Array:
-    """How deep (f, 2) the left and the right arm are in anything, metres; negative apart."""
-    joints, _ = world_transforms(skeleton, *repinned(skeleton, poses, feet))
-    legs = [leg_capsules(*(joints[:, skeleton.index(f"{s}_{n}")] for n in ("hip", "knee", "talocrural"))) for s in "lr"]
-    arms = [_arm(skeleton, joints, s) for s in "lr"]
-    crossed = depth(arms[0], arms[1])
-    out = [
-        np.maximum.reduce([crossed, arm_in_torso(skeleton, joints, s), *(depth(arm[1:], leg) for leg in legs)])
-        for s, arm in zip("lr", arms, strict=True)
-    ]
-    return np.stack(out, axis=1)
-
-
-def _arm(skeleton: Skeleton, joints: Array, side: str) -> list[Capsule]:
-    """Upper arm, and forearm with its hand."""
-    shoulder, elbow, wrist = (joints[:, skeleton.index(f"{side}_{n}")] for n in _ARM[1:])
-    along = wrist - elbow
-    tip = wrist + HAND * along / np.linalg.norm(along, axis=1, keepdims=True)
-    return [(shoulder, elbow, *_RADII[:2]), (elbow, tip, *_RADII[1:])]
 
 
 # Hands that stay on the bar: a style moves her body, and arms are closed by IK to where the palms lie.

@@ -45,17 +45,21 @@ def stands_of(times: Array, name: str, path: Array) -> list[StandingSpan]:
     stands, in time: all frames in which the joint is less than 5 cm over its own lowest twentieth and goes slower than
     0.5 m/s, 0.1 s or longer. The slide is the longest way along the floor between two places of one stand.
     """
+    return [
+        StandingSpan(name, float(times[first]), float(times[end - 1]), _extent(path[first:end][:, [0, 2]]))
+        for first, end in stand_frames(times, path).tolist()
+    ]
+
+
+def stand_frames(times: Array, path: Array) -> NDArray[np.int64]:
+    """First and one past the last frame of each stand of a joint, (n, 2); times and path as for `stands_of`."""
     if len(times) < 3:
-        return []
+        return np.empty((0, 2), dtype=np.int64)
     step = float(times[1] - times[0])
     low = path[:, 1] < np.percentile(path[:, 1], 5) + SKATE_HEIGHT
     slow = np.linalg.norm(np.gradient(path, step, axis=0), axis=1) < SKATE_SPEED
-    out = []
-    for first, end in intervals(low & slow).tolist():
-        if (end - first) * step < SHORTEST:
-            continue
-        out.append(StandingSpan(name, float(times[first]), float(times[end - 1]), _extent(path[first:end][:, [0, 2]])))
-    return out
+    spans = intervals(low & slow)
+    return np.asarray(spans[(spans[:, 1] - spans[:, 0]) * step >= SHORTEST])
 
 
 def _extent(places: Array) -> float:

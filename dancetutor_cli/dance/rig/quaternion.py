@@ -147,6 +147,23 @@ def continuous(q: Array) -> Array:
     return np.asarray(q * sign)
 
 
+def to_vector(q: ArrayLike) -> Array:
+    """Rotation vectors (..., 3), radians and at most pi long, of (..., 4); exactly 0 where there is none."""
+    q = np.asarray(q, dtype=np.float64)
+    q = np.where(q[..., :1] < 0, -q, q)
+    size = np.linalg.norm(q[..., 1:], axis=-1, keepdims=True)
+    angle = 2.0 * np.arctan2(size, q[..., :1])
+    return np.asarray(np.where(angle > 1e-7, q[..., 1:] * angle / np.maximum(size, 1e-12), 0.0))
+
+
+def from_vector(vectors: ArrayLike) -> Array:
+    """Rotations (..., 4) of rotation vectors (..., 3), radians."""
+    vectors = np.asarray(vectors, dtype=np.float64)
+    size = np.linalg.norm(vectors, axis=-1)
+    axis = np.where(size[..., None] > 1e-12, vectors / np.maximum(size, 1e-12)[..., None], [1.0, 0.0, 0.0])
+    return from_axis_angle(axis, size)
+
+
 def leaning(tilt: Array, yaw: Array) -> Array:
     """Rotation (f, 4) that turns by yaw and then leans by tilt (f, 2), a horizontal direction times an angle."""
     angle = np.linalg.norm(tilt, axis=1)

@@ -168,7 +168,7 @@ def within(skeleton: Skeleton, name: str, rotations: Array, margin: float) -> Ar
     limit, sign = LIMITS[name.replace("r_", "l_", 1)], -1.0 if name.startswith("r_") else 1.0
     bone = _bone(skeleton, skeleton.index(name))
     swing, twist = quat.swing_twist(rotations, bone)
-    swung, twisted = np.degrees(_vector(swing)), sign * np.degrees(_vector(twist) @ bone)
+    swung, twisted = np.degrees(quat.to_vector(swing)), sign * np.degrees(quat.to_vector(twist) @ bone)
     swung[:, 0] = np.clip(swung[:, 0], limit.x[0] + margin, limit.x[1] - margin)
     swung[:, 2] = sign * np.clip(sign * swung[:, 2], limit.z[0] + margin, limit.z[1] - margin)
     twisted = np.radians(sign * np.clip(twisted, limit.twist[0] + margin, limit.twist[1] - margin))
@@ -190,8 +190,8 @@ def _bone(skeleton: Skeleton, joint: int) -> Array:
 
 def _past(limit: Limit, q: Array, bone: Array, sign: float) -> Array:
     swing, twist = quat.swing_twist(q, bone)
-    twisted = np.degrees(_vector(twist) @ bone)
-    swung = np.degrees(_vector(swing))
+    twisted = np.degrees(quat.to_vector(twist) @ bone)
+    swung = np.degrees(quat.to_vector(swing))
     past = np.linalg.norm(swung, axis=1) - limit.cone
     for value, (low, high) in (
         (swung[:, 0], limit.x),
@@ -200,11 +200,3 @@ def _past(limit: Limit, q: Array, bone: Array, sign: float) -> Array:
     ):
         past = np.maximum(past, np.maximum(low - value, value - high))
     return np.asarray(past)
-
-
-def _vector(q: Array) -> Array:
-    """Rotation vectors (f, 3) in radians, at most pi long."""
-    q = np.where(q[:, :1] < 0, -q, q)
-    size = np.linalg.norm(q[:, 1:], axis=1, keepdims=True)
-    angle = 2.0 * np.arctan2(size, q[:, :1])
-    return np.asarray(np.where(size > 1e-12, q[:, 1:] / np.where(size > 1e-12, size, 1.0) * angle, 0.0))

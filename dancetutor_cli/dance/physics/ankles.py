@@ -1,0 +1,130 @@
+"""Ankles within their limits over feet that are held: legs swivel, feet in the air turn, feet that stand lean."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.physics.plants import Plants, Sole, cleared, lowest
+from dancetutor_cli.dance.physics.repin import AnkleTracks, repinned
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.dance.rig.skeleton import LIMITS, Skeleton, beyond, within
+from dancetutor_cli.dance.smoothing import both_envelopes, upper_envelope
+
+Array = NDArray[np.float64]
+Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
+ROUNDS = 3
+LEANS = 1.0  # degrees to a side from which a foot stands on an edge, and its sole is not held
+MARGIN = 0.6  # degrees that are left to a limit
+SWIVELS = 0.25  # seconds in which a leg swivels about the line from hip to ankle, or a foot leans, and comes back
+_AHEAD = np.array([0.0, 0.0, 1.0])
+_ASIDE = np.array([1.0, 0.0, 0.0])
+
+
+def eased_ankles(
+    skeleton: Skeleton, poses: Poses, feet: AnkleTracks, plants: Plants, held: Array, times: Array
+) -> tuple[Poses, AnkleTracks, Plants]:
+    """Poses and feet whose ankles are within their limits, and where soles still lie on the floor.
+
+    What an ankle is twisted too far its leg swivels, knee aside, between hip and foot. Feet in the air, or on one end,
+    turn; a foot that lies flat leans on an edge as far as the leg over it leans too far.
+
+    poses : with legs that end in `feet`; held : (f, 2) how far feet stand
+    """
+    for _ in range(ROUNDS):
+        poses = _swivelled(skeleton, poses, feet, times)
+        feet, turned = _turned(skeleton, poses[0], feet, plants, held)
+        if not turned:
+            break
+        poses = repinned(skeleton, poses, feet)
+    for _ in range(ROUNDS):
+        feet, leans = _leaning(skeleton, poses[0], feet, held, times)
+        if not leans:
+            break
+        poses = repinned(skeleton, poses, feet)
+    across = quat.rotate(feet.turns, _ASIDE)[..., 1]
+    flat = np.abs(across) < np.sin(np.radians(LEANS))
+    return poses, feet, Plants(plants.heel & flat, plants.ball & flat)
+
+
+def _swivelled(skeleton: Skeleton, poses: Poses, feet: AnkleTracks, times: Array) -> Poses:
+    """Poses whose legs have swivelled by what ankles would be twisted too far."""
+    rotations = poses[0].copy()
+    places, world = world_transforms(skeleton, *poses)
+    for side in "lr":
+        hip, ankle = (skeleton.index(f"{side}_{name}") for name in ("hip", "talocrural"))
+        twist = quat.swing_twist(rotations[:, ankle], quat.UP)[1]
+        degrees = np.degrees(2.0 * np.arctan2(twist[:, 2], twist[:, 0]))
+        degrees = (degrees + 180.0) % 360.0 - 180.0
+        most = LIMITS["l_talocrural"].twist[1] - MARGIN
+        if not (np.abs(degrees) > most + MARGIN).any():
+            continue
+        by = upper_envelope(times, degrees - most, SWIVELS) - upper_envelope(times, -degrees - most, SWIVELS)
+        axis = places[:, hip] - places[:, ankle]
+        axis = axis / np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), 1e-9)
+        thigh = quat.multiply(quat.from_axis_angle(axis, np.radians(by)), world[:, hip])
+        parent = world[:, skeleton.parents[hip]]
+        rotations[:, hip] = quat.multiply(quat.conjugate(parent), thigh)
+    return repinned(skeleton, (rotations, poses[1]), feet)
+
+
+def _turned(
+    skeleton: Skeleton, rotations: Array, feet: AnkleTracks, plants: Plants, held: Array
+) -> tuple[AnkleTracks, bool]:
+    """Feet that do not lie flat, turned about the end that they stand on; and whether any had to be."""
+    places, turns, changed = feet.places.copy(), feet.turns.copy(), False
+    world = world_transforms(skeleton, rotations, np.zeros((len(rotations), 3)))[1]
+    for side in (0, 1):
+        name, sole = f"{'lr'[side]}_talocrural", Sole(skeleton, side)
+        ankle = skeleton.index(name)
+        past = np.flatnonzero(beyond(skeleton, name, rotations[:, ankle]) > -0.5)
+        past = past[~(plants.heel & plants.ball)[past, side]]
+        if not len(past):
+            continue
+        shank = world[past, skeleton.parents[ankle]]
+        turn = quat.multiply(shank, within(skeleton, name, rotations[past, ankle], MARGIN))
+        stands = (plants.heel | plants.ball)[past, side]
+        turn = np.where(stands[:, None], _pitched(turns[past, side], turn, plants.ball[past, side]), turn)
+        anchor = np.where(plants.ball[past, side][:, None], sole.ball, sole.heel)
+        moved = quat.rotate(turns[past, side], anchor) - quat.rotate(turn, anchor)
+        places[past, side] += held[past, side][:, None] * moved
+        turns[past, side] = turn
+        changed = True
+    return cleared(skeleton, AnkleTracks(places, turns), held), changed
+
+
+def _pitched(turns: Array, wanted: Array, ball: NDArray[np.bool_]) -> Array:
+    """Turns (n, 4) of feet that stand on one end, pitched as `wanted`: any other turn would make that end slide.
+
+    ball : (n,) which of them stand on that end; the other end is up
+    """
+    ahead, towards = quat.rotate(turns, _AHEAD), quat.rotate(wanted, _AHEAD)
+    level = quat.from_axis_angle(quat.UP, np.arctan2(ahead[:, 0], ahead[:, 2]))
+    pitch = np.arcsin(np.clip(-towards[:, 1], -1.0, 1.0))
+    pitch = np.where(ball, np.maximum(pitch, 0.0), np.minimum(pitch, 0.0))
+    return quat.multiply(level, quat.from_axis_angle(_ASIDE, pitch))
+
+
+def _leaning(
+    skeleton: Skeleton, rotations: Array, feet: AnkleTracks, held: Array, times: Array
+) -> tuple[AnkleTracks, bool]:
+    """Feet that lean by what their ankles are past their limits, balls in place; whether any had to."""
+    places, turns, changed = feet.places.copy(), feet.turns.copy(), False
+    world = world_transforms(skeleton, rotations, np.zeros((len(rotations), 3)))[1]
+    low = lowest(skeleton, feet)
+    for side in (0, 1):
+        name = f"{'lr'[side]}_talocrural"
+        ankle = skeleton.index(name)
+        if not (beyond(skeleton, name, rotations[:, ankle]) > 0.0).any():
+            continue
+        wanted = quat.multiply(world[:, skeleton.parents[ankle]], within(skeleton, name, rotations[:, ankle], MARGIN))
+        back = quat.to_vector(quat.multiply(wanted, quat.conjugate(turns[:, side]))) * [1.0, 0.0, 1.0]
+        turn = quat.multiply(quat.from_vector(both_envelopes(times, back, SWIVELS)), turns[:, side])
+        ball = Sole(skeleton, side).ball
+        places[:, side] += quat.rotate(turns[:, side], ball) - quat.rotate(turn, ball)
+        turns[:, side] = turn
+        changed = True
+    made = AnkleTracks(places, turns)
+    made.places[..., 1] += np.maximum(low - lowest(skeleton, made), 0.0)
+    return cleared(skeleton, made, held), changed

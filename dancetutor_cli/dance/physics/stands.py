@@ -1,0 +1,199 @@
+"""Feet that stand where an eye sees them stand: still over each stand that the outside detector finds on them.
+
+The joints of the soles hold what touches the floor; an eye also sees ankles that roll slowly, toes that leave slowly,
+and feet that creep a centimetre over the floor. In rounds: stands are found by height and speed, as the report finds
+them; in each the foot keeps one place and, while its ankle is in it, one turn; between stands what that has changed
+fades. What moves between stands is faster afterwards, so each round finds them shorter and stiller.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.physics.plants import NEARLY, STEEPEST, Flags, Plants, Sole, cleared, runs
+from dancetutor_cli.dance.physics.repin import AnkleTracks, Leg
+from dancetutor_cli.dance.quality.foot_slide import SHORTEST, stand_frames
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.smoothing import smooth
+
+Array = NDArray[np.float64]
+ROUNDS = 4
+ON_FLOOR = 0.015  # metres over the floor up to which the end of a foot that stands is put on it
+FLAT = np.radians(8.0)  # of pitch up to which a foot that stands lies flat
+TURNS = np.radians(45.0)  # a foot that turns more while it stands pivots on purpose
+SHUFFLE = 0.03  # metres between two places of one stand from which it is two, and a quick step between them
+STEP = 1.2  # m/s of that step
+FROM = np.radians(15.0)  # bend of a knee that is nearly straight
+SINKS = 0.04  # metres that a pelvis may sink for a heel that stays on the floor
+FADE = 0.10  # seconds in which a foot takes up its own way again
+_UP = np.array([0.0, 1.0, 0.0])
+_ASIDE = np.array([1.0, 0.0, 0.0])
+_AHEAD = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, slots=True)
+class _Stand:
+    """Frames from `first` to before `end` in which a foot stands; ankle : its ankle's stands, counted from `first`."""
+
+    first: int
+    end: int
+    ankle: list[tuple[int, int]]
+
+    @property
+    def in_ankle(self) -> Flags:
+        """Which of its frames (n,) are in a stand of the ankle."""
+        out = np.zeros(self.end - self.first, dtype=bool)
+        for first, end in self.ankle:
+            out[first:end] = True
+        return out
+
+    @property
+    def rests(self) -> Flags:
+        """Which of its frames (n,) say where it stands: those of the ankle's, or all."""
+        return self.in_ankle if self.ankle else np.ones(self.end - self.first, dtype=bool)
+
+
+def stilled(
+    skeleton: Skeleton, feet: AnkleTracks, plants: Plants, times: Array, hips: Array
+) -> tuple[AnkleTracks, Plants, Array]:
+    """Feet that are still while they stand, heels on the floor as long as legs reach.
+
+    Parameters
+    ----------
+    plants : where feet are held so far; hips : (f, 2, 3) their places, metres
+
+    Returns
+    -------
+    the feet, where they are held, and how far (f, 2) each is held, 0 to 1
+    """
+    places, turns = feet.places.copy(), feet.turns.copy()
+    heel, ball = plants.heel.copy(), plants.ball.copy()
+    held = np.zeros(heel.shape)
+    for side in (0, 1):
+        foot = _Foot(skeleton, side, times, hips[:, side], feet.turns[:, side])
+        for _ in range(ROUNDS):
+            stands = foot.stands(places[:, side], turns[:, side])
+            if not stands:
+                break
+            track = foot.held(places[:, side], turns[:, side], stands)
+            places[:, side], turns[:, side], heel[:, side], ball[:, side], held[:, side] = track
+    return cleared(skeleton, AnkleTracks(places, turns), held), Plants(heel, ball), held
+
+
+class _Foot:
+    """One foot over f times (f,). hips : (f, 3); free : (f, 4) how it turns where nothing holds it"""
+
+    def __init__(self, skeleton: Skeleton, side: int, times: Array, hips: Array, free: Array) -> None:
+        self.sole, self.times, self.hips, self.free = Sole(skeleton, side), times, hips, free
+        self.reach = Leg(skeleton, "lr"[side]).length(FROM) + SINKS
+
+    def stands(self, place: Array, turn: Array) -> list[_Stand]:
+        """Stands in time: those of the ankle (f, 3) and of the ball joined where they overlap, shuffles split."""
+        ankles, balls = (_unshuffled(self.times, path) for path in (place, place + quat.rotate(turn, self.sole.ball)))
+        joined: list[list[int]] = []
+        for first, end in sorted((*ankles, *balls)):
+            if joined and first < joined[-1][1]:
+                joined[-1][1] = max(joined[-1][1], end)
+            else:
+                joined.append([first, end])
+        return [
+            _Stand(first, end, [(a - first, b - first) for a, b in ankles if first <= a < end]) for first, end in joined
+        ]
+
+    def held(self, place: Array, turn: Array, stands: list[_Stand]) -> tuple[Array, Array, Flags, Flags, Array]:
+        """Ankle (f, 3) and turn (f, 4) of the foot still in its stands; whether heel and ball are held; how far."""
+        frames, ball = len(place), place + quat.rotate(turn, self.sole.ball)
+        heel_down, on_floor, fixed = (np.zeros(frames, dtype=bool) for _ in range(3))
+        moved, turned = np.zeros((frames, 3)), np.zeros((frames, 3))
+        for stand in stands:
+            part = slice(stand.first, stand.end)
+            rests = stand.rests
+            own = np.median(ball[part][rests], axis=0)
+            low = own[1] < self.sole.ball_height + ON_FLOOR
+            own[1] = self.sole.ball_height
+            moved[part] = (own - ball[part]) * (1.0, float(low), 1.0)
+            new, flat = self._turns(turn, stand, ball[part] + moved[part], bool(low))
+            turned[part] = quat.to_vector(quat.multiply(new, quat.conjugate(turn[part])))
+            fixed[part], on_floor[part], heel_down[part] = True, low, low & flat
+        ball = ball + _faded(self.times, moved, fixed)
+        turn = quat.multiply(quat.from_vector(_faded(self.times, turned, fixed)), turn)
+        share = np.where(fixed, 1.0, NEARLY * _faded(self.times, fixed[:, None].astype(np.float64), fixed)[:, 0])
+        return ball - quat.rotate(turn, self.sole.ball), turn, heel_down, on_floor, share
+
+    def _turns(self, turn: Array, stand: _Stand, ball: Array, low: bool) -> tuple[Array, Flags]:
+        """Turns (n, 4) of the foot in a stand, level across, and where (n,) it lies flat; ball : (n, 3), held.
+
+        It keeps its heading, and in each stand of the ankle its pitch, but where the leg is too short: there the heel
+        rises as it does without.
+        """
+        part = slice(stand.first, stand.end)
+        heading, own = _heading_and_pitch(turn[part])
+        if np.ptp(heading[stand.rests]) < TURNS:
+            heading = np.full(len(heading), float(np.median(heading[stand.rests])))
+        pitch = own.copy()
+        for first, end in stand.ankle:
+            median = float(np.median(own[first:end]))
+            pitch[first:end] = 0.0 if abs(median) < FLAT else median
+        free = _heading_and_pitch(self.free[part])[1]
+        lengths = [self._stretch(part, ball, _level_turns(heading, x)) for x in (pitch, free)]
+        rigid = stand.in_ankle & ((lengths[0] < self.reach) | (lengths[0] < lengths[1]))
+        pitch = own + _faded(self.times[part], (pitch - own)[:, None], rigid)[:, 0]
+        if low:
+            pitch = np.where(rigid, pitch, np.clip(pitch, 0.0, STEEPEST))
+        return _level_turns(heading, pitch), rigid & (pitch == 0.0)
+
+    def _stretch(self, part: slice, ball: Array, turn: Array) -> Array:
+        """Metres (n,) from the hip to the ankle of a foot whose ball is in places (n, 3)."""
+        return np.asarray(np.linalg.norm(ball - quat.rotate(turn, self.sole.ball) - self.hips[part], axis=1))
+
+
+def _heading_and_pitch(turns: Array) -> tuple[Array, Array]:
+    """Radians (n,) from +Z to +X that feet point, and by which their heels are up."""
+    ahead = quat.rotate(turns, _AHEAD)
+    return np.unwrap(np.arctan2(ahead[:, 0], ahead[:, 2])), np.arcsin(np.clip(-ahead[:, 1], -1.0, 1.0))
+
+
+def _level_turns(heading: Array, pitch: Array) -> Array:
+    """Turns (n, 4) of feet that are level across."""
+    return quat.multiply(quat.from_axis_angle(_UP, heading), quat.from_axis_angle(_ASIDE, pitch))
+
+
+def _unshuffled(times: Array, path: Array) -> list[tuple[int, int]]:
+    """Stands of a joint; where it goes from one place to another in a stand, there are two."""
+    out: list[tuple[int, int]] = []
+    rate = (len(times) - 1) / float(times[-1] - times[0])
+    rest = [(int(first), int(end)) for first, end in stand_frames(times, path)]
+    while rest:
+        first, end = rest.pop()
+        flat = path[first:end][:, [0, 2]]
+        away = np.linalg.norm(flat[-1] - flat[0])
+        if away < SHUFFLE:
+            out.append((first, end))
+            continue
+        half = max(1, round(float(away) / STEP * rate / 2))
+        fast = first + int(np.argmax(np.linalg.norm(np.diff(flat, axis=0), axis=1)))
+        fast = min(max(fast, first + half + 1), end - half - 1)
+        parts = ((first, fast - half), (fast + half, end))
+        if all(b - a >= SHORTEST * rate for a, b in parts):
+            rest += parts
+        else:
+            out.append((first, end))
+    return sorted(out)
+
+
+def _faded(times: Array, values: Array, fixed: Flags) -> Array:
+    """Values (f, d) that hold where they are fixed; between, those before and after fade."""
+    out = values.copy()
+    last = len(times) - 1
+    for first, end in runs(~fixed).tolist():
+        before, after = max(first - 1, 0), min(end, last)
+        at, span = times[first:end], min(FADE, float(times[after] - times[before]))
+        left = smooth(1 - (at - times[before]) / span) * (first > 0)
+        right = smooth(1 - (times[after] - at) / span) * (end <= last)
+        total = np.maximum(left + right, 1.0)[:, None]
+        out[first:end] = (left[:, None] * values[before] + right[:, None] * values[after]) / total
+    return out
