@@ -36,6 +36,7 @@ class RetargetOptions:
     plot: Path | None
     push: tuple[str, ...]
     trip: tuple[float, ...]
+    beside: bool
 
 
 @click.command(cls=GroupedCommand)
@@ -60,6 +61,11 @@ class RetargetOptions:
 )
 @report_option("Measure the motion, its faults before and after, and how far the ragdoll was from it.")
 @click.option("--plot", type=_FILE, help="Draw what is measured over time: a .svg or .png file.")
+@click.option(
+    "--beside",
+    is_flag=True,
+    help="In a film the input is to the left; on the output each point's distance from it is drawn.",
+)
 @into("wanted", RetargetOptions)
 def command(file: Path, wanted: RetargetOptions) -> None:
     """Put the motion of FILE (.bvh, .glb, .vrm or .npz) on a character, through a ragdoll.
@@ -71,14 +77,16 @@ def command(file: Path, wanted: RetargetOptions) -> None:
     from dancetutor_cli.formats.retarget import Retargeting, RetargetTask
 
     check_file(wanted.output, SUFFIXES)
+    if wanted.beside and wanted.output.suffix.lower() != ".mp4":
+        raise UsageError(f"--beside shows two people in a film: {wanted.output} must end in .mp4")
     if wanted.plot is not None:
         check_file(wanted.plot, (".svg", ".png"))
     if wanted.report_to is not None and wanted.report_to != TABLE:
         check_file(Path(wanted.report_to), (".json",), or_device=True)
-    wishes = replace(wishes_of(wanted.push, wanted.trip), corrections=corrections_of(wanted.correct))
+    wishes = replace(wishes_of(wanted.push, wanted.trip), corrections=corrections_of(wanted.correct), own_legs=True)
     task = RetargetTask(file, wanted.character, wanted.animation, wanted.style or "neutral", wishes)
     work = Retargeting(task)
-    words = _written(work, wanted.output)
+    words = _written(work, wanted.output, wanted.beside)
     for note in work.ragdoll_result.motion.notes:
         click.echo(f"warning: {note}", err=True)
     click.echo(f"{wanted.output}: {words}")
@@ -98,7 +106,7 @@ def corrections_of(text: str) -> tuple[str, ...]:
     return tuple(word for word in _CORRECTIONS if word in words)
 
 
-def _written(work: Retargeting, output: Path) -> str:
+def _written(work: Retargeting, output: Path, beside: bool) -> str:
     from dancetutor_cli.dance.physics.style import engine
 
     engine()
@@ -106,9 +114,10 @@ def _written(work: Retargeting, output: Path) -> str:
     seconds = float(motion.times[-1] - motion.times[0])
     suffix = output.suffix.lower()
     if suffix == ".mp4":
-        from dancetutor_cli.film.work.render import film
+        from dancetutor_cli.film.work.motion_film import Comparison, film
 
-        return f"{film(output, work.character, motion)} frames, {seconds:.1f} s"
+        compared = Comparison(work.given, *work.point_paths()) if beside else None
+        return f"{film(output, work.character, motion, compared)} frames, {seconds:.1f} s"
     if suffix == ".glb":
         from dancetutor_cli.formats.glb import write_glb
 

@@ -18,6 +18,7 @@ from dancetutor_cli.character.retarget import onto, retarget
 from dancetutor_cli.dance.physics.captured import on_body
 from dancetutor_cli.dance.physics.hair import add_hair
 from dancetutor_cli.dance.physics.pipeline import Tuning, through_ragdoll, tuned
+from dancetutor_cli.dance.physics.ragdoll import bones_of, place_points, points_of
 from dancetutor_cli.dance.physics.style import NEUTRAL, load_style
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.settings import default_settings
@@ -29,12 +30,16 @@ from dancetutor_cli.run.reading import config_path, read_json
 from dancetutor_cli.run.trust import kept_folder
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.dance.motion import Motion
     from dancetutor_cli.dance.physics.pipeline import RagdollResult, Wishes
     from dancetutor_cli.dance.physics.style import Style
     from dancetutor_cli.dance.quality.figures import MotionReport
     from dancetutor_cli.dance.rig.skeleton import Skeleton
+
+    Array = NDArray[np.float64]
 
 SCHEMA = b"1"  # of what a body's tuning depends on besides body and neutral style
 
@@ -110,6 +115,19 @@ class Retargeting:
     def motion(self) -> Motion:
         """For the character's skeleton."""
         return retarget(self.ragdoll_result.motion, self.character)
+
+    @cached_property
+    def given(self) -> Motion:
+        """The file's motion, before any physics, for the character's skeleton."""
+        return retarget(self.source_motion, self.character)
+
+    def point_paths(self) -> tuple[tuple[str, ...], Array, Array]:
+        """Names of the p retargeting points, and their places (f, p, 3) at the keys of input and output, metres."""
+        before, after = self.source_motion, self.ragdoll_result.motion
+        bones = bones_of(self.body)
+        points = tuple(p for p in points_of(self.body, bones, self.style) if not p.extra)
+        given, made = (place_points(self.body, bones, points, m.rotations, m.root) for m in (before, after))
+        return tuple(p.name for p in points), given, made
 
     @property
     def title(self) -> str:

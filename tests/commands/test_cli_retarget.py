@@ -15,7 +15,7 @@ from dancetutor_cli.commands.retarget import _CORRECTIONS, command
 from dancetutor_cli.dance.physics.pipeline import CORRECTIONS
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.film.media.encoder import Encoding, join
-from dancetutor_cli.film.work import render
+from dancetutor_cli.film.work import motion_film
 from dancetutor_cli.formats.bvh import read_bvh, write_bvh
 from dancetutor_cli.formats.npz import read_npz, write_npz
 from dancetutor_cli.run.errors import DancetutorError
@@ -135,8 +135,8 @@ def test_the_film_has_all_its_frames(bvh: Path, tmp_path: Path, monkeypatch: pyt
         joined.append((parts, output))
         join(parts, encoding, sound, work, output)
 
-    monkeypatch.setattr(render, "SIZE", (64, 64))
-    monkeypatch.setattr(render, "join", joining)
+    monkeypatch.setattr(motion_film, "SIZE", (64, 64))
+    monkeypatch.setattr(motion_film, "join", joining)
     film = tmp_path / "a.mp4"
     assert "31 frames, 1.0 s" in run(bvh, "-o", film, "--correct", "none")
     data = film.read_bytes()

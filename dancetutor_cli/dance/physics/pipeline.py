@@ -70,11 +70,13 @@ class Wishes:
 
     corrections : of `CORRECTIONS`, for captured motion: knees that pop, feet that skate
     pushes, trips : what befalls her
+    own_legs : legs stay as the ragdoll has them, but where feet are corrected or something befalls her
     """
 
     corrections: tuple[str, ...] = ()
     pushes: tuple[Push, ...] = ()
     trips: tuple[Stumble, ...] = ()
+    own_legs: bool = False
 
     def within(self, start: float, end: float) -> Wishes:
         """The same with only what befalls her between two seconds."""
@@ -111,6 +113,9 @@ def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> 
     root = motion.root + share[:, None] * (root - motion.root)
     if style.limits:
         rotations = restrained(skeleton, rotations, motion.times, share * _undisturbed(motion, wishes))
+    if wishes.own_legs and not (wishes.pushes or wishes.trips or "feet" in corrections):
+        done = replace(motion, rotations=quat.continuous(rotations), root=root)
+        return RagdollResult(done, distances)
     feet, held, plants = feet_of(skeleton, motion.rotations, motion.root), np.ones((len(root), 2)), None
     motion, feet, missed = recovered(motion, feet, root, wishes.pushes)
     if held_at.soles is not None:
@@ -269,15 +274,18 @@ class Tuning:
 
     def of(self, style: Style) -> Style:
         """The style for this body."""
-        springs = {
-            part: Spring(
-                (s.frequency[0] * self.stretch, s.frequency[1] * self.stretch, s.frequency[2] * self.stretch),
-                (s.damping[0] * self.damping, s.damping[1] * self.damping, s.damping[2] * self.damping),
-            )
-            for part, s in style.springs.items()
-        }
+        springs, points = (
+            {
+                name: Spring(
+                    (s.frequency[0] * self.stretch, s.frequency[1] * self.stretch, s.frequency[2] * self.stretch),
+                    (s.damping[0] * self.damping, s.damping[1] * self.damping, s.damping[2] * self.damping),
+                )
+                for name, s in given.items()
+            }
+            for given in (style.springs, style.points)
+        )
         density = {part: value * self.density[part] / NOMINAL for part, value in style.density.items()}
-        return replace(style, springs=springs, density=density)
+        return replace(style, springs=springs, points=points, density=density)
 
     def as_json(self) -> dict[str, Any]:
         """Plain data."""

@@ -52,7 +52,8 @@ class StiffKnees(Actor):
 
     def __init__(self, ragdoll: Ragdoll) -> None:
         self.names = [f"{s}_knee" for s in "lr"]
-        self.base = ragdoll.style.body.stiffness
+        style = ragdoll.style
+        self.base = [style.stiffness.get(name, style.body.stiffness) for name in self.names]
         self.places: list[tuple[int, int]] = []
 
     def before(self, model: Any, data: Any, step: int) -> None:
@@ -61,9 +62,9 @@ class StiffKnees(Actor):
             for name in self.names:
                 joint = int(model.body(name).jntadr[0])
                 self.places.append((int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint])))
-        for angle, speed in self.places:
+        for base, (angle, speed) in zip(self.base, self.places, strict=True):
             bend = np.degrees(data.qpos[angle])
-            model.dof_damping[speed] = self.base + DAMPING * min(max(1.0 - bend / KNEE, 0.0), 1.0)
+            model.dof_damping[speed] = base + DAMPING * min(max(1.0 - bend / KNEE, 0.0), 1.0)
 
 
 class BreakableSoles(Actor):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -48,13 +49,13 @@ class Point:
         """kp (3,) in N/m and kd (3,) in N s/m along the world's axes; zero where the style disables the point."""
         if self.name in style.disabled:
             return np.zeros(3), np.zeros(3)
-        spring = style.springs[self.part]
+        spring = style.points.get(self.name, style.springs[self.part])
         omega = 2 * np.pi * np.array(spring.frequency)
         return self.mass * omega**2, 2 * np.array(spring.damping) * self.mass * omega
 
 
 def points_of(skeleton: Skeleton, bones: tuple[Bone, ...], style: Style) -> tuple[Point, ...]:
-    """The points of a ragdoll as a style wants them. UsageError if it disables one that there is not."""
+    """The points of a ragdoll as a style wants them. UsageError if it names a point or a joint that there is not."""
     out: list[Point] = []
     for index, bone in enumerate(bones):
         places = _places(skeleton, bone, style)
@@ -62,12 +63,17 @@ def points_of(skeleton: Skeleton, bones: tuple[Bone, ...], style: Style) -> tupl
             offsets = [centre, centre + aside, centre - aside] if style.extra_points else [centre]
             mass = bone.mass / (len(places) * len(offsets))
             out += [Point(name, index, bone.part, o, mass, k > 0) for k, o in enumerate(offsets)]
-    names = sorted({p.name for p in out})
-    for name in style.disabled:
+    points, joints = sorted({p.name for p in out}), [bone.name for bone in bones if bone.parent >= 0]
+    _check_names(style, "retargeting point", (*style.disabled, *style.points), points)
+    _check_names(style, "joint with stiffness", style.stiffness, joints)
+    return tuple(out)
+
+
+def _check_names(style: Style, what: str, given: Iterable[str], names: list[str]) -> None:
+    for name in given:
         if name not in names:
             near = did_you_mean(name, names)
-            raise UsageError(f"style {style.name}: there is no retargeting point '{name}'{near}: {', '.join(names)}")
-    return tuple(out)
+            raise UsageError(f"style {style.name}: there is no {what} '{name}'{near}: {', '.join(names)}")
 
 
 def _places(skeleton: Skeleton, bone: Bone, style: Style) -> list[tuple[str, Array, Array]]:
@@ -252,7 +258,8 @@ def _body(skeleton: Skeleton, bones: tuple[Bone, ...], index: int, points: tuple
 def _joints(bone: Bone, style: Style) -> str:
     if bone.parent < 0:
         return "<freejoint/>"
-    stiff = f'damping="{style.body.stiffness:.6g}" stiffness="{style.body.spring:.6g}" solreflimit="{LIMIT:g} 1"'
+    stiffness = style.stiffness.get(bone.name, style.body.stiffness)
+    stiff = f'damping="{stiffness:.6g}" stiffness="{style.body.spring:.6g}" solreflimit="{LIMIT:g} 1"'
     limited = "true" if style.limits else "false"
     bare = bone.name[2:] if bone.name[1] == "_" else bone.name
     if bone.hinge is None:

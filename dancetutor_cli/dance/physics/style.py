@@ -96,6 +96,7 @@ class Numbers:
 class Style:
     """One file of `configs/styles`; by part (`PARTS`) unless said otherwise.
 
+    points : springs of single retargeting points, by name; stiffness : of single joints, by name, else the body's
     density : kg/m^3; force : newtons (x aside and outward for pairs, y up, z ahead in the pelvis's axes)
     disabled : names of retargeting points that do nothing; follower : by `FOLLOWED`, None for none
     placement : of the points; limits, extra_points : whether there are any
@@ -106,6 +107,8 @@ class Style:
     extra_points: bool
     body: Numbers
     springs: dict[_Part, Spring]
+    points: dict[str, Spring]
+    stiffness: dict[str, Annotated[float, Bounds(0, 100, "N m s/rad")]]
     density: dict[_Part, _Density]
     force: dict[_Part, Annotated[tuple[_Force, _Force, _Force], THREE]]
     disabled: tuple[str, ...]

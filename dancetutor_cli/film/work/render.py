@@ -1,4 +1,4 @@
-"""Making one film, of a chart or of a motion without one; the result appears whole or not at all."""
+"""Making one film of a chart; the result appears whole or not at all."""
 
 from __future__ import annotations
 
@@ -7,34 +7,18 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
-from dancetutor_cli.dance.motion import sample
-from dancetutor_cli.dance.rig.body import joint_matrices
-from dancetutor_cli.dance.smoothing import low_pass
 from dancetutor_cli.film.choices import RendererKind
-from dancetutor_cli.film.media.encoder import Encoding, encode_segment, join
+from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.media.film_formats import PICTURES
-from dancetutor_cli.film.scene import renderer
-from dancetutor_cli.film.scene.camera import Camera
-from dancetutor_cli.film.scene.scene import PANEL, FrameState, Scene
 from dancetutor_cli.film.work import segments
 from dancetutor_cli.film.work.planning import PreparedFilm
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.ffmpeg import EncoderError
 from dancetutor_cli.run.files import place_of
 from dancetutor_cli.run.pool import Task, Workers, open_workers
-
-if TYPE_CHECKING:
-    from dancetutor_cli.character.mesh import Character
-    from dancetutor_cli.dance.motion import Motion
-    from dancetutor_cli.film.picture import Frame
-
 
 # Making one film: workers draw segments, this process prepares the sound; the result appears whole or not at all.
 
@@ -128,54 +112,3 @@ def make_film(
         segments.finish(parts, encoding, sound, folder, output)
         segments.forget()
     return prepared
-
-
-# A film of a motion without a chart: the character on a bare floor, the camera goes along.
-
-SIZE, FPS = (720, 720), 30
-EYE = np.array([1.5, 0.45, 3.1])  # from what the camera looks at, metres
-LOOK = 0.9  # height that it looks at, metres
-FOCAL, ALONG = 1.35, 0.4  # focal length in picture heights; hertz below which the camera goes along
-ROOM = 2.0  # panels of floor around her way
-
-
-@dataclass(frozen=True, slots=True)
-class _Floor:
-    """A pad of tiles without arrows, as large as her way."""
-
-    panels: NDArray[np.float64]
-    arrows: NDArray[np.float64]
-    centre: tuple[float, float]
-
-
-def film(path: Path, character: Character, motion: Motion) -> int:
-    """Write an .mp4 and return its frames; nothing is left if that fails. Raises FileError or UnavailableError."""
-    count = max(1, int((motion.times[-1] - motion.times[0]) * FPS) + 1)
-    encoding = Encoding("mp4", SIZE, FPS, "good")
-    with work_folder(path) as folder:
-        part, whole = folder / f"part{encoding.format.segment}", folder / "film.mp4"
-        encode_segment(_frames(character, motion, count), encoding, part)
-        join([part], encoding, None, folder, whole)
-        whole.replace(path)
-    return count
-
-
-def _frames(character: Character, motion: Motion, count: int) -> Iterator[Frame]:
-    times = motion.times[0] + np.arange(count) / FPS
-    rotations, root = sample(motion, times)
-    scene = Scene(character, _floor(root))
-    draw = renderer.create(scene, SIZE, "good", "cpu")
-    slow = low_pass(root, FPS, ALONG)
-    nobody = np.zeros(scene.panels)
-    joints = joint_matrices(character.skeleton, rotations, root)
-    for k in range(count):
-        x, z = float(slow[k, 0]), float(slow[k, 2])
-        eye = (x + float(EYE[0]), LOOK + float(EYE[1]), z + float(EYE[2]))
-        yield draw.frame(FrameState(joints[k], Camera(eye, (x, LOOK, z), FOCAL), nobody, nobody.astype(np.int64)))
-    draw.close()
-
-
-def _floor(root: NDArray[np.float64]) -> _Floor:
-    low, high = root[:, [0, 2]].min(axis=0) / PANEL, root[:, [0, 2]].max(axis=0) / PANEL
-    corners = np.array([[-high[0] - ROOM, low[1] - ROOM], [-low[0] + ROOM, high[1] + ROOM]])
-    return _Floor(np.round(corners), np.zeros((2, 2)), (0.0, 0.0))

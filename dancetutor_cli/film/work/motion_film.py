@@ -1,0 +1,123 @@
+"""A film of a motion without a chart: the character on a bare floor, alone or beside the input that she follows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw
+
+from dancetutor_cli.dance.motion import sample
+from dancetutor_cli.dance.rig.body import joint_matrices
+from dancetutor_cli.dance.smoothing import low_pass, sample_path
+from dancetutor_cli.film.media.encoder import Encoding, encode_segment, join
+from dancetutor_cli.film.overlay.text import font
+from dancetutor_cli.film.scene import renderer
+from dancetutor_cli.film.scene.camera import Camera
+from dancetutor_cli.film.scene.scene import PANEL, FrameState, Scene
+from dancetutor_cli.film.work.render import work_folder
+
+if TYPE_CHECKING:
+    from dancetutor_cli.character.mesh import Character
+    from dancetutor_cli.dance.motion import Motion
+    from dancetutor_cli.film.picture import Frame
+
+Array = NDArray[np.float64]
+SIZE, FPS = (720, 720), 30
+EYE = np.array([1.5, 0.45, 3.1])  # from what the camera looks at, metres
+LOOK = 0.9  # height that it looks at, metres
+FOCAL, ALONG = 1.35, 0.4  # focal length in picture heights; hertz below which the camera goes along
+ROOM = 2.0  # panels of floor around her way
+FAR = 10.0  # centimetres from which a point's distance is drawn as red as it gets
+NEAR_COLOUR, FAR_COLOUR = np.array([0, 158, 115]), np.array([213, 0, 0])
+INK, PAPER = (20, 20, 20), (255, 255, 255)
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """The input beside which a motion is shown. p points over the motion's keys (f,).
+
+    given : the input, of the same character and times; names : (p,) of the points
+    before, after : (f, p, 3) where the points are on the input and on the motion, metres
+    """
+
+    given: Motion
+    names: tuple[str, ...]
+    before: Array
+    after: Array
+
+
+@dataclass(frozen=True, slots=True)
+class _Floor:
+    """A pad of tiles without arrows, as large as her way."""
+
+    panels: Array
+    arrows: Array
+    centre: tuple[float, float]
+
+
+def film(path: Path, character: Character, motion: Motion, beside: Comparison | None = None) -> int:
+    """Write an .mp4 and return its frames; nothing is left if that fails. Raises FileError or UnavailableError.
+
+    beside : what to show to the left of it, and which distances to draw on it; None shows her alone
+    """
+    count = max(1, int((motion.times[-1] - motion.times[0]) * FPS) + 1)
+    size = SIZE if beside is None else (2 * SIZE[0], SIZE[1])
+    encoding = Encoding("mp4", size, FPS, "good")
+    with work_folder(path) as folder:
+        part, whole = folder / f"part{encoding.format.segment}", folder / "film.mp4"
+        encode_segment(frames(character, motion, count, beside), encoding, part)
+        join([part], encoding, None, folder, whole)
+        whole.replace(path)
+    return count
+
+
+def frames(character: Character, motion: Motion, count: int, beside: Comparison | None = None) -> Iterator[Frame]:
+    """The first pictures of the film."""
+    times = motion.times[0] + np.arange(count) / FPS
+    poses = [sample(one, times) for one in ((motion,) if beside is None else (beside.given, motion))]
+    scene = Scene(character, _floor(np.concatenate([root for _, root in poses])))
+    draws = [renderer.create(scene, SIZE, "good", "cpu") for _ in poses]
+    slow = low_pass(poses[0][1], FPS, ALONG)
+    nobody = np.zeros(scene.panels)
+    joints = [joint_matrices(character.skeleton, *pose) for pose in poses]
+    for k in range(count):
+        x, z = float(slow[k, 0]), float(slow[k, 2])
+        camera = Camera((x + float(EYE[0]), LOOK + float(EYE[1]), z + float(EYE[2])), (x, LOOK, z), FOCAL)
+        shown = [
+            draw.frame(FrameState(own[k], camera, nobody, nobody.astype(np.int64)))
+            for draw, own in zip(draws, joints, strict=True)
+        ]
+        yield shown[0] if beside is None else _compared(shown, camera, beside, motion.times, times[k : k + 1])
+    for draw in draws:
+        draw.close()
+
+
+def _compared(shown: list[Frame], camera: Camera, beside: Comparison, keys: Array, at: Array) -> Frame:
+    """Input and output in one picture; on the output each point's way from where the input has it, and how far."""
+    image = Image.fromarray(np.concatenate(shown, axis=1))
+    draw, letters = ImageDraw.Draw(image), font(None, 20)
+    before, after = (sample_path(points, keys, at)[0] for points in (beside.before, beside.after))
+    apart = 100.0 * np.linalg.norm(after - before, axis=1)
+    here, there = (camera.project(points, SIZE)[:, :2] + [SIZE[0], 0] for points in (before, after))
+    for k in np.argsort(apart).tolist():
+        share = min(float(apart[k]) / FAR, 1.0)
+        colour = tuple(int(c) for c in NEAR_COLOUR + share * (FAR_COLOUR - NEAR_COLOUR))
+        (x, y), radius = there[k], 3.0 + 5.0 * share
+        draw.line((*map(float, here[k]), float(x), float(y)), fill=colour, width=3)
+        draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=colour, outline=PAPER)
+    far = int(np.argmax(apart))
+    words = f"output: {beside.names[far]} {apart[far]:.1f} cm from the input, mean {apart.mean():.1f} cm"
+    for x, text in ((16, "input"), (SIZE[0] + 16, words)):
+        draw.text((x, 12), text, fill=INK, font=letters, stroke_width=2, stroke_fill=PAPER)
+    return np.asarray(image)
+
+
+def _floor(root: Array) -> _Floor:
+    low, high = root[:, [0, 2]].min(axis=0) / PANEL, root[:, [0, 2]].max(axis=0) / PANEL
+    corners = np.array([[-high[0] - ROOM, low[1] - ROOM], [-low[0] + ROOM, high[1] + ROOM]])
+    return _Floor(np.round(corners), np.zeros((2, 2)), (0.0, 0.0))

@@ -1,0 +1,491 @@
+#!/usr/bin/env python3
+"""Restage chapters 5 and 6 of the thesis on retargeting by physics: each setting off and on, measured and drawn.
+
+usage: tools/thesis_restaged.py [FOLDER]     (of captures: a walk `*walk*.bvh` and others)
+Writes tests/data/thesis_restaged.json, docs/physics-limits.svg and others, and the part of docs/physics.md between its
+two marks. Three seconds of the walk, forward and then backward as in the thesis, through the ragdoll; the last column
+of each table has its figure for every clip in FOLDER. tests/test_thesis_restaged.py checks that page and pictures are
+what this makes of the JSON, and measures a table anew.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from thesis_pictures import picture
+
+from dancetutor_cli.dance.motion import Motion, sample
+from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, RagdollResult, Wishes, through_ragdoll
+from dancetutor_cli.dance.physics.ragdoll import bend_and_twist, bones_of
+from dancetutor_cli.dance.physics.style import PARTS, Spring, Style, load_style
+from dancetutor_cli.dance.quality.foot_slide import stands
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.dance.smoothing import low_pass
+from dancetutor_cli.formats.retarget import Retargeting, RetargetTask
+from dancetutor_cli.run.errors import DancetutorError
+from dancetutor_cli.run.files import write_atomic
+
+ROOT = Path(__file__).resolve().parent.parent
+DATA, PAGE = ROOT / "tests" / "data" / "thesis_restaged.json", ROOT / "docs" / "physics.md"
+MARKS = ("<!-- written by tools/thesis_restaged.py -->", "<!-- end of what tools/thesis_restaged.py writes -->")
+SECONDS, START, TURN = 3.0, 1.0, 0.4  # of a clip that goes forward, and from where; then it goes backward
+WOBBLE = 4.0  # hertz: what of a distance changes faster wobbles
+LOOSE = (
+    5.0  # hertz: springs at which this ragdoll is as far from its input as the thesis's (mean 1 to 2, most 3 to 7 cm)
+)
+DRAWN = 60  # values of a curve that are kept
+Array = NDArray[np.float64]
+NEUTRAL = load_style("neutral")
+
+
+@dataclass(frozen=True)
+class Taken:
+    """One run. given, result : before and after; places : (f, j, 3) of both"""
+
+    given: Motion
+    result: RagdollResult
+
+    @property
+    def made(self) -> Motion:
+        """What the ragdoll made of it."""
+        return self.result.motion
+
+    def places(self, joint: str) -> tuple[Array, Array]:
+        """World paths (f, 3) of a joint before and after, metres."""
+        at = self.given.skeleton.index(joint)
+        paths = (world_transforms(m.skeleton, m.rotations, m.root)[0][:, at] for m in (self.given, self.made))
+        before, after = paths
+        return before, after
+
+    def apart(self, joint: str) -> Array:
+        """Centimetres (f,) between a joint before and after."""
+        before, after = self.places(joint)
+        return 100.0 * np.linalg.norm(after - before, axis=1)
+
+
+Figure = Callable[[Taken], float]
+
+
+def mean(joint: str) -> Figure:
+    return lambda run: float(run.apart(joint).mean())
+
+
+def most(joint: str) -> Figure:
+    return lambda run: float(run.apart(joint).max())
+
+
+def wobble(joint: str) -> Figure:
+    """Millimetres, root of the mean square, of what of its distance changes faster than `WOBBLE`."""
+
+    def of(run: Taken) -> float:
+        values = 10.0 * run.apart(joint)
+        return float(np.sqrt(np.mean((values - low_pass(values, run.given.fps, WOBBLE)) ** 2)))
+
+    return of
+
+
+def knee(run: Taken) -> Array:
+    """Degrees (f,) that the left knee is bent; negative: backward."""
+    bone = next(b for b in bones_of(run.made.skeleton) if b.name == "l_knee")
+    return np.degrees(bend_and_twist(bone, run.made.rotations[:, bone.joint])[:, 0])
+
+
+def forearm(run: Taken) -> Array:
+    """Degrees (f,) that the right hand is turned about the forearm away from the input."""
+    body = run.given.skeleton
+    at = body.index("r_radiocarpal")
+    turns = [world_transforms(m.skeleton, m.rotations, m.root)[1][:, at] for m in (run.given, run.made)]
+    along = body.offsets[at] / np.linalg.norm(body.offsets[at])
+    off = quat.multiply(quat.conjugate(turns[0]), turns[1])
+    twist = quat.swing_twist(off, along)[1]
+    return np.degrees(quat.to_vector(twist) @ along)
+
+
+def height(joint: str) -> Figure:
+    """Centimetres by which a joint is higher than in the input, on average."""
+
+    def of(run: Taken) -> float:
+        before, after = run.places(joint)
+        return float(100.0 * (after - before)[:, 1].mean())
+
+    return of
+
+
+def knees_bent(run: Taken) -> float:
+    """Degrees by which both knees are bent more than in the input, on average."""
+    bends = []
+    for bone in bones_of(run.given.skeleton):
+        if bone.name.endswith("knee"):
+            bends += [np.degrees(bend_and_twist(bone, m.rotations[:, bone.joint])[:, 0]) for m in (run.made, run.given)]
+    return float((bends[0] - bends[1] + bends[2] - bends[3]).mean() / 2)
+
+
+def lean(run: Taken) -> float:
+    """Degrees by which the line from hips to neck leans further ahead than in the input, on average."""
+    angles = []
+    for m in (run.made, run.given):
+        joints, world = world_transforms(m.skeleton, m.rotations, m.root)
+        up = joints[:, m.skeleton.index("vc4")] - joints[:, 0]
+        ahead = quat.rotate(world[:, 0], np.array([0.0, 0.0, 1.0])) * [1.0, 0.0, 1.0]
+        angles.append(np.arctan2(np.sum(up * ahead, axis=1) / np.linalg.norm(ahead, axis=1), up[:, 1]))
+    return float(np.degrees(angles[0] - angles[1]).mean())
+
+
+def nod(run: Taken) -> float:
+    """Degrees by which the head looks further up than in the input, on average."""
+    looks = []
+    for m in (run.made, run.given):
+        turns = world_transforms(m.skeleton, m.rotations, m.root)[1][:, m.skeleton.index("skullbase")]
+        looks.append(np.degrees(np.arcsin(quat.rotate(turns, np.array([0.0, 0.0, 1.0]))[:, 1])))
+    return float((looks[0] - looks[1]).mean())
+
+
+def slide(run: Taken) -> float:
+    """Median slide of feet by height and speed, millimetres."""
+    return float(np.median([1000.0 * one.slide for one in stands(run.made)] or [0.0]))
+
+
+def worst(which: int) -> Figure:
+    """Largest mean, deviation or distance of any point, centimetres."""
+    return lambda run: float(run.result.distances.worst[which])
+
+
+def sprung(style: Style, frequency: float, parts: tuple[str, ...] = PARTS) -> Style:
+    """The style with springs of that many hertz at some parts."""
+    return replace(style, springs=style.springs | {p: Spring((frequency,) * 3, (0.5,) * 3) for p in parts})
+
+
+def body(style: Style, **numbers: float) -> Style:
+    return replace(style, body=replace(style.body, **numbers))
+
+
+SOFTER = sprung(NEUTRAL, 20.0)  # which 60 steps a second hold
+STILL = body(sprung(NEUTRAL, LOOSE), gravity=0.0)
+FULL, OWN = Wishes(CORRECTIONS, own_legs=True), Wishes(own_legs=True)
+HEAVIER = {"arms": 10000.0, "hands": 10000.0, "head": 10000.0}
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A row. corrected : through the default corrections of `retarget`, else the ragdoll's own legs"""
+
+    words: str
+    style: Style
+    corrected: bool = False
+    source: str = ""
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A table: a title, what the thesis found, its rows, its columns with their decimals; curve : what is drawn."""
+
+    key: str
+    title: str
+    source: str
+    rows: tuple[Setting, ...]
+    columns: tuple[tuple[str, Figure, int], ...]
+    everywhere: tuple[str, Figure, int]
+    curve: tuple[str, Callable[[Taken], Array]]
+
+
+def experiments() -> tuple[Experiment, ...]:
+    """All tables, in the order of the thesis."""
+    knees_off = replace(NEUTRAL, disabled=("l_knee", "r_knee"), points=_soft_ankles())
+    bare = replace(body(NEUTRAL, stiffness=0.0), extra_points=False)
+    spine = tuple((f"{w} of vt10, {u}", f("vt10"), 2) for w, u, f in _SPINE)
+    heavier = replace(STILL, density=STILL.density | HEAVIER)
+    return (
+        Experiment(
+            "limits",
+            "5.1 Joint limits",
+            "with all points the knee is right without limits, too (5 degrees apart at one moment); without the "
+            "knees' points and limits it bends the wrong way, and each of its distances is twice as large",
+            (
+                Setting("all points, no limits", replace(NEUTRAL, limits=False)),
+                Setting("all points, limits", NEUTRAL),
+                Setting("no knee points, no limits", replace(knees_off, limits=False)),
+                Setting("no knee points, limits", knees_off),
+            ),
+            (
+                ("least bend of the knee, degrees", lambda r: float(knee(r).min()), 1),
+                ("mean of the knee, cm", mean("l_knee"), 2),
+                ("most, cm", most("l_knee"), 2),
+                ("mean of the ankle, cm", mean("l_talocrural"), 2),
+            ),
+            ("most of the knee, cm", most("l_knee"), 1),
+            ("bend of the left knee, degrees", knee),
+        ),
+        Experiment(
+            "stiffness",
+            "5.2 Extra points and joint stiffness",
+            "without extra points all distances of the spine are at least twice as large; stiffness takes away what "
+            "wobbling is left",
+            (
+                Setting("no stiffness, no extra points", bare),
+                Setting("no stiffness, extra points", body(NEUTRAL, stiffness=0.0)),
+                Setting("stiffness, no extra points", replace(body(NEUTRAL, stiffness=1.0), extra_points=False)),
+                Setting("stiffness, extra points", body(NEUTRAL, stiffness=1.0)),
+                Setting(
+                    "stiffness of vl5, vt10 and vt4 alone, extra points",
+                    replace(body(NEUTRAL, stiffness=0.0), stiffness={"vl5": 1.0, "vt10": 1.0, "vt4": 1.0}),
+                ),
+            ),
+            spine,
+            ("most of vt10, cm", most("vt10"), 2),
+            ("distance of vt10, cm", lambda r: r.apart("vt10")),
+        ),
+        Experiment(
+            "rotation",
+            "5.3 Extra points for rotation",
+            "without them the right hand turns between 20 and 90 degrees where it should stay at 40, and distances are "
+            "twice as large",
+            (Setting("no extra points", replace(NEUTRAL, extra_points=False)), Setting("extra points", NEUTRAL)),
+            (
+                ("mean turn off, degrees", lambda r: float(np.abs(forearm(r)).mean()), 1),
+                ("most, degrees", lambda r: float(np.abs(forearm(r)).max()), 1),
+                ("mean of the hand, cm", lambda r: _tip(r)[0], 2),
+                ("most, cm", lambda r: _tip(r)[1], 2),
+            ),
+            ("mean turn off, degrees", lambda r: float(np.abs(forearm(r)).mean()), 0),
+            ("turn of the right hand away from the input, degrees", forearm),
+        ),
+        Experiment(
+            "rates",
+            "5.4 Update rate and sample rate",
+            "at 60 steps and 30 samples a second shoulders and feet go up and down; distances of the left foot are at "
+            "least twice those at 1000 (170 on average) and 180",
+            (
+                Setting("60 steps, 30 samples, springs of 32 Hz", body(NEUTRAL, update_rate=60.0, sample_rate=30.0)),
+                Setting("60 steps, 30 samples", body(SOFTER, update_rate=60.0, sample_rate=30.0)),
+                Setting("60 steps, 180 samples", body(SOFTER, update_rate=60.0, sample_rate=180.0)),
+                Setting("240 steps, 30 samples", body(SOFTER, sample_rate=30.0)),
+                Setting("240 steps, 240 samples", SOFTER),
+                Setting("1000 steps, 180 samples", body(SOFTER, update_rate=1000.0, sample_rate=180.0)),
+            ),
+            (
+                ("mean of the foot, cm", mean("l_metatarsal"), 2),
+                ("most, cm", most("l_metatarsal"), 2),
+                ("wobble of the foot, mm", wobble("l_metatarsal"), 2),
+                ("wobble of the shoulder, mm", wobble("l_shoulder"), 2),
+            ),
+            ("most of the foot, cm", most("l_metatarsal"), 1),
+            ("distance of the left ball, cm", lambda r: r.apart("l_metatarsal")),
+        ),
+        Experiment(
+            "placement",
+            "6.1 One on one: End, Center and Hybrid Center",
+            "End: means 1 to 2, deviations 0.5 to 1, most 3 to 7 cm, root below 1; Center: most twice as far, feet 8 "
+            "on average and 15.5 at most; Hybrid: feet 1 and 6 again",
+            tuple(
+                Setting(f"{place}, {words}", replace(style, placement=place))
+                for words, style in ((f"{LOOSE:g} Hz", STILL), ("32 Hz", NEUTRAL))
+                for place in ("end", "center", "hybrid")
+            ),
+            (
+                ("largest mean, cm", worst(0), 2),
+                ("largest deviation, cm", worst(1), 2),
+                ("farthest, cm", worst(2), 2),
+                ("mean of the root, cm", mean("HumanoidRoot"), 2),
+                ("mean of the foot, cm", mean("l_metatarsal"), 2),
+                ("most, cm", most("l_metatarsal"), 2),
+            ),
+            ("largest mean, cm", worst(0), 2),
+            ("distance of the left ball, cm", lambda r: r.apart("l_metatarsal")),
+        ),
+        Experiment(
+            "forces",
+            "6.2 to 6.5 Springs, friction, density, gravity, points that are off",
+            "soft arms swing on; friction makes feet drag; heads and arms ten times as dense swing more and are late; "
+            "gravity of 3 and 4 m/s^2 pulls the body down while feet stay: knees and spine bend more; of 1 upward "
+            "lifts it; without the point on top of the head it looks up",
+            _forces(heavier),
+            (
+                ("pelvis up, cm", height("HumanoidRoot"), 1),
+                ("knees bent more, degrees", knees_bent, 1),
+                ("leans ahead, degrees", lean, 1),
+                ("looks up, degrees", nod, 1),
+                ("hands off, cm", mean("l_radiocarpal"), 1),
+                ("feet off, cm", mean("l_talocrural"), 1),
+                ("slide, mm", slide, 1),
+            ),
+            ("pelvis up, cm", height("HumanoidRoot"), 1),
+            ("height of the pelvis over the input's, cm", _sinks),
+        ),
+    )
+
+
+_SPINE = (("mean", "cm", mean), ("most", "cm", most), ("wobble", "mm", wobble))
+
+
+def _forces(heavier: Style) -> tuple[Setting, ...]:
+    """The rows of chapter 6's styles: the ragdoll's own legs, and some with the default corrections of `retarget`."""
+    rows = (
+        Setting("nothing", STILL),
+        Setting("arms at 2 Hz", sprung(STILL, 2.0, ("arms", "hands"))),
+        Setting("left wrist alone at 1 Hz", replace(STILL, points={"l_radiocarpal": Spring((1.0,) * 3, (0.5,) * 3)})),
+        Setting("friction 0, gravity 9.81", body(STILL, gravity=9.81, friction=0.0)),
+        Setting("friction 1, gravity 9.81", body(STILL, gravity=9.81, friction=1.0)),
+        Setting("friction 8, gravity 9.81", body(STILL, gravity=9.81, friction=8.0)),
+        Setting("density of head and arms 10,000", heavier),
+        Setting("the same, gravity 3", body(heavier, gravity=3.0)),
+        Setting("gravity 3", body(STILL, gravity=3.0)),
+        Setting("gravity 4", body(STILL, gravity=4.0)),
+        Setting("gravity 20", body(STILL, gravity=20.0)),
+        Setting("gravity 1 upward", body(STILL, gravity=-1.0)),
+        Setting("no point on top of the head, gravity 4", replace(body(STILL, gravity=4.0), disabled=("skull_tip",))),
+        Setting("gravity 20, springs of 32 Hz", body(NEUTRAL, gravity=20.0)),
+    )
+    reach = [row for row in rows if row.words in ("nothing", "gravity 4", "gravity 20", "the same, gravity 3")]
+    return (*rows, *(replace(row, words=f"{row.words}; corrected", corrected=True) for row in reach))
+
+
+def _sinks(run: Taken) -> Array:
+    before, after = run.places("HumanoidRoot")
+    return 100.0 * (after - before)[:, 1]
+
+
+def _soft_ankles() -> dict[str, Spring]:
+    """Springs that leave the plane of the legs free: ankles softer, so that knees go where limits let them."""
+    return {f"{side}_{name}": Spring((4.0,) * 3, (0.5,) * 3) for side in "lr" for name in ("talocrural", "metatarsal")}
+
+
+def _tip(run: Taken) -> tuple[float, float]:
+    """Mean and most, centimetres, of a place 5 cm beside the right wrist."""
+    at = run.given.skeleton.index("r_radiocarpal")
+    ends = []
+    for m in (run.given, run.made):
+        joints, world = world_transforms(m.skeleton, m.rotations, m.root)
+        ends.append(joints[:, at] + quat.rotate(world[:, at], np.array([0.0, 0.0, 0.05])))
+    apart = 100.0 * np.linalg.norm(ends[1] - ends[0], axis=1)
+    return float(apart.mean()), float(apart.max())
+
+
+def clip(path: Path) -> Motion:
+    """`SECONDS` of a capture on the dancer's body, forward and then backward; it begins, turns and ends slowly."""
+    motion = Retargeting(RetargetTask(path, "dancer", None, "neutral", Wishes())).source_motion
+    times = np.arange(round(2 * SECONDS * motion.fps) + 1) / motion.fps
+    speed = np.clip((SECONDS - times) / TURN, -1.0, 1.0) * np.clip(
+        np.minimum(times, 2 * SECONDS - times) / TURN, 0.0, 1.0
+    )
+    at = motion.times[0] + START + np.concatenate(([0.0], np.cumsum((speed[1:] + speed[:-1]) / 2) / motion.fps))
+    rotations, root = sample(motion, np.clip(at, motion.times[0], motion.times[-1]))
+    return replace(motion, times=times, rotations=rotations, root=root)
+
+
+def measured(experiment: Experiment, clips: dict[str, Motion]) -> list[dict[str, Any]]:
+    """Of each row its figures on the walk, the last column's on all clips, and the curve."""
+    out = []
+    walk = next(name for name in clips if "walk" in name)
+    for row in experiment.rows:
+        try:
+            wishes = FULL if row.corrected else OWN
+            runs = {name: Taken(motion, through_ragdoll(motion, row.style, wishes)) for name, motion in clips.items()}
+        except DancetutorError:  # the engine says that it fails
+            out.append({"words": row.words})
+            continue
+        curve = experiment.curve[1](runs[walk])
+        step = max(1, len(curve) // DRAWN)
+        out.append(
+            {
+                "words": row.words,
+                "figures": [round(figure(runs[walk]), digits + 1) for _, figure, digits in experiment.columns],
+                "everywhere": {
+                    n: round(experiment.everywhere[1](run), experiment.everywhere[2] + 1) for n, run in runs.items()
+                },
+                "curve": [round(float(x), 2) for x in curve[::step]],
+            }
+        )
+    return out
+
+
+def block(data: dict[str, Any]) -> str:
+    """The part of the page that is made of the measured figures, with its marks."""
+    out = [MARKS[0], ""]
+    for experiment in experiments():
+        rows = data[experiment.key]
+        names = next(list(row["everywhere"]) for row in rows if "everywhere" in row)
+        head = [
+            "",
+            *(name for name, _, _ in experiment.columns),
+            f"{experiment.everywhere[0]}: {' / '.join(map(_short, names))}",
+        ]
+        out += [f"### {experiment.title}", "", f"The thesis: {experiment.source}.", ""]
+        out += [_line(head), _line(["---"] * len(head))]
+        for row in rows:
+            if "figures" not in row:
+                out.append(_line([row["words"], "the simulation fails", *[""] * (len(head) - 2)]))
+                continue
+            values = [f"{x:.{digits}f}" for x, (_, _, digits) in zip(row["figures"], experiment.columns, strict=True)]
+            last = " / ".join(f"{row['everywhere'][n]:.{experiment.everywhere[2]}f}" for n in names)
+            out.append(_line([row["words"], *values, last]))
+        out += ["", f"![{experiment.curve[0]}, walk](physics-{experiment.key}.svg)", ""]
+    return "\n".join([*out, MARKS[1]])
+
+
+def _short(name: str) -> str:
+    return next((word for word in ("walk", "jumps", "dab", "jacks") if word in name), name)
+
+
+def _line(cells: list[str]) -> str:
+    return "| " + " | ".join(cells) + " |"
+
+
+def _as_text(data: dict[str, Any]) -> str:
+    """The figures as JSON, a line for each row."""
+    rows = (f'"{key}": [\n' + ",\n".join(map(json.dumps, value)) + "\n]" for key, value in data.items())
+    return "{\n" + ",\n".join(rows) + "\n}\n"
+
+
+def pictures(data: dict[str, Any]) -> dict[str, str]:
+    """The pictures of the page, by file name."""
+    return {
+        f"physics-{e.key}.svg": picture(
+            e.curve[0], 2 * SECONDS, {r["words"]: r["curve"] for r in data[e.key] if "curve" in r}
+        )
+        for e in experiments()
+    }
+
+
+def page_with(text: str, new: str) -> str:
+    """The page with the part between the marks replaced."""
+    before, rest = text.split(MARKS[0])
+    return before + new + rest.split(MARKS[1])[1]
+
+
+def main() -> None:
+    """The command line."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument(
+        "folder", type=Path, nargs="?", help="without it page and pictures are made of the figures there are"
+    )
+    parser.add_argument("--only", default="", help="write nothing, print one table")
+    options = parser.parse_args()
+    if options.folder is None:
+        data = json.loads(DATA.read_text())
+    else:
+        captures = sorted(options.folder.glob("*.bvh"), key=lambda path: "walk" not in path.stem)
+        clips = {path.stem: clip(path) for path in captures}
+        data = {}
+        for experiment in experiments():
+            if options.only in experiment.key:
+                data[experiment.key] = measured(experiment, clips)
+                for row in data[experiment.key]:
+                    print(experiment.key, *list(row.values())[:3], flush=True)
+    if options.only:
+        return
+    write_atomic(DATA, _as_text(data).encode())
+    for name, text in pictures(data).items():
+        write_atomic(PAGE.parent / name, text.encode())
+    write_atomic(PAGE, page_with(PAGE.read_text(encoding="utf-8"), block(data)).encode())
+
+
+if __name__ == "__main__":
+    main()
