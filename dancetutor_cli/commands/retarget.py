@@ -36,7 +36,7 @@ class RetargetOptions:
     plot: Path | None
     push: tuple[str, ...]
     trip: tuple[float, ...]
-    beside: bool
+    with_input: bool
 
 
 @click.command(cls=GroupedCommand)
@@ -62,7 +62,7 @@ class RetargetOptions:
 @report_option("Measure the motion, its faults before and after, and how far the ragdoll was from it.")
 @click.option("--plot", type=_FILE, help="Draw what is measured over time: a .svg or .png file.")
 @click.option(
-    "--beside",
+    "--with-input",
     is_flag=True,
     help="In a film the input is to the left; on the output each point's distance from it is drawn.",
 )
@@ -77,8 +77,8 @@ def command(file: Path, wanted: RetargetOptions) -> None:
     from dancetutor_cli.formats.retarget import Retargeting, RetargetTask
 
     check_file(wanted.output, SUFFIXES)
-    if wanted.beside and wanted.output.suffix.lower() != ".mp4":
-        raise UsageError(f"--beside shows two people in a film: {wanted.output} must end in .mp4")
+    if wanted.with_input and wanted.output.suffix.lower() != ".mp4":
+        raise UsageError(f"--with-input shows two people in a film: {wanted.output} must end in .mp4")
     if wanted.plot is not None:
         check_file(wanted.plot, (".svg", ".png"))
     if wanted.report_to is not None and wanted.report_to != TABLE:
@@ -86,7 +86,7 @@ def command(file: Path, wanted: RetargetOptions) -> None:
     wishes = replace(wishes_of(wanted.push, wanted.trip), corrections=corrections_of(wanted.correct), own_legs=True)
     task = RetargetTask(file, wanted.character, wanted.animation, wanted.style or "neutral", wishes)
     work = Retargeting(task)
-    words = _written(work, wanted.output, wanted.beside)
+    words = _written(work, wanted.output, wanted.with_input)
     for note in work.ragdoll_result.motion.notes:
         click.echo(f"warning: {note}", err=True)
     click.echo(f"{wanted.output}: {words}")
@@ -106,7 +106,7 @@ def corrections_of(text: str) -> tuple[str, ...]:
     return tuple(word for word in _CORRECTIONS if word in words)
 
 
-def _written(work: Retargeting, output: Path, beside: bool) -> str:
+def _written(work: Retargeting, output: Path, with_input: bool) -> str:
     from dancetutor_cli.dance.physics.style import engine
 
     engine()
@@ -116,7 +116,7 @@ def _written(work: Retargeting, output: Path, beside: bool) -> str:
     if suffix == ".mp4":
         from dancetutor_cli.film.work.motion_film import Comparison, film
 
-        compared = Comparison(work.given, *work.point_paths()) if beside else None
+        compared = Comparison(work.given, *work.point_paths()) if with_input else None
         return f"{film(output, work.character, motion, compared)} frames, {seconds:.1f} s"
     if suffix == ".glb":
         from dancetutor_cli.formats.glb import write_glb

@@ -20,6 +20,7 @@ from dancetutor_cli.dance.physics.hair import add_hair
 from dancetutor_cli.dance.physics.pipeline import Tuning, through_ragdoll, tuned
 from dancetutor_cli.dance.physics.ragdoll import bones_of, place_points, points_of
 from dancetutor_cli.dance.physics.style import NEUTRAL, load_style
+from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.formats.captured import of_motion, read_captured
@@ -144,7 +145,19 @@ class Retargeting:
         curves = {name: (t, v) for name, (t, v) in whole.curves.items() if len(v) and np.isfinite(v).any()}
         whole = replace(whole, figures=(*whole.figures, *faults), curves=curves)
         plain = not set(self.task.wishes.corrections) - {"limits"}
-        return with_distances(whole, passed.distances, self.task.style if plain else None)
+        whole = with_distances(whole, passed.distances, self.task.style if plain else None)
+        return replace(whole, curves=whole.curves | self._point_curves())
+
+    def _point_curves(self) -> dict[str, tuple[Array, Array]]:
+        """Over the keys, of input and output (f, 2): speed of each retargeting point, and how far bones are turned."""
+        names, *paths = self.point_paths()
+        motions, times = (self.source_motion, self.ragdoll_result.motion), self.source_motion.times
+        speeds = [100.0 * np.linalg.norm(np.gradient(path, times, axis=0), axis=2) for path in paths]
+        out = {f"speed of {name}, cm/s": np.stack([s[:, k] for s in speeds], axis=1) for k, name in enumerate(names)}
+        for bone in bones_of(self.body):
+            turns = [np.linalg.norm(quat.to_vector(m.rotations[:, bone.joint]), axis=1) for m in motions]
+            out[f"angle of {bone.name}, degrees"] = np.degrees(np.stack(turns, axis=1))
+        return {name: (times, values) for name, values in out.items()}
 
 
 def tuning_of(body: Skeleton) -> Tuning:

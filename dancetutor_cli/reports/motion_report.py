@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,7 +83,7 @@ def as_json(report: MotionReport) -> dict[str, Any]:
 
 Array = NDArray[np.float64]
 WIDTH, PANEL, LEFT, TOP, GAP = 1200, 200, 70, 30, 50  # pixels
-INK, GRID, LINE = "#222222", "#dddddd", "#3060c0"
+INK, GRID, LINE, INPUT = "#222222", "#dddddd", "#3060c0", "#999999"
 
 
 def write_plot(path: Path, report: MotionReport) -> None:
@@ -96,11 +96,30 @@ def write_plot(path: Path, report: MotionReport) -> None:
         raise UsageError(f"{path}: a plot's name must end in .svg or .png")
 
 
-def _panels(report: MotionReport) -> Iterator[tuple[str, float, Array, tuple[float, float, float, float], bool]]:
-    """(title, y of the top, points (n, 2) in pixels, (t0, t1, low, high), whether dots are drawn) of each curve."""
+class _Panel(NamedTuple):
+    """One curve's place. lines : (n, 2) pixels each, an input's before its output's; ends : t0, t1, low, high"""
+
+    title: str
+    top: float
+    lines: list[Array]
+    ends: tuple[float, float, float, float]
+
+    @property
+    def dots(self) -> bool:
+        """Whether its values stand alone."""
+        return "contact" in self.title
+
+    @property
+    def colours(self) -> tuple[str, ...]:
+        """Of its lines."""
+        return (LINE,) if len(self.lines) == 1 else (INPUT, LINE)
+
+
+def _panels(report: MotionReport) -> Iterator[_Panel]:
     for k, (title, (times, values)) in enumerate(report.curves.items()):
-        good = np.isfinite(values)
-        t, v = times[good], values[good]
+        columns = values.reshape(len(times), -1)
+        good = np.isfinite(columns).all(axis=1)
+        t, v = times[good], columns[good]
         if not len(t):
             continue
         low, high = float(v.min()), float(v.max())
@@ -109,24 +128,27 @@ def _panels(report: MotionReport) -> Iterator[tuple[str, float, Array, tuple[flo
         top = TOP + k * (PANEL + GAP)
         x = LEFT + (t - first) / (last - first) * (WIDTH - LEFT - 20)
         y = top + PANEL * (1.0 - (v - low) / (high - low))
-        yield title, top, np.column_stack((x, y)), (first, last, low, high), "contact" in title
+        lines = [np.column_stack((x, column)) for column in y.T]
+        yield _Panel(title, top, lines, (first, last, low, high))
 
 
 def _svg(report: MotionReport) -> str:
     height = TOP + len(report.curves) * (PANEL + GAP)
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{height}" font-family="sans-serif">']
     out.append('<rect width="100%" height="100%" fill="white"/>')
-    for title, top, points, (first, last, low, high), dots in _panels(report):
+    for panel in _panels(report):
+        top = panel.top
         out.append(
             f'<rect x="{LEFT}" y="{top}" width="{WIDTH - LEFT - 20}" height="{PANEL}" fill="none" stroke="{GRID}"/>'
         )
-        for x, y, text in _labels(title, top, first, last, low, high):
+        for x, y, text in _labels(panel):
             out.append(f'<text x="{x}" y="{y}" font-size="12" fill="{INK}">{text}</text>')
-        if dots:
-            out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="1.6" fill="{LINE}"/>' for x, y in points]
-        else:
-            line = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
-            out.append(f'<polyline points="{line}" fill="none" stroke="{LINE}" stroke-width="0.8"/>')
+        for points, colour in zip(panel.lines, panel.colours, strict=True):
+            if panel.dots:
+                out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="1.6" fill="{colour}"/>' for x, y in points]
+            else:
+                line = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+                out.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="0.8"/>')
     return "\n".join([*out, "</svg>", ""])
 
 
@@ -135,21 +157,23 @@ def _png(report: MotionReport) -> bytes:
 
     image = Image.new("RGB", (WIDTH, TOP + len(report.curves) * (PANEL + GAP)), "white")
     draw = ImageDraw.Draw(image)
-    for title, top, points, (first, last, low, high), dots in _panels(report):
+    for panel in _panels(report):
+        top = panel.top
         draw.rectangle((LEFT, top, WIDTH - 20, top + PANEL), outline=GRID)
-        for x, y, text in _labels(title, top, first, last, low, high):
+        for x, y, text in _labels(panel):
             draw.text((x, y - 11), text, fill=INK)
-        if dots:
-            for x, y in points:
-                draw.ellipse((x - 1.6, y - 1.6, x + 1.6, y + 1.6), fill=LINE)
-        else:
-            draw.line([(float(x), float(y)) for x, y in points], fill=LINE)
+        for points, colour in zip(panel.lines, panel.colours, strict=True):
+            if panel.dots:
+                for x, y in points:
+                    draw.ellipse((x - 1.6, y - 1.6, x + 1.6, y + 1.6), fill=colour)
+            else:
+                draw.line([(float(x), float(y)) for x, y in points], fill=colour)
     return picture_bytes(np.asarray(image))
 
 
-def _labels(
-    title: str, top: float, first: float, last: float, low: float, high: float
-) -> list[tuple[float, float, str]]:
+def _labels(panel: _Panel) -> list[tuple[float, float, str]]:
+    top, (first, last, low, high) = panel.top, panel.ends
+    title = panel.title + (" (grey: input)" if len(panel.lines) > 1 else "")
     return [
         (LEFT, top - 6, title),
         (8, top + 12, f"{high:.4g}"),

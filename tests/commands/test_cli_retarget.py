@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from dancetutor_cli.commands.retarget import _CORRECTIONS, command
 from dancetutor_cli.dance.physics.pipeline import CORRECTIONS
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.film.media.encoder import Encoding, join
+from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.film.work import motion_film
 from dancetutor_cli.formats.bvh import read_bvh, write_bvh
 from dancetutor_cli.formats.npz import read_npz, write_npz
@@ -144,3 +146,43 @@ def test_the_film_has_all_its_frames(bvh: Path, tmp_path: Path, monkeypatch: pyt
     assert struct.unpack(">I", data[at + 12 : at + 16]) == (31,)
     ((parts, output),) = joined
     assert output not in parts, "written over while it was read: a film of one frame"
+
+
+def test_input_and_output_are_side_by_side_with_distances_where_they_are(
+    bvh: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    line = said(bvh, "-o", tmp_path / "a.npz", "--with-input")
+    assert "--with-input" in line and "must end in .mp4" in line
+    shown = []
+    given = motion_film.encode_segment
+
+    def encoding(frames: Iterable[Frame], *rest: object) -> None:
+        kept = list(frames)
+        shown.extend(kept)
+        given(iter(kept), *rest)
+
+    monkeypatch.setattr(motion_film, "SIZE", (160, 160))
+    monkeypatch.setattr(motion_film, "FAR", 1.0)
+    monkeypatch.setattr(motion_film, "encode_segment", encoding)
+    soft = tmp_path / "soft.yaml"
+    soft.write_text("points: {l_radiocarpal: {frequency: 1, damping: 0.5}}\n")
+    run(bvh, "-o", tmp_path / "a.mp4", "--with-input", "--style", soft, "--correct", "none")
+    assert {frame.shape for frame in shown} == {(160, 320, 3)} and len(shown) == 31
+    far = motion_film.FAR_COLOUR
+
+    def red(frame: Frame) -> np.ndarray:
+        return np.argwhere(np.abs(frame[:, :].astype(int) - far).sum(axis=2) < 60)
+
+    spots = red(shown[20])
+    assert len(spots) > 10 and (spots[:, 1] >= 160).all(), "the far wrist is marked, on the output alone"
+    assert not len(red(shown[20][:, :160]))
+
+
+def test_the_plot_has_speed_and_angle_of_input_and_output(bvh: Path, tmp_path: Path) -> None:
+    plot = tmp_path / "r.svg"
+    run(bvh, "-o", tmp_path / "a.npz", "--plot", plot, "--style", "lazy")
+    drawn = plot.read_text()
+    for title in ("speed of l_radiocarpal, cm/s (grey: input)", "angle of l_elbow, degrees (grey: input)"):
+        panel = drawn[drawn.index(title) :].split("<rect")[0]
+        grey, blue = (line.split('"')[1] for line in panel.split("<polyline points=")[1:3])
+        assert grey != blue and len(grey.split()) == len(blue.split()) == 61

@@ -11,7 +11,7 @@ from physics_phrase import phrase
 
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics import style as backend
-from dancetutor_cli.dance.physics.pipeline import RagdollResult, through_ragdoll
+from dancetutor_cli.dance.physics.pipeline import RagdollResult, Wishes, through_ragdoll
 from dancetutor_cli.dance.physics.ragdoll import bones_of, points_of, pose_of, turns_of
 from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN
 from dancetutor_cli.dance.physics.style import PARTS, Spring, Style, load_style
@@ -187,3 +187,34 @@ def _simulated(motion: Motion, style: Style):
     at = np.arange(0.0, motion.times[-1], 1 / style.body.update_rate)
     nearest = np.minimum(np.round(at * motion.fps).astype(int), len(motion.times) - 1)
     return ragdoll, simulate(ragdoll, motion.rotations[nearest], motion.root[nearest], 0.0)[0]
+
+
+def test_springs_of_one_point_and_stiffness_of_one_joint(given: Motion, neutral: RagdollResult) -> None:
+    soft = replace(NEUTRAL, points={"l_radiocarpal": Spring((1.5,) * 3, (0.5,) * 3)})
+    far = through_ragdoll(given, soft).distances.table()
+    near = neutral.distances.table()
+    assert far["l_radiocarpal"][2] > 5 * near["l_radiocarpal"][2]
+    assert far["r_radiocarpal"][2] < 1.2 * near["r_radiocarpal"][2], "no other point of the part"
+    stiff = through_ragdoll(given, replace(NEUTRAL, stiffness={"l_elbow": 20.0})).distances.table()
+    assert stiff["l_radiocarpal"][2] > 2 * near["l_radiocarpal"][2] and stiff["r_radiocarpal"] == pytest.approx(
+        near["r_radiocarpal"], abs=0.05
+    )
+    for wrong in ({"points": {"l_wrst": soft.points["l_radiocarpal"]}}, {"stiffness": {"l_elbw": 1.0}}):
+        with pytest.raises(UsageError, match=r"there is no (retargeting point|joint with stiffness) 'l_(wrst|elbw)'"):
+            through_ragdoll(given, replace(NEUTRAL, **wrong))
+
+
+def test_own_legs_show_what_gravity_does_and_exact_feet_do_not(given: Motion) -> None:
+    soft = changed(NEUTRAL, frequency=5.0)
+
+    def sunk(own: bool, gravity: float) -> float:
+        style = replace(soft, body=replace(soft.body, gravity=gravity))
+        made = through_ragdoll(given, style, Wishes(own_legs=own)).motion
+        return 100.0 * float((given.root - made.root)[:, 1].mean())
+
+    assert sunk(True, 20.0) - sunk(True, 0.0) > 1.5, "20 / (2 pi 5)^2 is 2 cm"
+    ankles = [
+        world_transforms(given.skeleton, made.rotations, made.root)[0][:, given.skeleton.index("l_talocrural")]
+        for made in (given, through_ragdoll(given, soft, Wishes()).motion)
+    ]
+    assert np.abs(ankles[0] - ankles[1]).max() < 1e-6

@@ -44,7 +44,7 @@ class MotionReport:
 
     contact_errors : (c,) milliseconds, late positive, nan for a miss
     notes : what a reader should know: pivots on purpose, what was exempt
-    curves : over the song, for the plot: name -> (seconds (n,), values (n,))
+    curves : over the song, for the plot: name -> (seconds (n,), values (n,) or, of input and output, (n, 2))
     distances : of a ragdoll by retargeting point: minimum, maximum, mean and standard deviation, centimetres
     """
 

@@ -60,26 +60,26 @@ class _Floor:
     centre: tuple[float, float]
 
 
-def film(path: Path, character: Character, motion: Motion, beside: Comparison | None = None) -> int:
+def film(path: Path, character: Character, motion: Motion, comparison: Comparison | None = None) -> int:
     """Write an .mp4 and return its frames; nothing is left if that fails. Raises FileError or UnavailableError.
 
-    beside : what to show to the left of it, and which distances to draw on it; None shows her alone
+    comparison : what to show to the left of it, and which distances to draw on it; None shows her alone
     """
     count = max(1, int((motion.times[-1] - motion.times[0]) * FPS) + 1)
-    size = SIZE if beside is None else (2 * SIZE[0], SIZE[1])
+    size = SIZE if comparison is None else (2 * SIZE[0], SIZE[1])
     encoding = Encoding("mp4", size, FPS, "good")
     with work_folder(path) as folder:
         part, whole = folder / f"part{encoding.format.segment}", folder / "film.mp4"
-        encode_segment(frames(character, motion, count, beside), encoding, part)
+        encode_segment(frames(character, motion, count, comparison), encoding, part)
         join([part], encoding, None, folder, whole)
         whole.replace(path)
     return count
 
 
-def frames(character: Character, motion: Motion, count: int, beside: Comparison | None = None) -> Iterator[Frame]:
+def frames(character: Character, motion: Motion, count: int, comparison: Comparison | None = None) -> Iterator[Frame]:
     """The first pictures of the film."""
     times = motion.times[0] + np.arange(count) / FPS
-    poses = [sample(one, times) for one in ((motion,) if beside is None else (beside.given, motion))]
+    poses = [sample(one, times) for one in ((motion,) if comparison is None else (comparison.given, motion))]
     scene = Scene(character, _floor(np.concatenate([root for _, root in poses])))
     draws = [renderer.create(scene, SIZE, "good", "cpu") for _ in poses]
     slow = low_pass(poses[0][1], FPS, ALONG)
@@ -92,16 +92,16 @@ def frames(character: Character, motion: Motion, count: int, beside: Comparison 
             draw.frame(FrameState(own[k], camera, nobody, nobody.astype(np.int64)))
             for draw, own in zip(draws, joints, strict=True)
         ]
-        yield shown[0] if beside is None else _compared(shown, camera, beside, motion.times, times[k : k + 1])
+        yield shown[0] if comparison is None else _compared(shown, camera, comparison, motion.times, times[k : k + 1])
     for draw in draws:
         draw.close()
 
 
-def _compared(shown: list[Frame], camera: Camera, beside: Comparison, keys: Array, at: Array) -> Frame:
+def _compared(shown: list[Frame], camera: Camera, comparison: Comparison, keys: Array, at: Array) -> Frame:
     """Input and output in one picture; on the output each point's way from where the input has it, and how far."""
     image = Image.fromarray(np.concatenate(shown, axis=1))
     draw, letters = ImageDraw.Draw(image), font(None, 20)
-    before, after = (sample_path(points, keys, at)[0] for points in (beside.before, beside.after))
+    before, after = (sample_path(points, keys, at)[0] for points in (comparison.before, comparison.after))
     apart = 100.0 * np.linalg.norm(after - before, axis=1)
     here, there = (camera.project(points, SIZE)[:, :2] + [SIZE[0], 0] for points in (before, after))
     for k in np.argsort(apart).tolist():
@@ -111,7 +111,7 @@ def _compared(shown: list[Frame], camera: Camera, beside: Comparison, keys: Arra
         draw.line((*map(float, here[k]), float(x), float(y)), fill=colour, width=3)
         draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=colour, outline=PAPER)
     far = int(np.argmax(apart))
-    words = f"output: {beside.names[far]} {apart[far]:.1f} cm from the input, mean {apart.mean():.1f} cm"
+    words = f"output: {comparison.names[far]} {apart[far]:.1f} cm from the input, mean {apart.mean():.1f} cm"
     for x, text in ((16, "input"), (SIZE[0] + 16, words)):
         draw.text((x, 12), text, fill=INK, font=letters, stroke_width=2, stroke_fill=PAPER)
     return np.asarray(image)
