@@ -162,7 +162,7 @@ def test_input_and_output_are_side_by_side_with_distances_where_they_are(
         given(iter(kept), *rest)
 
     monkeypatch.setattr(motion_film, "SIZE", (160, 160))
-    monkeypatch.setattr(motion_film, "FAR", 1.0)
+    monkeypatch.setattr(motion_film, "FAR", 0.6)
     monkeypatch.setattr(motion_film, "encode_segment", encoding)
     soft = tmp_path / "soft.yaml"
     soft.write_text("points: {l_radiocarpal: {frequency: 1, damping: 0.5}}\n")
@@ -173,9 +173,9 @@ def test_input_and_output_are_side_by_side_with_distances_where_they_are(
     def red(frame: Frame) -> np.ndarray:
         return np.argwhere(np.abs(frame[:, :].astype(int) - far).sum(axis=2) < 60)
 
-    spots = red(shown[20])
+    spots = max((red(frame) for frame in shown), key=len)
     assert len(spots) > 10 and (spots[:, 1] >= 160).all(), "the far wrist is marked, on the output alone"
-    assert not len(red(shown[20][:, :160]))
+    assert np.ptp(spots, axis=0).max() < 30, "and nothing else"
 
 
 def test_the_plot_has_speed_and_angle_of_input_and_output(bvh: Path, tmp_path: Path) -> None:
