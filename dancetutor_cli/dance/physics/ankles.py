@@ -49,24 +49,32 @@ def eased_ankles(
 
 
 def _swivelled(skeleton: Skeleton, poses: Poses, feet: AnkleTracks, times: Array) -> Poses:
-    """Poses whose legs have swivelled by what ankles would be twisted too far."""
+    """Poses whose legs have swivelled by what ankles would be twisted too far, as far as hips let them."""
     rotations = poses[0].copy()
     places, world = world_transforms(skeleton, *poses)
     for side in "lr":
         hip, ankle = (skeleton.index(f"{side}_{name}") for name in ("hip", "talocrural"))
-        twist = quat.swing_twist(rotations[:, ankle], quat.UP)[1]
-        degrees = np.degrees(2.0 * np.arctan2(twist[:, 2], twist[:, 0]))
-        degrees = (degrees + 180.0) % 360.0 - 180.0
-        most = LIMITS["l_talocrural"].twist[1] - MARGIN
-        if not (np.abs(degrees) > most + MARGIN).any():
+        over = _twisted(rotations[:, ankle])
+        if not over.any():
             continue
-        by = upper_envelope(times, degrees - most, SWIVELS) - upper_envelope(times, -degrees - most, SWIVELS)
+        by = both_envelopes(times, over[:, None], SWIVELS)[:, 0]
         axis = places[:, hip] - places[:, ankle]
         axis = axis / np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), 1e-9)
-        thigh = quat.multiply(quat.from_axis_angle(axis, np.radians(by)), world[:, hip])
-        parent = world[:, skeleton.parents[hip]]
-        rotations[:, hip] = quat.multiply(quat.conjugate(parent), thigh)
+        parent = quat.conjugate(world[:, skeleton.parents[hip]])
+        for _ in range(ROUNDS):
+            thigh = quat.multiply(quat.from_axis_angle(axis, by), world[:, hip])
+            rotations[:, hip] = quat.multiply(parent, thigh)
+            past = np.radians(np.maximum(beyond(skeleton, f"{side}_hip", rotations[:, hip]), 0.0))
+            less = np.minimum(upper_envelope(times, past, SWIVELS), np.abs(by))
+            by = by - np.sign(by) * less
     return repinned(skeleton, (rotations, poses[1]), feet)
+
+
+def _twisted(turns: Array) -> Array:
+    """Radians (f,) that ankles, turned locally by (f, 4), are twisted past their limit; 0 within."""
+    twist = quat.to_vector(quat.swing_twist(turns, quat.UP)[1])[:, 1]
+    most = np.radians(LIMITS["l_talocrural"].twist[1] - MARGIN)
+    return np.asarray(np.sign(twist) * np.maximum(np.abs(twist) - most, 0.0))
 
 
 def _turned(
@@ -119,7 +127,8 @@ def _leaning(
         if not (beyond(skeleton, name, rotations[:, ankle]) > 0.0).any():
             continue
         wanted = quat.multiply(world[:, skeleton.parents[ankle]], within(skeleton, name, rotations[:, ankle], MARGIN))
-        back = quat.to_vector(quat.multiply(wanted, quat.conjugate(turns[:, side]))) * [1.0, 0.0, 1.0]
+        back = quat.to_vector(quat.multiply(wanted, quat.conjugate(turns[:, side])))
+        back[:, 1] = -_twisted(rotations[:, ankle])
         turn = quat.multiply(quat.from_vector(both_envelopes(times, back, SWIVELS)), turns[:, side])
         ball = Sole(skeleton, side).ball
         places[:, side] += quat.rotate(turns[:, side], ball) - quat.rotate(turn, ball)

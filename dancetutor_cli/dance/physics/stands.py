@@ -134,6 +134,8 @@ class _Foot:
         heading, own = _heading_and_pitch(turn[part])
         if np.ptp(heading[stand.rests]) < TURNS:
             heading = np.full(len(heading), float(np.median(heading[stand.rests])))
+        else:
+            heading = self._pivoted(heading, stand)
         pitch = own.copy()
         for first, end in stand.ankle:
             median = float(np.median(own[first:end]))
@@ -145,6 +147,15 @@ class _Foot:
         if low:
             pitch = np.where(rigid, pitch, np.clip(pitch, 0.0, STEEPEST))
         return _level_turns(heading, pitch), rigid & (pitch == 0.0)
+
+    def _pivoted(self, heading: Array, stand: _Stand) -> Array:
+        """Headings (n,) of a foot that pivots: one in each stand of the ankle, but where it is turned far from it."""
+        wanted, near = heading.copy(), np.zeros(len(heading), dtype=bool)
+        for first, end in stand.ankle:
+            wanted[first:end] = np.median(heading[first:end])
+            near[first:end] = np.abs(heading[first:end] - wanted[first:end]) < TURNS / 2
+        times = self.times[stand.first : stand.end]
+        return np.asarray(heading + _faded(times, (wanted - heading)[:, None], near)[:, 0])
 
     def _stretch(self, part: slice, ball: Array, turn: Array) -> Array:
         """Metres (n,) from the hip to the ankle of a foot whose ball is in places (n, 3)."""
