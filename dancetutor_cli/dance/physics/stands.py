@@ -121,7 +121,8 @@ class _Foot:
             fixed[part], on_floor[part], heel_down[part] = True, low, low & flat
         ball = ball + _faded(self.times, moved, fixed)
         turn = quat.multiply(quat.from_vector(_faded(self.times, turned, fixed)), turn)
-        share = np.where(fixed, 1.0, NEARLY * _faded(self.times, fixed[:, None].astype(np.float64), fixed)[:, 0])
+        share = NEARLY * _faded(self.times, fixed[:, None].astype(np.float64), fixed)[:, 0]
+        share[on_floor] = 1.0
         return ball - quat.rotate(turn, self.sole.ball), turn, heel_down, on_floor, share
 
     def _turns(self, turn: Array, stand: _Stand, ball: Array, low: bool) -> tuple[Array, Flags]:
@@ -139,7 +140,7 @@ class _Foot:
         pitch = own.copy()
         for first, end in stand.ankle:
             median = float(np.median(own[first:end]))
-            pitch[first:end] = 0.0 if abs(median) < FLAT else median
+            pitch[first:end] = 0.0 if abs(median) < FLAT or (low and median < 0.0) else median
         free = _heading_and_pitch(self.free[part])[1]
         lengths = [self._stretch(part, ball, _level_turns(heading, x)) for x in (pitch, free)]
         rigid = stand.in_ankle & ((lengths[0] < self.reach) | (lengths[0] < lengths[1]))
