@@ -3,7 +3,7 @@
 
 usage: tools/capture_table.py FOLDER [--made 46] [--seed 1] [--character NAME|FILE] [--only WORD]
 Clips that are made are sections of those in FOLDER, slower or faster, of people with other limbs, arms nearer to the
-body, joints that tremble slowly, on floors that are not level, one of four with a fault of tools/spoil_bvh.py. Columns
+body, joints that tremble slowly, on floors that are not level, one in four with a fault of tools/spoil_bvh.py. Columns
 are what the report says of the input and of the output: slide by height and speed (median and worst, mm), frames past
 limits, percent of frames with a forearm in the trunk, and knee acceleration near straight (degrees/s^2).
 """

@@ -185,7 +185,10 @@ class Setting:
 
 @dataclass(frozen=True)
 class Experiment:
-    """A table: a title, what the thesis found, its rows, its columns with their decimals; curve : what is drawn."""
+    """A table: a title, what the thesis found, its rows, its columns with their decimals.
+
+    curve : what is drawn of the rows `drawn`; () are all
+    """
 
     key: str
     title: str
@@ -194,6 +197,7 @@ class Experiment:
     columns: tuple[tuple[str, Figure, int], ...]
     everywhere: tuple[str, Figure, int]
     curve: tuple[str, Callable[[Taken], Array]]
+    drawn: tuple[str, ...] = ()
 
 
 def experiments() -> tuple[Experiment, ...]:
@@ -318,6 +322,7 @@ def experiments() -> tuple[Experiment, ...]:
             ),
             ("pelvis up, cm", height("HumanoidRoot"), 1),
             ("height of the pelvis over the input's, cm", _sinks),
+            ("nothing", "gravity 4", "gravity 20", "gravity 1 upward", "density of head and arms 10,000"),
         ),
     )
 
@@ -446,12 +451,13 @@ def _as_text(data: dict[str, Any]) -> str:
 
 def pictures(data: dict[str, Any]) -> dict[str, str]:
     """The pictures of the page, by file name."""
-    return {
-        f"physics-{e.key}.svg": picture(
-            e.curve[0], 2 * SECONDS, {r["words"]: r["curve"] for r in data[e.key] if "curve" in r}
-        )
-        for e in experiments()
-    }
+    return {f"physics-{e.key}.svg": picture(e.curve[0], 2 * SECONDS, _curves(e, data[e.key])) for e in experiments()}
+
+
+def _curves(experiment: Experiment, rows: list[dict[str, Any]]) -> dict[str, list[float]]:
+    """The curves that are drawn, by row."""
+    drawn = experiment.drawn or tuple(row["words"] for row in rows)
+    return {row["words"]: row["curve"] for row in rows if "curve" in row and row["words"] in drawn}
 
 
 def page_with(text: str, new: str) -> str:

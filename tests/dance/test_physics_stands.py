@@ -13,6 +13,7 @@ from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, Wishes
 from dancetutor_cli.dance.physics.plants import Plants
 from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
 from dancetutor_cli.dance.physics.stands import stilled
+from dancetutor_cli.dance.quality.figures import body_of
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.limbs import arm_in_torso
@@ -127,6 +128,8 @@ def test_captures_stand_as_seen_from_outside(shared_data: Path, clip: str) -> No
     assert max(past.values()) < 1.0, past
     joints = world_transforms(motion.skeleton, motion.rotations, motion.root)[0]
     assert max(arm_in_torso(motion.skeleton, joints, side).max() for side in "lr") < 0.005
+    soles = body_of(motion).soles[..., 1]
+    assert soles.min() > -0.006, "no part of a sole is below the floor"
     knees = work.report()["knee acceleration near straight"]
     assert knees.met is not False, knees
 
