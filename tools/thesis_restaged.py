@@ -19,16 +19,28 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from thesis_figures import (
+    Figure,
+    Taken,
+    forearm,
+    height,
+    knee,
+    knees_bent,
+    lean,
+    mean,
+    most,
+    nod,
+    sinks,
+    slide,
+    tip,
+    wobble,
+    worst,
+)
 from thesis_pictures import picture
 
 from dancetutor_cli.dance.motion import Motion, sample
-from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, RagdollResult, Wishes, through_ragdoll
-from dancetutor_cli.dance.physics.ragdoll import bend_and_twist, bones_of
+from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, Wishes, through_ragdoll
 from dancetutor_cli.dance.physics.style import PARTS, Spring, Style, load_style
-from dancetutor_cli.dance.quality.foot_slide import stands
-from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.dance.rig.body import world_transforms
-from dancetutor_cli.dance.smoothing import low_pass
 from dancetutor_cli.formats.retarget import Retargeting, RetargetTask
 from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.files import write_atomic
@@ -37,125 +49,12 @@ ROOT = Path(__file__).resolve().parent.parent
 DATA, PAGE = ROOT / "tests" / "data" / "thesis_restaged.json", ROOT / "docs" / "physics.md"
 MARKS = ("<!-- written by tools/thesis_restaged.py -->", "<!-- end of what tools/thesis_restaged.py writes -->")
 SECONDS, START, TURN = 3.0, 1.0, 0.4  # of a clip that goes forward, and from where; then it goes backward
-WOBBLE = 4.0  # hertz: what of a distance changes faster wobbles
 LOOSE = (
     5.0  # hertz: springs at which this ragdoll is as far from its input as the thesis's (mean 1 to 2, most 3 to 7 cm)
 )
 DRAWN = 60  # values of a curve that are kept
 Array = NDArray[np.float64]
 NEUTRAL = load_style("neutral")
-
-
-@dataclass(frozen=True)
-class Taken:
-    """One run. given, result : before and after; places : (f, j, 3) of both"""
-
-    given: Motion
-    result: RagdollResult
-
-    @property
-    def made(self) -> Motion:
-        """What the ragdoll made of it."""
-        return self.result.motion
-
-    def places(self, joint: str) -> tuple[Array, Array]:
-        """World paths (f, 3) of a joint before and after, metres."""
-        at = self.given.skeleton.index(joint)
-        paths = (world_transforms(m.skeleton, m.rotations, m.root)[0][:, at] for m in (self.given, self.made))
-        before, after = paths
-        return before, after
-
-    def apart(self, joint: str) -> Array:
-        """Centimetres (f,) between a joint before and after."""
-        before, after = self.places(joint)
-        return 100.0 * np.linalg.norm(after - before, axis=1)
-
-
-Figure = Callable[[Taken], float]
-
-
-def mean(joint: str) -> Figure:
-    return lambda run: float(run.apart(joint).mean())
-
-
-def most(joint: str) -> Figure:
-    return lambda run: float(run.apart(joint).max())
-
-
-def wobble(joint: str) -> Figure:
-    """Millimetres, root of the mean square, of what of its distance changes faster than `WOBBLE`."""
-
-    def of(run: Taken) -> float:
-        values = 10.0 * run.apart(joint)
-        return float(np.sqrt(np.mean((values - low_pass(values, run.given.fps, WOBBLE)) ** 2)))
-
-    return of
-
-
-def knee(run: Taken) -> Array:
-    """Degrees (f,) that the left knee is bent; negative: backward."""
-    bone = next(b for b in bones_of(run.made.skeleton) if b.name == "l_knee")
-    return np.degrees(bend_and_twist(bone, run.made.rotations[:, bone.joint])[:, 0])
-
-
-def forearm(run: Taken) -> Array:
-    """Degrees (f,) that the right hand is turned about the forearm away from the input."""
-    body = run.given.skeleton
-    at = body.index("r_radiocarpal")
-    turns = [world_transforms(m.skeleton, m.rotations, m.root)[1][:, at] for m in (run.given, run.made)]
-    along = body.offsets[at] / np.linalg.norm(body.offsets[at])
-    off = quat.multiply(quat.conjugate(turns[0]), turns[1])
-    twist = quat.swing_twist(off, along)[1]
-    return np.degrees(quat.to_vector(twist) @ along)
-
-
-def height(joint: str) -> Figure:
-    """Centimetres by which a joint is higher than in the input, on average."""
-
-    def of(run: Taken) -> float:
-        before, after = run.places(joint)
-        return float(100.0 * (after - before)[:, 1].mean())
-
-    return of
-
-
-def knees_bent(run: Taken) -> float:
-    """Degrees by which both knees are bent more than in the input, on average."""
-    bends = []
-    for bone in bones_of(run.given.skeleton):
-        if bone.name.endswith("knee"):
-            bends += [np.degrees(bend_and_twist(bone, m.rotations[:, bone.joint])[:, 0]) for m in (run.made, run.given)]
-    return float((bends[0] - bends[1] + bends[2] - bends[3]).mean() / 2)
-
-
-def lean(run: Taken) -> float:
-    """Degrees by which the line from hips to neck leans further ahead than in the input, on average."""
-    angles = []
-    for m in (run.made, run.given):
-        joints, world = world_transforms(m.skeleton, m.rotations, m.root)
-        up = joints[:, m.skeleton.index("vc4")] - joints[:, 0]
-        ahead = quat.rotate(world[:, 0], np.array([0.0, 0.0, 1.0])) * [1.0, 0.0, 1.0]
-        angles.append(np.arctan2(np.sum(up * ahead, axis=1) / np.linalg.norm(ahead, axis=1), up[:, 1]))
-    return float(np.degrees(angles[0] - angles[1]).mean())
-
-
-def nod(run: Taken) -> float:
-    """Degrees by which the head looks further up than in the input, on average."""
-    looks = []
-    for m in (run.made, run.given):
-        turns = world_transforms(m.skeleton, m.rotations, m.root)[1][:, m.skeleton.index("skullbase")]
-        looks.append(np.degrees(np.arcsin(quat.rotate(turns, np.array([0.0, 0.0, 1.0]))[:, 1])))
-    return float((looks[0] - looks[1]).mean())
-
-
-def slide(run: Taken) -> float:
-    """Median slide of feet by height and speed, millimetres."""
-    return float(np.median([1000.0 * one.slide for one in stands(run.made)] or [0.0]))
-
-
-def worst(which: int) -> Figure:
-    """Largest mean, deviation or distance of any point, centimetres."""
-    return lambda run: float(run.result.distances.worst[which])
 
 
 def sprung(style: Style, frequency: float, parts: tuple[str, ...] = PARTS) -> Style:
@@ -255,8 +154,8 @@ def experiments() -> tuple[Experiment, ...]:
             (
                 ("mean turn off, degrees", lambda r: float(np.abs(forearm(r)).mean()), 1),
                 ("most, degrees", lambda r: float(np.abs(forearm(r)).max()), 1),
-                ("mean of the hand, cm", lambda r: _tip(r)[0], 2),
-                ("most, cm", lambda r: _tip(r)[1], 2),
+                ("mean of the hand, cm", lambda r: tip(r)[0], 2),
+                ("most, cm", lambda r: tip(r)[1], 2),
             ),
             ("mean turn off, degrees", lambda r: float(np.abs(forearm(r)).mean()), 0),
             ("turn of the right hand away from the input, degrees", forearm),
@@ -321,7 +220,7 @@ def experiments() -> tuple[Experiment, ...]:
                 ("slide, mm", slide, 1),
             ),
             ("pelvis up, cm", height("HumanoidRoot"), 1),
-            ("height of the pelvis over the input's, cm", _sinks),
+            ("height of the pelvis over the input's, cm", sinks),
             ("nothing", "gravity 4", "gravity 20", "gravity 1 upward", "density of head and arms 10,000"),
         ),
     )
@@ -352,25 +251,9 @@ def _forces(heavier: Style) -> tuple[Setting, ...]:
     return (*rows, *(replace(row, words=f"{row.words}; corrected", corrected=True) for row in reach))
 
 
-def _sinks(run: Taken) -> Array:
-    before, after = run.places("HumanoidRoot")
-    return 100.0 * (after - before)[:, 1]
-
-
 def _soft_ankles() -> dict[str, Spring]:
     """Springs that leave the plane of the legs free: ankles softer, so that knees go where limits let them."""
     return {f"{side}_{name}": Spring((4.0,) * 3, (0.5,) * 3) for side in "lr" for name in ("talocrural", "metatarsal")}
-
-
-def _tip(run: Taken) -> tuple[float, float]:
-    """Mean and most, centimetres, of a place 5 cm beside the right wrist."""
-    at = run.given.skeleton.index("r_radiocarpal")
-    ends = []
-    for m in (run.given, run.made):
-        joints, world = world_transforms(m.skeleton, m.rotations, m.root)
-        ends.append(joints[:, at] + quat.rotate(world[:, at], np.array([0.0, 0.0, 0.05])))
-    apart = 100.0 * np.linalg.norm(ends[1] - ends[0], axis=1)
-    return float(apart.mean()), float(apart.max())
 
 
 def clip(path: Path) -> Motion:
