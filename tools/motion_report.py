@@ -216,6 +216,7 @@ def summary(results: list[Measured]) -> str:
     lines.append(f"{'figure':32}{'goal':>9}{'missed by':>12}{'of these slow':>15}{'median':>10}{'worst':>10}  on")
     for name in names:
         rows = [(m, f) for m in results for f in m.figures if f["name"] == name and f["value"] is not None]
+        rows = [(m, f) for m, f in rows if f["goal"] is not None]
         if rows:
             lines.append(_figure_line(name, rows))
     return "\n".join(lines)

@@ -138,9 +138,10 @@ def holding(settings: MotionSettings) -> MotionSettings:
     """
     body, jump, look, bar = settings.body, settings.jump, settings.look, settings.bar
     body = replace(body, leg=body.leg - bar.knees, soft_reach=body.soft_reach - bar.knees)
-    body = replace(body, stream_crouch=bar.stream_crouch)
+    body = replace(body, stream_crouch=bar.stream_crouch, height_calm=bar.calm)
     jump = replace(jump, crouch=jump.crouch / 2, follow=jump.follow / 2)
-    return replace(settings, body=body, jump=jump, look=replace(look, torso_weight=bar.square))
+    look, groove = replace(look, torso_weight=bar.square), replace(settings.groove, hands=bar.free_hand)
+    return replace(settings, body=body, jump=jump, look=look, groove=groove)
 
 
 def on_rail(x: Array, bar: Bar, from_end: float) -> Array:

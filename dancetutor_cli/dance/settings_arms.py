@@ -40,16 +40,21 @@ class ArmSettings:
     stream_back: Metres
     stream_out: Metres
     stream_wander: Metres
+    stream_pump: Metres
     unlike: Ratio
     loose: Metres
     loose_time: Seconds
-    step: Metres
-    step_effort: Ratio
     jump: Metres
     jump_up: Metres
     wander: Metres
+    raised: Ratio
+    raised_most: Metres
     cancel: Ratio
+    cancel_lean: Ratio
     twist: Degrees
+    lean: Degrees
+    slowest: Seconds
+    fastest: Seconds
     lowest: Metres
     lag: Metres
     bend_hang: Ratio
@@ -74,16 +79,13 @@ class ArmSettings:
     hips_high: Metres
     hips_ease: Metres
     legs_room: Metres
-    twist_slowest: Seconds
-    twist_fastest: Seconds
     wander_slow: Seconds
     wander_quick: Seconds
     wander_share: Ratio
     wander_behind: Ratio
     wander_quick_behind: Ratio
-    askew: Ratio
+    askew: Metres
     swing_most: Metres
-    swing_time: Seconds
     swing_up: Ratio
     elbow_out: Ratio
     bend_elbow_out: Ratio
@@ -137,6 +139,8 @@ class BarSettings:
     knees: Metres
     stream_crouch: Metres
     square: Ratio
+    calm: Seconds
+    free_hand: Metres
     let_go: Metres
     reach_time: Seconds
     shortest: Seconds

@@ -25,6 +25,7 @@ class BodySettings:
     reach: Metres
     turn_to_feet: Ratio
     step_rise: Ratio
+    rise_late: Seconds
     lean: Degrees
     stream_lean: Degrees
     smooth: Seconds
@@ -32,13 +33,22 @@ class BodySettings:
     middle_weight: Ratio
     middle_weight_fast: Ratio
     height_smooth: Seconds
+    height_calm: Seconds
     least_force: Ratio
     most_force: Ratio
     lean_time: Seconds
     pelvis_lean: Ratio
+    list: Degrees
+    list_time: Seconds
     pelvis_bend: Ratio
     deep_bend: Degrees
     stream_time: Seconds
+    commit_time: Seconds
+    commit: Ratio
+    land_give: Metres
+    land_time: Seconds
+    land_least: Seconds
+    land_full: Seconds
     farthest: Metres
     heel_carries: Degrees
 
@@ -129,10 +139,10 @@ class LayerSettings:
     breath_shoulders: Degrees
     breath_nod: Degrees
     head_bob: Degrees
-    shoulder_drop: Degrees
     sway: Metres
     sway_time: Seconds
     bounce: Metres
+    beat_late: Seconds
     beat_nod: Degrees
     wrists: Degrees
     blink_time: Seconds

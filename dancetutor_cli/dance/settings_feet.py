@@ -33,7 +33,9 @@ class StepSettings:
     lift_pitch: Degrees
     swing_pitch: Degrees
     land_pitch: Degrees
+    land_hasty: Degrees
     stream_pitch: Degrees
+    stream_pitch_hasty: Degrees
     heel_drop: Seconds
     yaw_to_normal: Ratio
     toe_out: Degrees
@@ -78,6 +80,7 @@ class StepSettings:
     heel_stays: Seconds
     lift_flat: Ratio
     swing_flat: Ratio
+    swing_flat_hasty: Ratio
     land_stream: Ratio
     ankle_time: Seconds
     ankle_most: Degrees
@@ -132,6 +135,7 @@ class JumpSettings:
     catch: Metres
     reach: Metres
     drive: Ratio
+    together: Ratio
     quick_flat: Ratio
     low: Metres
     crouch_before: Seconds

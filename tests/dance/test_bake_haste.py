@@ -42,7 +42,8 @@ def test_in_the_fastest_streams_a_foot_leaves_a_moment_before_the_other_lands() 
 
 def test_heels_that_rock_and_late_feet_throw_the_body() -> None:
     """The same stream with the numbers that there were before is a tenth rougher."""
-    before = replace(SETTINGS.step, overlap=0.0, height_hasty=0.02, lift_flat=0.4, swing_flat=0.6, stream_pitch=8.0)
+    rocking = {"lift_flat": 0.4, "swing_flat_hasty": 0.6, "stream_pitch_hasty": 8.0}
+    before = replace(SETTINGS.step, overlap=0.0, height_hasty=0.02, **rocking)
     rough = []
     for step in (SETTINGS.step, before):
         body = body_of(

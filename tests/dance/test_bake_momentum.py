@@ -33,7 +33,7 @@ def momentum(motion: Motion, start: float, end: float) -> np.ndarray:
 def test_the_whole_body_turns_less_than_with_a_stiff_chest() -> None:
     dance = play([e for e in MEDLEY if e[0] < 11.5])
     settings = default_settings()
-    stiff = replace(settings, arms=replace(settings.arms, twist=0.0))
+    stiff = replace(settings, arms=replace(settings.arms, cancel=0.0))  # neither chest nor arms answer the legs
     loose, still = (momentum(bake(chart().timing, dance, pad(), settings=s), 2.0, 11.5) for s in (settings, stiff))
     assert np.sqrt(np.mean(loose**2)) < 0.9 * np.sqrt(np.mean(still**2))
 

@@ -70,16 +70,20 @@ class Goal:
 class Heel:
     """How far a heel is raised in a slow move: as the toes leave, at most, at landing, degrees.
 
-    flat : by which parts the first two are less in the fastest
+    flat : by which parts the first two are less in fast ones; rest : degrees while the foot stands in fast ones
     """
 
     degrees: tuple[float, float, float]
     flat: tuple[float, float]
+    rest: float
 
 
-def heel_of_step(step: StepSettings) -> Heel:
-    """Of a step."""
-    return Heel((step.lift_pitch, step.swing_pitch, step.land_pitch), (step.lift_flat, step.swing_flat))
+def heel_of_step(step: StepSettings, haste: float = 0.0) -> Heel:
+    """Of a step; in haste, 0 to 1 as in `Row`, a foot that rocks would throw the body."""
+    land = step.land_pitch + haste * (step.land_hasty - step.land_pitch)
+    swing = step.swing_flat + haste * (step.swing_flat_hasty - step.swing_flat)
+    rest = step.stream_pitch + haste * (step.stream_pitch_hasty - step.stream_pitch)
+    return Heel((step.lift_pitch, step.swing_pitch, land), (step.lift_flat, swing), rest)
 
 
 def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple[Array, float]:
@@ -205,7 +209,7 @@ def _bracket(footing: Footing, foot: FootState, goal: Goal) -> tuple[Array, floa
 def heel_up(step: StepSettings, cut: float, heel: Heel, columns: list[int]) -> Pitches:
     """Pitches of a swing, radians: as the toes leave, at most, at landing and afterwards; fast steps stay flat."""
     lift, most, land = heel.degrees
-    rest = step.stream_pitch * cut
+    rest = heel.rest * cut
     if len(columns) > 1:
         land = rest = 0.0  # heel and toes of a bracket come down together
     out = np.radians(

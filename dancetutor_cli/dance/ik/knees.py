@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -149,14 +150,26 @@ def _swivelled(reach: Array, poles: Array, given: Array) -> Array:
 SPINE = (0.0, *SPINE_SHARES)  # how far the bones under vl5, vt10 and vt4 are turned from the pelvis to the chest
 
 
-def torso_rotations(tilt: Array, yaw: Array, chest_yaw: Array, settings: BodySettings) -> tuple[Array, Array, Array]:
-    """Rotations (f, 4) of pelvis and chest for a chest that leans by tilt (f, 2) as in `quaternion.leaning`; yaws (f,).
+class TrunkPose(NamedTuple):
+    """How a trunk is held in f frames.
 
-    And how deep (f,) that bend is, 0 to 1.
+    tilt : (f, 2) radians that the chest leans, as in `quaternion.leaning`; yaw, chest_yaw : (f,) radians
+    listed : (f,) radians that the right hip is lower than the left one for the weight's sake
     """
+
+    tilt: Array
+    yaw: Array
+    chest_yaw: Array
+    listed: Array
+
+
+def torso_rotations(trunk: TrunkPose, settings: BodySettings) -> tuple[Array, Array, Array]:
+    """Rotations (f, 4) of pelvis and chest, and how deep (f,) the trunk is bent, 0 to 1."""
+    tilt, yaw = trunk.tilt, trunk.yaw
     bent = smooth(np.linalg.norm(tilt, axis=1) / np.radians(settings.deep_bend))
     share = settings.pelvis_lean + (settings.pelvis_bend - settings.pelvis_lean) * bent
-    return leaning(share[:, None] * tilt, yaw), leaning(tilt, chest_yaw), bent
+    aside = trunk.listed[:, None] * np.column_stack((-np.cos(yaw), np.sin(yaw)))
+    return leaning(share[:, None] * tilt + aside, yaw), leaning(tilt, trunk.chest_yaw), bent
 
 
 def shoulders_over(skeleton: Skeleton, pelvis: Array, pelvis_rotation: Array, chest: Array, bent: Array) -> Array:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context, hold_share
-from dancetutor_cli.dance.foot_path import Feet, foot_path
+from dancetutor_cli.dance.foot_path import Feet
 from dancetutor_cli.dance.gait import walking, with_gait
 from dancetutor_cli.dance.ik.full_body import ArmGoal, Targets, arm_rotations
 from dancetutor_cli.dance.ik.hands import (
@@ -24,6 +24,7 @@ from dancetutor_cli.dance.ik.hands import (
 from dancetutor_cli.dance.ik.knees import (
     Hung,
     Legs,
+    TrunkPose,
     knee_poles,
     middle_joint,
     part_knees,
@@ -52,9 +53,11 @@ FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))  # directions of the finger
 POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest
 EASE, EASY = 15.0, 40.0  # degrees within its limits where a joint is at ease; how much turned fingers count
 WAVES = 1.3  # about the size of both waves together
+LEVEL = np.array([1.0, 0.5, 1.0])  # hands wander less up and down: how high they are shows effort
 ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # of both hands: one is a little lower and farther back
 HELD_BACK = 0.25  # part of a stretch in which a hand is too quick, from which on it is held back in all of it
 ASIDE_SOFT = 0.02  # metres over which a hand comes to its least distance outward in a lean
+UP_SOFT = 0.06  # metres over which a hand begins to rise as it swings ahead or is raised aside
 LOOSE_SOFT = 0.015  # metres over which a forearm that is held up comes to sink
 SUNK = 1.8  # so much farther a hand sinks, for its elbow comes down with it
 ELBOWS_IN = 0.62  # part of their way by which elbows turn to the body for another dancer: wholly, they would be in it
@@ -138,22 +141,28 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
     settings, skeleton, arms = context.settings, context.skeleton, context.settings.arms
     rate = 1.0 / float(body.times[1] - body.times[0])
     effort = lately(tempo_factor(plan, body.times, settings), rate, arms.effort)[:, None]
-    wander = _wandering(body.times, plan.lead, arms)
+    wander, askew = _wandering(body.times, arms), ASKEW
+    if plan.lead == 1:  # what one hand does if the left foot leads, the other one does if the right one leads
+        wander, askew = (ways[..., ::-1, :] * [-1.0, 1.0, 1.0] for ways in (wander, askew))
     # none is ever quite as high, or swings quite as far, as the other one
-    unlike = 1.0 + arms.unlike * wander[..., 1] / ASKEWED
-    swing = unlike * _swing(plan, body, effort, settings)
+    unlike = 1.0 + arms.unlike * (wander + askew)[..., 1] / ASKEWED
+    swing = unlike * _swing(plan, body, settings)
     hang = np.empty((len(swing), 2, 3))
     hang[..., 0] = np.array([1.0, -1.0]) * (arms.out + arms.stream_out * effort)
-    hang[..., 1] = -arms.down + arms.swing_up * np.abs(swing) + arms.stream_up * effort * unlike
+    hang[..., 1] = -arms.down + arms.swing_up * _upward(swing) + arms.stream_up * effort * unlike
     hang[..., 2] = arms.forward + swing - arms.stream_back * effort
+    raised = _upward(np.outer(body.arms[:, 1], (1.0, -1.0)))
+    hang[..., 0] += raised * [1.0, -1.0]
+    hang[..., 1] += 0.5 * raised
     hang[..., 1] -= _hung(hang, rate, context)
     jump = (jump_swing(plan, body.times, settings.jump) * (1.0 - body.reaching.max(axis=1)))[:, None]
     hang[..., 1] += 0.5 * arms.jump_up * (jump + jump**2)
     hang[..., 2] += arms.jump * jump
-    pumped = context.settings.groove.hands * body.sway[:, None] * (1.0 + effort)
-    hang[..., 1] += 0.5 * np.abs(pumped)
+    pumped = context.settings.groove.hands * body.sway[:, None]
+    hang[..., 1] += 0.2 * np.abs(pumped)
     hang[..., 2] += [-1.0, 1.0] * pumped  # with the shoulder that turns forward
-    hang += (arms.wander + arms.stream_wander * effort)[..., None] * wander
+    hang[..., 1] += arms.stream_pump * effort * body.arms[:, 2:] * [-1.0, 1.0]  # in streams elbows bend by turns
+    hang += (arms.wander + arms.stream_wander * effort)[..., None] * wander * LEVEL + arms.askew * askew
     hang += waiting_at(plan, body.times, context).hands
     share = crossing_share(plan.grips, body.times, settings.across)
     for side, sign in ((0, 1.0), (1, -1.0)):  # the near hand is behind her, out of the other one's way
@@ -175,6 +184,11 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
     if context.bar is not None:  # behind her back, a hand has the trunk in its way
         held[:] = 1.0
     return hang, lag, held
+
+
+def _upward(x: Array) -> Array:
+    """What of x is above 0, softly over some `UP_SOFT` metres, and 0 at 0."""
+    return np.asarray((x + np.sqrt(x**2 + UP_SOFT**2) - UP_SOFT) / 2.0)
 
 
 def _hung(hang: Array, rate: float, context: Context) -> Array:
@@ -228,36 +242,19 @@ def _behind_the_chest(hang: Array, yaw: Array, rate: float, arms: ArmSettings) -
     return quat.rotate(quat.from_axis_angle(UP, late)[:, None], near)
 
 
-def _wandering(times: Array, lead: int, arms: ArmSettings) -> Array:
-    """Slow ways (n, 2, 3) of both hands, each its own, about 1 far: nobody's arms are one the other's mirror image.
-
-    lead : as in `Plan`; what the left hand does if the left foot leads, the right one does if the right foot leads
-    """
+def _wandering(times: Array, arms: ArmSettings) -> Array:
+    """Slow ways (n, 2, 3) of both hands, each its own, about 1 far: nobody's arms are one the other's mirror image."""
     hands = np.arange(6).reshape(2, 3)
     waves = ((arms.wander_slow, arms.wander_behind), (arms.wander_quick, arms.wander_quick_behind))
     slow, fast = (np.sin(2 * np.pi * (times[:, None, None] / every + share * hands)) for every, share in waves)
-    ways = np.asarray((slow + arms.wander_share * fast) / WAVES + arms.askew * ASKEW)
-    return ways if lead == 0 else ways[:, ::-1] * [-1.0, 1.0, 1.0]
+    return np.asarray((slow + arms.wander_share * fast) / WAVES)
 
 
-def _swing(plan: Plan, body: Trajectory, effort: Array, settings: MotionSettings) -> Array:
-    """How far forward each hand (n, 2) is at the body's times: it follows the opposite foot.
-
-    effort : (n, 1); farthest half-way between waiting and the quickest streams, for which there is no time
-    """
-    front = np.column_stack((np.sin(body.yaw), np.cos(body.yaw)))
-    ahead, lifted = [], []
-    for track in plan.feet[::-1]:  # the left hand goes with the right foot
-        path = foot_path(track, body.times, settings)
-        ahead.append(np.sum((path.ball[:, [0, 2]] - body.ground) * front, axis=1))
-        lifted.append(np.sin(np.pi * path.progress))
-    both = settings.arms.swing * np.clip(np.column_stack(ahead), -settings.arms.swing_most, settings.arms.swing_most)
-    far = settings.arms.step * (1.0 + 4.0 * settings.arms.step_effort * effort * (1.0 - effort))
-    both += far * np.outer(lifted[0] - lifted[1], (1.0, -1.0))
+def _swing(plan: Plan, body: Trajectory, settings: MotionSettings) -> Array:
+    """How far forward each hand (n, 2) is at the body's times: as the legs' momentum asks, or as she walks."""
+    both = np.outer(body.arms[:, 0], (-1.0, 1.0))
     gait = walking(plan.walks, body.times, settings.walk)
-    if gait is not None:
-        both = (1.0 - gait.own[:, None]) * both + gait.hands
-    return smooth_path(both, np.ones(len(both)), 1.0 / float(body.times[1] - body.times[0]), settings.arms.swing_time)
+    return both if gait is None else np.asarray((1.0 - gait.own[:, None]) * both + gait.hands)
 
 
 def _press(press: Press, at: Array, hands: HandTargets, body: Trajectory, context: Context) -> None:
@@ -301,9 +298,11 @@ def _lay_down(press: Press, body: Trajectory, context: Context) -> tuple[Array, 
         press.side,
         context.skeleton,
     )
-    ground, height, tilt = (sample_path(p, body.times, when) for p in (body.ground, body.height, body.tilt))
-    yaw, chest_yaw = (sample_path(p, body.times, when) for p in (body.yaw, body.chest_yaw))
-    pelvis_rotation, chest, bent = torso_rotations(tilt, yaw, chest_yaw, context.settings.body)
+    ground, height = (sample_path(p, body.times, when) for p in (body.ground, body.height))
+    held = (sample_path(p, body.times, when) for p in (body.tilt, body.yaw, body.chest_yaw, body.listed))
+    trunk = TrunkPose(*held)
+    chest_yaw = trunk.chest_yaw
+    pelvis_rotation, chest, bent = torso_rotations(trunk, context.settings.body)
     pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
     shoulders = shoulders_over(skeleton, pelvis, pelvis_rotation, chest, bent)
     panel = np.array([press.target[0], 0.0, press.target[1]])
@@ -339,9 +338,11 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
     """Targets at the times `at` (f,); `feet` are sampled there, `body` on its own even times."""
     skeleton = context.skeleton
     ground, height = (sample_path(p, body.times, at) for p in (body.ground, body.height))
-    yaw, chest_yaw, tilt = (sample_path(p, body.times, at) for p in (body.yaw, body.chest_yaw, body.tilt))
+    held = (sample_path(p, body.times, at) for p in (body.tilt, body.yaw, body.chest_yaw, body.listed))
+    trunk = TrunkPose(*held)
+    yaw = trunk.yaw
     pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
-    pelvis_rotation, chest, bent = torso_rotations(tilt, yaw, chest_yaw, context.settings.body)
+    pelvis_rotation, chest, bent = torso_rotations(trunk, context.settings.body)
     gait = walking(plan.walks, at, context.settings.walk)
     if gait is not None:
         pelvis_rotation, chest = with_gait(gait, pelvis_rotation, chest)

@@ -142,7 +142,8 @@ def restore_mass_path(
             stands = free * _slowly(times, off[:, 1])
             raised = poses[1] - share[:, None] * (off - stands[:, None] * quat.UP)
             need = too_high(skeleton, (rotations[:, 0], raised), feet, BENT)
-            stands -= upper_envelope(times, np.minimum(need, np.maximum(stands, 0.0)), SINKS)
+            higher = np.maximum(stands, 0.0)
+            stands -= np.minimum(upper_envelope(times, np.minimum(need, higher), SINKS), higher)
         off[:, 1] -= stands
         root = poses[1] - share[:, None] * off
     return repinned(skeleton, (rotations, root), feet)

@@ -49,6 +49,7 @@ CORRECTIONS = ("knees", "feet", "limits")
 GIVING_BACK = 8  # rounds of giving way less, where hips or ankles cannot
 AFTERMATH = 0.3  # seconds over which what befalls her begins to count, and ceases to 0.7 s later
 BEFORE = 1.0  # seconds of standing still before the first frame, in which springs come to rest
+PALM_EXACT = 0.06  # seconds around a pressing palm in which she is as in the input
 PALM_FADE = 0.45  # seconds around a pressing palm over which the input takes over: a palm is where its panel is
 
 
@@ -245,7 +246,7 @@ def _pressing(motion: Motion) -> Array:
     for contact in motion.contacts:
         if contact.limb >= Limb.LEFT_HAND:
             away = np.maximum(np.maximum(contact.start - motion.times, motion.times - contact.end), 0.0)
-            out = np.maximum(out, smooth(1.0 - away / PALM_FADE))
+            out = np.maximum(out, smooth((PALM_FADE - away) / (PALM_FADE - PALM_EXACT)))
     return out
 
 

@@ -16,6 +16,7 @@ from dancetutor_cli.dance.quality.contact import bar_figures, contact_figures, g
 from dancetutor_cli.dance.quality.dynamics import balance_figures, dynamics_figures, flight_figures
 from dancetutor_cli.dance.quality.figures import Body, Figure, MotionReport, body_of, published_figures
 from dancetutor_cli.dance.quality.foot_slide import slide_figures
+from dancetutor_cli.dance.quality.liveliness import liveliness_figures
 from dancetutor_cli.dance.quality.posture import (
     PAST,
     capsule_figures,
@@ -71,6 +72,7 @@ def report(motion: Motion, mines: NDArray[np.float64] | None = None) -> MotionRe
         *shape,
         *limbs,
         *posture_figures(body, motion.skeleton, motion.contacts),
+        *liveliness_figures(body, motion),
     )
     return MotionReport(
         figures, errors, (*notes, *jump_notes, *shape_notes, *limb_notes), _curves(motion, body, errors)

@@ -222,7 +222,10 @@ def balanced_path(
     middle_weight = np.where(stepping, body.middle_weight_fast, body.middle_weight)
     weight = np.where(both, middle_weight, body.foot_weight)
     flight: NDArray[np.bool_] = np.asarray(~down.any(axis=0))
-    want = _PathGoals(replace(support, middle=middle), weight, offset, *room)
+    alone = np.asarray(down.any(axis=0)) & ~both
+    near = np.where(alone & ~_brief(alone, body.commit_time * rate), body.commit, NEAR)
+    near[[0, -1]] = END
+    want = _PathGoals(replace(support, middle=middle), weight, near, offset, *room)
     what = f"the path of her balance {span(times)}"
     found = _solved(want, flight, slowness, rate, body, what)
     softened = found.softened
@@ -239,12 +242,14 @@ class _PathGoals:
     """What the path shall do at each of n nodes.
 
     support : where the zero-moment point may be and shall be
-    weight : (n,) how much the latter counts; offset : (n, 2) from the pelvis to the centre of mass
+    weight : (n,) how much the latter counts; near : (n,) how much the centre of mass itself wants to be there
+    offset : (n, 2) from the pelvis to the centre of mass
     nearest, farthest : (n, 2) where the pelvis may be
     """
 
     support: Support
     weight: Array
+    near: Array
     offset: Array
     nearest: Array
     farthest: Array
@@ -349,14 +354,12 @@ def _solved(
     low, high = (b + want.offset for b in (want.nearest, want.farthest))
     low, high = np.minimum(low, (low + high) / 2), np.maximum(high, (low + high) / 2)
     limits = []
-    near = np.full(n, NEAR)
-    near[[0, -1]] = END
     for a in (0, 1):
         axis = np.eye(2)[a]
         problem.add(2 * k - 2, _both(zmp[stand], axis), want.weight[k], support.middle[k, a, None] / UNIT)
         straight = _both(np.tile(second, (len(fly), 1)), axis)
         problem.add(2 * fly - 2, straight, np.full(len(fly), 10.0), np.zeros((len(fly), 1)))
-        problem.add(2 * np.arange(n) + a, np.full((n, 1), 1 / UNIT), near, support.middle[:, a, None] / UNIT)
+        problem.add(2 * np.arange(n) + a, np.full((n, 1), 1 / UNIT), want.near, support.middle[:, a, None] / UNIT)
         thrown = sum(jerk[:, q] * want.offset[q : n - 3 + q, a] for q in range(4))
         problem.add(2 * np.arange(n - 3), _both(jerk, axis), np.ones(n - 3), np.asarray(thrown)[:, None])
         every = 2 * np.arange(n) + a, np.full((n, 1), 1 / UNIT)

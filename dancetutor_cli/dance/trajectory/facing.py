@@ -163,7 +163,8 @@ def chest_and_head(plan: Plan, course: Course, ahead: Array, settings: MotionSet
     chest = course.yaw + follow(smoothed, course.rate, controller)[:, 0]
     head = _head(wrapped(to_screen - chest), course, settings) * (1.0 - settings.walk.ahead * ahead)
     head = no_faster(head, course.rate, np.radians(look.head_rate))
-    return chest, chest + smooth_path(head[:, None], ones, course.rate, settings.inertia.head_turn)[:, 0]
+    neck, most = smooth_path(head[:, None], ones, course.rate, settings.inertia.head_turn)[:, 0], look.head_limit
+    return chest, chest + np.clip(neck, -np.radians(most), np.radians(most))
 
 
 def limit_head_yaw(head: Array, chest: Array, rate: float, settings: MotionSettings) -> Array:

@@ -67,11 +67,15 @@ class Groove:
 
     beat : (n,) 0 to 1, how far she has given way to it; sink : (n,) metres that her knees give
     sway : (n,) about -1 to 1, to which side her shoulders lean and turn, positive left
+    pump : (n,) the same for hands in streams, where her shoulders keep still
+    grounded : (n,) 0 near jumps, where both arms go up and down together, to 1
     """
 
     beat: Array
     sink: Array
     sway: Array
+    pump: Array
+    grounded: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,9 +98,13 @@ def groove_of(plan: Plan, times: Array, engaged: Occupation, context: Context) -
     calmer = engaged.tempo * (1.0 - numbers.jack * jacks)
     beat = beat_bounce(context, times, calmer, engaged.busy)
     share = dancing(calmer, engaged.busy, settings.layers) * (1.0 - engaged.waits)
-    share *= (numbers.steps + (1.0 - numbers.steps) * jacks) * _grounded(plan, times, settings)
-    sink = (1.0 + numbers.deeper * jacks) * settings.layers.bounce * beat
-    return Groove(beat, sink, share * sway(plan, times, context))
+    grounded = _grounded(plan, times, settings)
+    share *= (numbers.steps + (1.0 - numbers.steps) * jacks) * grounded
+    late = np.interp(times - settings.layers.beat_late, times, beat)
+    sink = (1.0 + numbers.deeper * jacks) * settings.layers.bounce * late
+    to_side = sway(plan, times, context)
+    free = np.clip(1.0 - share - engaged.busy - engaged.waits, 0.0, 1.0)
+    return Groove(beat, sink, share * to_side, free * grounded * to_side, grounded)
 
 
 def _grounded(plan: Plan, times: Array, settings: MotionSettings) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,11 +15,15 @@ from dancetutor_cli.dance.rig.body import GRAVITY
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_body import BodySettings
 from dancetutor_cli.dance.settings_feet import JumpSettings
-from dancetutor_cli.dance.smoothing import smooth_path
+from dancetutor_cli.dance.smoothing import smooth, smooth_path
 
 # How low she stands: on bent knees in streams, lower before and after jumps, and the lean that goes with it.
 
 Array = NDArray[np.float64]
+
+
+LOWEST = 0.42  # part of the time between two landings at which she is lowest
+GIVES, RISEN = 0.4, 2.0  # parts of that time from which on she gives, and at which she is up again
 
 
 def tempo_factor(plan: Plan, times: Array, settings: MotionSettings) -> Array:
@@ -64,6 +69,24 @@ def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
         ):
             near = slice(*np.searchsorted(times, (time - 4 * width, time + 4 * width)))
             out[near] = np.maximum(out[near], size[k] * depth * np.exp(-(((times[near] - time) / width) ** 2)))
+    return out
+
+
+def landing_give(plan: Plan, times: Array, body: BodySettings) -> Array:
+    """How far (n,) knees give after steps, metres: deepest a little after a landing, and less the sooner the next foot
+    lands."""
+    swings = [m for track in plan.feet for m in track.moves if isinstance(m, Swing) and not isinstance(m, Walk | Jump)]
+    lands = sorted({m.land for track in plan.feet for m in track.moves})
+    out = np.zeros(len(times))
+    for land in {m.land for m in swings}:
+        k = bisect_right(lands, land + 1e-6)
+        room = lands[k] - land if k < len(lands) else np.inf
+        size = float(smooth((room - body.land_least) / max(body.land_full - body.land_least, 1e-6)))
+        lowest = min(body.land_time, LOWEST * room)
+        near = slice(*np.searchsorted(times, (land, land + RISEN * lowest)).tolist())
+        after = (times[near] - land) / lowest
+        shape = smooth((after - GIVES) / (1.0 - GIVES)) * smooth((RISEN - after) / (RISEN - 1.0))
+        out[near] = np.maximum(out[near], body.land_give * size * shape)
     return out
 
 
@@ -170,6 +193,7 @@ class HeightWish:
     times : (n,) seconds; target : (n,) where it would like to be; highest : (n,) where it may be
     above : (n,) how far it is over the pelvis, whose jerk on the ground is least
     firm : (n,) how much `target` counts at take-offs and landings: elsewhere it always counts 1
+    tempo : (n,) as of `tempo_factor`: the slower steps are the more the height may follow them
     """
 
     times: Array
@@ -177,6 +201,7 @@ class HeightWish:
     highest: Array
     above: Array
     firm: Array
+    tempo: Array
 
 
 def height_path(wish: HeightWish, flights: Array, body: BodySettings) -> HeightPath:
@@ -271,7 +296,8 @@ def _objective(
     inner = np.flatnonzero(in_flight)
     fall = _second(nodes)[in_flight] / GRAVITY
     problem.add(inner, fall, np.full(len(inner), 1e6), np.full((len(inner), 1), -1.0))
-    jerk = _third(nodes) * body.height_smooth**3 / UNIT
+    slow = body.height_calm + (body.height_smooth - body.height_calm) * np.interp(nodes, wish.times, wish.tempo)
+    jerk = _third(nodes) * slow[1:-2, None] ** 3 / UNIT
     parts = np.stack([flying[k : n - 3 + k] for k in range(3)], axis=1)
     weight = np.where(parts.any(axis=1), 0.02, 1.0) * np.where(parts.all(axis=1), 0.0, step[1:-2])
     throws = sum(jerk[:, k] * above[k : n - 3 + k] for k in range(4))

@@ -1,4 +1,4 @@
-"""Where the body goes over its legs: its course, how high legs let it be, heels as she takes off, counter-rotation."""
+"""Where the body goes over its legs: its course, how high legs let it be, heels as she takes off."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.foot_path import Feet, FootPath
 from dancetutor_cli.dance.plan import Jump, Plan
 from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.dance.rig.body import CHEST_INERTIA, PELVIS_INERTIA, ball_to_ankle, leg_masses
+from dancetutor_cli.dance.rig.body import centre_of_mass, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.dance.smoothing import smooth, smooth_path
+from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.trajectory.height import time_for_jumps
 
 # Where the body goes over the ground and which way it faces: what its height, its chest and its arms go by.
@@ -153,41 +153,8 @@ def _more(feet: Feet, hips: Array, most: float, skeleton: Skeleton) -> tuple[int
     return side, float(tried[int(np.argmin(np.abs(legs - far[1 - side])))])
 
 
-# The chest, and the arms with it, turn against the legs, so that the whole body's momentum about the vertical is less.
-#
-# Legs that swing about the centre of mass, and a pelvis that turns with them, have a momentum L(t) about the vertical.
-# Chest and arms of inertia I that turn by  -L integrated / I  would cancel it. They do so in part: slow turns are left
-# to the dance, fast ones would jerk the hands.
-
-
-def counter_rotation(feet: Feet, course: Course, chest: Array, head: Array, context: Context) -> Array:
-    """How far the chest turns against the legs, (n,) radians, to be added to its yaw.
-
-    chest, head : (n,) their yaws without it; where the head is turned far from the chest already, the chest keeps still
-    """
-    arms, step = context.settings.arms, 1.0 / course.rate
-    lower = leg_momentum(feet, course, context.skeleton) + PELVIS_INERTIA * np.gradient(course.yaw, step)
-    turned = (np.cumsum(lower) * step / CHEST_INERTIA + chest)[:, None]
-    ones = np.ones(len(chest))
-    slow = smooth_path(turned, ones, course.rate, arms.twist_slowest)
-    against = -arms.cancel * smooth_path(turned - slow, ones, course.rate, arms.twist_fastest)[:, 0]
-    most = np.radians(arms.twist)
-    if most <= 0.0:
-        return np.zeros(len(chest))
-    look = context.settings.look
-    free = 1.0 - smooth((np.abs(head - chest) - np.radians(look.neck_easy)) / np.radians(look.neck_room))
-    return np.asarray(free * most * np.tanh(against / most))
-
-
-def leg_momentum(feet: Feet, course: Course, skeleton: Skeleton) -> Array:
-    """Momentum about the vertical (n,) of both legs as seen from the centre of mass, m^2/s per mass of the body."""
-    out = np.zeros(len(course.times))
-    for side, foot in enumerate(feet):
-        hip = hip_over(course, side)
-        back = ball_to_ankle(skeleton)
-        ankle = foot.ball[:, [0, 2]] - back * np.column_stack((np.sin(foot.yaw), np.cos(foot.yaw)))
-        for along, share in leg_masses(skeleton):
-            off = hip + along * (ankle - hip) - course.mass
-            speed = np.gradient(off, 1.0 / course.rate, axis=0)
-            out += share * (off[:, 1] * speed[:, 0] - off[:, 0] * speed[:, 1])
-    return out
+def above_at_rest(skeleton: Skeleton) -> Array:
+    """How far (3,) the centre of mass is over the root in the rest pose, metres."""
+    rest = np.tile(quat.IDENTITY, (1, len(skeleton.names), 1))
+    mass = centre_of_mass(skeleton, *world_transforms(skeleton, rest, skeleton.offsets[None, 0]))
+    return np.asarray((mass[0] - skeleton.offsets[0]) * [0.0, 1.0, 0.0])

@@ -11,11 +11,10 @@ from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.foot_path import Feet
 from dancetutor_cli.dance.gait import gaze_ahead, walking
 from dancetutor_cli.dance.plan import Plan
-from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.dance.rig.body import GRAVITY, centre_of_mass, world_transforms
-from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.rig.body import GRAVITY
 from dancetutor_cli.dance.settings import MotionSettings
-from dancetutor_cli.dance.smoothing import Controller, follow, low_pass, smooth_path
+from dancetutor_cli.dance.settings_body import BodySettings, LookSettings
+from dancetutor_cli.dance.smoothing import Controller, follow, low_pass, smooth, smooth_path
 from dancetutor_cli.dance.trajectory.balance import Pendulum, balanced_path
 from dancetutor_cli.dance.trajectory.facing import (
     bent_down,
@@ -37,9 +36,11 @@ from dancetutor_cli.dance.trajectory.height import (
     jump_crouch,
     jump_drive,
     jump_lean,
+    landing_give,
     tempo_factor,
 )
-from dancetutor_cli.dance.trajectory.legs import Course, counter_rotation, leg_room, raised, upright_hips
+from dancetutor_cli.dance.trajectory.legs import Course, above_at_rest, leg_room, raised, upright_hips
+from dancetutor_cli.dance.trajectory.momentum import counter_motion
 from dancetutor_cli.dance.waits import waiting_at
 
 Array = NDArray[np.float64]
@@ -58,6 +59,8 @@ class Trajectory:
     the body has bent for the left and right hand; heels : (n, 2), radians that they are raised for the ankles' sake
     knees : (n, 2), radians that knees are turned outward for the ankles' sake
     beat : (n,) 0 to 1, how far she has given way to the beat; sway : (n,) as in `groove.Groove`
+    listed : (n,) radians that the right hip is lower than the left one
+    arms : (n, 3) `swing` and `raised` as in `momentum.CounterMotion`, `pump` as in `groove.Groove`
     softened : what had no solution within the limits of legs and soles, so that they gave way; for people
     hands : what `ik.targets.free_hands` says of it, if somebody has asked already
     """
@@ -76,6 +79,8 @@ class Trajectory:
     knees: Array
     beat: Array
     sway: Array
+    listed: Array
+    arms: Array
     softened: tuple[str, ...] = ()
     hands: tuple[Array, Array, Array] | None = None
 
@@ -120,19 +125,22 @@ def body_trajectory(
     groove = groove_of(plan, times, engaged, context)
     leg = settings.body.leg - settings.body.stream_crouch * tempo - crouch
     bent = bent_down(plan.presses, None if known is None else known.deeper, times, settings.hands)
-    sink = groove.sink + (0.0 if gait is None else gait.sink)
+    give = landing_give(plan, times, settings.body)
+    sink = np.maximum(groove.sink, give) + (0.0 if gait is None else gait.sink)
     push, catch = (share * (1.0 - reached.max(axis=1)) for share in jump_drive(plan, times, settings.jump))
     leg = leg + push * (settings.jump.push - leg)
     leg = leg + catch * (settings.jump.catch - leg)
     most = settings.body.soft_reach + push * max(settings.jump.push - settings.body.soft_reach, 0.0)
     most = np.where(feet[0].down | feet[1].down, most, settings.jump.reach)
-    legs = LegWish(leg, most, sink, bent, settings.jump.drive * np.maximum(push, catch))
+    legs = LegWish(leg, most, sink, bent, settings.jump.drive * np.maximum(push, catch), tempo)
     stretched = feet if known is None or known.push_off is None else raised(feet, known.push_off)
     mass_height = height_path(_wish(stretched, course, context, legs), plan.flights, settings.body)
     chest, head = chest_and_head(plan, course, gaze_ahead(plan, times, settings.walk), settings)
     loose = (1.0 - held) * (1.0 - reached.max(axis=1)) * (1.0 - own)
     ahead = np.column_stack((np.sin(chest), np.cos(chest)))  # not to where it turns against each step
-    chest = chest + loose * counter_rotation(feet, course, chest, head, context)
+    free = loose * _neck_room(head - chest, settings.look)
+    answer = counter_motion(feet, course, mass_height.at(times), free, context.skeleton, settings.arms)
+    chest = chest + answer.twist
     calm = smooth_path(tempo[:, None], np.ones(len(times)), course.rate, settings.body.lean_time)[:, 0]
     lean = settings.body.lean + settings.body.stream_lean * calm
     across = crossing_share(plan.grips, times, settings.across)
@@ -140,22 +148,38 @@ def body_trajectory(
     leant = lean[:, None] * ahead + leaned_across(across, settings.across)
     tilt = leaning_tilt(plan.presses, course, chest, leant, settings)
     chest += waiting.turn
-    drop = np.radians(settings.layers.shoulder_drop) * stepping(feet, settings)
-    drop -= np.radians(settings.wait.lean) * waiting.shift / max(settings.wait.shift, 1e-6)
+    drop = -np.radians(settings.wait.lean) * waiting.shift / max(settings.wait.shift, 1e-6)
     chest += np.radians(settings.groove.twist) * groove.sway
     head = limit_head_yaw(head, chest, course.rate, settings)
     drop += np.radians(settings.groove.lean) * groove.sway
-    tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
+    tilt += answer.tilt + drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
     fold = np.radians(settings.jump.fold) * crouch + np.radians(settings.layers.beat_nod) * groove.beat
     tilt += fold[:, None] * np.column_stack((np.sin(chest), np.cos(chest))) + jump_lean(plan, times, settings.jump)
     controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
     tilt = follow(tilt, course.rate, controller)
     height = mass_height.at(times) - course.above[:, 1]
+    apart = 1.0 - settings.jump.together * (1.0 - groove.grounded)
+    arms = np.column_stack((apart * answer.swing, apart * answer.raised, groove.pump))
     return Trajectory(
         times, course.mass, mass_height, course.ground, height, course.yaw, chest, head, tilt, reached,
         np.zeros((len(times), 2)), np.zeros((len(times), 2)), groove.beat, groove.sway,
+        loose * _pelvic_list(feet, course.rate, settings.body), arms,
         (*softened, *((HEIGHT,) if mass_height.softened else ())),
     )  # fmt: skip
+
+
+def _pelvic_list(feet: Feet, rate: float, body: BodySettings) -> Array:
+    """How much lower (n,) the right hip is than the left one, radians: the pelvis sinks on the side whose leg bears
+    nothing (the pelvic list of Saunders, Inman and Eberhart, *The major determinants in normal and pathological gait*,
+    1953)."""
+    bears = feet[0].down.astype(np.float64) - feet[1].down
+    over = smooth_path(bears[:, None], np.ones(len(bears)), rate, body.list_time)[:, 0]
+    return np.asarray(np.radians(body.list) * over)
+
+
+def _neck_room(turned: Array, look: LookSettings) -> Array:
+    """How free (n,) the chest is to turn on the hips, 0 to 1: not where the head is turned far from it, radians."""
+    return np.asarray(1.0 - smooth((np.abs(turned) - np.radians(look.neck_easy)) / np.radians(look.neck_room)))
 
 
 def _course(
@@ -163,7 +187,7 @@ def _course(
 ) -> tuple[Course, tuple[str, ...]]:
     """Where the body goes over the ground, and what of that had to be softened."""
     settings = context.settings
-    above = _above_at_rest(context.skeleton, len(times)) if known is None else known.above
+    above = np.tile(above_at_rest(context.skeleton), (len(times), 1)) if known is None else known.above
     yaw = pelvis_yaw(plan, times, settings)
     seen = None if known is None else known.hips
     hips = upright_hips(yaw, context.skeleton) if seen is None else seen
@@ -183,13 +207,6 @@ def _course(
         nearer = settings.across.nearer * np.abs(crossing_share(plan.grips, times, settings.across))
         mass = limit_to_bar(mass, leaning_share(plan.grips, times, settings.bar), context.bar, settings.bar, nearer)
     return Course(times, mass, above, hips, yaw), (BALANCE,) if swept else ()
-
-
-def _above_at_rest(skeleton: Skeleton, count: int) -> Array:
-    """How far (n, 3) the centre of mass is over the root in the rest pose."""
-    rest = np.tile(quat.IDENTITY, (1, len(skeleton.names), 1))
-    mass = centre_of_mass(skeleton, *world_transforms(skeleton, rest, skeleton.offsets[None, 0]))
-    return np.tile((mass[0] - skeleton.offsets[0]) * [0.0, 1.0, 0.0], (count, 1))
 
 
 def _pendulum(times: Array, known: RoughBake | None, above: Array) -> Pendulum:
@@ -217,7 +234,7 @@ class LegWish:
     """How she would like to stand at n times.
 
     length : (n,) hip to ankle; most : (n,) at most; sink : (n,) how far a plant or a beat lets her sink, metres
-    bent : (n, 2) as in `facing.bent_down`; firm : (n,) as in `HeightWish`
+    bent : (n, 2) as in `facing.bent_down`; firm, tempo : (n,) as in `HeightWish`
     """
 
     length: Array
@@ -225,6 +242,7 @@ class LegWish:
     sink: Array
     bent: Array
     firm: Array
+    tempo: Array
 
 
 def _wish(feet: Feet, course: Course, context: Context, legs: LegWish) -> HeightWish:
@@ -239,10 +257,11 @@ def _wish(feet: Feet, course: Course, context: Context, legs: LegWish) -> Height
         standing = feet[side].down | (legs.firm > 0.0)
         wanted = np.minimum(wanted, np.where(standing, soft, most - 0.004))
     lifted = np.maximum(feet[0].ball[:, 1], feet[1].ball[:, 1]) * (legs.firm == 0.0)
+    lifted = np.interp(course.times - settings.body.rise_late, course.times, lifted)
     wanted = np.minimum(wanted + settings.body.step_rise * np.maximum(lifted, 0.0), highest - 0.002) - legs.sink
     share, depth = legs.bent.T
     wanted = wanted + share * (settings.hands.pelvis - depth - wanted)
-    return HeightWish(course.times, wanted + above, highest - legs.sink + above, above, legs.firm)
+    return HeightWish(course.times, wanted + above, highest - legs.sink + above, above, legs.firm, legs.tempo)
 
 
 def stepping(feet: Feet, settings: MotionSettings) -> Array:

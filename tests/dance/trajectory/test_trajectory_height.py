@@ -16,7 +16,7 @@ BODY = default_settings().body
 
 def wish(times: np.ndarray) -> HeightWish:  # type: ignore[type-arg]
     still = np.full(len(times), 0.9)
-    return HeightWish(times, still, still + 0.08, np.zeros(len(times)), np.zeros(len(times)))
+    return HeightWish(times, still, still + 0.08, np.zeros(len(times)), np.zeros(len(times)), np.ones(len(times)))
 
 
 def test_legs_that_reach_less_far_in_the_air_lower_the_flight_and_leave_gravity_alone() -> None:

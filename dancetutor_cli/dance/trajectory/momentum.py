@@ -1,0 +1,105 @@
+"""What answers the legs: trunk and arms turn against the momentum of legs that swing and of a mass that travels.
+
+In people who walk, the momentum of the whole body about its centre of mass stays small though that of its parts is
+not: the parts cancel each other (Herr and Popovic, *Angular momentum in human walking*, 2008). So the momentum L(t) of
+the legs, and of the trunk's middle that they carry along, is taken as given, and the turn q(t) of the trunk of inertia
+I about each axis is the one of least
+
+    sum over time of   | T (q' + c L / I) |^2  +  e | q |^2  +  | S^3 q''' |^2 :
+
+momentum that is left, effort (of a posture off the upright one; more where gaze or hands need the trunk), and jerk.
+What is quicker than T is answered, by the part c of it; slower turns are left to the dance. Arms take a part of each
+turn with their own levers, which is where they swing and rise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.foot_path import Feet
+from dancetutor_cli.dance.quadratic import BandedLeastSquares, differences
+from dancetutor_cli.dance.rig.body import CHEST_INERTIA, PELVIS_INERTIA, leg_masses
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.settings_arms import ArmSettings
+from dancetutor_cli.dance.trajectory.legs import Course, above_at_rest, ankle_of, upright_hips
+
+Array = NDArray[np.float64]
+LEAN_INERTIA = 0.070  # m^2 per mass of the body: of a trunk that leans on its hips while its legs give way to it
+SWING_LEVER = 0.6  # metres that each hand goes to turn the body as a radian of the chest does
+HELD = 30.0  # times the effort of a trunk that gaze or hands hold
+
+
+@dataclass(frozen=True, slots=True)
+class CounterMotion:
+    """How trunk and arms answer the legs at n times.
+
+    twist : (n,) radians that the chest turns, positive left; tilt : (n, 2) radians that it leans, as in `Trajectory`
+    swing : (n,) metres that the right hand goes ahead and the left one back; raised : (n,) metres that the left hand
+    is raised aside, or where negative the right one
+    """
+
+    twist: Array
+    tilt: Array
+    swing: Array
+    raised: Array
+
+
+def counter_motion(
+    feet: Feet, course: Course, height: Array, free: Array, skeleton: Skeleton, arms: ArmSettings
+) -> CounterMotion:
+    """The answer to `feet` on the course of a body whose centre of mass is `height` (n,) metres high.
+
+    free : (n,) 0 to 1, how far the trunk is free to turn
+    """
+    spin = lower_momentum(feet, course, height, skeleton)
+    spin[:, 1] += PELVIS_INERTIA * np.gradient(course.yaw) * course.rate
+    wanted = spin / [LEAN_INERTIA, CHEST_INERTIA, LEAN_INERTIA] * [arms.cancel_lean, arms.cancel, arms.cancel_lean]
+    turn = least_effort(-wanted, 1.0 + HELD * (1.0 - free), course.rate, arms)
+    twist, most = turn[:, 1], np.radians(arms.twist)
+    lean = np.column_stack((-turn[:, 2], turn[:, 0]))
+    far = np.maximum(np.linalg.norm(lean, axis=1, keepdims=True), 1e-9)
+    lean = lean / far * np.radians(arms.lean) * np.tanh(far / np.radians(arms.lean))
+    aside = lean[:, 0] * np.cos(course.yaw) - lean[:, 1] * np.sin(course.yaw)
+    swing = arms.swing_most * np.tanh(arms.swing * SWING_LEVER * twist / arms.swing_most)
+    raised = arms.raised_most * np.tanh(-arms.raised * aside / arms.raised_most)
+    chest = most * np.tanh((1.0 - arms.swing) * twist / max(most, 1e-6))
+    return CounterMotion(chest, lean, swing, raised)
+
+
+def least_effort(rate_wanted: Array, effort: Array, rate: float, arms: ArmSettings) -> Array:
+    """Turns (n, d) whose rates are near the wanted ones, radians per second, as the module's text says.
+
+    effort : (n,) e; rate : samples per second
+    """
+    n, width = rate_wanted.shape
+    problem = BandedLeastSquares(n, width)
+    problem.add(np.arange(n), np.ones((n, 1)), effort, np.zeros((n, width)))
+    change = np.tile(differences(1) * rate * arms.slowest, (n - 1, 1))
+    middle = (rate_wanted[1:] + rate_wanted[:-1]) / 2
+    problem.add(np.arange(n - 1), change, np.ones(n - 1), arms.slowest * middle)
+    jerk = np.tile(differences(3) * (rate * arms.fastest) ** 3, (n - 3, 1))
+    problem.add(np.arange(n - 3), jerk, np.ones(n - 3), np.zeros((n - 3, width)))
+    return problem.solve()
+
+
+def lower_momentum(feet: Feet, course: Course, height: Array, skeleton: Skeleton) -> Array:
+    """Momentum (n, 3) about the centre of mass of both legs and of what they carry, m^2/s per mass of the body.
+
+    The legs are straight lines from the hips of an upright body; the middle of what they carry is where the centre of
+    mass needs it.
+    """
+    mass = np.column_stack((course.mass[:, 0], height, course.mass[:, 1]))
+    root = mass - above_at_rest(skeleton)
+    hips = root[:, None] + upright_hips(course.yaw, skeleton)
+    out, carried, upper = np.zeros_like(mass), np.zeros_like(mass), 1.0
+    for side, foot in enumerate(feet):
+        ankle = ankle_of(foot, skeleton, side)
+        for along, share in leg_masses(skeleton):
+            off = hips[:, side] + along * (ankle - hips[:, side]) - mass
+            out += share * np.cross(off, np.gradient(off, axis=0)) * course.rate
+            carried -= share * off
+            upper -= share
+    return np.asarray(out + np.cross(carried, np.gradient(carried, axis=0)) * course.rate / upper)
