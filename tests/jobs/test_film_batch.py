@@ -230,7 +230,7 @@ def test_a_full_disk_leaves_no_frames_behind(tmp_path: Path, monkeypatch: pytest
         raise FileError(path, "No space left on device")
 
     monkeypatch.setattr(segments, "_film", lambda plan: Pictures())
-    monkeypatch.setattr("dancetutor_cli.film.media.encoder.encode_segment", full)
+    monkeypatch.setattr("dancetutor_cli.film.work.segments.encode_segment", full)
     for target, name in (("mp4", "segment_00000.mp4"), ("png", "frames")):
         encoding = Encoding(target, (64, 64), 10, "draft", "x264")  # type: ignore[arg-type]
         segment = segments.Segment(0, 0, 4, tmp_path / name)

@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 
-from dancetutor_cli.film.media import encoder
 from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.media.film_formats import PICTURES
 from dancetutor_cli.film.work import segments
@@ -39,7 +38,7 @@ def no_film(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("error", [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterrupt(), SystemExit()])
 def test_half_a_segment_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException) -> None:
     half = _fails(lambda target: (target.write_bytes(b"half"), None)[1], error)
-    monkeypatch.setattr(encoder, "encode_segment", half)
+    monkeypatch.setattr(segments, "encode_segment", half)
     whole = tmp_path / "segment_00000.mp4"
     whole.write_bytes(b"done before")
     segment = Segment(1, 24, 48, tmp_path / "segment_00001.mp4")
@@ -58,7 +57,7 @@ def test_its_own_pictures_are_removed_and_no_others(tmp_path: Path, monkeypatch:
         for number in (24, 25):
             (target / f"frame_{number:06d}.png").write_bytes(b"half")
 
-    monkeypatch.setattr(encoder, "encode_segment", _fails(two, OSError(errno.ENOSPC, "No space left on device")))
+    monkeypatch.setattr(segments, "encode_segment", _fails(two, OSError(errno.ENOSPC, "No space left on device")))
     with pytest.raises(OSError, match="No space left"):
         segment, encoding = Segment(1, 24, 48, frames), Encoding(PICTURES, (64, 36), 30)
         render_segment(print, PlanFile(tmp_path / "plan", ""), segment, encoding)
