@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Title(FileRule):
-    """Title or artist is missing, or has blanks at its ends.
+    """Title or artist is missing, or nothing but blanks. The games take off blanks at the ends of others.
 
     Bad: #TITLE:; Better: #TITLE:Two Left Feet;
     """
@@ -23,10 +23,7 @@ class Title(FileRule):
     about_tags = True
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
-        """One finding for each tag that is wrong."""
+        """One finding for each tag that is empty."""
         for tag in ("TITLE", "ARTIST"):
-            value = subject.song.tags.get(tag, "")
-            if not value.strip():
+            if not subject.song.tags.get(tag, "").strip():
                 yield self.finding(f"#{tag} is empty", subject.tag_place(tag))
-            elif value != value.strip():
-                yield self.finding(f"#{tag} has blanks at its ends", subject.tag_place(tag))
