@@ -125,8 +125,8 @@ def test_each_player_has_feet_and_findings_of_ones_own(both: Path) -> None:
 def test_what_is_true_of_the_whole_chart_is_told_once(both: Path) -> None:
     both.write_text(both.read_text().replace("#CREDIT:C;", "#CREDIT:;"))
     result = analyze_file(LintRun(LintRequest()).task(both))
-    credit = [chart.player for chart in result.charts for finding in chart.findings if finding.rule == "DT502"]
-    assert credit == [1, 1]
+    credit = [(finding.message, chart) for finding, chart in result.all_findings() if finding.rule == "DT502"]
+    assert credit == [("nothing says who made the charts: #CREDIT is empty", None)]
 
 
 def test_markers_of_both_stand_in_the_file_and_go_again(both: Path) -> None:

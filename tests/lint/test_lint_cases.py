@@ -25,8 +25,9 @@ from dancetutor_cli.lint.rule import PackRule, all_rules
 from dancetutor_cli.lint.sync import Onsets
 
 CASES = Path(__file__).parent / "cases"
-KNOWN = {"rows", "pin", "notes", "steps-type", "difficulty", "meter", "bpms", "tags", "files", "analyse", "preset",
-         "confidence", "options", "found", "says", "severity", "music", "sync", "pictures", "folder"}  # fmt: skip
+KNOWN = {"rows", "pin", "notes", "steps-type", "description", "difficulty", "meter", "bpms", "tags",
+         "files", "analyse", "preset", "confidence", "options", "found", "says", "severity", "music",
+         "sync", "pictures", "folder"}  # fmt: skip
 
 
 def load(path: Path) -> dict[str, Any]:
@@ -48,7 +49,13 @@ def all_cases() -> list[Any]:
 def chart_text(case: dict[str, Any]) -> str:
     tags = case.get("tags", "#TITLE:T;#ARTIST:A;#CREDIT:C;").replace(";", ";\n")
     notes = case["notes"] if "notes" in case else "\n".join(case["rows"])
-    head = [case.get("steps-type", "dance-single"), "C", case.get("difficulty", "Hard"), case.get("meter", "9"), ""]
+    head = [
+        case.get("steps-type", "dance-single"),
+        case.get("description", "C"),
+        case.get("difficulty", "Hard"),
+        case.get("meter", "9"),
+        "",
+    ]
     return f"{tags}#BPMS:{case.get('bpms', '0=120')};\n#NOTES:{':'.join(head)}:{case.get('pin', '')}\n{notes}\n;\n"
 
 
