@@ -91,19 +91,32 @@ def _ogg(head: bytes, tail: bytes) -> AudioHead | None:
     return AudioHead(kind, rate, channels, seconds)
 
 
+_PCM, _ADPCM, _FLOAT, _EXTENSIBLE = 1, 2, 3, 0xFFFE
+
+
 def _wav(head: bytes, size: int) -> AudioHead | None:
-    at, form = 12, None
+    at, form, frames = 12, None, 1
     while at + 8 <= len(head):
         name, length = head[at : at + 4], struct.unpack_from("<I", head, at + 4)[0]
         if name == b"fmt ":
             form = struct.unpack_from("<HHIIHH", head, at + 8)
+            frames = struct.unpack_from("<H", head, at + 26)[0] if form[0] == _ADPCM else 1  # of a block
         elif name == b"data" and form is not None:
-            code, channels, rate, _, block, _ = form
+            code, channels, rate, _, block, bits = form
             there = min(length, size - at - 8)
-            kind = "wav" if code in (1, 3, 0xFFFE) else "another codec in WAV"
-            return AudioHead(kind, rate, channels, there // block / rate if block and rate else None)
+            seconds = there // block * frames / rate if block and rate else None
+            return AudioHead(_kind_of_wav(code, bits), rate, channels, seconds)
         at += 8 + length + length % 2
     return None
+
+
+def _kind_of_wav(code: int, bits: int) -> str:
+    """ "wav" of what StepMania and ITGmania play: whole numbers of 1 to 4 bytes, floats of 4, ADPCM of 4 bits."""
+    if code == _EXTENSIBLE:
+        return "WAV with an extensible head"
+    if (code == _PCM and 0 < bits <= 32) or (code == _FLOAT and bits == 32) or (code == _ADPCM and bits == 4):
+        return "wav"
+    return f"WAV of {bits}-bit floats" if code == _FLOAT else "another codec in WAV"
 
 
 def _flac(block: bytes) -> AudioHead:

@@ -80,6 +80,28 @@ def test_the_head_tells_what_a_decoder_finds(tmp_path: Path, kind: str, channels
     assert head.seconds == pytest.approx(sound.start + len(sound.samples) / sound.rate, abs=0.03)
 
 
+# Names in `RageSoundReader_WAV::Open` of StepMania 5 and ITGmania: the format tags 1 to 3 are read, others refused.
+EXTENSIBLE = "WAV with an extensible head"
+WAVES = {
+    "pcm_u8": "wav", "pcm_s16le": "wav", "pcm_f32le": "wav", "adpcm_ms": "wav", "pcm_alaw": "another codec in WAV",
+    "pcm_s24le": EXTENSIBLE, "pcm_s32le": EXTENSIBLE, "pcm_f64le": "WAV of 64-bit floats",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("codec", WAVES)
+def test_the_forms_of_wav_that_games_read(tmp_path: Path, codec: str) -> None:
+    source, path = click(tmp_path / "c.wav", 44100), tmp_path / "other.wav"
+    ffmpeg.run(("-y", "-i", ffmpeg.local(source), "-c:a", codec, ffmpeg.local(path)), "encoding")
+    head = read_head(path)
+    tag = struct.unpack_from("<H", path.read_bytes(), 20)[0]
+    assert (head.kind == "wav") == (tag in (1, 2, 3) and codec != "pcm_f64le")
+    assert head.kind == WAVES[codec]
+    assert head.seconds == pytest.approx(SECONDS, abs=0.05)
+    if WAVES[codec] == EXTENSIBLE:
+        path.write_bytes(path.read_bytes()[:20] + b"\1\0" + path.read_bytes()[22:])
+        assert read_head(path).kind == "wav"
+
+
 def test_cut_music_is_as_long_as_what_is_left(tmp_path: Path) -> None:
     for kind in (".wav", ".cbr.mp3"):
         path = encoded(click(tmp_path / "c.wav", 44100), kind)

@@ -97,8 +97,9 @@ _SUFFIXES = {".ogg": "vorbis", ".oga": "vorbis", ".mp3": "mp3", ".wav": "wav", "
 class MusicFormat(FileRule):
     """The music is damaged, empty, of a format or sample rate that games refuse, or another one than its name says.
 
-    `formats`: of vorbis, mp3, wav, flac, opus those that are accepted. `rates`: accepted sample rates in Hz; an empty
-    list accepts all. `channels`: at most so many.
+    `formats`: of vorbis, mp3, wav, flac, opus those that are accepted; wav is WAV as StepMania and ITGmania read it:
+    8 to 32 bits, floats of 32, ADPCM, and no extensible head, which editors write for 24 bits. `rates`: accepted
+    sample rates in Hz; an empty list accepts all. `channels`: at most so many.
 
     Bad: song.ogg that holds Opus. Better: Ogg Vorbis at 44100 Hz.
     """
