@@ -116,6 +116,10 @@ def _chart(name: str, old: Chart, new: Chart) -> ChartChange | None:
     if old.description != new.description:
         said.append(f"description '{old.description}' → '{new.description}'")
     a, b = _rows(old), _rows(new)
+    if moved := _distance(a, b):
+        said.append(f"all notes moved {_beats(moved)}")
+        said += _times(old, new, sorted(a), moved)
+        return ChartChange(name, new.label, tuple(said))
     said += _times(old, new, sorted(a.keys() & b.keys()))
     columns = max(old.columns, new.columns)
     rows = tuple(_row(tick, a.get(tick, ()), b.get(tick, ()), columns) for tick in sorted(a.keys() | b.keys())
@@ -134,6 +138,23 @@ def _rows(chart: Chart) -> Mapping[int, Row]:
     for tick, column, kind, end in zip(*columns, strict=True):
         found.setdefault(tick, []).append((column, kind, end))
     return {tick: tuple(row) for tick, row in found.items()}
+
+
+def _distance(before: Mapping[int, Row], now: Mapping[int, Row]) -> int:
+    """The ticks by which all rows moved, with the ends of their holds; 0 where they moved otherwise or not at all."""
+    if not before or len(before) != len(now):
+        return 0
+    moved = min(now) - min(before)
+
+    def there(row: Row) -> Row:
+        return tuple((column, kind, end + moved if end >= 0 else end) for column, kind, end in row)
+
+    return moved if all(now.get(tick + moved) == there(row) for tick, row in before.items()) else 0
+
+
+def _beats(ticks: int) -> str:
+    count = round(abs(ticks) / TICKS_PER_BEAT, 3)
+    return f"{count:g} beat{'' if count == 1 else 's'} {'later' if ticks > 0 else 'earlier'}"
 
 
 def _row(tick: int, before: Row, now: Row, columns: int) -> RowChange:
@@ -155,20 +176,25 @@ def _signs(row: Row, columns: int) -> str:
     return "".join(signs)
 
 
-def _times(old: Chart, new: Chart, ticks: Sequence[int]) -> Iterator[str]:
-    """How the times of the rows that both have differ: all alike (the sync), or from some beat on (the tempo)."""
+def _times(old: Chart, new: Chart, ticks: Sequence[int], moved: int = 0) -> Iterator[str]:
+    """How the times of the rows that both have differ: all alike (the sync), or from some beat on (the tempo).
+
+    ticks : of the rows in the old chart; moved : ticks by which they come later in the new one
+    """
     if not ticks:
         return
     at = np.array(ticks, dtype=np.int64)
-    shift = np.asarray(new.timing.seconds(at)) - np.asarray(old.timing.seconds(at))
-    moved = np.abs(shift) > _SHIFT
-    if not moved.any():
+    shift = np.asarray(new.timing.seconds(at + moved)) - np.asarray(old.timing.seconds(at))
+    other = np.abs(shift) > _SHIFT
+    if not other.any():
+        if moved:
+            yield "at the same times"
         return
-    if moved.all() and float(np.ptp(shift)) <= _SHIFT:
+    if other.all() and float(np.ptp(shift)) <= _SHIFT:
         yield f"all rows {abs(shift[0]) * 1000:.0f} ms {'later' if shift[0] > 0 else 'earlier'}"
         return
-    first = ticks[int(moved.argmax())] / TICKS_PER_BEAT
-    yield f"{int(moved.sum())} rows at other times from beat {first:g} on, by up to {np.abs(shift).max() * 1000:.0f} ms"
+    first = ticks[int(other.argmax())] / TICKS_PER_BEAT
+    yield f"{int(other.sum())} rows at other times from beat {first:g} on, by up to {np.abs(shift).max() * 1000:.0f} ms"
 
 
 def change_lines(changes: Sequence[ChartChange], most_rows: int | None) -> Iterator[str]:

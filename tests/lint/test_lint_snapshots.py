@@ -167,3 +167,43 @@ class TestRevisions:
             assert ran.exists(), words
             ran.unlink()
         stored.write_bytes(kept)
+
+
+MEASURE = "0000\n0000\n0000\n0000\n,\n"
+HELD = SONG.replace("0001\n0000", "0002\n0003")
+
+
+class TestMovedNotes:
+    """A whole chart at other beats is one line, and a chart of which anything else changed is not."""
+
+    @pytest.fixture
+    def moved(self, pack: Path) -> Path:
+        (pack / "a" / "a.sm").write_text(HELD, encoding="utf-8")
+        analyze(pack)
+        return pack / "a" / "a.sm"
+
+    def test_by_a_measure(self, moved: Path) -> None:
+        moved.write_text(HELD.replace("1000\n", f"{MEASURE}1000\n"), encoding="utf-8")
+        line = "[dance-single Easy 3]: all notes moved 4 beats later; all rows 2000 ms later\n"
+        assert changes(moved, "last") == f"a.sm {line}"
+
+    def test_with_the_sync(self, moved: Path) -> None:
+        later = HELD.replace("1000\n", f"{MEASURE}1000\n")
+        moved.write_text(later.replace("#OFFSET:0", "#OFFSET:2"), encoding="utf-8")
+        assert changes(moved, "last").endswith(": all notes moved 4 beats later; at the same times\n")
+
+    def test_back(self, moved: Path) -> None:
+        moved.write_text(HELD.replace("1000\n0000\n0002\n0003\n", f"0000\n1000\n0000\n0002\n,\n0003\n{MEASURE[5:]}"))
+        analyze(moved)
+        moved.write_text(HELD)
+        assert changes(moved, "last").endswith(": all notes moved 1 beat earlier; all rows 500 ms earlier\n")
+
+    def test_all_but_the_end_of_a_hold(self, moved: Path) -> None:
+        moved.write_text(HELD.replace("1000\n", f"{MEASURE}1000\n").replace("0003\n", f"0000\n,\n0003\n{MEASURE}"))
+        said = changes(moved, "last")
+        assert "all notes" not in said and said.count("\n") == 5
+
+    def test_all_but_one_note(self, moved: Path) -> None:
+        moved.write_text(HELD.replace("1000\n", f"{MEASURE}0100\n"))
+        said = changes(moved, "last")
+        assert "all notes" not in said and "rows: 2 new, 2 gone" in said
