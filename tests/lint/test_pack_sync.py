@@ -94,6 +94,17 @@ def test_a_pack_that_is_not_ready_says_why(tmp_path: Path) -> None:
     assert released(folder, "--set", "sync=false")[1][0]["rule"] == "DT504"
 
 
+def test_two_charts_of_one_meter_are_an_authors_own_matter(tmp_path: Path) -> None:
+    folder = pack(tmp_path / "Songs" / "Pack", (0.0, 0.0))
+    path = next(folder.glob("Song 2011/*.s*m*"))
+    notes = "#NOTES:dance-single:C:{}:{}::\n0000\n1000\n0100\n0001\n;\n"
+    first = path.read_text(encoding="utf-8").partition("#NOTES")[0]
+    path.write_text(first + notes.format("Easy", 5) + notes.format("Medium", 5).replace("1000", "0010"))
+    assert "DT503" not in {one["rule"] for one in released(folder)[1]}
+    path.write_text(first + notes.format("Easy", 5) + notes.format("Medium", 4).replace("1000", "0010"))
+    assert "DT503" in {one["rule"] for one in released(folder)[1]}
+
+
 def test_a_mixed_pack_has_a_result_of_its_own(tmp_path: Path) -> None:
     folder = pack(tmp_path / "Songs" / "Pack", (0.0, 9.0))
     (folder / "Pack.ini").write_text("[Group]\nVersion=1\nSyncOffset=ITG\n")
