@@ -6,9 +6,9 @@ import importlib
 import math
 import pkgutil
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 from dancetutor_cli.lint import rules
 from dancetutor_cli.lint.findings import Finding
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 BY_METER = "by-meter"  # what `max_seconds` says where the table of times is to decide
 EPSILON = 1e-6
+Placed = TypeVar("Placed")
 FAMILIES = {1: "file", 2: "feet", 3: "playability", 4: "timing", 5: "pack", 6: "sync and music"}
 
 
@@ -203,7 +204,8 @@ class TimedRule(ChartRule):
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each that is quick enough, or for each passage of them."""
         longest = self.longest(subject) + EPSILON
-        for passage in self.passages([one for one in self.occurrences(subject) if one.seconds <= longest], subject):
+        quick = [one for one in self.occurrences(subject) if one.seconds <= longest]
+        for passage in self.passages(quick, subject):
             rows = [one.row for one in passage]
             row, _, said, column = passage[self.representative(subject, rows) if len(rows) > 1 else 0]
             if len(rows) > 1:
@@ -221,14 +223,7 @@ class TimedRule(ChartRule):
 
     def passages(self, found: list[Occurrence], subject: ChartSubject) -> Iterable[list[Occurrence]]:
         """What is told in one finding each."""
-        passage: list[Occurrence] = []
-        for one in found:
-            if passage and subject.beat(one.row) - subject.beat(passage[-1].row) > self.passage_beats - EPSILON:
-                yield passage
-                passage = []
-            passage.append(one)
-        if passage:
-            yield passage
+        return passages(found, lambda one: subject.beat(one.row), self.passage_beats)
 
     def quick(self, subject: ChartSubject, rows: Iterable[int]) -> list[int]:
         """Those of some rows that come quickly enough after the step before: others need not be looked at."""
@@ -249,6 +244,18 @@ class TimedRule(ChartRule):
         from dancetutor_cli.lint.rule_settings import limit
 
         return min(limit(self.times, self.options["share"], steps_type, meter), self.slowest)
+
+
+def passages(found: Iterable[Placed], beat_of: Callable[[Placed], float], most_beats: float) -> Iterator[list[Placed]]:
+    """What is found in the order of its beats, in runs of which each is less than so many beats after the last."""
+    passage: list[Placed] = []
+    for one in found:
+        if passage and beat_of(one) - beat_of(passage[-1]) > most_beats - EPSILON:
+            yield passage
+            passage = []
+        passage.append(one)
+    if passage:
+        yield passage
 
 
 class MoveRule(TimedRule):

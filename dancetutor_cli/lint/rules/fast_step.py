@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli.feet.preset import DropReason
 from dancetutor_cli.lint.findings import Finding
-from dancetutor_cli.lint.rule import EPSILON, ChartRule
+from dancetutor_cli.lint.rule import EPSILON, ChartRule, passages
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
@@ -22,6 +22,7 @@ _AS_ONE = 0.03  # seconds between two rows that look meant as one
 _NEIGHBOUR_TAP_METER = 13  # meter from which a foot that holds a panel taps a neighbour of it
 _QUICK = 20  # meter of charts that nobody plays to the last note
 _NEIGHBOUR = 1.5  # panel widths
+_FEW = 2  # far steps of a passage that are told one by one
 _NUMBERS = {3: "three", 4: "four"}
 _RESTED = 0.2  # seconds since its last step, and a foot is as good as the other
 
@@ -38,6 +39,7 @@ class FastStep(ChartRule):
     players take neighbours with heel and toe, and none from meter 13 where the other foot holds a panel and can tap a
     neighbour of it. Rows less than 30 ms apart are told as
     what they are, a slip of the grid, and three rows or more less than 45 ms apart as a burst, once in two measures.
+    Of other steps three or more of one foot, at most two measures apart, are one finding.
 
     `max_speed`: panel widths per second, on the straight way from panel to panel. `min_seconds`: steps closer together
     are a flam, one movement of the foot, and do not count.
@@ -64,6 +66,7 @@ class FastStep(ChartRule):
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each step that is too fast; one for a passage in which the rows are."""
         feet, bursts = subject.feet, []
+        moves: dict[tuple[str, str], list[tuple[int, int, str]]] = {}  # by foot and severity
         told: set[tuple[int, str]] = set()
         limits = self.options["max_speed"], self.options["min_seconds"]
         for row, column, way, seconds in feet.too_fast(*limits) if feet else ():
@@ -71,9 +74,13 @@ class FastStep(ChartRule):
                 bursts.append(rows)
             elif feet and not _free_foot_takes_it(subject, row, self.options["max_speed"]):
                 place, message = _dense(subject, row)
-                if not message:
-                    message = f"the {feet.limb_name(row, column)} moves {way:.1f} panels in {seconds * 1000:.0f} ms"
                 least = {"severity": "info"} if _heel_and_toe(subject, row) else {}
+                if not message and subject.pause(row) >= _AS_ONE:
+                    foot = feet.limb_name(row, column)
+                    message = f"the {foot} moves {way:.1f} panels in {seconds * 1000:.0f} ms"
+                    moves.setdefault((foot, least.get("severity", "")), []).append((row, column, message))
+                    told.add((row, message))
+                    continue
                 if subject.pause(row) < _AS_ONE:
                     place = row
                     apart = f"{subject.pause(row) * 1000:.0f} ms"
@@ -82,6 +89,8 @@ class FastStep(ChartRule):
                 if (place, message) not in told:
                     yield self.finding(message, subject.at_row(place, column if place == row else None), **least)
                 told.add((place, message))
+        for (_, severity), found in moves.items():
+            yield from self._moves(subject, found, {"severity": severity} if severity else {})
         end = -math.inf
         for rows in sorted(bursts):
             if subject.beat(rows[0]) > end + _PASSAGE:
@@ -90,6 +99,20 @@ class FastStep(ChartRule):
                 yield self.finding(message, subject.at_row(rows[1]))
             end = subject.beat(rows[-1])
         yield from self._leaps(subject, {row for rows in bursts for row in rows} | {row for row, _ in told})
+
+    def _moves(
+        self, subject: ChartSubject, found: list[tuple[int, int, str]], least: dict[str, str]
+    ) -> Iterable[Finding]:
+        """One finding for each far step of a foot, or of many in a passage one, at the row whose feet are surest."""
+        for passage in passages(found, lambda one: subject.beat(one[0]), _PASSAGE):
+            rows = [row for row, _, _ in passage]
+            if len(rows) <= _FEW:
+                for row, column, message in passage:
+                    yield self.finding(message, subject.at_row(row, column), **least)
+                continue
+            row, column, message = passage[subject.most_confident(rows)]
+            message += f"; {len(rows)} of them from beat {subject.beat(rows[0]):g} to {subject.beat(rows[-1]):g}"
+            yield self.finding(message, subject.at_row(row, column), **least)
 
     def _leaps(self, subject: ChartSubject, told: set[int]) -> Iterable[Finding]:
         """One finding for each passage of steps that are let go and of which nothing is told yet."""
