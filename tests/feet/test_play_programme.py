@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from play_rows import first, letters, pad_of, rows_of
 from dancetutor_cli import feet
 from dancetutor_cli.feet import Ambiguity, Pad, Preset, Rows
 from dancetutor_cli.feet.solver.engine import Engine, _arrays, _nodes, engine_for
-from dancetutor_cli.feet.solver.store import ACTION, COST, FACTS, FIRST, LIMBS, NEXT
+from dancetutor_cli.feet.solver.store import ACTION, BASE, COST, FACTS, FIRST, LIMBS, NEXT, TIMES
 from dancetutor_cli.feet.solver.tables import moves
 
 PRESETS = {name: feet.load_preset(name) for name in feet.preset_names()}
@@ -31,7 +32,8 @@ def every_way(rows: Rows, pad: Pad, preset: Preset) -> Ways:
         for limbs, states in ways.items():
             for state, cost in states.items():
                 for move in layers.moves(row, state):
-                    price = int(t.move[move, COST]) + int(t.timed_cost[layers.elapsed[row], t.move[move, FACTS]]) - 1
+                    time = t.timed_row[layers.elapsed[row]]
+                    price = int(t.move[move, COST]) + int(t.timed_cost[time, t.move[move, FACTS]]) - 1
                     reached = following[(*limbs, int(t.wide[move, ACTION]) & LIMBS)]
                     to = int(t.move[move, NEXT])
                     reached[to] = min(cost + price, reached.get(to, cost + price))
@@ -153,13 +155,30 @@ def test_little_room_changes_nothing(corpus_rows: list[tuple[str, Rows]]) -> Non
         pad, preset = pad_of(steps_type), PRESETS["itg"]
         usual, little = Engine(pad, preset), Engine(pad, preset)
         expected = usual.cheapest(rows, None, margins=True)
-        little._moves = moves(len(preset.weights), 1)
+        little._making = little._making._replace(moves=moves(len(preset.weights), 1))
         used = int(usual.solved(rows)[1].row[len(rows) + 1, FIRST])
         for room in (1, used, used + 1):
             found = little._empty_path(*rows.steps.shape, margins=True)
             little._run_to_end(0, _arrays(rows, None), _nodes(len(rows), np.empty(room, dtype=np.int64)), found)
             for field in ("limb", "part", "margin", "ambiguity"):
                 assert np.array_equal(getattr(found, field), getattr(expected, field)), (steps_type, room, field)
+
+
+def test_more_times_between_rows_than_there_is_room_for(corpus_rows: list[tuple[str, Rows]]) -> None:
+    """What rows cost by time is kept for each time that is met; the sum of terms is computed without what is kept."""
+    for steps_type, rows in corpus_rows:
+        pad, preset, n = pad_of(steps_type), PRESETS["itg"], len(rows)
+        little, enough = Engine(pad, preset), Engine(pad, preset)
+        little.tables = little.tables._replace(timed_cost=np.zeros((2, 3), dtype=np.int32))
+        for seed in range(3):
+            times = np.random.default_rng(seed).permutation(np.arange(30, 3 * n + 30, 3))
+            rows = replace(rows, milliseconds=times)
+            found, expected = (engine.cheapest(rows, None, margins=True) for engine in (little, enough))
+            for field in ("limb", "part", "margin", "ambiguity"):
+                assert np.array_equal(getattr(found, field), getattr(expected, field)), (steps_type, seed, field)
+            total = int(little.solved(rows)[1].row[n, BASE])
+            assert total == little.with_details(rows, found).cost[:n].sum() > 0
+        assert len(little.tables.timed_cost) >= int(little.tables.counts[TIMES]) >= n - 1
 
 
 @pytest.fixture(scope="module")

@@ -77,7 +77,7 @@ class _Ways:
         self._layers = layers
         t = engine.tables
         self._next, self._cost, self._facts = (t.move[:, column].tolist() for column in (NEXT, COST, FACTS))
-        self._action, self._time = (t.wide[:, ACTION] & LIMBS).tolist(), t.timed_cost
+        self._action, self._time, self._time_row = (t.wide[:, ACTION] & LIMBS).tolist(), t.timed_cost, t.timed_row
         self._known: dict[tuple[int, int, int], list[tuple[int, int]]] = {}
         self._rest = self._cheapest_rest()
 
@@ -101,9 +101,9 @@ class _Ways:
         ms = self._layers.elapsed[row]
         key = (self._layers.pattern[row], ms, state)
         if key not in self._known:
+            time = self._time[self._time_row[ms]]
             self._known[key] = [
-                (move, self._cost[move] + int(self._time[ms, self._facts[move]]) - 1)
-                for move in self._layers.moves(row, state)
+                (move, self._cost[move] + int(time[self._facts[move]]) - 1) for move in self._layers.moves(row, state)
             ]
         return self._known[key]
 

@@ -43,6 +43,7 @@ from dancetutor_cli.feet.solver.store import (
     LAYER_SIZE,  # fmt: skip
     LIMBS,  # fmt: skip
     MORE_NODES,  # fmt: skip
+    MORE_TIMED,  # fmt: skip
     MOVES,  # fmt: skip
     NEXT,  # fmt: skip
     PART_SHIFT,  # fmt: skip
@@ -50,6 +51,7 @@ from dancetutor_cli.feet.solver.store import (
     PLACE_MASK,  # fmt: skip
     START,  # fmt: skip
     TERMS_SHIFT,  # fmt: skip
+    TIMES,  # fmt: skip
     TO_LAYER,  # fmt: skip
     UNEXPLORED,  # fmt: skip
     UNKNOWN,  # fmt: skip
@@ -174,10 +176,24 @@ def wait(rows):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _time_cost(facts, ms, timed_key, timed_cost, curves, terms):  # type: ignore[no-untyped-def]
-    """1 + what facts cost after so many milliseconds; computed when first asked for. `terms` : scratch."""
-    timed_cost[ms, facts] = 1 + charge_time(timed_key[facts], ms, curves, terms) if facts else 1
-    return timed_cost[ms, facts]
+def _row_of_time(ms, t):  # type: ignore[no-untyped-def]
+    """The row of `timed_cost` for so many milliseconds; a new time is entered. -1 if there is no room for it."""
+    row = np.int64(t.timed_row[ms])
+    if row < 0 and t.counts[TIMES] < len(t.timed_cost):
+        row = t.counts[TIMES]
+        t.counts[TIMES] += 1
+        t.timed_row[ms] = row
+    return row
+
+
+@inner_kernel
+def _time_cost(facts, time, ms, timed_key, timed_cost, curves, terms):  # type: ignore[no-untyped-def]
+    """1 + what facts cost after so many milliseconds; computed when first asked for.
+
+    time : the row of `timed_cost` for `ms`; terms : scratch
+    """
+    timed_cost[time, facts] = 1 + charge_time(timed_key[facts], ms, curves, terms) if facts else 1
+    return timed_cost[time, facts]
 
 
 @inner_kernel(inline="always")
@@ -203,14 +219,17 @@ def advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
         top = high + layer[here, LAYER_SIZE]
         if top > len(node):
             return row, MORE_NODES
+        time = _row_of_time(ms, t)
+        if time < 0:
+            return row, MORE_TIMED
         u, best, cheapest = high, _NEVER, _NEVER
         start = np.int64(transition[number, FIRST_EDGE])
         for e in range(start, start + transition[number, EDGE_COUNT]):
             packed = edge[e]
             facts = packed >> FACTS_SHIFT & FACTS_MASK
-            price = timed_cost[ms, facts]
+            price = timed_cost[time, facts]
             if price == UNKNOWN:
-                price = _time_cost(facts, ms, timed_key, timed_cost, curves, scratch)
+                price = _time_cost(facts, time, ms, timed_key, timed_cost, curves, scratch)
             cost = (node[low + (packed & PLACE_MASK)] >> COST_SHIFT) + (packed >> EDGE_COST_SHIFT) + price - 1
             way = cost << COST_SHIFT | e
             best = min(best, way)
@@ -292,7 +311,7 @@ def margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
     for v in range(widest):
         after[v] = same_after[v] = 0
     for r in range(n - 1, -1, -1):
-        low, base, ms = first[r, FIRST], first[r, BASE], elapsed[r]
+        low, base, time = first[r, FIRST], first[r, BASE], t.timed_row[elapsed[r]]
         ours, other, resolved = wide[path[r], ACTION] & LIMBS, _NEVER, _NEVER
         for v in range(first[r + 1, FIRST] - low):
             before[v] = same_before[v] = _NEVER
@@ -301,7 +320,7 @@ def margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
         for e in range(start, start + transition[chosen[r], EDGE_COUNT]):
             packed = edge[e]
             v, price = packed & PLACE_MASK, (packed >> EDGE_COST_SHIFT) - 1
-            price += timed_cost[ms, packed >> FACTS_SHIFT & FACTS_MASK]
+            price += timed_cost[time, packed >> FACTS_SHIFT & FACTS_MASK]
             rest, same_rest = price + after[u], price + same_after[u]
             before[v] = min(before[v], rest)
             if edge_limbs[e] == ours:

@@ -19,7 +19,8 @@ from dancetutor_cli.feet.solver.vocabulary import MOST_MS as MOST_MS
 # places in `counts`
 (
     STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN, TERMS_KNOWN, LAYERS, LAYER_STATES, TRANSITIONS, EDGES, TRIED,
-) = range(11)  # fmt: skip
+    TIMES,
+) = range(12)  # fmt: skip
 NEXT, COST, FACTS, MOVE_LIMBS = range(4)  # columns of `Tables.move`
 ACTION, EVENTS = range(2)  # columns of `Tables.wide`
 LAYER_FIRST, LAYER_SIZE = range(2)  # columns of `Tables.layer`
@@ -62,7 +63,8 @@ class Tables(NamedTuple):
     wide : int64 (, 2), limb codes with parts above `PART_SHIFT`; events with a number of `terms` above `TERMS_SHIFT`
     terms : int32 (, w), cost by weight: few, which many moves share; terms_hash : int32
     timed_key : int64, packed facts; timed_hash : int32
-    timed_cost : int32 (MOST_MS + 1, ), 1 + cost of facts by number, UNKNOWN where not computed yet
+    timed_cost : int32 (, ), 1 + cost of facts by number, UNKNOWN where not computed yet: a row for each time met so far
+    timed_row : int32 (MOST_MS + 1,), by milliseconds, the row of `timed_cost`, or -1
     layer : int32 (, 2), where its states start in `layer_state`, and their number; in the order of `explore`
     layer_key : int64, hash of the states; layer_hash : int32
     transition : int32 (, 3), layer it leads to, first edge, number of edges
@@ -86,6 +88,7 @@ class Tables(NamedTuple):
     timed_key: NDArray[np.int64]
     timed_hash: NDArray[np.int32]
     timed_cost: NDArray[np.int32]
+    timed_row: NDArray[np.int32]
     layer: NDArray[np.int32]
     layer_state: NDArray[np.int32]
     layer_key: NDArray[np.int64]
@@ -307,10 +310,10 @@ def fill_pairs(old, new):  # type: ignore[no-untyped-def]
 def empty_tables(weights: int) -> Tables:
     """Room for what a few hundred charts need: what is not touched takes no memory, and to grow copies all there is."""
     states, patterns, moves, pairs, costs, layers = 1 << 14, 1 << 12, 1 << 18, 1 << 18, 1 << 13, 1 << 15
-    edges, facts = 1 << 21, 1 << 9
+    edges, facts, times = 1 << 21, 1 << 10, 1 << 8
     whole, small = np.int64, np.int32
     return Tables(
-        counts=np.zeros(11, dtype=whole),
+        counts=np.zeros(12, dtype=whole),
         state_key=np.zeros(states, dtype=whole),
         state_hash=np.full(2 * states, -1, dtype=small),
         met=np.zeros((states, 2), dtype=small),
@@ -323,7 +326,8 @@ def empty_tables(weights: int) -> Tables:
         terms_hash=np.full(4 * costs, -1, dtype=small),
         timed_key=np.zeros(2 * MOST_MOVES, dtype=whole),
         timed_hash=np.full(1 << 15, -1, dtype=small),
-        timed_cost=np.zeros((MOST_MS + 1, facts), dtype=small),
+        timed_cost=np.zeros((times, facts), dtype=small),
+        timed_row=np.full(MOST_MS + 1, -1, dtype=small),
         layer=np.zeros((layers, 2), dtype=small),
         layer_state=np.zeros(16 * layers, dtype=small),
         layer_key=np.zeros(layers, dtype=whole),
@@ -362,9 +366,10 @@ def grown(t: Tables, wanted: int, rows: int) -> Tables:
         fill_numbers(t.timed_key, t.counts[FACTS_KNOWN], table)
         return t._replace(timed_key=_longer(t.timed_key), timed_hash=table)
     if wanted == MORE_TIMED:
-        cost = np.zeros((MOST_MS + 1, 2 * int(t.counts[FACTS_KNOWN])), dtype=np.int32)
-        known = np.flatnonzero(t.timed_cost.any(axis=1))
-        cost[known, : t.timed_cost.shape[1]] = t.timed_cost[known]
+        times, (length, width), facts = int(t.counts[TIMES]), t.timed_cost.shape, int(t.counts[FACTS_KNOWN])
+        shape = (2 * length if times == length else length, 2 * facts if facts > width else width)
+        cost = np.zeros(shape, dtype=np.int32)
+        cost[:times, :width] = t.timed_cost[:times]
         return t._replace(timed_cost=cost)
     if wanted == MORE_LAYERS:
         table = np.full(2 * len(t.layer_hash), -1, dtype=np.int32)
