@@ -199,7 +199,7 @@ def _value(source: MarkedYaml, keys: Keys, data: Any, hint: Any, base: Any = Non
         if is_dataclass(kind):
             return _build(source, keys, data, kind, base)
         return _mapping(source, keys, data, inner, base) if is_mapping else _list(source, keys, data, hint)
-    names = _names(hint)
+    names = _names_of(kind, marks)
     if names and (not isinstance(data, str) or data not in names):
         near = did_you_mean(data, names) if isinstance(data, str) else ""
         raise _wrong(source, keys, data, hint, f"there is no {_shown(data)}{near}; there are: {', '.join(names)}")
@@ -227,7 +227,10 @@ def _bounds(marks: tuple[Any, ...]) -> Bounds:
 
 def _names(hint: Any) -> tuple[str, ...]:
     """The names that a hint allows; empty: any."""
-    kind, marks = _marks(hint)
+    return _names_of(*_marks(hint))
+
+
+def _names_of(kind: Any, marks: tuple[Any, ...]) -> tuple[str, ...]:
     if get_origin(kind) is Literal:
         return get_args(kind)
     return next((mark.names for mark in marks if isinstance(mark, Names)), ())

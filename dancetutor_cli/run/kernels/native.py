@@ -26,6 +26,7 @@ from dancetutor_cli.run.kernels.store import StoredCode
 
 RESULTS = 2  # places for what a kernel gives, before its arguments
 _OBJECT_FILES = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\x64\x86", b"\x64\xaa")  # what those of the systems start with
+_start: Any = (ctypes.c_char * 0).from_buffer  # nothing of an array but where it begins, so that empty ones do, too
 _Unused: Any = ctypes.c_void_p * 2  # where a kernel puts what it gives (nothing), and numba an exception's number
 _prototype: Any = ctypes.PYFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
 
@@ -81,7 +82,7 @@ class Kernel:
             words = _words(arguments, self._last)
         if words is None or self._last is None:
             return self._as_python(args)
-        if status := self._last.run(_Unused(), _Unused(), words.ctypes.data):
+        if status := self._last.run(_Unused(), _Unused(), _address(words)):
             raise self._error(status)
         given = words[:RESULTS].tolist()
         return None if self._results == 0 else given[0] if self._results == 1 else tuple(given)
@@ -154,13 +155,27 @@ def _words(arguments: list[Any], loaded: LoadedCode | None) -> NDArray[np.int64]
             if kind is None:
                 words.append(index(one))
                 continue
-            address = one.__array_interface__["data"][0]
-            if (one.dtype, one.ndim) != kind or not one.flags.c_contiguous or address % one.itemsize:
+            (dtype, dimensions), address, shape = kind, _address(one), one.shape
+            if one.dtype != dtype or len(shape) != dimensions or address % dtype.itemsize:
                 return None
-            words += (address, *one.shape)
+            words.append(address)
+            words += shape
         return np.array(words, dtype=np.int64)
     except (AttributeError, TypeError, ValueError, OverflowError):
         return None
+
+
+def _address(array: NDArray[Any]) -> int:
+    """Where an array's items begin. TypeError if they do not lie row by row.
+
+    The buffer protocol says it in a fifth of the time of `__array_interface__`, but not of arrays that are read-only.
+    """
+    try:
+        return ctypes.addressof(_start(array))
+    except TypeError:
+        if array.flags.writeable or not array.flags.c_contiguous:
+            raise
+        return int(array.__array_interface__["data"][0])
 
 
 def _load(code: MachineCode, kinds: tuple[Kind, ...]) -> LoadedCode:

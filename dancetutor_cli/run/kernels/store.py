@@ -163,16 +163,18 @@ def source_digest(source: Path) -> bytes:
 
 def source_modules(source: Path, package: Path = PACKAGE) -> list[Path]:
     """The modules whose code is in a module's kernels: its own, those whose kernels or constants it has, and theirs."""
-    found, new = {source.resolve()}, [source.resolve()]
+    found, new = {source.resolve(): source.read_text("utf-8")}, [source.resolve()]
     while new:
-        for name, names in _IMPORT.findall(new.pop().read_text("utf-8")):
+        for name, names in _IMPORT.findall(found[new.pop()]):
             room = package / name.replace(".", "/")
-            modules = [room.with_suffix(".py"), *(room / f"{word}.py" for word in _WORD.findall(names))]
-            for path in modules:
+            module = room.with_suffix(".py")
+            is_module = module in found or module.is_file()  # else a folder, and names are those of its modules
+            for path in [module] if is_module else (room / f"{word}.py" for word in _WORD.findall(names)):
                 if path in found or name.startswith("run.") or not path.is_file():
                     continue
-                if _CONSTANT.search(names) or _KERNEL.search(path.read_text("utf-8")):
-                    found.add(path)
+                text = path.read_text("utf-8")
+                if _CONSTANT.search(names) or _KERNEL.search(text):
+                    found[path] = text
                     new.append(path)
     return sorted(found)
 
