@@ -11,13 +11,20 @@ import click
 
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.arguments import GivenPath, Source, fixes, folder, named, open_output, rules, sources
-from dancetutor_cli.commands.chart_options import exclude_option, preset_option, quiet_option, selection_options
+from dancetutor_cli.commands.chart_options import (
+    exclude_option,
+    language_option,
+    preset_option,
+    quiet_option,
+    selection_options,
+)
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.pack import pack_options
 from dancetutor_cli.reports.formats import FORMATS
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import check_file
+from dancetutor_cli.run.languages import ENGLISH
 from dancetutor_cli.run.trust import results_folder
 
 if TYPE_CHECKING:
@@ -106,6 +113,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     metavar="FILE.html|.svg",
     help="Draw the charts of one file as a sheet of measures.",
 )
+@language_option("With --sheet: the language of the sheet [default: en].")
 @click.option(
     "--sync",
     is_flag=True,
@@ -176,6 +184,8 @@ def command(**options: Any) -> int:  # fmt: skip
                                             "baseline", "update_baseline", "suggest", "alternatives", "meter_scale",
                                             "rate", "sync")},
     )  # fmt: skip
+    if options["language"] is not None and options["sheet"] is None:
+        raise UsageError("--language is the language of the sheet; add --sheet")
     if options["plot"] is not None and not options["sync"]:
         raise UsageError("--plot draws what --sync finds; add --sync")
     if not options["fix"] and (options["diff"] or options["backup"]):
@@ -295,7 +305,7 @@ def _lint(run: LintRun, files: list[Source], options: dict[str, Any], output: IO
     if options["sheet"] is not None and not tally.unreadable:
         from dancetutor_cli.commands.pack import write_sheet
 
-        said = write_sheet(options["sheet"], tasks)
+        said = write_sheet(options["sheet"], tasks, options["language"] or ENGLISH)
         if not options["quiet"]:
             click.echo(said, err=True)
     if options["plot"] is not None and not tally.unreadable:

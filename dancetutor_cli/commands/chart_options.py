@@ -9,6 +9,8 @@ import click
 
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.arguments import GivenPath, characters, difficulties, folder, named, steps_types
+from dancetutor_cli.run.errors import UsageError, did_you_mean
+from dancetutor_cli.run.reading import config_names
 
 __all__ = [
     "TABLE",
@@ -17,6 +19,7 @@ __all__ = [
     "exclude_option",
     "form_option",
     "gait_option",
+    "language_option",
     "motion_option",
     "number",
     "preset_option",
@@ -157,6 +160,26 @@ def form_option(command: _Command) -> _Command:
         "in configs/forms.",
     )
     return option(command)
+
+
+def language_option(text: str, default: str | None = None) -> Callable[[_Command], _Command]:
+    """Makes --language; the function gets keyword argument `language`, a name of configs/languages. text : its help."""
+    return click.option(
+        "--language",
+        shell_complete=named(folder("languages"), files=False),
+        metavar="|".join(config_names("languages")),
+        default=default,
+        show_default=default is not None,
+        callback=_language,
+        help=text,
+    )
+
+
+def _language(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
+    names = config_names("languages")
+    if value is None or value in names:
+        return value
+    raise UsageError(f"there is no language '{value}'{did_you_mean(value, names)}; there are: {', '.join(names)}")
 
 
 def style_option(command: _Command) -> _Command:

@@ -15,6 +15,7 @@ from dancetutor_cli.commands.chart_options import (
     character_option,
     form_option,
     gait_option,
+    language_option,
     motion_option,
     number,
     push_options,
@@ -23,6 +24,7 @@ from dancetutor_cli.commands.chart_options import (
 )
 from dancetutor_cli.film.choices import LEAST_SIDE, MOST_SIDE, QUALITIES, RENDERERS, parse_ahead
 from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.languages import ENGLISH
 
 if TYPE_CHECKING:
     from dancetutor_cli.film.clock import Practice
@@ -124,6 +126,7 @@ _OPTIONS = (
         help="Draw this motion, which `animate` has baked; of a chart for two give both.",
     ),
     click.option("--show-findings", is_flag=True, help="Call out what the linter found, too: for authors."),
+    language_option("Language of the words in the film.", ENGLISH),
     click.option("--font", type=GivenPath(), help="A font file, for titles in other scripts."),
     click.option("--mute", is_flag=True, help="Leave the sound out."),
 )
@@ -155,6 +158,9 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmR
         from dancetutor_cli.film.overlay.text import font
 
         font(str(options["font"]), 24)  # refused before the work begins
+    from dancetutor_cli.film.overlay.text import check_letters
+
+    check_letters(options["language"], options["font"])
     wanted = options["size"] or _default_size(layout.size, form)
     size = even_size(wanted) if form.h264 else wanted
     if size != wanted:
@@ -171,6 +177,7 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmR
         options["font"],
         parse_ahead(options["call_ahead"]) if options["call_ahead"] else None,
         options["show_findings"],
+        options["language"],
     )
     names = ("preset", "play", "bar", "gait", "form", "motion", "style", "push", "trip")
     selection = Selection(options["steps_type"], options["difficulty"], options["index"], options["player"])

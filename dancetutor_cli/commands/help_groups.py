@@ -25,8 +25,8 @@ GROUPS = {
     ),
     "Changes to files": ("--fix", "--markers", "--strip", "--check", "--diff", "--dry-run", "--force", "--backup"),
     "Picture": (
-        "--layout", "--camera", "--scroll", "--down", "--second", "--show-findings", "--call-ahead", "--font",
-        "--renderer", "--encoder",
+        "--layout", "--camera", "--scroll", "--down", "--second", "--show-findings", "--call-ahead", "--language",
+        "--font", "--renderer", "--encoder",
     ),
     "Dancer": (
         "--character", "--style", "--form", "--gait", "--bar", "--motion", "--physics", "--push", "--trip", "--correct",

@@ -193,15 +193,18 @@ def check_sheet(path: Path, files: int) -> None:
         raise UsageError("--sheet draws the charts of one file: name a file, not a folder")
 
 
-def write_sheet(path: Path, tasks: list[AnalyzeTask]) -> str:
-    """Draw the charts of one file, and return a line about it. An .svg holds one chart, a page any number of them."""
+def write_sheet(path: Path, tasks: list[AnalyzeTask], language: str) -> str:
+    """Draw the charts of one file; returns a line about it. An .svg holds one chart, a page any number of them.
+
+    language : of the sheet's words, a name of configs/languages
+    """
     from dancetutor_cli.lint.analysis import drawable_charts
     from dancetutor_cli.reports.sheet import html_page, make_sheet, svg_sheet
 
     charts = list(drawable_charts(tasks[0]))
     if not charts:
         raise UsageError(f"{tasks[0].path}: no chart with notes is selected, so there is nothing to draw")
-    made = [make_sheet(chart.subject, chart.findings) for chart in charts]
+    made = [make_sheet(chart.subject, chart.findings, language) for chart in charts]
     sheets = [(sheet, _facts(chart, sheet)) for chart, sheet in zip(charts, made, strict=True)]
     if path.suffix.lower() == ".svg":
         if len(sheets) > 1:
@@ -245,12 +248,12 @@ def _facts(chart: Drawable, sheet: Sheet) -> list[str]:
     from dancetutor_cli.reports.sheet_drawing import unsure_rows
 
     subject, dense = chart.subject, chart.density
-    numbers = [f"{len(subject.step_rows)} rows", f"{length_of(subject)} long"]
-    numbers += [f"{dense.mean:.1f} rows/s, at most {dense.peak:.1f}"]
+    numbers = [sheet.say("rows", count=len(subject.step_rows)), sheet.say("length", time=length_of(subject))]
+    numbers.append(sheet.say("density", mean=f"{dense.mean:.1f}", peak=f"{dense.peak:.1f}"))
     if dense.breakdown:
-        numbers.append(f"stream {dense.breakdown}")
+        numbers.append(sheet.say("stream", breakdown=dense.breakdown))
     if subject.play is not None:
-        numbers.append(f"cost {subject.play.total}, preset {subject.play.preset}")
+        numbers.append(sheet.say("cost", cost=subject.play.total, preset=subject.play.preset))
     if unsure := unsure_rows(sheet):
-        numbers.append(f"{len(unsure)} rows less than {sheet.style.unsure:g} % sure")
+        numbers.append(sheet.say("unsure-rows", count=len(unsure), percent=f"{sheet.style.unsure:g}"))
     return facts_of(sorted(chart.counts.items()), numbers)

@@ -17,6 +17,7 @@ from dancetutor_cli.commands.chart_options import (
     exclude_option,
     form_option,
     gait_option,
+    language_option,
     motion_option,
     preset_option,
     quiet_option,
@@ -53,6 +54,7 @@ class PageWish:
     second: str | None
     character: str
     preset: str | None
+    language: str | None
 
 
 @click.command(cls=GroupedCommand)
@@ -74,6 +76,7 @@ class PageWish:
 @gait_option
 @form_option
 @motion_option
+@language_option("The page's language [default: the browser's].")
 @click.option(
     "--jobs",
     type=click.IntRange(1, 256),
@@ -106,7 +109,7 @@ def command(path: Path, selection: Selection, wish: PageWish) -> None:
     dance = DanceRequest(
         file, selection, wish.preset, wish.play_file, bar=wish.bar, gait=wish.gait, form=wish.form, motion=wish.motion
     )
-    request = PageRequest(dance, wish.character, wish.music, wish.second, wish.jobs)
+    request = PageRequest(dance, wish.character, wish.music, wish.second, wish.jobs, wish.language or "")
     announce_compiling(choice_for(file, wish.preset), quiet=wish.quiet)
     if file.is_dir():
         _pages(request, output or Path("pages"), wish)

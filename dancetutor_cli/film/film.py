@@ -20,7 +20,7 @@ from dancetutor_cli.film.overlay import captions
 from dancetutor_cli.film.overlay import marks as beside
 from dancetutor_cli.film.overlay.announce import Calls, Runs
 from dancetutor_cli.film.overlay.blit import Box
-from dancetutor_cli.film.overlay.diagram import FeetDiagram, NextRows, PadMap, PadView, below, name_sprite
+from dancetutor_cli.film.overlay.diagram import FeetDiagram, Lettering, NextRows, PadMap, PadView, below, name_sprite
 from dancetutor_cli.film.overlay.header import Header, Lines, WordsRoom
 from dancetutor_cli.film.overlay.highway import Highway, Score
 from dancetutor_cli.film.overlay.marks import HighwayGeometry, lane_width_for_words
@@ -31,9 +31,10 @@ from dancetutor_cli.film.picture import Frame, darkened
 from dancetutor_cli.film.plan import FilmPlan, turned
 from dancetutor_cli.film.scene.props import Television
 from dancetutor_cli.film.scroll import parse_scroll
-from dancetutor_cli.film.words import CALLS_OFF, CALLS_WIDE, Stay, calls_room, clear, dancing, moments, stay
+from dancetutor_cli.film.words import CALLS_OFF, CALLS_WIDE, LIMBS, Stay, calls_room, clear, dancing, moments, stay
 from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.files import encoded, write_atomic
+from dancetutor_cli.run.languages import load_language
 
 if TYPE_CHECKING:
     from dancetutor_cli.film.scene.dancer import Dancer
@@ -57,6 +58,7 @@ class Film:
         self.columns = len(plan.directions)
         self.scale = self.layout.scale(self.size)
         self.face = Typeface(plan.look.font)
+        self.language = load_language(plan.look.language)
         self._stays: dict[tuple[int, int], Stay] = {}
         self.style = highway_style()
         self.lights = PanelLights(lighting(plan.notes, plan.presses), self.columns, self.style.panel_seconds)
@@ -86,7 +88,8 @@ class Film:
         tags = part.tags and beside.has_visible_callout(plan.callouts, plan.clock.passes)
         letters = beside.letters(scale)
         if tags:
-            told = beside.callout_texts(plan.callouts, (*callout_words().values(), *standing_tags()))
+            words = (*callout_words(self.language).values(), *standing_tags(self.language))
+            told = beside.callout_texts(plan.callouts, words)
             lane = lane_width_for_words(beside.room_for(told, letters, self.face), lane, box, self.columns)
         geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned, tags, letters)
         scroll = plan.look.scroll or parse_scroll(part.scroll)
@@ -125,18 +128,19 @@ class Film:
     def _legend(self) -> captions.Legend | None:
         if (part := self.layout.legend) is None:
             return None
-        limbs = beside.visible_limbs(self.plan.notes, self.plan.clock.passes)
+        shown = sorted({0, 1} | beside.visible_limbs(self.plan.notes, self.plan.clock.passes))
+        words, players = self.language.film, self.style.players if self.plan.notes.player.any() else ()
         box = self._below(self._box("legend"), LEGEND_OFF * self.scale * part.text)
         if (pads := self._feet_box) is not None and overlap(pads, box):
             under = lowered(box, pads[3] + LEGEND_OFF * self.scale)
             box = under if under[3] <= self.size[1] else box  # a layout of one's own may leave no room there
         return captions.Legend(
-            limbs,
+            {limb: self.language.limbs[LIMBS[limb]] for limb in shown},
             box,
             self.scale * part.text,
             self.face,
-            captions.TURNED if self.turned and not self.layout.highway else "",
-            self.style.players if self.plan.notes.player.any() else (),
+            words["facing"] if self.turned and not self.layout.highway else "",
+            [(words["player"].replace("{number}", str(n)), colour) for n, colour in enumerate(players, 1)],
         )
 
     def _below(self, box: PixelBox, off: float) -> PixelBox:
@@ -171,7 +175,7 @@ class Film:
             scale = self.scale * self.layout.header.text
             box = self._box("header")[0], self._header.bottom + 9 * scale
         count = (0, 0, *self.size) if self.layout.count is None else self._box("count")
-        return Runs(self.plan.clock, box, count, scale, self.face)
+        return Runs(self.plan.clock, box, count, scale, self.face, self.language)
 
     @cached_property
     def _calls(self) -> Calls | None:
@@ -184,7 +188,7 @@ class Film:
         end = None if self._header is None else self._header.title_end
         room = calls_room(self.layout, self._box, self.scale, end)
         box = clear(room.box, self._heads_and_feet(), CALLS_WIDE * room.scale)
-        return Calls(self.plan.callouts, box, room.scale, self.face, self.style)
+        return Calls(self.plan.callouts, box, room.scale, self.face, self.style, self.language)
 
     def _heads_and_feet(self) -> NDArray[np.float64]:
         """Where these are in the picture while moves are called out, (n, 4), a little larger."""
@@ -238,11 +242,11 @@ class Film:
         view = PadView(plan.pad, self._directions, self.turned)
         if feet:
             rims = self.style.players if plan.dancers > 1 else (captions.WHITE,)
-            now = name_sprite("now", self.face, self.scale) if after else None
+            now = name_sprite(self.language.film["now"], self.face, self.scale) if after else None
             large = FeetDiagram(PadMap(view, below(feet, now)), self.lights, self.face, rims, now)
         if after and plan.rows is not None:
             box = self._box("next")
-            small = NextRows(plan.rows, view, box, after.count, self.face, self.scale)
+            small = NextRows(plan.rows, view, box, after.count, Lettering(self.face, self.scale, self.language.film))
         return large, small
 
     def frame(self, number: int) -> Frame:

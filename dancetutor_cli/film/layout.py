@@ -220,6 +220,7 @@ class FilmLook:
 
     camera, scroll : None for the layout's; down : notes fall; font : a font file, None for the built-in one
     ahead : how long before a move it is called out, None as configured; findings : call out the linter's, too
+    language : of the words in it, a name of configs/languages
     """
 
     layout: Layout
@@ -232,3 +233,4 @@ class FilmLook:
     font: Path | None = None
     ahead: Ahead | None = None
     findings: bool = False
+    language: str = "en"

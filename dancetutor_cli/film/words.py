@@ -6,67 +6,44 @@ import math
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.feet.solver.techniques import HALF_TURNS
-from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.film.clock import Moment, Pass
 from dancetutor_cli.film.layout import Layout, PixelBox
 from dancetutor_cli.film.notes import Callout, Presses
 from dancetutor_cli.run.errors import FileError
-from dancetutor_cli.run.reading import config_path
-from dancetutor_cli.run.yaml_files import load
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from dancetutor_cli.feet.pads import Pad
     from dancetutor_cli.feet.play import Play
+    from dancetutor_cli.run.languages import Language
 
 
-# What moves are called in films: one table of a dancer's words, for what is called out and for subtitles.
+# What moves are called in films: one table of a dancer's words in each language, for callouts and for subtitles.
 
 HOLD, MINE = "hold", "mine"  # a note held, a mine that a foot is on: no `EVENTS`, as half turns are none
-WHO = ("left foot", "right foot", "left hand", "right hand")  # by `feet.play.Limb`
+LIMBS = ("left-foot", "right-foot", "left-hand", "right-hand")  # labels of a language, by `feet.play.Limb`
 IMPLIED_BY_BRACKET = {"doublestep", "forced-doublestep"}  # which foot it is, it says itself
 _OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up"}
 
 
-@dataclass(frozen=True, slots=True)
-class _Table:
-    """configs/words.yaml. moves : name of a move -> its words, with {who} and {places} to be filled in"""
-
-    moves: dict[str, str]
-
-
-@cache
-def _table() -> dict[str, str]:
-    path = config_path("words.yaml")
-    words = load(path, _Table).moves
-    _check(path, words, (*EVENTS, *HALF_TURNS, HOLD, MINE))
-    return words
-
-
-def move_words(names: Iterable[str], path: Path) -> dict[str, str]:
+def move_words(names: Iterable[str], path: Path, language: Language) -> dict[str, str]:
     """The words of these moves, in their order; `path` : where they are named, for a FileError about one without."""
-    table, names = _table(), tuple(names)
-    _check(path, names, table)
+    table, names = language.moves, tuple(names)
+    if unknown := set(names) - set(table):
+        raise FileError(path, f"there is no move '{min(unknown)}'; there are: {', '.join(sorted(table))}")
     return {name: table[name] for name in names}
 
 
-def _check(path: Path, names: Iterable[str], known: Iterable[str]) -> None:
-    if unknown := set(names) - set(known):
-        raise FileError(path, f"there is no move '{min(unknown)}'; there are: {', '.join(sorted(known))}")
-
-
-def filled(words: str, name: str, at: tuple[Play, int], pad: Pad, turned: bool = False) -> list[str]:
+def filled(words: str, name: str, at: tuple[Play, int], view: PanelNames) -> list[str]:
     """A move's words with who does it and where: "right foot: heel on right, toe on up"; of several who do it, each's.
 
-    at : the play and the row; turned : she faces who looks on, and panels are named as they are seen then
+    at : the play and the row
     """
     if "{" not in words:
         return [words]
@@ -76,9 +53,10 @@ def filled(words: str, name: str, at: tuple[Play, int], pad: Pad, turned: bool =
     for who in _doers(name, limbs):
         heel = int(play.feet[row, who]) if 0 <= who < 2 else -1
         columns = [column for column, limb in enumerate(limbs) if limb == who]
-        parts = sorted((column != heel, panel_words(pad.names[column], turned)) for column in columns)
-        places = ", ".join(f"{'toe' if toe else 'heel'} on {panel}" for toe, panel in parts)
-        said.append(words.replace("{who}", WHO[who] if who >= 0 else "foot").replace("{places}", places))
+        film, limb = view.language.film, view.language.limbs[LIMBS[who] if who >= 0 else "foot"]
+        parts = sorted((column != heel, view.name(column)) for column in columns)
+        places = ", ".join(film["toe" if toe else "heel"].replace("{panel}", panel) for toe, panel in parts)
+        said.append(words.replace("{who}", limb).replace("{places}", places))
     return said
 
 
@@ -97,10 +75,19 @@ def short_words(said: str) -> str:
     return (said.partition(": ")[2] or said).partition(" (")[0]
 
 
-def panel_words(name: str, turned: bool = False) -> str:
-    """A panel's name as it is said, whichever pad of a double it is on: "up-left"; turned : as seen from before her."""
-    plain = re.sub(r"-\d+$", "", name)
-    return "-".join(_OPPOSITE.get(word, word) for word in plain.split("-")) if turned else plain
+@dataclass(frozen=True, slots=True)
+class PanelNames:
+    """What the panels of a pad are called. turned : the dancer faces the viewer, and panels are named as seen then"""
+
+    pad: Pad
+    turned: bool
+    language: Language
+
+    def name(self, column: int) -> str:
+        """Of a column, whichever pad of a double it is on: "up-left"; the pad's own name where no language has one."""
+        plain = re.sub(r"-\d+$", "", self.pad.names[column])
+        seen = "-".join(_OPPOSITE.get(word, word) for word in plain.split("-")) if self.turned else plain
+        return self.language.panels.get(seen, seen)
 
 
 # Room for words beside her: the part of a box into which neither her head nor her feet come.

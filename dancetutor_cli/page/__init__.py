@@ -4,5 +4,5 @@
     content, facts                chart, feet and dancer as data; what is said of them in words
     document                      data, style and modules in one file that loads nothing
 
-The page itself is `js/`, `style.css` and `words/`; docs/page.schema.json says what the data are.
+The page itself is `js/` and `style.css`, its words `configs/languages`; docs/page.schema.json says what the data are.
 """

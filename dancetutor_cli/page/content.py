@@ -23,6 +23,7 @@ from dancetutor_cli.film.scene.renderer import RING_SHARE, SHADOW_FADE
 from dancetutor_cli.film.scene.scene import PANEL, SOLE_RADIUS, Scene
 from dancetutor_cli.formats.glb import FIRST_HAND, joint_groups, reaches
 from dancetutor_cli.page.document import Blob
+from dancetutor_cli.run.languages import load_language
 from dancetutor_cli.run.pictures import texture_bytes
 
 if TYPE_CHECKING:
@@ -201,6 +202,7 @@ class Content:
     motions : the dancer's, and that of who dances beside her if there is one, both of `character`'s joints
     second_name : what she plays; second_rows : the rows that she steps with other limbs
     pair : the two are the players of a chart for two, in one picture, the second one in other colours
+    language : in which the page begins, "" for the browser's
     passages : the hardest parts, ready for the page; flips : what other feet in a row would change, by row
     """
 
@@ -219,6 +221,7 @@ class Content:
     passages: Sequence[Mapping[str, Any]] = ()
     flips: Sequence[Mapping[str, Any]] = ()
     pair: bool = False
+    language: str = ""
     music: tuple[str, bytes] | None = field(default=None, repr=False)  # its type ("audio/ogg"), and its file
 
 
@@ -231,6 +234,7 @@ def pack_content(content: Content) -> tuple[dict[str, Any], Blob]:
     bar = content.motions[0].bar if content.motions else None
     doc: dict[str, Any] = {
         "schema": SCHEMA,
+        "language": content.language,
         "words": dict(content.words),
         "pad": {
             "names": list(content.pad.names),
@@ -284,7 +288,10 @@ def _style() -> dict[str, Any]:
         "difficulty": {name: hex_colour(colour) for name, colour in style.difficulty.items()},
         "callout": {name: hex_colour(colour) for name, colour in style.callout.items()},
         # beside the notes, whose markers say which foot it is: the move's name where a film says who does it
-        "callouts": {name: name.replace("-", " ") if "{" in said else said for name, said in callout_words().items()},
+        "callouts": {
+            name: name.replace("-", " ") if "{" in said else said
+            for name, said in callout_words(load_language()).items()
+        },
         "limbs": [hex_colour(colour) for colour in limb_colours().by_limb],
         "limbs_rgb": [list(colour) for colour in limb_colours().by_limb],
         # on an arrow's tail, in sizes of an arrow: how far from its middle, straight and diagonal, and how large

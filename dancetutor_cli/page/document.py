@@ -21,6 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.film.scene.gl.available import SHADERS, web_source
+from dancetutor_cli.run.languages import Language, load_language
+from dancetutor_cli.run.reading import config_names
 
 # Numbers for the page: arrays in one compressed block, in a form that compresses well and is quick to read back.
 
@@ -122,7 +124,6 @@ def _variable(name: str) -> str:
 # One HTML file out of the template, the style, the ES modules and the data; nothing in it is loaded from elsewhere.
 
 HERE = Path(__file__).resolve().parent
-LANGUAGES = ("en", "de")  # the first one holds where a label is missing in another
 _PLACE = re.compile(r"\{\{(\w+)\}\}")
 
 
@@ -171,7 +172,13 @@ def hash_of(text: str) -> str:
 @cache
 def languages() -> dict[str, dict[str, str]]:
     """The page's labels, by language and name."""
-    return {name: json.loads((HERE / "words" / f"{name}.json").read_text("utf-8")) for name in LANGUAGES}
+    return {name: _labels(load_language(name)) for name in config_names("languages")}
+
+
+def _labels(words: Language) -> dict[str, str]:
+    panels = {f"panel-{name}": text for name, text in words.panels.items()}
+    findings = {f"finding-{rule}": text for rule, text in words.findings.items()}
+    return {"language": words.language, **words.page, **panels, **findings}
 
 
 @cache

@@ -55,7 +55,7 @@ class PageRequest:
     dance : which chart, and how it is danced; character : who; music : the song's file goes into the page
     beside : what a second dancer plays: NEXT, the next best play, the name or file of a preset, or a play as JSON; or
         the .npz file of the motion that she has
-    jobs : processes for the pieces of a long song
+    jobs : processes for the pieces of a long song; language : in which the page begins, "" for the browser's
     """
 
     dance: DanceRequest
@@ -63,6 +63,7 @@ class PageRequest:
     music: bool = False
     beside: str | None = None
     jobs: int = 1
+    language: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,6 +229,7 @@ def _content(
         if alone and (overrides := first.overrides) is not None
         else (),
         pair=len(solved) > 1,
+        language=page.request.language,
         music=music,
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from html import escape
+from unicodedata import east_asian_width
 
 import numpy as np
 
@@ -15,17 +16,19 @@ from dancetutor_cli.reports.sheet_drawing import HOLD_OPACITY, Sheet, badge, def
 from dancetutor_cli.reports.sheet_places import SheetStyle, lay_out, sheet_style, tag, text, title
 from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.reports.text_report import clock, moment
+from dancetutor_cli.run.languages import ENGLISH
 
 _LEFT = 12.0
 _FACTS, _FACT = 66.0, 14.0  # the first line of facts, and how far apart they are
 _GAP = 22.0
+_LIMBS = ("left-foot", "right-foot", "left-hand", "right-hand", "none")  # labels of a language
 _LONG_LIST = 24  # more findings than these are listed in two columns
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
 _FONT = "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 
 
-def make_sheet(subject: ChartSubject, findings: Sequence[Finding]) -> Sheet:
-    """A chart ready to be drawn; one without a pad has notes without feet."""
+def make_sheet(subject: ChartSubject, findings: Sequence[Finding], language: str = ENGLISH) -> Sheet:
+    """A chart ready to be drawn; one without a pad has notes without feet. language : a name of configs/languages"""
     style, chart, limbs = sheet_style(), subject.chart, {}
     if subject.play is not None:
         play = subject.play
@@ -35,9 +38,8 @@ def make_sheet(subject: ChartSubject, findings: Sequence[Finding]) -> Sheet:
     arrows: list[float | None] = [None] * lanes
     if subject.pad is not None:
         arrows = [math.degrees(math.atan2(x, y)) if x or y else None for x, y in subject.pad.arrows.tolist()]
-    return Sheet(
-        subject, findings, lay_out(chart.notes.tick, lanes, style, int(chart.notes.end.max(initial=0))), limbs, arrows
-    )
+    layout = lay_out(chart.notes.tick, lanes, style, int(chart.notes.end.max(initial=0)))
+    return Sheet(subject, findings, layout, limbs, arrows, language)
 
 
 def svg_sheet(sheet: Sheet, facts: Sequence[str]) -> str:
@@ -58,7 +60,8 @@ def html_page(sheets: Sequence[tuple[Sheet, Sequence[str]]]) -> str:
     name = safe(song.title) or song.path.name
     body = "\n".join(_article(sheet, facts) for sheet, facts in sheets)
     return (
-        f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>{escape(name)}</title>\n'
+        f'<!DOCTYPE html>\n<html lang="{sheets[0][0].language}">\n<head>\n<meta charset="utf-8">\n'
+        f"<title>{escape(name)}</title>\n"
         f'<meta name="viewport" content="width=device-width">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">\n'
         f"<style>\n{_page_css(style)}</style>\n</head>\n"
@@ -71,7 +74,7 @@ def _article(sheet: Sheet, facts: Sequence[str]) -> str:
     pictures = [_svg(style, _heading(sheet, facts), _heading_height(sheet, facts))]
     pictures += [_svg(style, system(sheet, n), layout.system_height(n)) for n in range(layout.systems)]
     figures = "\n".join(f"<figure>{picture}</figure>" for picture in pictures)
-    return f"<article>\n{figures}\n{_list(sheet.findings)}</article>"
+    return f"<article>\n{figures}\n{_list(sheet)}</article>"
 
 
 def _heading_height(sheet: Sheet, facts: Sequence[str]) -> float:
@@ -101,7 +104,7 @@ def _density(sheet: Sheet) -> str:
     parts = []
     for measure, count in enumerate(counts.tolist()):
         height = count / tallest * (style.density - 10)
-        bar = title(f"measure {measure}: {count} rows")
+        bar = title(sheet.say("measure", measure=measure, rows=count))
         parts.append(tag("rect", bar, x=_LEFT + measure * step, y=style.density - height, width=max(step - 0.6, 0.5),
                          height=height, fill=style.colours["density"]))  # fmt: skip
     for finding in sheet.findings:
@@ -124,35 +127,48 @@ def _legend(sheet: Sheet) -> str:
             parts.append(text(f"{grid}{'nd' if grid % 10 == 2 and grid != 12 else 'th'}", x + 19, 11.5, "fact"))
             x += 54
     limbs = {limb for limb, _ in sheet.limbs.values()}
-    names = ("left foot", "right foot", "left hand", "right hand", "no limb left")
-    for limb, name in zip((0, 1, 2, 3, -1), names, strict=True):
+    for limb, label in zip((0, 1, 2, 3, -1), _LIMBS, strict=True):
         if limb in limbs or limb in (0, 1):
+            name = sheet.words.limbs[label]
             parts.append(mark(style, x + 16, 8, limb, 0) + text(name, x + 27, 11.5, "fact"))
-            x += 40 + 5.4 * len(name)
+            x += 40 + 5.4 * _letters(name)
     if unsure_rows(sheet):
-        name = f"% sure of its feet, where less than {style.unsure:g}"
+        name = sheet.say("unsure-below", percent=f"{style.unsure:g}")
         parts.append(badge(style, x + 16, 8, 62) + text(name, x + 27, 11.5, "fact"))
-        x += 40 + 5.0 * len(name)
+        x += 40 + 5.0 * _letters(name)
     for name, kind, corner in (("hold", Kind.HOLD, 3), ("roll", Kind.ROLL, 3), ("mine", Kind.MINE, 6)):
         if (chart.notes.kind == kind).any():
             opacity = 1.0 if kind == Kind.MINE else HOLD_OPACITY
             parts.append(tag("rect", x=x + 8, y=2, width=12, height=12, rx=corner, fill=style.colours[name],
                              fill_opacity=opacity, class_="key"))  # fmt: skip
-            parts.append(text(name, x + 25, 11.5, "fact"))
-            x += 36 + 5.4 * len(name)
+            parts.append(text(sheet.say(name), x + 25, 11.5, "fact"))
+            x += 36 + 5.4 * _letters(sheet.say(name))
     return "".join(parts)
 
 
-def _list(findings: Sequence[Finding]) -> str:
+def _letters(name: str) -> int:
+    """How wide a text is, in Latin letters: those of Chinese, Japanese and Korean are twice as wide."""
+    return sum(2 if east_asian_width(letter) in "WF" else 1 for letter in name)
+
+
+def _list(sheet: Sheet) -> str:
+    findings = sheet.findings
     if not findings:
-        return "<p>No findings.</p>\n"
+        return f"<p>{escape(sheet.say('no-findings'))}</p>\n"
     rows = "".join(
-        f'<tr class="{finding.severity}"><td>{finding.rule}</td><td>{escape(safe(finding.message))}</td>'
-        f"<td>{escape(moment(finding).strip())}</td><td>line {finding.line}</td></tr>\n"
+        f'<tr class="{finding.severity}"><td>{finding.rule}</td><td>{escape(sheet.message(finding))}</td>'
+        f"<td>{escape(_place(sheet, finding))}</td><td>{escape(sheet.say('line', line=finding.line or ''))}</td></tr>\n"
         for finding in findings
     )
     layout = "two" if len(findings) > _LONG_LIST else "one"
-    return f'<h2>Findings</h2>\n<div class="{layout}"><table>\n{rows}</table></div>\n'
+    return f'<h2>{escape(sheet.say("findings"))}</h2>\n<div class="{layout}"><table>\n{rows}</table></div>\n'
+
+
+def _place(sheet: Sheet, finding: Finding) -> str:
+    if finding.measure is None or finding.beat is None or finding.second is None:
+        return moment(finding).strip()
+    beat, time = f"{round(finding.beat, 3):g}", clock(finding.second)
+    return sheet.say("place", measure=finding.measure, beat=beat, time=time)
 
 
 def _svg(style: SheetStyle, inside: str, height: float, *, outer: bool = False) -> str:

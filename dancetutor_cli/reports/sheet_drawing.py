@@ -13,7 +13,9 @@ from dancetutor_cli.feet.limbs import Part
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.reports.sheet_places import LETTERS, SheetLayout, SheetStyle, number, tag, text, title
+from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.reports.text_report import clock
+from dancetutor_cli.run.languages import ENGLISH, Language, load_language
 
 HOLD_OPACITY = 0.55
 _BAND_OPACITY = 0.2
@@ -23,13 +25,30 @@ _FEET_SPACING = 27.0  # diagrams of feet nearer than this would overlap
 
 @dataclass(frozen=True)
 class Sheet:
-    """One chart to be drawn. `limbs` : (tick, column) -> limb and part of every step, `arrows` : angle per column."""
+    """One chart to be drawn. `limbs` : (tick, column) -> limb and part of every step, `arrows` : angle per column.
+
+    language : of its words, a name of configs/languages
+    """
 
     subject: ChartSubject
     findings: Sequence[Finding]
     layout: SheetLayout
     limbs: Mapping[tuple[int, int], tuple[int, int]]
     arrows: Sequence[float | None]
+    language: str = ENGLISH
+
+    @property
+    def words(self) -> Language:
+        """Its words."""
+        return load_language(self.language)
+
+    def say(self, label: str, **values: object) -> str:
+        """Words of the sheet with their {places} filled in."""
+        return self.words.sheet[label].format_map(values)
+
+    def message(self, finding: Finding) -> str:
+        """What a finding says; the linter speaks English, in other languages its rule's meaning stands in its place."""
+        return safe(finding.message) if self.language == ENGLISH else self.words.findings[finding.rule]
 
     @property
     def style(self) -> SheetStyle:
@@ -172,7 +191,7 @@ def _unsure_bands(sheet: Sheet, ticks: range) -> Iterator[str]:
     for _, tick, percent in unsure_rows(sheet):
         if tick in ticks:
             left, width = sheet.layout.left(tick // TICKS_PER_MEASURE), sheet.layout.lanes * sheet.style.lane
-            told = title(f"whose foot it is here is {percent:.0f} % sure")
+            told = title(sheet.say("unsure", percent=f"{percent:.0f}"))
             yield tag("rect", told, x=left, y=sheet.layout.y(tick) - 7, width=width, height=14, rx=4,
                       fill=sheet.style.colours["unsure"], fill_opacity=_BAND_OPACITY)  # fmt: skip
 
@@ -231,7 +250,7 @@ def _pose(sheet: Sheet, x: float, y: float, feet: Sequence[int], facing: float) 
         parts.append(
             tag("ellipse", cx=px, cy=py, rx=2.4, ry=4.6, fill=style.limbs[limb], class_="sole", transform=turn)
         )
-    return tag("g", title(f"crossed: facing {facing:g} degrees") + "".join(parts))
+    return tag("g", title(sheet.say("crossed", degrees=f"{facing:g}")) + "".join(parts))
 
 
 def _findings(sheet: Sheet, ticks: range) -> Iterator[str]:
@@ -253,4 +272,4 @@ def _findings(sheet: Sheet, ticks: range) -> Iterator[str]:
             lead = tag("path", d=f"M{number(right + 31)},{number(y)} L{number(right + 33)},{number(label)}",
                        stroke=colour, class_="flag")  # fmt: skip
             code = text(finding.rule, right + 34, label + 2.5, "code", style=f"fill:{colour}")
-            yield tag("g", title(f"{finding.rule} {finding.message}") + line + lead + code)
+            yield tag("g", title(f"{finding.rule} {sheet.message(finding)}") + line + lead + code)

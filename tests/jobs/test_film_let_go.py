@@ -14,10 +14,11 @@ from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.notes import PanelLights
 from dancetutor_cli.film.overlay import sprites
-from dancetutor_cli.film.overlay.diagram import NextRows, PadView
+from dancetutor_cli.film.overlay.diagram import Lettering, NextRows, PadView
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.work.planning import PreparedFilm, prepare
 from dancetutor_cli.film.work.request import look_up
+from dancetutor_cli.run.languages import load_language
 
 # the left foot holds, and the right one is asked for up and down 75 ms apart
 TRILL = "2000\n0000\n0000\n0000\n0000\n0000\n0000\n0000\n0010\n0100\n0010\n0100\n0000\n3000\n0000\n0001\n"
@@ -61,7 +62,7 @@ def test_a_small_pad_has_a_cross_where_no_foot_comes(film: PreparedFilm) -> None
     assert pad is not None
     frame = np.zeros((120, 120, 3), np.uint8)
     view = PadView(pad, pad.directions)
-    small = NextRows(rows, view, (0, 0, 120, 120), 1, face, 1.0)
+    small = NextRows(rows, view, (0, 0, 120, 120), 1, Lettering(face, 1.0, load_language().film))
     small.draw(frame, float(rows.second[row]) - 0.01)
     x, y = small.pads[0].place(*pad.panels[1])
     grey = frame[round(y) - 8 : round(y) + 8, round(x) - 8 : round(x) + 8].astype(int)

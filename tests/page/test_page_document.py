@@ -21,13 +21,11 @@ from dancetutor_cli.dance.performance import perform, solve
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
-from dancetutor_cli.film.words import move_words
 from dancetutor_cli.formats.npz import write_npz
-from dancetutor_cli.lint.rule import all_rules
 from dancetutor_cli.page.document import Blob, languages
 from dancetutor_cli.page.work import Page, PageRequest, make_page
 from dancetutor_cli.run.errors import FileError
-from dancetutor_cli.run.reading import config_path
+from dancetutor_cli.run.languages import load_language
 
 
 def unpacked(html: bytes) -> dict[str, Any]:
@@ -87,29 +85,12 @@ def test_arrays_come_back_from_their_planes(differences: int) -> None:
     assert (back == values).all()
 
 
-def test_every_language_has_every_label_with_the_same_places() -> None:
-    every = languages()
-    first = every["en"]
-    for name, labels in every.items():
-        assert set(labels) == set(first), name
-        for key, text in labels.items():
-            assert set(re.findall(r"\{(\w+)\}", text)) == set(re.findall(r"\{(\w+)\}", first[key])), (name, key)
-
-
-def test_every_rule_is_told_in_every_language() -> None:
-    """Name and meaning; a new rule needs a line in each file of dancetutor_cli/page/words."""
-    for language, labels in languages().items():
-        for code in all_rules():
-            name, _, meaning = labels.get(f"finding-{code}", "").partition(": ")
-            assert name and meaning.endswith("."), f"{language}: finding-{code}"
-
-
 def test_moves_are_called_what_films_call_them() -> None:
-    """One table: configs/words.yaml. Who and where stand beside the list of a row's moves, so not in it."""
+    """One table per language. Who and where stand beside the list of a row's moves, so not in it."""
     every = (*EVENTS, *HALF_TURNS)
     english = languages()["en"]
-    for name, said in move_words(every, config_path("words.yaml")).items():
-        if "{" not in said:
+    for name, said in load_language().moves.items():
+        if "{" not in said and name in every:
             assert english[f"move-{name}"] == said.replace(": ", ", "), name
     for labels in languages().values():
         said = " ".join(labels[f"move-{name}"] for name in every).lower()

@@ -13,14 +13,14 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
 from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.notes import Cue
-from dancetutor_cli.film.words import HOLD, IMPLIED_BY_BRACKET, WHO, filled, move_words
+from dancetutor_cli.film.words import HOLD, IMPLIED_BY_BRACKET, LIMBS, PanelNames, filled, move_words
 from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.languages import Language, load_language
 from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.yaml_files import load
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
-    from dancetutor_cli.feet.pads import Pad
     from dancetutor_cli.feet.play import Play
 
 
@@ -31,16 +31,20 @@ _WAYS = ("crossover-front", "crossover-back")  # say more than crossover-half, w
 _RUNS = ("stream", "drill")
 
 
-def cues_of(play: Play, timing: Timing, words: Mapping[str, str], pad: Pad, turned: bool = False) -> tuple[Cue, ...]:
+def cues_of(play: Play, timing: Timing, words: Mapping[str, str], view: PanelNames) -> tuple[Cue, ...]:
     """Every move that has a word, sorted by time.
 
     words : name of a move (`feet.solver.vocabulary.EVENTS`), or "hold" -> what it is called; moves that are not in it
     are not.
-    turned : she faces who looks on, and panels are named as they are seen then.
+    view : names of panels and limbs.
     Crossed feet are told once, where they cross, until they are back, unless a half turn there is told; a stream or
     drill once, where it begins.
     """
-    found = [*_crossovers(play, words), *_moments(play, words, pad, turned), *_holds(play, timing, words)]
+    found = [
+        *_crossovers(play, words, view.language),
+        *_moments(play, words, view),
+        *_holds(play, timing, words, view.language),
+    ]
     for name in _RUNS:
         if name in words:
             found += (
@@ -50,7 +54,7 @@ def cues_of(play: Play, timing: Timing, words: Mapping[str, str], pad: Pad, turn
     return tuple(sorted(found, key=lambda cue: (cue.second, cue.text)))
 
 
-def _crossovers(play: Play, words: Mapping[str, str]) -> Iterator[Cue]:
+def _crossovers(play: Play, words: Mapping[str, str], language: Language) -> Iterator[Cue]:
     """Until the row in which the feet are uncrossed; one that turns full on its way is told again."""
     second, last_row = play.rows.second, len(play.rows) - 1
     turns = moves_and_turns(play)
@@ -64,36 +68,40 @@ def _crossovers(play: Play, words: Mapping[str, str]) -> Iterator[Cue]:
                 way = [name for name in _WAYS if name in play.moves[row] and name in words and not full]
                 name = way[0] if way else new.pop()
                 if (word := words.get(name)) and not {*HALF_TURNS}.intersection(turns[row]):
-                    yield Cue(float(second[row]), end, word, _limb_names(play, row), name)
+                    yield Cue(float(second[row]), end, word, _limb_names(play, row, language), name)
             before |= {*now, "crossover-half"}
 
 
-def _moments(play: Play, words: Mapping[str, str], pad: Pad, turned: bool) -> Iterator[Cue]:
+def _moments(play: Play, words: Mapping[str, str], view: PanelNames) -> Iterator[Cue]:
     """Moves of one row, each time they come."""
     named = set(words) - {*_CROSSED, *_WAYS, *_RUNS, HOLD}
     for row, names in enumerate(moves_and_turns(play)):
         for name in named.intersection(names) - (IMPLIED_BY_BRACKET if "bracket" in names else set()):
             second = float(play.rows.second[row])
-            who = () if "{" in words[name] else _limb_names(play, row)
-            for said in filled(words[name], name, (play, row), pad, turned):
+            who = () if "{" in words[name] else _limb_names(play, row, view.language)
+            for said in filled(words[name], name, (play, row), view):
                 yield Cue(second, second, said, who, name)
 
 
-def _holds(play: Play, timing: Timing, words: Mapping[str, str]) -> Iterator[Cue]:
+def _holds(play: Play, timing: Timing, words: Mapping[str, str], language: Language) -> Iterator[Cue]:
     if HOLD not in words:
         return
     row, column = np.nonzero(play.rows.hold_end >= 0)
     ends = timing.seconds(play.rows.hold_end[row, column])
     for r, c, end in zip(row.tolist(), column.tolist(), ends.tolist(), strict=True):
         limb = int(play.limb[r, c])
-        who = (WHO[limb],) if 0 <= limb < len(WHO) else ()
+        who = (language.limbs[LIMBS[limb]],) if 0 <= limb < len(LIMBS) else ()
         yield Cue(float(play.rows.second[r]), end, words[HOLD], who, HOLD)
 
 
-def _limb_names(play: Play, row: int) -> tuple[str, ...]:
+def _limb_names(play: Play, row: int, language: Language) -> tuple[str, ...]:
     """Who does a move of a row: everybody who steps in it, but of both feet it is no foot's move."""
-    limbs = {limb for limb in play.limb[row].tolist() if 0 <= limb < len(WHO)}
-    return () if {Limb.LEFT_FOOT, Limb.RIGHT_FOOT} <= limbs else tuple(WHO[limb] for limb in sorted(limbs))
+    limbs = {limb for limb in play.limb[row].tolist() if 0 <= limb < len(LIMBS)}
+    return (
+        ()
+        if {Limb.LEFT_FOOT, Limb.RIGHT_FOOT} <= limbs
+        else tuple(language.limbs[LIMBS[limb]] for limb in sorted(limbs))
+    )
 
 
 def _stretches(play: Play, names: tuple[str, ...]) -> list[tuple[int, int]]:
@@ -157,13 +165,13 @@ def subtitle_style() -> SubtitleStyle:
     style = load(path, SubtitleStyle)
     if not 0 <= style.stays < style.shortest <= style.before or style.most < 1:
         raise FileError(path, "wants 0 <= stays < shortest <= before, and most at least 1")
-    move_words(style.moves, path)
+    move_words(style.moves, path, load_language())
     return style
 
 
-def subtitle_words() -> dict[str, str]:
+def subtitle_words(language: Language) -> dict[str, str]:
     """The moves that subtitles name, and their words."""
-    return move_words(subtitle_style().moves, config_path("subtitles.yaml"))
+    return move_words(subtitle_style().moves, config_path("subtitles.yaml"), language)
 
 
 def subtitles(cues: Sequence[Cue], clock: Clock, style: SubtitleStyle) -> str:

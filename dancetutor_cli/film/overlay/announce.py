@@ -17,14 +17,14 @@ from dancetutor_cli.film.overlay.captions import SOFT, WHITE, box_of
 from dancetutor_cli.film.overlay.sprites import FLAG_EDGE, HighwayStyle, flag, flag_height
 from dancetutor_cli.film.overlay.text import Typeface, fitted, wrapped
 from dancetutor_cli.film.picture import Frame
-from dancetutor_cli.film.words import WHO
+from dancetutor_cli.film.words import LIMBS
+from dancetutor_cli.run.languages import Language
 from dancetutor_cli.run.schema import RGB
 
 CALL_LEAST = 0.75  # size of a call's letters that is preferred to fewer words,
 CALL_SMALL = 0.5  # and to more than two lines
 SHARES = np.arange(1.0, CALL_LEAST - 0.01, -0.05)  # of their size that are tried
 CALL_STAYS, CALL_FADES = 0.2, 0.06  # seconds that a call stays after its note; in which it goes: no ghost of it stands
-COUNT_IN_TEXT = "starts in"  # said above the numbers of the count-in
 
 
 class Runs:
@@ -34,22 +34,26 @@ class Runs:
     count : what the numbers of the count-in stand in
     """
 
-    def __init__(self, clock: Clock, box: tuple[float, ...], count: PixelBox, scale: float, face: Typeface) -> None:
-        self.clock, self.box, self.count = clock, box, count
+    def __init__(
+        self, clock: Clock, box: tuple[float, ...], count: PixelBox, scale: float, face: Typeface, language: Language
+    ) -> None:
+        self.clock, self.box, self.count, self._words = clock, box, count, language.film
         several = len(clock.passes) > 1 or any(one.rate != 1 for one in clock.passes)
         texts = [self._text(number) for number in range(len(clock.passes))] if several else []
         self.labels = [flag([text], 19 * scale, SOFT, face) for text in texts]
         counts = range(1, max(one.count for one in clock.passes) + 1)
         room, small = count[3] - count[1], min(20 * scale, 0.2 * (count[3] - count[1]))
-        (said,), small = fitted(COUNT_IN_TEXT, small, 0.9 * (count[2] - count[0]), face, most=1)
+        (said,), small = fitted(self._words["count-in"], small, 0.9 * (count[2] - count[0]), face, most=1)
         self.counted = face.sprite(said, small, SOFT, weight=small / 80, shadow=small / 14)
         big = min(150 * scale, 0.8 * (room - self.counted.shape[0]))
         self.numbers = {n: face.sprite(str(n), big, WHITE, weight=big / 50, shadow=big / 30) for n in counts}
 
     def _text(self, number: int) -> str:
         one, count = self.clock.passes[number], len(self.clock.passes)
-        speed = f"{one.rate:.0%} speed" if one.rate != 1 else "full speed"
-        return f"{speed} · run {number + 1} of {count}" if count > 1 else speed
+        speed = self._words["speed"].replace("{percent}", f"{100 * one.rate:.0f}")
+        speed = speed if one.rate != 1 else self._words["full-speed"]
+        run = self._words["run"].replace("{number}", str(number + 1)).replace("{count}", str(count))
+        return f"{speed} · {run}" if count > 1 else speed
 
     def _corner(self, label: Sprite) -> tuple[float, float]:
         return (self.box[0], self.box[1]) if len(self.box) == 2 else _middle(label, self.box)
@@ -81,7 +85,7 @@ def _middle(sprite: Sprite, box: tuple[float, ...]) -> tuple[float, float]:
 
 
 def _phrases(
-    text: str, size: float, room: tuple[float, float], face: Typeface, short: str = ""
+    text: str, size: float, room: tuple[float, float], face: Typeface, language: Language, short: str = ""
 ) -> tuple[list[str], float]:
     """Words of a call in one or two lines; in more where their letters would be too small. Nothing is cut off.
 
@@ -89,7 +93,9 @@ def _phrases(
     room in two lines
     """
     width, height = room
-    named = text.replace(" foot:", ":")
+    named = text
+    for limb in LIMBS:
+        named = named.replace(f"{language.limbs[limb]}:", f"{language.limbs[f'{limb}-short']}:")
     tries = [(text, CALL_LEAST), (named, CALL_LEAST), (text, CALL_SMALL)]
     if short and text.endswith(short):
         tries += [(named, CALL_SMALL), (short, CALL_LEAST), (short, CALL_SMALL)]
@@ -120,9 +126,9 @@ def _parts(text: str, ends: str) -> list[str]:
     return re.sub(f"([{ends}]) ", r"\1\n", text).split("\n")
 
 
-def _foot_colour(text: str) -> RGB | None:
+def _foot_colour(text: str, language: Language) -> RGB | None:
     """The colour of the one foot that a call names; None of both and of none."""
-    named = [foot for foot in range(2) if re.search(f"\\b{WHO[foot]}\\b", text)]
+    named = [foot for foot in range(2) if language.limbs[LIMBS[foot]] in text]
     return limb_colours().by_limb[named[0]] if len(named) == 1 else None
 
 
@@ -145,8 +151,15 @@ class Calls:
     MAX_LINES = 2  # at a time, the nearest on top
 
     def __init__(
-        self, callouts: tuple[Callout, ...], box: PixelBox, scale: float, face: Typeface, style: HighwayStyle
+        self,
+        callouts: tuple[Callout, ...],
+        box: PixelBox,
+        scale: float,
+        face: Typeface,
+        style: HighwayStyle,
+        language: Language,
     ) -> None:
+        self._language = language
         self.callouts, self.box, self.scale, self.face, self.style = callouts, box, scale, face, style
         self._begins = np.array([one.begin for one in callouts])
         self._ends = np.array([max(one.end, one.second) + CALL_STAYS for one in callouts])
@@ -158,9 +171,9 @@ class Calls:
         width, height = self.box[2] - self.box[0] - (FLAG_EDGE + 0.1) * size, self.box[3] - self.box[1]
         lines, fits = _two_lines(f"{text}: {why}", size, width, self.face) if why else ([], 0.0)
         if fits < CALL_LEAST * size:
-            lines, fits = _phrases(text, size, (width, height), self.face, tag)
+            lines, fits = _phrases(text, size, (width, height), self.face, self._language, tag)
         size = fits
-        return flag(lines, size, self.style.callout[severity], self.face, _foot_colour(text))
+        return flag(lines, size, self.style.callout[severity], self.face, _foot_colour(text, self._language))
 
     def _current_calls(self, second: float) -> list[Callout]:
         shown = np.flatnonzero((self._begins <= second) & (second < self._ends))

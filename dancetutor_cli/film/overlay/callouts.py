@@ -17,7 +17,8 @@ from dancetutor_cli.feet.play import MOVE
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
 from dancetutor_cli.film.notes import Callout
 from dancetutor_cli.film.overlay.phrases import Phrase, crossing_phrase, plain, stepped_phrase
-from dancetutor_cli.film.words import IMPLIED_BY_BRACKET, MINE, filled
+from dancetutor_cli.film.words import IMPLIED_BY_BRACKET, MINE, PanelNames, filled
+from dancetutor_cli.run.languages import Language, load_language
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -36,8 +37,8 @@ LONGEST = 16 * TICKS_PER_BEAT, 7.5  # but nothing is called out for longer than 
 MIN_GAP = 0.4  # seconds between moves of one passage that have each its tag and its countdown
 KINDS, LETTERS = 2, 42  # different moves in one call at most, and letters of these: more cannot be read in time
 _ORDER = ("move", "info", "warning", "error")
-_OF_PASSAGES, _PASSAGE = ("fast step", "unplayable"), 8 * TICKS_PER_BEAT  # one finding for so long (lint/rules)
-_OF_MINES = "mine under"  # what the linter calls such a mine begins so (DT303)
+_OF_PASSAGES, _PASSAGE = ("DT305", "DT301"), 8 * TICKS_PER_BEAT  # one finding for so long (lint/rules)
+_OF_MINES = "DT303"  # the rule about such a mine
 _CROSSED = ("crossover-full", "crossover-half")  # go on over several rows; told where they begin
 
 
@@ -45,12 +46,13 @@ _CROSSED = ("crossover-full", "crossover-half")  # go on over several rows; told
 class CallStyle:
     """What is called out, and when. words : name of a move -> what is said, with {who} and {places} to be filled in;
     moves that are not in it are not. findings : the linter's, too; turned : she faces who looks on, and panels are
-    named as they are seen then"""
+    named as they are seen then; language : of words and findings"""
 
     words: Mapping[str, str]
     ahead: Ahead
     findings: bool = False
     turned: bool = False
+    language: Language = field(default_factory=load_language)
 
 
 class _Move(NamedTuple):
@@ -154,9 +156,10 @@ def callouts_of(
     """
     ticks = () if play is None else play.rows.tick[(play.limb == Limb.UNPLAYED).any(axis=1)].tolist()
     mined = sorted({one.tick for one in on_mines}) if MINE in style.words else []
-    findings = list(_findings(about.findings(), codes=not style.findings)) if style.findings or ticks or mined else []
-    why = {} if style.findings else dict(_reasons(ticks, findings))
-    under = {} if style.findings else {tick: said for tick, _, said, _ in findings if _OF_MINES in said}
+    findings = list(_findings(about.findings(), style)) if style.findings or ticks or mined else []
+    why = {} if style.findings else dict(_reasons(ticks, findings, style.language))
+    mined_name = style.language.finding_name(_OF_MINES, "mine under hold")
+    under = {} if style.findings else {tick: said for tick, _, said, _ in findings if mined_name in said}
     found = list(_moves(about.pad, play, style, why))
     if style.findings:
         found += (_Move(first, last, plain(said), weight) for first, last, said, weight in findings)
@@ -201,14 +204,17 @@ def callouts_of(
     )
 
 
-def _reasons(ticks: Iterable[int], findings: Iterable[tuple[int, int, str, int]]) -> Iterator[tuple[int, str]]:
+def _reasons(
+    ticks: Iterable[int], findings: Iterable[tuple[int, int, str, int]], language: Language
+) -> Iterator[tuple[int, str]]:
     """What the linter says of some rows, by tick: its finding there, or that of the passage, which goes on as long as
     such rows do."""
     told = sorted((tick, said) for tick, _, said, _ in findings)
+    names = tuple(language.finding_name(rule, rule) for rule in _OF_PASSAGES)
     last, passage = -_PASSAGE, ""
     for tick in ticks:
         here = [said for at, said in told if at == tick]
-        before = [said for at, said in told if said.endswith(_OF_PASSAGES) and tick - _PASSAGE <= at <= tick]
+        before = [said for at, said in told if said.endswith(names) and tick - _PASSAGE <= at <= tick]
         passage = before[-1] if before else passage if tick - last <= _PASSAGE else ""
         last = tick
         if here or passage:
@@ -230,15 +236,17 @@ def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[in
             crossed, known = {}, set()
         elif now not in known and now in words and not {*HALF_TURNS}.intersection(names).intersection(words):
             full = now == _CROSSED[0]
-            crossed[now] = ticks[row], plain(words[now]) if full else crossing_phrase(words[now], play, row, pad)
+            phrase = plain(words[now]) if full else crossing_phrase(words[now], (play, row), pad, style.language)
+            crossed[now] = ticks[row], phrase
         known |= {now, _CROSSED[-1]} if now else set()
         told = {n for n in names if n in words and n not in _CROSSED}
         for name in sorted(told - IMPLIED_BY_BRACKET if "bracket" in told else told):
             reason = f" ({why[ticks[row]]})" if name == MOVE and ticks[row] in why else ""
             if "{" not in words[name] and not reason:
-                yield _Move(ticks[row], ticks[row], stepped_phrase(words[name], name, play.limb[row].tolist()))
+                limbs = play.limb[row].tolist()
+                yield _Move(ticks[row], ticks[row], stepped_phrase(words[name], name, limbs, style.language))
                 continue
-            for said in filled(words[name], name, (play, row), pad, style.turned):
+            for said in filled(words[name], name, (play, row), PanelNames(pad, style.turned, style.language)):
                 yield _Move(ticks[row], ticks[row], plain(said + reason))
     yield from (_Move(first, ticks[-1], phrase) for first, phrase in crossed.values())
 
@@ -248,9 +256,9 @@ def _jumps(play: Play) -> list[int]:
     return [tick for tick, names in rows if "jump" in names and not {*_CROSSED}.intersection(names)]
 
 
-def _findings(findings: Iterable[Finding], codes: bool) -> Iterator[tuple[int, int, str, int]]:
+def _findings(findings: Iterable[Finding], style: CallStyle) -> Iterator[tuple[int, int, str, int]]:
     for finding in findings:
         if finding.beat is not None and finding.note_column is not None and finding.severity in _ORDER:
             tick = round(finding.beat * TICKS_PER_BEAT)
-            said = finding.name.replace("-", " ")
-            yield tick, tick, f"{finding.rule} {said}" if codes else said, _ORDER.index(finding.severity)
+            said = style.language.finding_name(finding.rule, finding.name.replace("-", " "))
+            yield tick, tick, said if style.findings else f"{finding.rule} {said}", _ORDER.index(finding.severity)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -21,7 +21,6 @@ from dancetutor_cli.run.schema import RGB
 WHITE = (255, 255, 255)
 SOFT = (196, 202, 222)
 INK = (12, 13, 22)
-TURNED = "facing you: her left is on the right"  # where there are no notes
 
 
 def box_of(sprite: Sprite, x: float, y: float) -> Box:
@@ -67,24 +66,23 @@ def lozenge(
 class Legend:
     """What the markers mean, one under the other at the box's bottom; hands only where what is shown needs them.
 
-    A dark plate below keeps them readable over a panel of the pad. note : words below the last one; players : colours
-    of the notes of each of two.
+    A dark plate below keeps them readable over a panel of the pad. limbs : number -> its name; note : words below the
+    last one; players : name and colour of the notes of each of two.
     More lines than the box holds stand out below it: what is above are the song's words.
     """
 
     def __init__(
         self,
-        limbs: set[int],
+        limbs: Mapping[int, str],
         box: PixelBox,
         scale: float,
         face: Typeface,
         note: str = "",
-        players: tuple[RGB, ...] = (),
+        players: Sequence[tuple[str, RGB]] = (),
     ) -> None:
-        names = ("left foot", "right foot", "left hand", "right hand")
         size = max(8, round(24 * scale))
-        shown = [(sprites.marker(size, limb, face), names[limb]) for limb in sorted({0, 1} | limbs)]
-        shown += [(sprites.arrow(size, 0.0, colour), f"player {n}") for n, colour in enumerate(players, 1)]
+        shown = [(sprites.marker(size, limb, face), limbs[limb]) for limb in sorted(limbs)]
+        shown += [(sprites.arrow(size, 0.0, colour), name) for name, colour in players]
         step, edge = 31 * scale, 8 * scale
         height = step * (len(shown) + bool(note))
         top = max(box[3] - height, float(box[1]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
@@ -29,7 +29,7 @@ NAMES = (170, 177, 203)  # colour of a small pad's name
 PANEL, PANEL_EDGE = (46, 51, 74), (88, 95, 130)
 NEXT_LEAST = 90.0  # pixels of the shorter side of a pad with a next row, at the layout's default size
 NEXT_TEXT = 16.0  # of their names' letters
-IN_TURN, AGAIN = ("next", "then", "and then"), "again"  # names of the rows; of one that is as the one before it
+IN_TURN, AGAIN = ("next", "then", "and-then"), "again"  # labels of the rows; of one that is as the one before it
 STEPPED, RESTING = 0.94, 0.6  # size of the marks on those, in panels: who steps one, and who stands on one
 
 
@@ -242,14 +242,21 @@ def cut(box: PixelBox, count: int, axis: int) -> list[PixelBox]:
     return parts
 
 
+class Lettering(NamedTuple):
+    """How names are written. scale : pixels of one at the layout's default size; words : by label"""
+
+    face: Typeface
+    scale: float
+    words: Mapping[str, str]
+
+
 class NextRows:
     """Small pads with the next rows: which panels come, by which limb, and where the feet stand then.
 
     They lie beside or below each other, whichever makes them larger, each with its name: "next", "then", "and then", or
     "again" where the row is the same as the one before it.
 
-    scale : pixels of one at the layout's default size; where the pads of so many rows would be too small, there are
-    fewer
+    Where the pads of so many rows would be too small, there are fewer.
     """
 
     def __init__(
@@ -258,12 +265,12 @@ class NextRows:
         view: PadView,
         box: PixelBox,
         count: int,
-        face: Typeface,
-        scale: float,
+        letters: Lettering,
     ) -> None:
+        face, scale, words = letters
         self.rows, self.face = rows, face
         least = NEXT_LEAST * scale
-        self.names = {name: name_sprite(name, face, scale) for name in (*IN_TURN, AGAIN)}
+        self.names = {name: name_sprite(words[name], face, scale) for name in (*IN_TURN, AGAIN)}
         wide, high = (max(name.shape[axis] for name in self.names.values()) for axis in (1, 0))
         while True:
             beside, below = cut(box, count, 0), cut(box, count, 1)

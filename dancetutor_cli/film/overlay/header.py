@@ -19,6 +19,7 @@ from dancetutor_cli.film.overlay.captions import SOFT, WHITE, box_of, pill
 from dancetutor_cli.film.overlay.sprites import HighwayStyle
 from dancetutor_cli.film.overlay.text import LONGEST, Typeface, clean, fitted, in_lines
 from dancetutor_cli.film.picture import Frame
+from dancetutor_cli.run.languages import Language
 
 # The song's words at the top left of the picture: title, artist, difficulty, who made the steps.
 
@@ -211,7 +212,7 @@ def _fits(
 # The words of the picture, from a song and a chart: in letters that the font has.
 
 
-def words_of(song: Song, chart: Chart, font: Path | None) -> Words:
+def words_of(song: Song, chart: Chart, font: Path | None, language: Language) -> Words:
     """The words of the picture, with the transliterated title where the font lacks the original's letters."""
     face = Typeface(font)
     title = _readable(face, song, song.title or song.path.stem, "TITLETRANSLIT")
@@ -225,7 +226,7 @@ def words_of(song: Song, chart: Chart, font: Path | None) -> Words:
         badge=face.drawable(f"{chart.difficulty} {chart.meter}"),
         difficulty=chart.difficulty,
         detail=face.drawable(detail),
-        credit=face.drawable(f"steps by {credit}") if credit else "",
+        credit=face.drawable(language.film["credit"].replace("{name}", credit)) if credit else "",
         subtitle=subtitle if title else "",
     )
 

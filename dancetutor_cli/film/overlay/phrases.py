@@ -2,37 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.film.words import WHO, short_words
-from dancetutor_cli.run.reading import config_path
-from dancetutor_cli.run.yaml_files import load
+from dancetutor_cli.film.words import LIMBS, short_words
 
 if TYPE_CHECKING:
     from dancetutor_cli.feet.pads import Pad
     from dancetutor_cli.feet.play import Play
+    from dancetutor_cli.run.languages import Language
 
 FRONT, BACK, JUMP = "crossover-front", "crossover-back", "crossover-jump"
 JUST = 2.0  # seconds ago at most, that a foot "has just stepped"
-
-
-@dataclass(frozen=True, slots=True)
-class _Calls:
-    """configs/calls.yaml. said, tags : by name of a move; why : by reason; several : of a passage of crossovers"""
-
-    said: dict[str, str]
-    tags: dict[str, str]
-    why: dict[str, str]
-    several: str
-
-
-@cache
-def _calls() -> _Calls:
-    return load(config_path("calls.yaml"), _Calls)
 
 
 class Phrase(NamedTuple):
@@ -61,27 +43,28 @@ def plain(said: str) -> Phrase:
     return Phrase(said, said, short_words(said))
 
 
-def standing_tags() -> tuple[str, ...]:
+def standing_tags(language: Language) -> tuple[str, ...]:
     """The tags that are the same in every film."""
-    return tuple(_calls().tags.values())
+    return tuple(language.calls[f"{name}-tag"] for name in (FRONT, BACK, JUMP))
 
 
-def stepped_phrase(move: str, name: str, limbs: list[int]) -> Phrase:
+def stepped_phrase(move: str, name: str, limbs: list[int], language: Language) -> Phrase:
     """A move of the one foot that steps, for example a footswitch. limbs : of its row"""
     feet = {limb for limb in limbs if limb in (0, 1)}
-    said = _calls().said.get(name)
+    said = language.calls.get(name)
     if said is None or len(feet) != 1:
         return plain(move)
-    return Phrase(move, said.replace("{who}", WHO[feet.pop()]), _calls().tags.get(name, short_words(move)))
+    return Phrase(move, said.replace("{who}", language.limbs[LIMBS[feet.pop()]]), short_words(move))
 
 
-def crossing_phrase(move: str, play: Play, row: int, pad: Pad) -> Phrase:
+def crossing_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language) -> Phrase:
     """A crossover where it begins: which foot crosses, in front or behind, and why it is that foot.
 
-    move : its name for people; play, row : where it begins. That it is in front, towards the screen, is said by
-    `feet.solver`; of two feet that jump the one nearer to the screen is in front.
+    move : its name for people; at : the play and the row in which it begins. That it is in front, towards the screen,
+    is said by `feet.solver`; of two feet that jump the one nearer to the screen is in front.
     """
-    calls, feet = _calls(), [foot for foot in (0, 1) if foot in play.limb[row]]
+    (play, row), calls = at, language.calls
+    feet = [foot for foot in (0, 1) if foot in play.limb[row]]
     if len(feet) == 2:
         ahead = np.asarray(pad.panels)[play.feet[row]][:, 1]
         name, foot = JUMP, int(np.argmax(ahead))
@@ -92,20 +75,20 @@ def crossing_phrase(move: str, play: Play, row: int, pad: Pad) -> Phrase:
         if not feet or not names:
             return plain(move)
         (foot,), name = feet, names[0]
-    who, other = WHO[foot], WHO[1 - foot]
+    who, other = language.limbs[LIMBS[foot]], language.limbs[LIMBS[1 - foot]]
     reason = "" if name == JUMP else _reason(play, row, foot)
-    why = calls.why.get(reason, "").replace("{other}", other).replace("{who}", who)
-    return Phrase(move, calls.said[name].replace("{who}", who), calls.tags[name], why, calls.several)
+    why = calls[reason].replace("{other}", other) if reason else ""
+    return Phrase(move, calls[name].replace("{who}", who), calls[f"{name}-tag"], why, calls["several"])
 
 
 def _reason(play: Play, row: int, foot: int) -> str:
-    """Why it is this foot that crosses: a key of `why` in configs/calls.yaml, or ""."""
+    """Why it is this foot that crosses: its label in the language's `calls`, or ""."""
     rows, other = play.rows, 1 - foot
     before = slice(0, row)
     if ((play.limb[before] == other) & (rows.hold_end[before] > rows.tick[row])).any():
-        return "hold"
+        return "why-hold"
     stepped = np.flatnonzero((play.limb[before] >= 0).any(axis=1))
     if len(stepped) == 0 or rows.second[row] - rows.second[stepped[-1]] > JUST:
         return ""
     last = play.limb[stepped[-1]]
-    return "turn" if other in last and foot not in last else ""
+    return "why-turn" if other in last and foot not in last else ""

@@ -14,6 +14,7 @@ from dancetutor_cli.film.overlay import blit
 from dancetutor_cli.film.overlay.blit import Sprite
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.words import move_words
+from dancetutor_cli.run.languages import Language
 from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.schema import RGB
 from dancetutor_cli.run.yaml_files import load
@@ -67,9 +68,9 @@ def highway_style() -> HighwayStyle:
     return load(config_path("highway.yaml"), HighwayStyle)
 
 
-def callout_words() -> dict[str, str]:
+def callout_words(language: Language) -> dict[str, str]:
     """The moves that configs/highway.yaml has called out, and their words; FileError names one that has none."""
-    return move_words(highway_style().callouts, config_path("highway.yaml"))
+    return move_words(highway_style().callouts, config_path("highway.yaml"), language)
 
 
 def arrow_size(lane: float, style: HighwayStyle) -> int:

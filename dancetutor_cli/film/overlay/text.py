@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from dancetutor_cli.film.overlay.blit import Sprite
-from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.errors import FileError, UnavailableError
+from dancetutor_cli.run.languages import ENGLISH, load_language
 from dancetutor_cli.run.reading import FONT_LIMIT, read_bytes
 
 # Fonts: Pillow's built-in one, a file of the user's, and the system's fonts for letters that neither of them has.
@@ -118,6 +119,10 @@ EVEN = 4  # lines at most that are made as long as each other
 LONGEST = 1000  # characters of one line that are looked at: titles may be 100 kB long
 _FOLD = {"–": "-", "—": "-", "～": "~", "〜": "~", "†": "+", "•": "·", "\u00a0": " ", "æ": "ae", "Æ": "AE", "ø": "o",
          "Ø": "O", "ß": "ss", "ð": "d", "þ": "th", "ł": "l", "Ł": "L", "œ": "oe", "Œ": "OE", "×": "x"}  # fmt: skip
+
+
+_PACKAGES = {"ja": "fonts-noto-cjk", "ko": "fonts-noto-cjk"}  # fonts for a language in Debian, else _PACKAGE
+_PACKAGE = "fonts-dejavu-core"
 
 
 @lru_cache(maxsize=4096)
@@ -235,6 +240,18 @@ class Typeface:
             x += float(one.getlength(part))
         fine = np.asarray(image, dtype=np.float64).reshape(box[1], FINE, box[0], FINE)
         return np.asarray(fine.mean(axis=(1, 3)) / 255)
+
+
+def check_letters(name: str, path: Path | None) -> None:
+    """Raise UnavailableError if no font has the letters of a language. path : a font file, None for the built-in one"""
+    if name == ENGLISH:
+        return
+    language = load_language(name)
+    if missing := Typeface(path).missing("".join(sorted(set("".join(language.film_texts()))))):
+        raise UnavailableError(
+            f"no font here has all letters of --language {name} ({language.language}), for example {missing[:3]!r}; "
+            f"install one, on Debian {_PACKAGES.get(name, _PACKAGE)}, or give it with --font FILE"
+        )
 
 
 def clean(text: str) -> str:

@@ -25,6 +25,7 @@ from dancetutor_cli.film.overlay.header import title_warnings, words_of
 from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.film.plan import FilmPlan, turned
 from dancetutor_cli.film.scroll import ScrollSegments, SpeedSegments, reading_bpm, segments_of, speeds_of
+from dancetutor_cli.film.words import PanelNames
 from dancetutor_cli.film.work.request import (
     FilmRequest,
     FilmSubject,
@@ -34,6 +35,7 @@ from dancetutor_cli.film.work.request import (
     quiet_in,
 )
 from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.languages import load_language
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
@@ -178,7 +180,7 @@ def prepare(request: FilmRequest, subject: FilmSubject) -> PreparedFilm:
     plan = FilmPlan(
         look=look,
         clock=clock,
-        words=words_of(song, chart, request.look.font),
+        words=words_of(song, chart, request.look.font, load_language(look.language)),
         song=SongShape(np.unique(presses_of(whole_track).start), max(0.0, whole[0]), max(whole[1], end), (start, end)),
         notes=track,
         presses=presses,
@@ -192,7 +194,7 @@ def prepare(request: FilmRequest, subject: FilmSubject) -> PreparedFilm:
         rows=step_rows(play, _dancers(dance)),
         character=character,
         callouts=() if request.background else _callouts(dance, _calls(look), scrolls),
-        cues=tuple(_cues(dance, turned(look))),
+        cues=tuple(_cues(dance, look)),
         fade=FADE if request.practice.rest and not request.background else 0.0,
     )
     fade = clock.passes[-1].rest / clock.passes[-1].rate if request.section else 1.0
@@ -254,25 +256,28 @@ def _mines_of_each(dance: FilmDance, style: CallStyle, scrolls: ScrollSegments) 
     for one in dance.solved:
         under = [mine for mine in dance.on_mines if mine.player == one.chart.player]
         for call in callouts_of(_about(one), None, mines_alone, scrolls, under):
-            yield replace(call, text=f"player {one.chart.player}: {call.text.replace(': ', ' ')}")
+            who = style.language.film["player"].replace("{number}", str(one.chart.player))
+            yield replace(call, text=f"{who}: {call.text.replace(': ', ' ')}")
 
 
 def _calls(look: FilmLook) -> CallStyle:
-    style = highway_style()
-    return CallStyle(callout_words(), look.ahead or parse_ahead(style.callout_ahead), look.findings, turned(look))
+    ahead, language = look.ahead or parse_ahead(highway_style().callout_ahead), load_language(look.language)
+    return CallStyle(callout_words(language), ahead, look.findings, turned(look), language)
 
 
-def _cues(dance: FilmDance, facing: bool) -> Iterator[Cue]:
-    """The moves for subtitles; of two who dance with the player's number. facing : she faces who looks on"""
-    words = subtitle_words()
+def _cues(dance: FilmDance, look: FilmLook) -> Iterator[Cue]:
+    """The moves for subtitles; of two who dance with the player's number."""
+    language = load_language(look.language)
+    words, facing = subtitle_words(language), turned(look)
     if len(dance.solved) == 1:
-        yield from cues_of(dance.play, dance.solved[0].chart.timing, words, dance.pad, facing)
+        view = PanelNames(dance.pad, facing, language)
+        yield from cues_of(dance.play, dance.solved[0].chart.timing, words, view)
         return
     cues = [
         replace(cue, text=f"P{one.chart.player}: {cue.text}")
         for one, play in zip(dance.solved, dance.plays, strict=True)
         if one.pad is not None
-        for cue in cues_of(play, one.chart.timing, words, one.pad, facing)
+        for cue in cues_of(play, one.chart.timing, words, PanelNames(one.pad, facing, language))
     ]
     yield from sorted(cues, key=lambda cue: (cue.second, cue.text))
 

@@ -19,7 +19,7 @@ export class App {
     this.doc = doc;
     this.arrays = arrays;
     this.settings = loadSettings();
-    const { language, t } = speak(doc.languages, this.settings.language);
+    const { language, t } = speak(doc.languages, this.settings.language || doc.language);
     this.language = language;
     this.t = t; // another one after `setLanguage`: who keeps it is made anew then
     this.chart = new Chart(doc, arrays);
@@ -122,7 +122,7 @@ export class App {
   /** Speak another language, from now on. @param {string} name "": the browser's */
   setLanguage(name) {
     this.set("language", name);
-    Object.assign(this, speak(this.doc.languages, name));
+    Object.assign(this, speak(this.doc.languages, name || this.doc.language));
     this.onLanguage();
     this.tell("settings");
   }

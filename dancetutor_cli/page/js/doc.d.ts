@@ -296,6 +296,8 @@ export type PageDoc = {
   music?: Music;
   /** By name. */
   arrays: Record<string, ArrayEntry>;
+  /** In which the page begins; empty: the browser's. */
+  language: string;
   /** The page's labels, by language and name. */
   languages: Record<string, Record<string, string>>;
   /** By file name. */

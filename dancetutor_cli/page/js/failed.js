@@ -21,11 +21,35 @@ const WORDS = {
     settings: "Einstellungen vergessen und noch einmal",
     all: "Alles vergessen: auch Abgehaktes und vergebene Füße",
   },
+  es: {
+    title: "No se pudo abrir la página",
+    old: "Este navegador es demasiado antiguo para descomprimirla (no tiene DecompressionStream). Chrome 80, Firefox 113, Safari 16.4 y posteriores pueden.",
+    why: "Algo salió mal: {why}",
+    maybe: "Si la página funcionaba antes, la causa puede ser lo que guardó en este navegador.",
+    settings: "Olvidar los ajustes e intentarlo de nuevo",
+    all: "Olvidar todo: también lo marcado y los pies asignados",
+  },
+  ja: {
+    title: "ページを開けませんでした",
+    old: "このブラウザーは古いため、ページを展開できません (DecompressionStream がありません)。Chrome 80、Firefox 113、Safari 16.4 以降で開けます。",
+    why: "問題が起きました: {why}",
+    maybe: "前に開けたページなら、このブラウザーに保存された内容が原因かもしれません。",
+    settings: "設定を消してもう一度開く",
+    all: "すべて消す (チェックと変えた足も)",
+  },
+  ko: {
+    title: "페이지를 열 수 없습니다",
+    old: "이 브라우저는 오래되어 페이지를 풀 수 없습니다 (DecompressionStream이 없습니다). Chrome 80, Firefox 113, Safari 16.4 이상에서 열 수 있습니다.",
+    why: "문제가 생겼습니다: {why}",
+    maybe: "전에 열리던 페이지라면 이 브라우저에 저장된 내용이 원인일 수 있습니다.",
+    settings: "설정을 지우고 다시 열기",
+    all: "모두 지우기 (표시와 바꾼 발도)",
+  },
 };
 
 /** @param {unknown} error what ended the start */
 export function failed(error) {
-  const t = (navigator.language ?? "en").startsWith("de") ? WORDS.de : WORDS.en;
+  const t = WORDS[/** @type {keyof typeof WORDS} */ ((navigator.language ?? "").slice(0, 2))] ?? WORDS.en;
   const old = !("DecompressionStream" in window);
   const why = String(error instanceof Error ? error.message : error).slice(0, 300);
   const again = (/** @type {boolean} */ all) => { forget(all); location.reload(); };

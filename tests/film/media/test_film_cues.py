@@ -16,8 +16,11 @@ from dancetutor_cli.feet import load_pad, load_preset
 from dancetutor_cli.film.media.subtitles import cues_of, subtitle_words
 from dancetutor_cli.film.notes import Cue
 from dancetutor_cli.film.overlay.sprites import callout_words
+from dancetutor_cli.film.words import PanelNames
 from dancetutor_cli.lint.subject import solved_chart
+from dancetutor_cli.run.languages import load_language
 
+ENGLISH = load_language()
 HEAD = "#TITLE:T;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n x:\n Hard:\n 9:\n 0,0,0,0,0:\n"
 LEFT, RIGHT = ("left foot",), ("right foot",)
 
@@ -27,7 +30,7 @@ def cues(rows: str) -> list[Cue]:
     play = solved_chart(song, song.charts[0], load_preset("itg")).play
     pad = load_pad("dance-single")
     assert play is not None and pad is not None
-    return list(cues_of(play, song.charts[0].timing, subtitle_words(), pad))
+    return list(cues_of(play, song.charts[0].timing, subtitle_words(ENGLISH), PanelNames(pad, False, ENGLISH)))
 
 
 def test_a_crossover_lasts_until_the_feet_are_back() -> None:
@@ -48,7 +51,7 @@ def test_candles_jumps_and_jacks_have_their_feet() -> None:
 
 def test_words_are_a_dancers_and_the_same_that_are_called_out() -> None:
     """No candles, doublesteps or jacks: who steps again, on which panels, how far."""
-    told, called = subtitle_words(), callout_words()
+    told, called = subtitle_words(ENGLISH), callout_words(ENGLISH)
     assert {*told, *called} >= {"candle", "jack", "doublestep", "drill", "unplayable"}
     for name, words in (*told.items(), *called.items()):
         assert not re.search("candle|double ?step|jack|bracket|drill|gallop|stream", words), name
@@ -72,8 +75,11 @@ def test_who_steps_again_or_on_two_panels_is_told_as_beside_the_notes() -> None:
     feet = np.array([[0, 3], [0, 3], [0, 1]])
     moves = (("doublestep",), ("bracket", "doublestep"), ("hand",))
     play: Any = SimpleNamespace(rows=rows, limb=limb, feet=feet, moves=moves, facing=np.zeros(3))
-    words, timing = subtitle_words(), charts.parse((HEAD + "0000\n;\n").encode(), Path("song.sm")).charts[0].timing
-    found = [(one.text, one.who, one.move) for one in cues_of(play, timing, words, pad)]
+    words, timing = (
+        subtitle_words(ENGLISH),
+        charts.parse((HEAD + "0000\n;\n").encode(), Path("song.sm")).charts[0].timing,
+    )
+    found = [(one.text, one.who, one.move) for one in cues_of(play, timing, words, PanelNames(pad, False, ENGLISH))]
     assert found == [
         ("right foot: twice in a row", (), "doublestep"),
         ("left foot: heel on left, toe on down", (), "bracket"),
@@ -81,7 +87,7 @@ def test_who_steps_again_or_on_two_panels_is_told_as_beside_the_notes() -> None:
         ("left hand down", (), "hand"),
         ("right hand down", (), "hand"),
     ]
-    turned = [one.text for one in cues_of(play, timing, words, pad, turned=True)]
+    turned = [one.text for one in cues_of(play, timing, words, PanelNames(pad, True, ENGLISH))]
     assert turned[1] == "left foot: heel on right, toe on up"
 
 

@@ -17,8 +17,9 @@ from dancetutor_cli.film.overlay.callouts import CalloutSubject, CallStyle, _rea
 from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.film.scroll import parse_segments
 from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.languages import load_language
 
-WORDS = callout_words()
+WORDS = callout_words(load_language())
 SECOND = 1.0  # before
 
 
@@ -184,7 +185,7 @@ def test_a_note_that_is_let_go_is_said() -> None:
 
 def test_a_finding_for_a_passage_is_said_of_all_its_rows() -> None:
     found = [(48, 48, "fast step", 3), (96, 96, "jump footswitch", 1), (96 + 480, 96 + 480, "unplayable", 3)]
-    said = dict(_reasons([0, 48, 72, 96, 400, 480, 576, 800], found))
+    said = dict(_reasons([0, 48, 72, 96, 400, 480, 576, 800], found, load_language()))
     assert said == {
         48: "fast step",
         72: "fast step",
@@ -214,7 +215,7 @@ def test_other_words_for_a_time_are_refused_in_one_line(text: str) -> None:
 
 
 def test_findings_are_for_authors_who_ask_for_them() -> None:
-    finding = SimpleNamespace(beat=4.0, note_column=0, severity="warning", name="fast-step")
+    finding = SimpleNamespace(beat=4.0, note_column=0, severity="warning", rule="DT305", name="fast-step")
     what = moves((8.0, "footswitch"))
     assert [one.text for one in called(what, [finding])] == ["footswitch: swap to left foot"]
     assert [(one.text, one.severity) for one in called(what, [finding], findings=True)] == [

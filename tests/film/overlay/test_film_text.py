@@ -229,7 +229,8 @@ def test_a_legend_of_five_lines_leaves_the_songs_words_alone(name: str, columns:
     part, face = layout.legend, Typeface()
     assert part is not None
     box = layout.box("legend", layout.size, columns)
-    legend = Legend({0, 1, 2, 3}, box, part.text, face, "she faces you")
+    names = {0: "left foot", 1: "right foot", 2: "left hand", 3: "right hand"}
+    legend = Legend(names, box, part.text, face, "she faces you")
     assert min(y for _, _, y in legend.lines) >= box[1] - 10 * part.text
 
 

@@ -18,12 +18,14 @@ from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.media.film_formats import FORMATS
 from dancetutor_cli.film.notes import Callout
 from dancetutor_cli.film.overlay import sprites
-from dancetutor_cli.film.overlay.diagram import DiagramRows, NextRows, PadView
+from dancetutor_cli.film.overlay.diagram import DiagramRows, Lettering, NextRows, PadView
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.plan import turned
 from dancetutor_cli.film.scene.scene import Scene
+from dancetutor_cli.run.languages import load_language
 
 FACE = Typeface()
+LETTERS = Lettering(FACE, 1.0, load_language().film)
 CALL = Callout(2.0, 4.0, "crossover", "move", 1.0, 2.0, "crossover")
 
 
@@ -54,7 +56,7 @@ def test_pads_of_the_next_rows_are_large_enough(steps: str) -> None:
     assert pad is not None and layout.next is not None
     rows = DiagramRows(np.zeros(0), np.zeros((0, len(pad)), np.int8), np.zeros((0, 2), np.int16))
     box = layout.box("next", layout.size, len(pad))
-    small = NextRows(rows, PadView(pad, pad.directions), box, layout.next.count, FACE, 1.0)
+    small = NextRows(rows, PadView(pad, pad.directions), box, layout.next.count, LETTERS)
     assert len(small.pads) >= 2
     assert min(one.smaller for one in small.pads) >= 90
 
@@ -66,7 +68,7 @@ def test_small_pads_say_which_rows_they_are(steps: str) -> None:
     assert pad is not None and layout.next is not None
     rows = DiagramRows(np.arange(1.0, 4.0), np.full((3, len(pad)), -1, np.int8), np.full((3, 2), -1, np.int16))
     box = layout.box("next", layout.size, len(pad))
-    small = NextRows(rows, PadView(pad, pad.directions), box, layout.next.count, FACE, 1.0)
+    small = NextRows(rows, PadView(pad, pad.directions), box, layout.next.count, LETTERS)
     frame = np.zeros((layout.size[1], layout.size[0], 3), np.uint8)
     small.draw(frame, 0.0)
     for place, one in enumerate(small.pads):
@@ -90,7 +92,7 @@ def test_marks_of_the_next_rows_are_as_large_as_their_panels(steps: str) -> None
     limb[0, 0] = 0
     rows = DiagramRows(np.array([1.0]), limb, np.array([[0, len(pad) - 1]], np.int16))
     box = layout.box("next", layout.size, len(pad))
-    small = NextRows(rows, PadView(pad, pad.directions), box, layout.next.count, FACE, 1.0)
+    small = NextRows(rows, PadView(pad, pad.directions), box, layout.next.count, LETTERS)
     frame = np.zeros((layout.size[1], layout.size[0], 3), np.uint8)
     small.draw(frame, 0.0)
     found = {}

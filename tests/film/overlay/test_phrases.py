@@ -16,14 +16,19 @@ from dancetutor_cli.dance.performance import perform, solve
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig.body import joint_matrices
 from dancetutor_cli.feet import load_pad
+from dancetutor_cli.feet.limbs import limb_colours
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.solved import Solved
 from dancetutor_cli.film.choices import Ahead
+from dancetutor_cli.film.overlay.announce import _foot_colour
 from dancetutor_cli.film.overlay.callouts import CalloutSubject, CallStyle, callouts_of
-from dancetutor_cli.film.overlay.phrases import Phrase, crossing_phrase
+from dancetutor_cli.film.overlay.phrases import Phrase, crossing_phrase, standing_tags, stepped_phrase
 from dancetutor_cli.film.overlay.sprites import callout_words
 from dancetutor_cli.film.scroll import parse_segments
+from dancetutor_cli.run.languages import load_language
+from dancetutor_cli.run.reading import config_names
 
+ENGLISH = load_language()
 HEAD = "#TITLE:Crossed;\n#OFFSET:0;\n#BPMS:0=100;\n#NOTES:{}::Hard:9::\n{};\n"
 # Each two measures, a step a beat, left and right in turn; a star begins a hold that lasts over the next step.
 PATTERNS = {
@@ -104,7 +109,7 @@ def test_calls_say_which_foot_crosses_and_whether_in_front_as_the_feet_do(danced
         (foot,) = {0, 1} & set(play.limb[row].tolist())
         ahead = passes(danced.motion, float(play.rows.second[row]), foot)
         assert ahead is not None and abs(ahead) > 0.05
-        said = crossing_phrase("crossover", play, row, pad)
+        said = crossing_phrase("crossover", (play, row), pad, ENGLISH)
         way = "in front" if ahead > 0 else "behind"
         assert said.said == f"{('left', 'right')[foot]} foot crosses {way}"
         assert said.tag == f"cross {way}"
@@ -117,7 +122,7 @@ def test_a_call_says_why(danced: Danced) -> None:
     solved = danced.solved
     play, pad = solved.play, solved.pad
     assert play is not None and pad is not None
-    style = CallStyle(callout_words(), Ahead(0.5))
+    style = CallStyle(callout_words(ENGLISH), Ahead(0.5))
     called = callouts_of(CalloutSubject(solved.chart, pad, tuple), play, style, parse_segments(""))
     by_second = {round(one.second, 3): one for one in called}
     reasons = set()
@@ -156,21 +161,37 @@ def rows(*some: tuple[tuple[str, ...], dict[int, int], tuple[int, int]], steps: 
 def test_a_jump_that_crosses_names_the_foot_in_front() -> None:
     half = ("crossover-half", "jump")
     play, pad = rows(((), {0: 0, 3: 1}, (0, 3)), (half, {3: 0, 1: 1}, (3, 1)))
-    assert crossing_phrase("crossover", play, 1, pad).said == "feet cross, left foot in front"
+    assert crossing_phrase("crossover", (play, 1), pad, ENGLISH).said == "feet cross, left foot in front"
     play, pad = rows(((), {0: 0, 3: 1}, (0, 3)), (half, {3: 0, 2: 1}, (3, 2)))
-    assert crossing_phrase("crossover", play, 1, pad) == Phrase(
+    assert crossing_phrase("crossover", (play, 1), pad, ENGLISH) == Phrase(
         "crossover", "feet cross, right foot in front", "feet cross", "", "{move} ×{count}: first {said}"
     )
+
+
+@pytest.mark.parametrize("name", config_names("languages"))
+def test_every_language_names_the_one_foot_that_a_call_is_of(name: str) -> None:
+    """As its label; so the edge of the call has its colour, and the tag names no foot."""
+    language = load_language(name)
+    own, other = language.limbs["right-foot"], language.limbs["left-foot"]
+    crossing, pad = rows(((), {0: 0}, (0, 3)), (("crossover-back", "crossover-half"), {0: 1}, (3, 0)))
+    turn = crossing_phrase(language.moves["crossover-half"], (crossing, 1), pad, language)
+    swap = stepped_phrase(language.moves["footswitch-up"], "footswitch-up", [-1, -1, 1, -1], language)
+    for phrase in (turn, swap):
+        assert own in phrase.said and other not in phrase.said and "{" not in "".join(phrase[:4])
+        assert _foot_colour(phrase.said, language) == limb_colours().by_limb[1]
+        assert own not in phrase.tag
+    assert other in turn.why and turn.tag in standing_tags(language)
+    assert swap.move == language.moves["footswitch-up"] != swap.said
 
 
 def test_a_foot_that_steps_twice_has_no_such_reason() -> None:
     half = ("crossover-front", "crossover-half")
     twice, pad = rows(((), {0: 0}, (0, 1)), (half, {3: 0}, (3, 1)))
-    assert crossing_phrase("crossover", twice, 1, pad).why == ""
+    assert crossing_phrase("crossover", (twice, 1), pad, ENGLISH).why == ""
     turn, pad = rows(((), {0: 0}, (0, 3)), ((), {1: 1}, (0, 1)), (half, {3: 0}, (3, 1)))
-    assert crossing_phrase("crossover", turn, 2, pad).why == "right foot has just stepped"
+    assert crossing_phrase("crossover", (turn, 2), pad, ENGLISH).why == "right foot has just stepped"
     turn.rows.second[2] = 9.0
-    assert crossing_phrase("crossover", turn, 2, pad).why == "", "long ago"
+    assert crossing_phrase("crossover", (turn, 2), pad, ENGLISH).why == "", "long ago"
 
 
 def test_crossovers_of_both_feet_are_counted_and_the_first_is_told() -> None:

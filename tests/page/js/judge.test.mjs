@@ -10,6 +10,19 @@ import { Judge, ramp } from "../../../dancetutor_cli/page/js/judge.js";
 import { makeLink, parseLink } from "../../../dancetutor_cli/page/js/link.js";
 import { stretch } from "../../../dancetutor_cli/page/js/places.js";
 
+/** A page's labels as document.py makes them of a language's file, whose values are JSON strings. @param {string} name */
+function wordsOf(name) {
+  const prefixes = { page: "", panels: "panel-", findings: "finding-" };
+  const words = {};
+  let prefix;
+  for (const line of readFileSync(new URL(`../../../configs/languages/${name}.yaml`, import.meta.url), "utf8").split("\n")) {
+    const [, section, key, value] = line.match(/^(\w+):$|^ {2}([\w-]+): (".*")$/) ?? [];
+    if (section) prefix = prefixes[section];
+    else if (key && prefix !== undefined) words[prefix + key] = JSON.parse(value);
+  }
+  return words;
+}
+
 /** Rows at seconds 1, 2 (a jump), 3. */
 function chart() {
   const second = [1, 2, 2, 3];
@@ -132,7 +145,7 @@ test("quick charts have their rows farther apart, so that notes do not lie over 
 
 test("a row's moves are named in a dancer's words, each once", () => {
   const named = (file, ...names) => {
-    const words = JSON.parse(readFileSync(new URL(`../../../dancetutor_cli/page/words/${file}.json`, import.meta.url), "utf8"));
+    const words = wordsOf(file);
     return moveNames((name) => words[name] ?? name, names);
   };
   assert.equal(named("en", "crossover-front", "crossover-half"), "crossover in front");
@@ -144,18 +157,18 @@ test("a row's moves are named in a dancer's words, each once", () => {
 test("words beside the notes have short forms for narrow lanes", () => {
   const doc = { style: { callouts: { spin: "spin", doublestep: "doublestep" } }, findings: [{ rule: "DT213", name: "unsure-feet", severity: "info", second: 2, column: 0 }] };
   const rows = [{ second: 1, moves: ["doublestep", "spin"] }, { second: 1.5, moves: ["spin"] }];
-  for (const file of ["en", "de"]) {
-    const words = JSON.parse(readFileSync(new URL(`../../../dancetutor_cli/page/words/${file}.json`, import.meta.url), "utf8"));
+  for (const file of ["en", "de", "es", "ja", "ko"]) {
+    const words = wordsOf(file);
     const labels = labelsOf(doc, { rows }, (name, values = {}) => fillIn(words[name] ?? name, values, words.decimal));
-    assert.deepEqual(labels.map((one) => one.short), [words["short-doublestep"], "L/R ?"]);
-    assert.ok(labels[0].text.length > 15 && labels[0].short.length <= 6);
+    assert.deepEqual(labels.map((one) => one.short), [words["short-doublestep"], words["short-DT213"]]);
+    assert.ok(labels[0].text.length > labels[0].short.length && labels[0].short.length <= 6);
     for (const [name, word] of Object.entries(words)) if (name.startsWith("short-")) assert.ok(word.length <= 6, name);
   }
   assert.equal(fillIn("{a} {b}", { a: 2.5, b: "2.5" }, ","), "2,5 2.5"); // numbers only, no names
 });
 
 test("the figures of a finding are told in another language too", () => {
-  const words = JSON.parse(readFileSync(new URL("../../../dancetutor_cli/page/words/de.json", import.meta.url), "utf8"));
+  const words = wordsOf("de");
   const t = (name, values = {}) => fillIn(words[name] ?? name, values, words.decimal);
   const figures = (message) => findingFigures(t, { message });
   assert.equal(figures("the feet of 2 rows up to beat 49.5 are unsure, on beat 49 only 50 %"), "(50 % sicher)");

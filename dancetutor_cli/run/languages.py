@@ -1,0 +1,73 @@
+"""What players read in films, practice pages and sheets, by language: one file of configs/languages for each."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, fields
+from functools import cache
+
+from dancetutor_cli.run.reading import named_file
+from dancetutor_cli.run.schema import MarkedYaml, convert
+from dancetutor_cli.run.yaml_files import read
+
+ENGLISH = "en"  # says which labels there are; a language without one of them has the English words there
+_PLACE = re.compile(r"\{(\w+)\}")
+
+
+@dataclass(frozen=True, slots=True)
+class Language:
+    """configs/languages/*.yaml: label -> words, in which {places} are filled in.
+
+    language : its own name for itself
+    limbs, panels : of a dancer and a pad; "left-foot-short" stands where there is no room for "left-foot"
+    moves : what a move is called in films and subtitles, with {who} and {places}
+    calls : what a film's calls say besides: which foot, where it crosses, and why; "-tag" stands beside the notes
+    findings : code of a rule -> its name, ": ", and what it means
+    film, sheet, page : what else stands in these
+    """
+
+    language: str
+    limbs: dict[str, str]
+    panels: dict[str, str]
+    moves: dict[str, str]
+    calls: dict[str, str]
+    findings: dict[str, str]
+    film: dict[str, str]
+    sheet: dict[str, str]
+    page: dict[str, str]
+
+    def finding_name(self, rule: str, otherwise: str) -> str:
+        """The name of a rule's findings; `otherwise` for a rule that the file does not have."""
+        return self.findings.get(rule, otherwise).partition(": ")[0]
+
+    def film_texts(self) -> list[str]:
+        """All words that a film may draw."""
+        names = [self.finding_name(rule, "") for rule in self.findings]
+        parts = (self.limbs, self.panels, self.moves, self.calls, self.film)
+        return [*names, *(text for part in parts for text in part.values())]
+
+
+@cache
+def load_language(name: str = ENGLISH) -> Language:
+    """The words of a language; UsageError for a name that there is not, FileError for a file that is wrong."""
+    source = read(named_file("languages", name))
+    if name == ENGLISH:
+        return convert(source, Language)
+    english = load_language()
+    found = convert(source, Language, (), english)
+    for field in fields(Language):
+        words = getattr(found, field.name)
+        if isinstance(words, dict):
+            _check(source, field.name, words, getattr(english, field.name))
+    return found
+
+
+def _check(source: MarkedYaml, section: str, words: dict[str, str], english: dict[str, str]) -> None:
+    """Raise FileError for a label that English has not, and for words with other {places} than the English ones."""
+    if section in source.data:
+        source.check_names((section,), words, english)
+    for label, text in words.items():
+        wanted, there = (sorted(set(_PLACE.findall(one))) for one in (english[label], text))
+        if wanted != there:
+            must = " ".join(f"{{{place}}}" for place in wanted) or "no {places}"
+            raise source.error((section, label), f"{section}.{label} must have {must}, as the English words do")
