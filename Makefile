@@ -11,7 +11,7 @@ DEV_SHARED := build/shared
 # The project's own bytecode and numba caches stay in the checkout; nothing is written elsewhere.
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help wheel install-check page-tools setup setup-dev demo test lint bench fit fit-meter motion-report character clean
+.PHONY: help wheel install-check page-tools setup setup-dev demo test lint bench fit fit-meter motion-report character site gallery docs-pictures docs-figures clean
 
 help:
 	@echo "make demo    analyze, annotate, animate and render the demo song into $(DEMO)/"
@@ -25,6 +25,10 @@ help:
 	@echo "make fit-meter  fit configs/meter/ to the charts in CHARTS=folder, configs/score.yaml to TIERS=table; songs not seen"
 	@echo "make setup   only set up $(VENV)"
 	@echo "make character  build the dancer and the mannequin of the package again, byte for byte"
+	@echo "make site    the documents as a web site with search, in build/site/; strict about links"
+	@echo "make gallery  ten films, sheets and pages of free songs with an index, in build/gallery/; run again to continue"
+	@echo "make docs-pictures  draw the pictures of README and docs again"
+	@echo "make docs-figures   write the tables of docs that commands print again"
 	@echo "make page-tools  TypeScript and axe for the tests of the practice page, with npm"
 	@echo "make wheel   a wheel for this Python and platform with compiled kernels, in dist/"
 	@echo "make install-check  the wheel by pipx and uvx in an empty home, as a user would; needs a package registry"
@@ -74,6 +78,26 @@ build/venv-character/.ready: requirements-character.lock pyproject.toml | $(BIN)
 
 character: build/venv-character/.ready
 	@build/venv-character/bin/python research/build_character.py
+
+# Its own environment: nothing else needs what builds the site.
+build/venv-site/.ready: requirements-site.lock | $(BIN)/python
+	$(PYTHON) -m venv build/venv-site
+	@build/venv-site/bin/pip install --quiet --require-hashes -r requirements-site.lock
+	@touch $@
+
+site: setup build/venv-site/.ready
+	@$(BIN)/python tools/site.py build/site-source
+	@NO_MKDOCS_2_WARNING=1 build/venv-site/bin/mkdocs build --strict
+	@echo "build/site/index.html: $$(ls build/site/*.html | wc -l) pages"
+
+gallery: setup
+	@$(BIN)/python tools/gallery.py build/gallery
+
+docs-pictures: setup
+	@$(BIN)/python tools/doc_pictures.py
+
+docs-figures: setup
+	@$(BIN)/python tools/doc_figures.py
 
 bench: setup-dev
 	@$(BIN)/python tools/bench.py $(BENCH_ARGS)

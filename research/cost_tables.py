@@ -11,7 +11,7 @@ import yaml
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "cost-model.md"
 TIMES = (80, 150, 270, 500, 1000)
-BEGIN, END = "<!-- tables: research/cost_tables.py -->\n", "<!-- end of tables -->\n"
+BEGIN, END = "<!-- figures: costs -->\n", "<!-- end of figures -->\n"
 
 
 def tables() -> str:

@@ -1,7 +1,7 @@
 """The pictures of films in README and docs, drawn anew: `python tools/doc_pictures.py [NAME...]`, all if none is named.
 
 After a change that is seen in films, so that nobody is shown what the program no longer draws. docs/page-two.jpg is a
-browser's: `tests/page/page_chromium.py` drives one, where there is one.
+browser's: `tests/page/page_chromium.py` drives one, where there is one. `make docs-pictures` draws them all.
 """
 
 from __future__ import annotations
@@ -12,7 +12,15 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from PIL import Image
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance.performance import solve
+from dancetutor_cli.dance.physics.style import style_names
+from dancetutor_cli.dance.request import DanceRequest
+from dancetutor_cli.feet.limbs import limb_colours
+from dancetutor_cli.run.reading import config_names
 
 ROOT = Path(__file__).resolve().parent.parent
 DEMO = ROOT / "charts" / "two_left_feet" / "two_left_feet.ssc"
@@ -24,6 +32,9 @@ ROUTINE = (
 )
 CROSSWISE = "10000000\n00010000\n00001000\n00000001\n,\n00001000\n00010000\n10000000\n00010000\n"
 FPS = 20
+CROSSED = 5  # of the pictures of a short cut, five a second: the one in which the feet cross
+CHALLENGE, ROWS = 4, 8  # which chart, and how many of its rows, the picture of presets shows
+LANE, GROUP = 32, 170  # pixels of a lane, and from one preset to the next
 
 
 def frames(folder: Path, chart: Path, *options: str) -> list[Path]:
@@ -94,6 +105,74 @@ def page_two(folder: Path) -> None:
     save(folder / "page.png", "page-two.jpg")
 
 
+def styles(folder: Path) -> None:
+    """The same moment in every style of the ragdoll, and without one."""
+    names = ("", *style_names())
+    found = [still(folder, *(("--style", name) if name else ())) for name in names]
+    in_a_row(found, [name or "no style" for name in names], "styles.jpg")
+
+
+def forms(folder: Path) -> None:
+    """The same crossover in every form."""
+    names = config_names("forms")
+    in_a_row([still(folder, "--form", name) for name in names], names, "forms.jpg")
+
+
+def still(folder: Path, *options: str) -> Image.Image:
+    """The dancer of the demo's hard chart, in a crossover."""
+    cut = ("--layout", "background", "--size", "480x270", "--section", "19:20.6", "--fps", "5")
+    found = frames(folder, DEMO, *HARD, *cut, *options)
+    picture = Image.open(found[CROSSED]).convert("RGB")
+    return picture.crop((150, 20, 330, 270))
+
+
+def in_a_row(pictures: list[Image.Image], names: list[str], target: str) -> None:
+    """Pictures beside each other, each with its name below it."""
+    width, height = pictures[0].size
+    sheet = Image.new("RGB", (width * len(pictures), height + 22), (12, 14, 26))
+    pen = ImageDraw.Draw(sheet)
+    for place, (picture, name) in enumerate(zip(pictures, names, strict=True)):
+        sheet.paste(picture, (place * width, 0))
+        pen.text(((place + 0.5) * width, height + 11), name, (230, 232, 245), ImageFont.load_default(14), anchor="mm")
+    sheet.save(ROOT / "docs" / target, quality=85, optimize=True)
+
+
+def linter(folder: Path) -> None:
+    """What `analyze` prints of a chart with findings."""
+    command = ("dancetutor", "analyze", "charts/two_left_feet/two_left_feet.ssc", *HARD, "--full")
+    run = [str(Path(sys.executable).with_name("dancetutor")), *command[1:], "--no-cache"]
+    title = ("--title", " ".join(command), "--lines", "26")
+    tool = [sys.executable, str(ROOT / "tools" / "terminal_picture.py"), str(ROOT / "docs" / "linter.svg"), *title]
+    subprocess.run([*tool, "--", *run], check=True, cwd=ROOT)
+
+
+def presets(folder: Path) -> None:
+    """The same eight rows, with the feet that each preset gives them: where in the demo they differ most."""
+    plays = {}
+    for name in ("itg", "ddr", "stamina", "beginner"):
+        (one,) = solve(DanceRequest(DEMO, Selection(index=CHALLENGE), name))
+        assert one.play is not None
+        plays[name] = one.play
+    limbs = [play.limb for play in plays.values()]
+    kinds = [len({limb[row : row + ROWS].tobytes() for limb in limbs}) for row in range(len(limbs[0]) - ROWS)]
+    first = kinds.index(max(kinds))
+    parts, width = [], len(plays) * GROUP
+    for place, (name, play) in enumerate(plays.items()):
+        left = place * GROUP
+        parts.append(f'<text x="{left + 2 * LANE}" y="22" class="name">{name}</text>')
+        for row, column in zip(*np.nonzero(play.rows.steps[first : first + ROWS] > 0), strict=True):
+            limb = int(play.limb[first + row, column])
+            x, y = left + (column + 0.5) * LANE, 48 + row * LANE
+            colour = "#{:02x}{:02x}{:02x}".format(*limb_colours().by_limb[limb])
+            parts.append(f'<circle cx="{x}" cy="{y}" r="13" fill="{colour}"/>')
+            parts.append(f'<text x="{x}" y="{y + 5}" class="step">{"←↓↑→"[column]}{"LRlr"[limb]}</text>')
+    height = 40 + ROWS * LANE
+    style = "text{font-family:sans-serif;text-anchor:middle}.name{font-size:16px;fill:#888}.step{font-size:13px}"
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-20 0 {width} {height}" width="{width}">'
+    svg = f"{head}<style>{style}</style>{''.join(parts)}</svg>\n"
+    (ROOT / "docs" / "presets.svg").write_text(svg, encoding="utf-8")
+
+
 def save(picture: Path, name: str) -> None:
     """Into docs, small."""
     image = Image.open(picture).convert("RGB")
@@ -107,6 +186,10 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "background.jpg": background,
     "crossing.jpg": crossing,
     "page-two.jpg": page_two,
+    "linter.svg": linter,
+    "presets.svg": presets,
+    "styles.jpg": styles,
+    "forms.jpg": forms,
 }
 
 
