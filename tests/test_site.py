@@ -1,4 +1,4 @@
-"""The site: every document stands in its navigation once, links reach their headings, and no page needs another server."""
+"""The site: every document is in its navigation once, links reach their headings, and it needs no other server."""
 
 from __future__ import annotations
 

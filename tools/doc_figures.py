@@ -1,6 +1,6 @@
 """Write the tables of docs that commands measure: `python tools/doc_figures.py [NAME...]`, all if none is named.
 
-A table stands between `<!-- figures: NAME -->` and `<!-- end of figures -->`. Names: costs (of the presets), motion (the
+A table stands between `<!-- figures: NAME -->` and `<!-- end of figures -->`. Names: costs (of presets), motion (the
 report of the demo song), speed (processor time of the commands on this machine, each in a process of its own).
 """
 
