@@ -88,7 +88,7 @@ build/venv-site/.ready: requirements-site.lock | $(BIN)/python
 site: setup build/venv-site/.ready
 	@$(BIN)/python tools/site.py build/site-source
 	@NO_MKDOCS_2_WARNING=1 build/venv-site/bin/mkdocs build --strict
-	@echo "build/site/index.html: $$(ls build/site/*.html | wc -l) pages"
+	@echo "build/site: $$(ls build/site/*.html | wc -l) pages; to read and search them: python3 -m http.server -d build/site"
 
 gallery: setup
 	@$(BIN)/python tools/gallery.py build/gallery

@@ -83,4 +83,5 @@ def test_the_options_are_those_of_the_help(source: Path) -> None:
 def test_the_site_loads_nothing_from_elsewhere() -> None:
     site = settings()
     assert site["theme"]["font"] is False and site["plugins"] == ["search"]
+    assert "Content-Security-Policy" in (ROOT / site["theme"]["custom_dir"] / "main.html").read_text("utf-8")
     assert not any("://" in str(one) for one in (*site.get("extra_css", ()), *site.get("extra_javascript", ())))

@@ -110,23 +110,23 @@ def figure(piece: Piece, folder: str = "") -> str:
     return f"<figure>{shown}<figcaption>{title}</figcaption></figure>"
 
 
-STYLE = """\
-body { margin: 2rem auto; max-width: 1200px; padding: 0 1rem; font: 16px/1.5 system-ui, sans-serif; }
-main, .gallery { display: grid; grid-template-columns: repeat(auto-fill, minmax(280px, 1fr)); gap: 1.2rem; }
-figure { margin: 0; } video { width: 100%; height: 220px; object-fit: contain; background: #0c0e1a; }
+GRID = """\
+.gallery { display: grid; grid-template-columns: repeat(auto-fill, minmax(280px, 1fr)); gap: 1.2rem; }
+.gallery figure { margin: 0; width: auto; }
+.gallery video { width: 100%; height: 220px; object-fit: contain; background: #0c0e1a; }
 """
+BODY = "body { margin: 2rem auto; max-width: 1200px; padding: 0 1rem; font: 16px/1.5 system-ui, sans-serif; }\n"
 
 
 def write_index(folder: Path, shown: list[Piece]) -> None:
     """The gallery as a page of its own, and as one of the documents' site."""
     figures = "\n".join(figure(one) for one in shown)
     head = '<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Gallery</title>'
-    page = f'<!DOCTYPE html>\n<html lang="en"><head>{head}<style>{STYLE}</style></head>\n<body><h1>Gallery</h1>\n'
-    (folder / "index.html").write_text(f"{page}<main>\n{figures}\n</main></body></html>\n", "utf-8")
+    page = f'<!DOCTYPE html>\n<html lang="en"><head>{head}<style>{BODY}{GRID}</style></head>\n<body><h1>Gallery</h1>\n'
+    (folder / "index.html").write_text(f'{page}<main class="gallery">\n{figures}\n</main></body></html>\n', "utf-8")
     figures = "\n".join(figure(one, "gallery/") for one in shown)
     intro = "All of this is made by `make gallery` from the demo song and from a few rows of notes.\n"
-    style = "\n".join(STYLE.splitlines()[1:])
-    text = f'# Gallery\n\n{intro}\n<style>{style}</style>\n<div class="gallery">\n{figures}\n</div>\n'
+    text = f'# Gallery\n\n{intro}\n<style>{GRID}</style>\n<div class="gallery">\n{figures}\n</div>\n'
     (folder / "gallery.md").write_text(text, "utf-8")
 
 

@@ -67,7 +67,11 @@ def gallery_page(folder: Path) -> str:
     page = GALLERY / "gallery.md"
     if not page.exists():
         return "# Gallery\n\nThis site was built without a gallery: `make gallery`, then `make site`.\n"
-    shutil.copytree(GALLERY, folder / "gallery", ignore=shutil.ignore_patterns("gallery.md", "index.html", "*.part"))
+    shutil.copytree(
+        GALLERY,
+        folder / "gallery",
+        ignore=shutil.ignore_patterns("gallery.md", "index.html", ".*", "*.npz", "*.bvh", "*.sm"),
+    )
     return page.read_text("utf-8")
 
 

@@ -94,7 +94,7 @@ class Film:
         geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned, tags, letters)
         scroll = plan.look.scroll or parse_scroll(part.scroll)
         score = Score(plan.notes, plan.presses, plan.lines, plan.callouts)
-        return Highway(score, geometry, scroll, plan.scroll_bpm, self.face)
+        return Highway(score, geometry, scroll, plan.scroll_bpm, self.face, self.language.film["facing-notes"])
 
     @cached_property
     def turned(self) -> bool:

@@ -23,7 +23,6 @@ from dancetutor_cli.run.schema import RGB
 
 BEATS_PER_MEASURE = 4
 NUMBER_SHARE = 0.019  # of the box's height that a measure's number is at least high
-TURNED = "facing you: all is turned round, notes too"  # all arrows are turned with her
 LET_GO = 0.25  # opacity of holds and rolls from where on nobody plays them
 TAGS_APART = 2.0  # pixels between two tags
 FLAG_LEAST, FLAG_SHARE = 10.0, 0.026  # a label's letters: pixels, for smaller ones are not read; share of that height
@@ -51,8 +50,16 @@ class Highway:
     """Draws the highway of one chart. Nothing in it changes between frames: any frame may be drawn at any time."""
 
     def __init__(
-        self, score: Score, geometry: HighwayGeometry, scroll: Scroll, scroll_bpm: float, face: Typeface
+        self,
+        score: Score,
+        geometry: HighwayGeometry,
+        scroll: Scroll,
+        scroll_bpm: float,
+        face: Typeface,
+        facing: str = "",
     ) -> None:
+        """facing : words above the lanes where the dancer faces the viewer, and all arrows are turned with her."""
+        self._facing = facing
         self.notes, self.presses, self.lines, self.callouts = score
         self.geometry, self.face = geometry, face
         self._tags = marks.row_tags(self.callouts)
@@ -204,7 +211,7 @@ class Highway:
         geometry = self.geometry
         gap = min(abs(geometry.receptor - edge) for edge in geometry.box[1::2]) - 0.5 * self.size
         size = max(FLAG_LEAST, min(0.4 * gap, 0.33 * geometry.lane))
-        (line,), size = fitted(TURNED, size, geometry.lane * len(geometry.directions) - 5, self.face, most=1)
+        (line,), size = fitted(self._facing, size, geometry.lane * len(geometry.directions) - 5, self.face, most=1)
         return self.face.sprite(line, size, self.style.callout["move"], weight=0.012 * size)
 
     def _draw_receptors(self, frame: Frame, second: float, beat: float) -> None:
