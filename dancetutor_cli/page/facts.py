@@ -139,7 +139,7 @@ def sentence(passage: Passage, labels: Mapping[str, str]) -> str:
     if passage.unsure:
         rows = labels["oneRow"] if passage.unsure == 1 else labels["rows"].replace("{count}", str(passage.unsure))
         parts.append(labels["sentence-close"].replace("{rows}", rows))
-    text = ", ".join(parts) + "."
+    text = labels["sentence-comma"].join(parts) + labels["sentence-end"]
     return text[0].upper() + text[1:]
 
 
