@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import json
 import re
 import shlex
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import Any
 
 import click
 import pytest
+import yaml
 from click.testing import CliRunner
 
 from dancetutor_cli.commands import COMMANDS, cli
@@ -64,6 +66,22 @@ def test_the_examples_use_options_that_exist(example: str) -> None:
     known = {flag for p in command.params if isinstance(p, click.Option) for flag in (*p.opts, *p.secondary_opts)}
     used = {a.split("=")[0] for a in arguments if a.startswith("-") and a != "-"}
     assert used <= known | {"--help", "-h"}
+
+
+@pytest.mark.parametrize("name", sorted(PAGES))
+def test_snippets_are_what_they_say(name: str) -> None:
+    """Blocks of YAML, JSON and Python are that."""
+    for kind, block in re.findall(r"```(yaml|json|python)\n(.*?)```", PAGES[name], re.S):
+        if kind == "yaml":
+            assert yaml.safe_load(block) is not None, f"{name}: {block}"
+        elif kind == "json":
+            json.loads(block)
+        else:
+            compile(block, name, "exec")
+
+
+def test_there_are_snippets_to_check() -> None:
+    assert len([kind for text in PAGES.values() for kind in re.findall(r"```(yaml|json|python)\n", text)]) >= 5
 
 
 @pytest.mark.parametrize("name", ["README.md", "docs/guide.md"])
