@@ -124,7 +124,8 @@ def _legend(sheet: Sheet) -> str:
         if colour in used:
             shape = f"translate({x + 8:g} 8) scale(15)"
             parts.append(tag("use", href="#arrow", transform=shape, fill=colour, class_="sample"))
-            parts.append(text(f"{grid}{'nd' if grid % 10 == 2 and grid != 12 else 'th'}", x + 19, 11.5, "fact"))
+            label = "grid-nd" if grid % 10 == 2 and grid != 12 else "grid-th"  # 32nd, 16th
+            parts.append(text(sheet.say(label, grid=grid), x + 19, 11.5, "fact"))
             x += 54
     limbs = {limb for limb, _ in sheet.limbs.values()}
     for limb, label in zip((0, 1, 2, 3, -1), _LIMBS, strict=True):
