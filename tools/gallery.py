@@ -125,7 +125,8 @@ def write_index(folder: Path, shown: list[Piece]) -> None:
     page = f'<!DOCTYPE html>\n<html lang="en"><head>{head}<style>{BODY}{GRID}</style></head>\n<body><h1>Gallery</h1>\n'
     (folder / "index.html").write_text(f'{page}<main class="gallery">\n{figures}\n</main></body></html>\n', "utf-8")
     figures = "\n".join(figure(one, "gallery/") for one in shown)
-    intro = "All of this is made by `make gallery` from the demo song and from a few rows of notes.\n"
+    others = "; the last ones from a song and a capture of the test data" if any(one.needs for one in shown) else ""
+    intro = f"All of this is made by `make gallery` from the demo song and from a few rows of notes{others}.\n"
     text = f'# Gallery\n\n{intro}\n<style>{GRID}</style>\n<div class="gallery">\n{figures}\n</div>\n'
     (folder / "gallery.md").write_text(text, "utf-8")
 
