@@ -72,6 +72,7 @@ def other_values(song: Path) -> dict[str, list[Any]]:
         "font": folder / "font.ttf",
         "ahead": parse_ahead("b2"),
         "findings": True,
+        "language": "de",
     }
     practices = {"loop": 2, "count_in": 4, "rest": 1.5, "claps": True, "metronome": True}
     dances = {
