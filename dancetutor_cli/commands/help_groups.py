@@ -13,7 +13,7 @@ GROUPS = {
     "Output": (
         "--output", "--output-file", "--format", "--frames", "--poses", "--poster", "--srt", "--music", "--size",
         "--fps", "--quality", "--background", "--into-file", "--name", "--report", "--plot", "--report-html", "--sheet",
-        "--json", "--print", "--remove",
+        "--json", "--print", "--remove", "--with-input",
     ),
     "Rules and exit status": (
         "--select", "--ignore", "--config", "--set", "--show-settings", "--baseline", "--update-baseline", "--fail-on",

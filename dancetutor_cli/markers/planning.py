@@ -56,7 +56,7 @@ def write(style: str, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> It
     elif style == TEXT:
         path = folder / sidecar.text_path(song.path).name
         old = _present(path, song)
-        new = sidecar.write_text(path, old, song, feet)
+        new = sidecar.write_feet_text(path, old, song, feet)
         lacks = [] if old == new else [Lack(f"{path.name} is {'missing' if old is None else 'stale'}")]
         yield FileChange(path, old, new), lacks
     elif style == SMEDITOR:

@@ -143,7 +143,7 @@ def text_path(song: Path) -> Path:
     return song.with_name(song.stem + TEXT_SUFFIX)
 
 
-def write_text(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> bytes:
+def write_feet_text(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> bytes:
     """The content of the text; FileError if what lies there is not ours."""
     check_text(path, old)
     lines = [line.rstrip(b"\r\n") for line in song.data.splitlines(keepends=True)]
