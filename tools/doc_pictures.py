@@ -17,7 +17,6 @@ from PIL import Image, ImageDraw, ImageFont
 
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.performance import solve
-from dancetutor_cli.dance.physics.style import style_names
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.feet.limbs import limb_colours
 from dancetutor_cli.run.reading import config_names
@@ -107,7 +106,7 @@ def page_two(folder: Path) -> None:
 
 def styles(folder: Path) -> None:
     """The same moment in every style of the ragdoll, and without one."""
-    names = ("", *style_names())
+    names = ("", *config_names("styles"))
     found = [still(folder, *(("--style", name) if name else ())) for name in names]
     in_a_row(found, [name or "no style" for name in names], "styles.jpg")
 
