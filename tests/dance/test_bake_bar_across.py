@@ -119,3 +119,9 @@ def test_a_hand_lets_go_where_hips_that_turned_from_the_chest_come_to_it(corpus:
     path = sorted(corpus.glob("*/g0101_*.ssc"))[0]
     measured = report(baked(DanceRequest(path, Selection(index=0), bar=True), "88.5:102"))
     assert measured["limb in torso"].value == 0.0 and measured["hands on the bar"].value >= 2
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_hand_that_leaves_the_rail_turns_no_faster_than_a_hand_can(mirrored: bool) -> None:
+    """It turned by 64 degrees from one frame to the next, on its way from the rail on the other side."""
+    assert report(danced(SLOW, mirrored=mirrored))["hand turns at"].value < 2000.0

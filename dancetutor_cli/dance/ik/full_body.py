@@ -265,7 +265,15 @@ def _arm(at: tuple[int, int], shoulder: Vec, chest: Quat, rig: Rig, hands: ArmTa
     forearm = qmul(world, bend)
     free = (1.0, 0.0, 0.0, 0.0)
     pin = qmul(qconj(forearm), _quat(hands.rotation[f, side]))
-    _put(out[joints[base + 3]], qlerp(free, pin, pinned) if pinned > 0.0 else free)
+    _put(out[joints[base + 3]], qlerp(free, pin, _turned_share(pin[0], pinned)) if pinned > 0.0 else free)
+
+
+@inner_kernel
+def _turned_share(half_cosine: float, pinned: float) -> float:
+    """How far a hand that is pinned by a part has turned from its forearm to lie as it shall: less where it has to turn
+    by more than 106 degrees, for at 180 it would have to change from one way round to the other in a moment."""
+    near = min(abs(half_cosine) / 0.6, 1.0)
+    return pinned * (1.0 - (1.0 - pinned**4) * (1.0 - near * near * (3.0 - 2.0 * near)))
 
 
 @inner_kernel
