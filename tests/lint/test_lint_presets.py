@@ -288,7 +288,8 @@ def test_the_path_of_a_chart_may_be_relative(song: Path, monkeypatch: pytest.Mon
 def test_the_page_about_presets_is_true(song: Path) -> None:
     page = (Path(__file__).resolve().parent.parent.parent / "docs" / "presets.md").read_text("utf-8")
     assert sorted(re.findall(r"^\| `(\w+)` \|", page, re.M)) == preset_names()
-    settings, mine = re.findall(r"```yaml\n(.*?)```", page, re.S)
+    settings, mine, rewritten = re.findall(r"```yaml\n(.*?)```", page, re.S)
+    assert "before:" in rewritten, "how a preset of 0.1 is rewritten"
     top = song.parent.parent
     (top / "presets").mkdir()
     (top / "presets" / "mine.yaml").write_text(mine)

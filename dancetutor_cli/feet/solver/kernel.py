@@ -187,13 +187,13 @@ def _row_of_time(ms, t):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def _time_cost(facts, time, ms, timed_key, timed_cost, curves, terms):  # type: ignore[no-untyped-def]
+def _time_cost(facts, ms, timed_key, costs, curves, terms):  # type: ignore[no-untyped-def]
     """1 + what facts cost after so many milliseconds; computed when first asked for.
 
-    time : the row of `timed_cost` for `ms`; terms : scratch
+    costs : the row of `timed_cost` for `ms`; terms : scratch
     """
-    timed_cost[time, facts] = 1 + charge_time(timed_key[facts], ms, curves, terms) if facts else 1
-    return timed_cost[time, facts]
+    costs[facts] = 1 + charge_time(timed_key[facts], ms, curves, terms) if facts else 1
+    return costs[facts]
 
 
 @inner_kernel(inline="always")
@@ -222,14 +222,15 @@ def advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
         time = _row_of_time(ms, t)
         if time < 0:
             return row, MORE_TIMED
+        costs = timed_cost[time]
         u, best, cheapest = high, _NEVER, _NEVER
         start = np.int64(transition[number, FIRST_EDGE])
         for e in range(start, start + transition[number, EDGE_COUNT]):
             packed = edge[e]
             facts = packed >> FACTS_SHIFT & FACTS_MASK
-            price = timed_cost[time, facts]
+            price = costs[facts]
             if price == UNKNOWN:
-                price = _time_cost(facts, time, ms, timed_key, timed_cost, curves, scratch)
+                price = _time_cost(facts, ms, timed_key, costs, curves, scratch)
             cost = (node[low + (packed & PLACE_MASK)] >> COST_SHIFT) + (packed >> EDGE_COST_SHIFT) + price - 1
             way = cost << COST_SHIFT | e
             best = min(best, way)
