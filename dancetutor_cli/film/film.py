@@ -89,8 +89,8 @@ class Film:
         letters = beside.letters(scale)
         if tags:
             words = (*callout_words(self.language).values(), *standing_tags(self.language))
-            told = beside.callout_texts(plan.callouts, words)
-            lane = lane_width_for_words(beside.room_for(told, letters, self.face), lane, box, self.columns)
+            texts = beside.callout_texts(plan.callouts, words)
+            lane = lane_width_for_words(beside.room_for(texts, letters, self.face), lane, box, self.columns)
         geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned, tags, letters)
         scroll = plan.look.scroll or parse_scroll(part.scroll)
         score = Score(plan.notes, plan.presses, plan.lines, plan.callouts)

@@ -12,7 +12,7 @@ from dancetutor_cli.dance.physics.arms import push_arms_out
 from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, Wishes
 from dancetutor_cli.dance.physics.plants import Plants
 from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
-from dancetutor_cli.dance.physics.stands import stilled
+from dancetutor_cli.dance.physics.stands import keep_feet_still
 from dancetutor_cli.dance.quality.figures import body_of
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
@@ -62,7 +62,7 @@ def slides(times: np.ndarray, path: np.ndarray) -> list[float]:
 def test_feet_that_creep_and_roll_stand_still(creep: float) -> None:
     feet, plants, times = walk(creep)
     hips = HIPS + feet.places[:, :1] * [0.0, 0.0, 1.0]
-    made, held, share = stilled(SKELETON, feet, plants, times, hips)
+    made, held, share = keep_feet_still(SKELETON, feet, plants, times, hips)
     before, after = (slides(times, one.places[:, 0]) for one in (feet, made))
     assert max(before) > 25 and max(after) < 8 and float(np.median(after)) < 5
     assert held.heel.any() and share.min() < 0.2, "feet in the air are free"
@@ -75,7 +75,7 @@ def test_a_heel_rises_where_the_leg_is_too_short() -> None:
     feet, plants, times = walk(0.0)
     ahead = HIPS + feet.places[:, :1] * [0.0, 0.0, 1.0] + 0.5 * np.clip((times - 1.5) / 0.5, 0, 1)[:, None, None] * Z
     near = HIPS + feet.places[:, :1] * [0.0, 0.0, 1.0]
-    rises = [stilled(SKELETON, feet, plants, times, hips)[0].places[-15, 0, 1] for hips in (near, ahead)]
+    rises = [keep_feet_still(SKELETON, feet, plants, times, hips)[0].places[-15, 0, 1] for hips in (near, ahead)]
     assert rises[0] < 0.09 and rises[1] > rises[0] + 0.012
 
 

@@ -31,7 +31,7 @@ from dancetutor_cli.dance.physics.pushes import (
 from dancetutor_cli.dance.physics.ragdoll import NOMINAL, bones_of, place_points, points_of
 from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, pin_hands, repinned, restrained
 from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN, Distances, Ragdoll, follow_all, simulate
-from dancetutor_cli.dance.physics.stands import stilled
+from dancetutor_cli.dance.physics.stands import keep_feet_still
 from dancetutor_cli.dance.physics.style import PARTS, Spring, Style
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import PARTS as MASSES
@@ -123,7 +123,7 @@ def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> 
         plants = let_go(skeleton, feet, _at_keys(held_at.soles.plants(), held_at.at, motion.times))
         feet, _ = planted(skeleton, feet, plants)
         hips = world_transforms(skeleton, rotations, root)[0][:, [skeleton.index(f"{s}_hip") for s in "lr"]]
-        feet, plants, held = stilled(skeleton, feet, plants, motion.times, hips)
+        feet, plants, held = keep_feet_still(skeleton, feet, plants, motion.times, hips)
         feet = flatten_toes(skeleton, rotations, feet, plants, held)
     free = root
     if "knees" in corrections:

@@ -57,7 +57,7 @@ class _Stand:
         return self.in_ankle if self.ankle else np.ones(self.end - self.first, dtype=bool)
 
 
-def stilled(
+def keep_feet_still(
     skeleton: Skeleton, feet: AnkleTracks, plants: Plants, times: Array, hips: Array
 ) -> tuple[AnkleTracks, Plants, Array]:
     """Feet that are still while they stand, heels on the floor as long as legs reach.

@@ -243,5 +243,5 @@ def title_warnings(song: Song, words: Words, font: Path | None) -> tuple[str, ..
     lost = "?" in words.title.replace("?", "", song.title.count("?")) or "?" in words.artist
     if not missing or not lost:
         return ()
-    told = "no font here" if font is None else f"neither {font} nor a font of the system"
-    return (f"{told} has letters for {missing[:12]!r} in title or artist; give one with --font FILE",)
+    searched = "no font here" if font is None else f"neither {font} nor a font of the system"
+    return (f"{searched} has letters for {missing[:12]!r} in title or artist; give one with --font FILE",)

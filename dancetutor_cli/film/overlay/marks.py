@@ -266,7 +266,7 @@ def letters(scale: float) -> float:
 
 def has_visible_callout(callouts: Iterable[Callout], passes: Iterable[Pass]) -> bool:
     """Does any of these stand beside the notes in one of these runs?"""
-    begins = np.array([told.second for told in callouts])
+    begins = np.array([callout.second for callout in callouts])
     return any(((one.start <= begins) & (begins <= one.end + LEAD_SECONDS)).any() for one in passes)
 
 

@@ -67,7 +67,7 @@ class FastStep(ChartRule):
         """One finding for each step that is too fast; one for a passage in which the rows are."""
         feet, bursts = subject.feet, []
         moves: dict[tuple[str, str], list[tuple[int, int, str]]] = {}  # by foot and severity
-        told: set[tuple[int, str]] = set()
+        reported: set[tuple[int, str]] = set()
         limits = self.options["max_speed"], self.options["min_seconds"]
         for row, column, way, seconds in feet.too_fast(*limits) if feet else ():
             if rows := burst(subject, row):
@@ -79,16 +79,16 @@ class FastStep(ChartRule):
                     foot = feet.limb_name(row, column)
                     message = f"the {foot} moves {way:.1f} panels in {seconds * 1000:.0f} ms"
                     moves.setdefault((foot, least.get("severity", "")), []).append((row, column, message))
-                    told.add((row, message))
+                    reported.add((row, message))
                     continue
                 if subject.pause(row) < _AS_ONE:
                     place = row
                     apart = f"{subject.pause(row) * 1000:.0f} ms"
                     message = f"this row comes {apart} after the one before: were they meant as one?"
                     least = {}
-                if (place, message) not in told:
+                if (place, message) not in reported:
                     yield self.finding(message, subject.at_row(place, column if place == row else None), **least)
-                told.add((place, message))
+                reported.add((place, message))
         for (_, severity), found in moves.items():
             yield from self._moves(subject, found, {"severity": severity} if severity else {})
         end = -math.inf
@@ -98,7 +98,7 @@ class FastStep(ChartRule):
                 message = f"{len(rows)} rows {quickest:.0f} ms apart: quicker than feet step"
                 yield self.finding(message, subject.at_row(rows[1]))
             end = subject.beat(rows[-1])
-        yield from self._leaps(subject, {row for rows in bursts for row in rows} | {row for row, _ in told})
+        yield from self._leaps(subject, {row for rows in bursts for row in rows} | {row for row, _ in reported})
 
     def _moves(
         self, subject: ChartSubject, found: list[tuple[int, int, str]], least: dict[str, str]
@@ -114,12 +114,12 @@ class FastStep(ChartRule):
             message += f"; {len(rows)} of them from beat {subject.beat(rows[0]):g} to {subject.beat(rows[-1]):g}"
             yield self.finding(message, subject.at_row(row, column), **least)
 
-    def _leaps(self, subject: ChartSubject, told: set[int]) -> Iterable[Finding]:
+    def _leaps(self, subject: ChartSubject, reported: set[int]) -> Iterable[Finding]:
         """One finding for each passage of steps that are let go and of which nothing is told yet."""
         from dancetutor_cli.feet.play import StepKind  # numpy comes with it, which a kept result does not need
 
         end = -math.inf
-        known = [subject.beat(row) for row in sorted(told)]
+        known = [subject.beat(row) for row in sorted(reported)]
         for row, column, why in sorted(subject.too_quick):
             if why != DropReason.LEAP:
                 continue

@@ -45,8 +45,8 @@ class DifferingPair(FileRule):
 
         if found := list(differences(subject.song)):
             _, line, index = found[0]
-            told = "; ".join(message for message, _, _ in found)
-            yield self.finding(told, subject.place(line), chart=index if len(found) == 1 else None)
+            sentence = "; ".join(message for message, _, _ in found)
+            yield self.finding(sentence, subject.place(line), chart=index if len(found) == 1 else None)
 
 
 class OddChart(ReaderRule):

@@ -87,11 +87,11 @@ class MineUnderHold(TimedRule):
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each row with such a mine, with the time since the foot's step; none where it cannot leave at all."""
-        told: set[int] = set()
+        reported: set[int] = set()
         for row, column, foot, seconds in subject.feet.mines_under_pinned_feet() if subject.feet else ():
             message = f"a mine under the {('left', 'right')[foot]} foot, which a hold keeps from stepping aside"
-            if row not in told and seconds <= self.longest(subject) + EPSILON:  # once for a row, not for each foot
-                told.add(row)
+            if row not in reported and seconds <= self.longest(subject) + EPSILON:  # once for a row, not for each foot
+                reported.add(row)
                 yield Occurrence(row, seconds, message, column)
 
 
@@ -169,10 +169,10 @@ class MineInTheWay(ChartRule):
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each row with such a step."""
         limit = self.options["max_seconds"]
-        told: set[int] = set()
+        reported: set[int] = set()
         for row, column, seconds in sorted(subject.feet.mines_before_steps(limit)) if subject.feet else ():
-            if row in told:  # once for a row, not for each foot
+            if row in reported:  # once for a row, not for each foot
                 continue
-            told.add(row)
+            reported.add(row)
             message = f"a mine lies on this panel {seconds * 1000:.0f} ms before the foot arrives"
             yield self.finding(message, subject.at_row(row, column))
