@@ -23,10 +23,10 @@ from dancetutor_cli.feet.play import Play
 from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.configuration import PresetChoice, load_configuration, preset_for
 from dancetutor_cli.lint.findings import Finding
-from dancetutor_cli.lint.fixes import move_notes
+from dancetutor_cli.lint.fix_edits import move_notes
 from dancetutor_cli.lint.rule import matching
 from dancetutor_cli.lint.subject import ChartSubject, solved_chart
-from dancetutor_cli.lint.suggest import mending_edits
+from dancetutor_cli.lint.suggest import move_edits
 
 AROUND = 9  # rows
 _LIMBS = "LR<>"
@@ -80,7 +80,7 @@ def main() -> int:
         counts["findings"] += 1
         preset = preset_for(subject.chart, subject.song.path, PresetChoice())
         findings = check_chart(subject, settings)
-        for edit in mending_edits(finding, findings, subject, settings, preset):
+        for edit in move_edits(finding, findings, subject, settings, preset):
             fix = move_notes(subject.song.data, subject.chart, finding, edit)
             if fix is None or subject.play is None or subject.chart.written is not None:
                 continue

@@ -248,7 +248,7 @@ def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
         check_file(options["output_file"], or_device=True)
     first = files[0][0]
     if options["fix"]:
-        from dancetutor_cli.commands.fixing import fix_all
+        from dancetutor_cli.commands.fix_option import fix_all
 
         run.open_baseline(first)
         return fix_all(run, [run.task(path, data) for path, data in files], options)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -46,24 +46,8 @@ AFTER = 2.5  # seconds after the last row that a section may still reach
 
 
 @dataclass(frozen=True, slots=True)
-class DanceOptions:
-    """How she shall dance; named as the fields of `dance.request.DanceRequest`."""
-
-    preset: str | None
-    fps: float
-    play: Path | None
-    bar: bool
-    gait: str
-    form: str
-    motion: Path | None
-    style: str | None
-    push: tuple[str, ...]
-    trip: tuple[float, ...]
-
-
-@dataclass(frozen=True, slots=True)
 class Result:
-    """What shall become of it."""
+    """What becomes of the dance; the other options are called like the fields of `dance.request.DanceRequest`."""
 
     output: Path | None
     report_to: str | None
@@ -114,9 +98,8 @@ class Result:
 @selection_options
 @preset_option
 @into("selection", Selection)
-@into("dance", DanceOptions)
 @into("result", Result)
-def command(file: Path, selection: Selection, dance: DanceOptions, result: Result) -> None:
+def command(file: Path, selection: Selection, result: Result, **dance: Any) -> None:
     """Bake a 3D dancer who plays one chart of FILE.
 
     The name of the output says what it is: .glb, which any glTF viewer plays; .npz, numpy arrays; .bvh, motion
@@ -135,8 +118,8 @@ def command(file: Path, selection: Selection, dance: DanceOptions, result: Resul
     output, character = result.output, result.character
     if character != DANCER and output is not None and not FORMATS[output.suffix.lower()].has_motion:
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
-    dances = load_character(dressed(character, dance.gait))
-    request = DanceRequest(one_song(file), selection, rates=(result.rate,), **asdict(dance))
+    dances = load_character(dressed(character, dance["gait"]))
+    request = DanceRequest(one_song(file), selection, rates=(result.rate,), **dance)
     if result.physics and request.style is None:
         request = replace(request, style="neutral")
     request = with_style(request)

@@ -44,7 +44,7 @@ def rules() -> Iterable[str]:
 
 def fixes() -> Iterable[str]:
     """What --fix takes."""
-    from dancetutor_cli.lint.mend import FIXABLE
+    from dancetutor_cli.lint.fix import FIXABLE
 
     return ["safe", *FIXABLE]
 

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -38,22 +38,16 @@ SUFFIXES = (".html", ".htm")
 
 @dataclass(frozen=True, slots=True)
 class PageWish:
-    """What the options ask for, besides the charts."""
+    """What the options ask for, besides the charts and what is danced (`dance.request.DanceRequest`)."""
 
     output: Path | None
     music: bool
-    play_file: Path | None
-    bar: bool
-    gait: str
-    form: str
-    motion: Path | None
     jobs: int
     quiet: bool
     exclude: tuple[str, ...]
     verbose: bool
     second: str | None
     character: str
-    preset: str | None
     language: str | None
 
 
@@ -66,7 +60,7 @@ class PageWish:
     help="An .html file [default: SONG-difficulty.html]; of a folder of charts a folder [default: pages].",
 )
 @click.option("--music", is_flag=True, help="Put the song's music into the page; otherwise it asks for the file.")
-@click.option("--play", "play_file", type=_FILE, help="Feet from this JSON of analyze instead of the solver's.")
+@click.option("--play", type=_FILE, help="Feet from this JSON of analyze instead of the solver's.")
 @click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad, as players of hard charts do.")
 @click.option(
     "--second",
@@ -92,7 +86,7 @@ class PageWish:
 @preset_option
 @into("selection", Selection)
 @into("wish", PageWish)
-def command(path: Path, selection: Selection, wish: PageWish) -> None:
+def command(path: Path, selection: Selection, wish: PageWish, **dance: Any) -> None:
     """Make a page to practise one chart of PATH with, in any browser, without a network.
 
     The dancer plays the chart beside its notes: slower or quicker, in loops, row by row, and she waits for whoever
@@ -106,11 +100,10 @@ def command(path: Path, selection: Selection, wish: PageWish) -> None:
 
     output = wish.output
     file = one_song(path) if output is not None and output.suffix.lower() in SUFFIXES else path
-    dance = DanceRequest(
-        file, selection, wish.preset, wish.play_file, bar=wish.bar, gait=wish.gait, form=wish.form, motion=wish.motion
+    request = PageRequest(
+        DanceRequest(file, selection, **dance), wish.character, wish.music, wish.second, wish.jobs, wish.language or ""
     )
-    request = PageRequest(dance, wish.character, wish.music, wish.second, wish.jobs, wish.language or "")
-    announce_compiling(choice_for(file, wish.preset), quiet=wish.quiet)
+    announce_compiling(choice_for(file, request.dance.preset), quiet=wish.quiet)
     if file.is_dir():
         _pages(request, output or Path("pages"), wish)
         return

@@ -10,7 +10,7 @@ run.LintRun                   a run of `analyze`: configuration and rule_setting
 findings.Finding              what a rule reports
 
 suggest, edit_shape           small edits that would mend a finding, and what they leave of the chart's shape
-fixes, mend, fix              edits as bytes; put in and proved one by one; the work of `--fix` for one file
+fix_edits, fix                fixes as edits of bytes; put into a file and proved, one by one
 sync, song_sync, pack_sync    music against beats: the method, a file, the songs of a pack
 meter                         how hard a chart is
 versions, snapshots           what changed between two versions of a pack, and where the older one comes from

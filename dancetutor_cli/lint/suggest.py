@@ -24,8 +24,8 @@ from dancetutor_cli.lint.rule import all_rules
 from dancetutor_cli.lint.rule_settings import Layer, Settings
 from dancetutor_cli.lint.subject import ChartSubject
 
-# What can be mended by moving notes: doublestep, spin, jump-spin, ambiguous start, triple step.
-MENDABLE = ("DT201", "DT202", "DT203", "DT207", "DT209")
+# What can be fixed by moving notes: doublestep, spin, jump-spin, ambiguous start, triple step.
+FIXED_BY_MOVES = ("DT201", "DT202", "DT203", "DT207", "DT209")
 _FAMILIES = ("DT2", "DT3")  # the edit must bring no new finding of these
 _AROUND = 4  # rows to either side of the finding's in which a note may be moved
 _PHRASE = 12  # notes of a phrase that may be turned, left for right
@@ -68,16 +68,16 @@ def with_suggestions(
     trial = _Trial(subject, _of_families(settings), preset, _places(findings))
     told: list[Finding] = []
     for finding in findings:
-        best = next(trial.good(finding), None) if finding.rule in MENDABLE else None
+        best = next(trial.good(finding), None) if finding.rule in FIXED_BY_MOVES else None
         told.append(finding if best is None else replace(finding, suggestion=_in_words(best, subject)))
     return tuple(told)
 
 
-def mending_edits(
+def move_edits(
     finding: Finding, findings: Sequence[Finding], subject: ChartSubject, settings: Settings, preset: Preset
 ) -> Iterator[Suggestion]:
     """The edits that would remove one finding, the one that is heard least first. findings : all of the chart"""
-    if subject.play is None or subject.pad is None or finding.rule not in MENDABLE:
+    if subject.play is None or subject.pad is None or finding.rule not in FIXED_BY_MOVES:
         return
     ticks = subject.play.rows.tick
     trial = _Trial(subject, _of_families(settings), preset, _places(findings))

@@ -20,7 +20,7 @@ from dancetutor_cli.feet.annotations import step_rows
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.lint.analysis import analyze_file
 from dancetutor_cli.lint.findings import Finding
-from dancetutor_cli.lint.fixes import move_notes
+from dancetutor_cli.lint.fix_edits import move_notes
 from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.lint.subject import solved_chart
 from dancetutor_cli.lint.suggest import MovedNote, Suggestion

@@ -14,11 +14,10 @@ from annotating import Said as Annotated
 from click.testing import CliRunner
 
 from dancetutor_cli.commands.analyze import command
-from dancetutor_cli.commands.fixing import _Talk
+from dancetutor_cli.commands.fix_option import _Talk
 from dancetutor_cli.lint.analysis import analyze_file
 from dancetutor_cli.lint.findings import Finding
-from dancetutor_cli.lint.fix import FixOutcome
-from dancetutor_cli.lint.mend import ALREADY_REMOVED, NO_MOVE, SkippedFinding
+from dancetutor_cli.lint.fix import ALREADY_REMOVED, NO_MOVE, FixOutcome, SkippedFinding
 from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import temporary_name

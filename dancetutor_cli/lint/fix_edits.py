@@ -123,7 +123,7 @@ def move_notes(data: bytes, chart: Chart, finding: Finding, edit: Suggestion) ->
 # The fixes that no ear hears: mines under the head of a hold, halves of holds, notes less than 3 ms off the grid.
 #
 # What of a chart these touch is what the games throw away, or what nobody can tell apart; so they need no solver to be
-# found. `mend` proves them by one nevertheless.
+# found. `fix` proves them by one nevertheless.
 
 BROKEN_HOLD, OFF_GRID = "DT106", "DT401"
 RULES = (BROKEN_HOLD, OFF_GRID)

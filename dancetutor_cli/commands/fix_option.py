@@ -43,7 +43,7 @@ def parse_fix_requests(texts: Sequence[str]) -> tuple[FixRequest, ...]:
 
 
 def _parse_fix_request(text: str) -> FixRequest:
-    from dancetutor_cli.lint.mend import FIXABLE
+    from dancetutor_cli.lint.fix import FIXABLE
 
     if text.strip().lower() == SAFE:
         return FixRequest(SAFE)
