@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,6 +12,7 @@ from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.arguments import GivenPath, folder, named
 from dancetutor_cli.commands.chart_options import (
     character_option,
+    combined,
     form_option,
     gait_option,
     language_option,
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.work.request import FilmRequest
 
 MOST_LATE = 60_000.0  # milliseconds that the music may be moved
-_Command = TypeVar("_Command", bound=Callable[..., Any])
 
 
 class _Size(click.ParamType):  # type: ignore[type-arg,unused-ignore]
@@ -51,7 +50,8 @@ class _Size(click.ParamType):  # type: ignore[type-arg,unused-ignore]
         return width, height
 
 
-_OPTIONS = (
+# The decorator of the options of a film; `film_request` makes a request of their values.
+film_options = combined(
     click.option("--size", type=_Size(), help="Default: the layout's, 1280x720; a GIF's is smaller."),
     click.option("--fps", type=click.IntRange(1, 120), help="Frames per second [default: 30; GIF 25]."),
     section_option,
@@ -130,13 +130,6 @@ _OPTIONS = (
     click.option("--font", type=GivenPath(), help="A font file, for titles in other scripts."),
     click.option("--mute", is_flag=True, help="Leave the sound out."),
 )
-
-
-def film_options(command: _Command) -> _Command:
-    """Add the options of a film; `film_request` makes a request of their values."""
-    for option in reversed(_OPTIONS):
-        command = option(command)
-    return command
 
 
 def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmRequest:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, TypeVar
+from typing import IO, TYPE_CHECKING, Any
 
 import click
 
 from dancetutor_cli.commands.arguments import GivenPath
-from dancetutor_cli.commands.chart_options import number
+from dancetutor_cli.commands.chart_options import combined, number
 from dancetutor_cli.lint.findings import AUTO, SCALES
 from dancetutor_cli.lint.results import FileResult
 from dancetutor_cli.run.errors import UsageError
@@ -25,9 +25,7 @@ if TYPE_CHECKING:
 
 # Options of `analyze` about how hard charts play, and about a pack as a whole.
 
-Command = TypeVar("Command", bound=Callable[..., Any])
-
-_OPTIONS = (
+pack_options = combined(
     click.option(
         "--report-html",
         type=GivenPath(dir_okay=False),
@@ -63,13 +61,6 @@ _OPTIONS = (
         help="Estimate meters for music that plays at this rate; the feet stay those of rate 1.",
     ),
 )
-
-
-def pack_options(command: Command) -> Command:
-    """Add --report-html, --compare, --tech-counts, --meter-scale and --rate to a command."""
-    for option in reversed(_OPTIONS):
-        command = option(command)
-    return command
 
 
 # `analyze PACK`: the page of the whole pack, `--report-html`, and `--compare` with another version of it.
