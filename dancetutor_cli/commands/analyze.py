@@ -9,7 +9,8 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.chart import find_files
+from dancetutor_cli.chart.selection import Selection, note_bytes
 from dancetutor_cli.commands.arguments import GivenPath, Source, fixes, folder, named, open_output, rules, sources
 from dancetutor_cli.commands.chart_options import (
     exclude_option,
@@ -20,8 +21,20 @@ from dancetutor_cli.commands.chart_options import (
 )
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
-from dancetutor_cli.commands.pack import pack_options
-from dancetutor_cli.reports.formats import FORMATS
+from dancetutor_cli.commands.pack import (
+    PackReport,
+    check_comparison,
+    check_plot,
+    check_sheet,
+    pack_options,
+    report_changes,
+    report_tech_counts,
+    write_plot,
+    write_sheet,
+)
+from dancetutor_cli.commands.settings import show_settings
+from dancetutor_cli.lint.snapshots import open_store
+from dancetutor_cli.reports.formats import FORMATS, Tally, open_brief_report, open_report
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import check_file
 from dancetutor_cli.run.languages import ENGLISH
@@ -194,15 +207,12 @@ def command(**options: Any) -> int:  # fmt: skip
         return _watch(request, options)
     files = sources(options["paths"], options["stdin_filename"], options["exclude"])
     if options["show_settings"]:
-        from dancetutor_cli.commands.settings import show_settings
-
         return show_settings(LintRun(request), files)
     return _run(LintRun(request), files, options)
 
 
 def _watch(request: LintRequest, options: dict[str, Any]) -> int:
     """Run for all files, then for those that are saved, until Ctrl-C."""
-    from dancetutor_cli.chart import find_files
     from dancetutor_cli.lint.run import LintRun, changes
 
     if any(str(path) == "-" for path in options["paths"]):
@@ -230,14 +240,6 @@ def _report_errors(work: Callable[[], object]) -> None:
 
 
 def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
-    from dancetutor_cli.commands.pack import (
-        check_comparison,
-        check_plot,
-        check_sheet,
-        report_changes,
-        report_tech_counts,
-    )
-
     if options["sheet"] is not None:
         check_sheet(options["sheet"], len(files))
     if options["plot"] is not None:
@@ -264,10 +266,8 @@ def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
 
 def _lint(run: LintRun, files: list[Source], options: dict[str, Any], output: IO[str]) -> int:
     """Analyze all files and write the report; the exit status."""
-    from dancetutor_cli.commands.pack import PackReport
     from dancetutor_cli.lint.cache import ResultCache, default_folder
     from dancetutor_cli.lint.run import analyze_all
-    from dancetutor_cli.reports.formats import Tally
 
     first = files[0][0]
     run.open_baseline(first)
@@ -303,14 +303,10 @@ def _lint(run: LintRun, files: list[Source], options: dict[str, Any], output: IO
     for line in pack.summary_lines(tally) if not options["quiet"] else ():
         click.echo(line, err=True)
     if options["sheet"] is not None and not tally.unreadable:
-        from dancetutor_cli.commands.pack import write_sheet
-
         said = write_sheet(options["sheet"], tasks, options["language"] or ENGLISH)
         if not options["quiet"]:
             click.echo(said, err=True)
     if options["plot"] is not None and not tally.unreadable:
-        from dancetutor_cli.commands.pack import write_plot
-
         said = write_plot(options["plot"], tasks[0])
         if not options["quiet"]:
             click.echo(said, err=True)
@@ -322,8 +318,6 @@ def _lint(run: LintRun, files: list[Source], options: dict[str, Any], output: IO
 
 def _keep(files: list[Source]) -> None:
     """Keep the charts as they are now, for --compare last."""
-    from dancetutor_cli.lint.snapshots import open_store
-
     store = open_store()
     if store is not None:
         store.prune()
@@ -348,8 +342,6 @@ def _view(options: dict[str, Any], output: IO[str]) -> str:
 
 
 def _open_view(view: str, tasks: Sequence[AnalyzeTask], output: IO[str]) -> Report:
-    from dancetutor_cli.reports.formats import open_brief_report, open_report
-
     if view == "brief":
         return open_brief_report(output, len(tasks))
     return open_report(view, next(tasks[0].presets.candidates()).name, output)
@@ -360,8 +352,6 @@ def _before_work(tasks: Sequence[AnalyzeTask]) -> None:
     solves_often = any(task.suggest or task.alternatives for task in tasks)
 
     def size() -> int:
-        from dancetutor_cli.chart.selection import note_bytes
-
         return sum(note_bytes(task.path, task.selection, task.data) for task in tasks)
 
     announce_compiling(tasks[0].presets, None if solves_often else size)

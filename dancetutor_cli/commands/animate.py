@@ -31,6 +31,7 @@ from dancetutor_cli.commands.chart_options import (
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.formats.writers import FORMATS
+from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import check_file, one_of, write_atomic
 
@@ -112,7 +113,6 @@ def command(file: Path, selection: Selection, result: Result, **dance: Any) -> N
     from dancetutor_cli.dance.request import DanceRequest, check_request, read_chart, with_style
     from dancetutor_cli.formats.animation import AnimatedDancer, Animation
     from dancetutor_cli.lint.configuration import choice_for
-    from dancetutor_cli.reports.terminal import safe
 
     _check(result)
     output, character = result.output, result.character

@@ -15,8 +15,12 @@ from typing import IO, Any
 import click
 from click.shell_completion import CompletionItem
 
+from dancetutor_cli.chart import find_files
+from dancetutor_cli.chart.names import COLUMNS
+from dancetutor_cli.chart.selection import without_links_out
+from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.errors import UsageError
-from dancetutor_cli.run.files import UCS_SUFFIX
+from dancetutor_cli.run.files import UCS_SUFFIX, write_atomic
 from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.trust import exclude
 
@@ -60,8 +64,6 @@ def folder(name: str) -> Callable[[], Iterable[str]]:
 
 def steps_types() -> Iterable[str]:
     """Those that have a name."""
-    from dancetutor_cli.chart.names import COLUMNS
-
     return COLUMNS
 
 
@@ -105,9 +107,6 @@ class GivenPath(click.Path):
 
 def within_folders(paths: Sequence[Path], files: Sequence[Path]) -> list[Path]:
     """The files that may be written of those that a search has found; each link out of its folders is one line."""
-    from dancetutor_cli.chart.selection import without_links_out
-    from dancetutor_cli.reports.terminal import safe
-
     kept, links = without_links_out(paths, files)
     for link in links:
         where = safe(f"{link}: is a link to {os.path.realpath(link)}")
@@ -131,8 +130,6 @@ def _suffix_of(data: bytes) -> str:
 
 def sources(paths: tuple[Path, ...], stdin_filename: Path | None, exclude: Sequence[str] = ()) -> list[Source]:
     """The chart files that the paths mean, without those left out; standard input with its bytes."""
-    from dancetutor_cli.chart import find_files
-
     if any(str(path) == "-" for path in paths):
         if len(paths) > 1:
             raise UsageError("standard input (-) goes alone, without other paths")
@@ -155,7 +152,6 @@ def open_output(path: Path | None) -> Iterator[IO[str]]:
     if path is None:
         yield sys.stdout
         return
-    from dancetutor_cli.run.files import write_atomic
 
     content = io.BytesIO()
     stream = io.TextIOWrapper(content, encoding="utf-8", errors="replace", newline="\n")

@@ -13,6 +13,7 @@ import click
 
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.run.errors import DancetutorError, UnavailableError, install_command
+from dancetutor_cli.run.foreign_text import json_without_commands
 
 # The checks of `doctor`: each looks at one thing that rendering needs, and never raises.
 
@@ -186,12 +187,9 @@ def command(as_json: bool) -> None:
 
     Exit status 0 if videos can be made, 2 if not.
     """
-
     checks = examine()
     if as_json:
         import json
-
-        from dancetutor_cli.run.foreign_text import json_without_commands
 
         rows = [{"name": c.name, "state": c.state, "message": c.message, "mend": c.mend} for c in checks]
         text = json.dumps({"schema": 1, "checks": rows}, ensure_ascii=False, indent=1)

@@ -13,7 +13,7 @@ import click
 from dancetutor_cli.chart.selection import twin
 from dancetutor_cli.commands.arguments import within_folders
 from dancetutor_cli.lint.analysis import analyze_file
-from dancetutor_cli.lint.fix import FixOrder, FixOutcome, fix_file, pick
+from dancetutor_cli.lint.fix import FIXABLE, FixOrder, FixOutcome, fix_file, pick
 from dancetutor_cli.lint.rule import rule_named
 from dancetutor_cli.reports.terminal import coloured, safe
 from dancetutor_cli.run.errors import UsageError
@@ -43,8 +43,6 @@ def parse_fix_requests(texts: Sequence[str]) -> tuple[FixRequest, ...]:
 
 
 def _parse_fix_request(text: str) -> FixRequest:
-    from dancetutor_cli.lint.fix import FIXABLE
-
     if text.strip().lower() == SAFE:
         return FixRequest(SAFE)
     match = re.fullmatch(r"\s*([^:]+?)\s*(?::\s*([1-9]\d{0,8})\s*)?", text)

@@ -13,6 +13,8 @@ from dancetutor_cli.commands.arguments import GivenPath
 from dancetutor_cli.commands.chart_options import combined, number
 from dancetutor_cli.lint.findings import AUTO, SCALES
 from dancetutor_cli.lint.results import FileResult
+from dancetutor_cli.lint.snapshots import of_path, snapshot_of
+from dancetutor_cli.reports.terminal import safe, safe_path
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import check_file, write_atomic
 
@@ -135,9 +137,7 @@ def report_changes(options: Mapping[str, Any], output: IO[str]) -> int:
 
 def _changes(options: Mapping[str, Any], most_rows: int | None) -> Iterator[str]:
     """A line that says how much changed, and the changes. most_rows : of a chart, None: all"""
-    from dancetutor_cli.lint.snapshots import of_path, snapshot_of
     from dancetutor_cli.lint.versions import change_lines, compare
-    from dancetutor_cli.reports.terminal import safe, safe_path
 
     path, exclude = options["paths"][0], options["exclude"]
     before = snapshot_of(options["compare"], path, exclude)
@@ -223,7 +223,6 @@ def write_plot(path: Path, task: AnalyzeTask) -> str:
     from dancetutor_cli.lint.analysis import load_song
     from dancetutor_cli.lint.song_sync import song_sync
     from dancetutor_cli.reports.sync_plot import sync_plot
-    from dancetutor_cli.reports.terminal import safe
 
     song = load_song(task)
     found = song_sync(song)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from dancetutor_cli.chart import one_song
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.arguments import GivenPath, into
 from dancetutor_cli.commands.chart_options import (
@@ -26,8 +27,9 @@ from dancetutor_cli.commands.chart_options import (
 )
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
+from dancetutor_cli.reports.terminal import JoinedWarnings, failures_table, safe, safe_path
 from dancetutor_cli.run.errors import DancetutorError, UsageError
-from dancetutor_cli.run.files import check_file, check_folder, make_folder
+from dancetutor_cli.run.files import check_file, check_folder, make_folder, write_atomic
 
 if TYPE_CHECKING:
     from dancetutor_cli.page.work import PageRequest
@@ -93,7 +95,6 @@ def command(path: Path, selection: Selection, wish: PageWish, **dance: Any) -> N
     learns it. Its hardest passages are listed. If PATH is a folder, every chart below it that matches gets a page, and
     an index leads to them.
     """
-    from dancetutor_cli.chart import one_song
     from dancetutor_cli.dance.request import DanceRequest
     from dancetutor_cli.lint.configuration import choice_for
     from dancetutor_cli.page.work import PageRequest
@@ -114,7 +115,6 @@ def command(path: Path, selection: Selection, wish: PageWish, **dance: Any) -> N
 
 def _page(request: PageRequest, output: Path | None, quiet: bool) -> None:
     from dancetutor_cli.page.work import look_up_page, pack_page
-    from dancetutor_cli.run.files import write_atomic
 
     subject = look_up_page(request)
     target = output or Path(_default_name(subject.title, subject.label))
@@ -129,7 +129,6 @@ def _page(request: PageRequest, output: Path | None, quiet: bool) -> None:
 def _pages(request: PageRequest, folder: Path, wish: PageWish) -> None:
     """A page for each chart and the index; exit status 2 if one could not be made."""
     from dancetutor_cli.page.work import INDEX, make_all, page_jobs, write_index
-    from dancetutor_cli.reports.terminal import JoinedWarnings, failures_table, safe, safe_path
 
     if request.dance.play is not None:
         raise UsageError(f"--play is for one chart, and {request.dance.path} is a folder")
@@ -167,8 +166,6 @@ def _pages(request: PageRequest, folder: Path, wish: PageWish) -> None:
 
 
 def _warn(warnings: Iterable[str]) -> None:
-    from dancetutor_cli.reports.terminal import safe
-
     for warning in warnings:
         click.echo(f"warning: {safe(warning)}", err=True)
 

@@ -23,7 +23,9 @@ from dancetutor_cli.commands.chart_options import (
 from dancetutor_cli.commands.film_options import film_options, film_request
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
+from dancetutor_cli.film.media.encoder import Encoding, choose
 from dancetutor_cli.film.media.film_formats import FILES, FORMATS, PICTURES, target_of
+from dancetutor_cli.reports.terminal import FilmProgress, safe
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import check_file, check_folder, make_folder, one_of
 
@@ -146,7 +148,6 @@ def _check_entry(film: Path, files: Sequence[Path]) -> None:
 
 def _enter(film: Path, files: Sequence[Path], quiet: bool) -> None:
     from dancetutor_cli.markers.background import enter
-    from dancetutor_cli.reports.terminal import safe
 
     for line in enter(film, files):
         if not quiet:
@@ -221,10 +222,8 @@ def _make(
     request: FilmRequest, subject: FilmSubject, target: Path, kind: str, quiet: bool, options: dict[str, Any]
 ) -> None:
     from dancetutor_cli.film import film as extras
-    from dancetutor_cli.film.media.encoder import Encoding, choose
     from dancetutor_cli.film.work.planning import PreparedFilm, prepare
     from dancetutor_cli.film.work.render import make_film
-    from dancetutor_cli.reports.terminal import FilmProgress
     from dancetutor_cli.run.pool import default_jobs
 
     def prepared() -> PreparedFilm:
@@ -255,8 +254,6 @@ def _make(
 
 
 def _warn(warnings: Iterable[str]) -> None:
-    from dancetutor_cli.reports.terminal import safe
-
     for warning in warnings:
         click.echo(f"warning: {safe(warning)}", err=True)
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.commands.arguments import Source
+from dancetutor_cli.reports.terminal import safe_path
 from dancetutor_cli.run.errors import DancetutorError
 
 if TYPE_CHECKING:
@@ -34,8 +35,6 @@ def show_settings(run: LintRun, files: list[Source]) -> int:
 
 
 def _lines(run: LintRun, path: Path, data: bytes | None) -> Iterator[str]:
-    from dancetutor_cli.reports.terminal import safe_path
-
     configuration, settings = run.configuration(path), run.configuration(path).settings
     yield f"# {safe_path(str(path))}, by {', '.join(safe_path(str(source)) for source in configuration.sources)}"
     yield f"fail-on: {run.fail_on(path)}"
@@ -85,7 +84,6 @@ def _rule_lines(rules: _Rules, before: _Rules) -> Iterator[str]:
 
 def _quoted(value: object) -> str:
     """A value as YAML writes it on one line."""
-
     return json.dumps(value, ensure_ascii=False)
 
 

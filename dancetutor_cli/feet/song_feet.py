@@ -18,8 +18,10 @@ from dancetutor_cli.chart.pack_files import (
     condition_of,
     find_settings_file,
 )
+from dancetutor_cli.feet.annotations import has_pins, pinned
 from dancetutor_cli.feet.limbs import LETTERS, MEANING, UNKNOWN, Limb, Part
 from dancetutor_cli.feet.overrides import CellOverride, FeetProblem, Ignores, Overrides, contradictions
+from dancetutor_cli.feet.sme import ChartData, editor_file, read_sme
 from dancetutor_cli.run.reading import shown_key
 from dancetutor_cli.run.schema import MarkedYaml, Parsed, Texts, convert
 from dancetutor_cli.run.yaml_files import read
@@ -136,8 +138,6 @@ class SongFeet:
     """Everything people said about the feet of a song's charts; where it may stand is looked up once for all."""
 
     def __init__(self, song: Song) -> None:
-        from dancetutor_cli.feet.sme import editor_file
-
         self._song = song
         self._editor = editor_file(song.path)
         self._settings = find_settings_file(song.path.parent)
@@ -151,9 +151,6 @@ class SongFeet:
         Returns the overrides for the solver, the ignores for the linter, and what was contradictory, for findings.
         FileError : dancetutor.yaml cannot be read
         """
-        from dancetutor_cli.feet.annotations import has_pins, pinned
-        from dancetutor_cli.feet.sme import ChartData, read_sme
-
         song = self._song
         whole = chart if chart.written is None else chart.written  # people speak of a chart as it stands in the file
         in_file = whole if shares_rows(chart) else chart

@@ -35,6 +35,7 @@ from dancetutor_cli.film.words import CALLS_OFF, CALLS_WIDE, LIMBS, Stay, calls_
 from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.files import encoded, write_atomic
 from dancetutor_cli.run.languages import load_language
+from dancetutor_cli.run.pictures import picture_bytes
 
 if TYPE_CHECKING:
     from dancetutor_cli.film.scene.dancer import Dancer
@@ -355,8 +356,6 @@ def write_pose_index(folder: Path, song: Song, chart: Chart, plan: FilmPlan) -> 
 
 def write_poster(path: Path, plan: FilmPlan) -> None:
     """A picture for a title page: the first called-out move, or a note a third into the film."""
-    from dancetutor_cli.run.pictures import picture_bytes
-
     one = plan.clock.passes[-1]
     first = max(one.start, one.sound_from) + 1.0
     calls = [call.second for call in plan.callouts if first <= call.second <= one.end]

@@ -9,8 +9,10 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from dancetutor_cli import chart as reader
 from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.lint.check import check_chart, check_file, merged_by_foot
 from dancetutor_cli.lint.configuration import PresetChoice, mismatch, preset_for
 from dancetutor_cli.lint.findings import AUTO, AlternativeResult, Cause, Figures, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
@@ -71,8 +73,6 @@ def _findings(
     subject: ChartSubject, task: AnalyzeTask, preset: Preset
 ) -> tuple[tuple[Finding, ...], tuple[Cause, ...] | None]:
     """What the linter finds; causes of doublesteps and suggestions where somebody wants them: they take long."""
-    from dancetutor_cli.lint.check import check_chart, merged_by_foot
-
     findings, causes = check_chart(subject, task.settings), None
     if task.want_rows or task.suggest:
         from dancetutor_cli.lint.figures import causes_of, with_causes
@@ -105,7 +105,7 @@ def _figures(subject: ChartSubject, task: AnalyzeTask) -> Figures:
 
 def _ambiguous(subject: ChartSubject) -> Iterator[tuple[float, str]]:
     from dancetutor_cli.chart.model import TICKS_PER_BEAT
-    from dancetutor_cli.feet import Ambiguity
+    from dancetutor_cli.feet.play import Ambiguity
 
     play = subject.play
     if play is not None and play.ambiguity is not None:
@@ -264,7 +264,6 @@ class _File:
         """What is told of the file."""
         if self._failed:
             return self._failed
-        from dancetutor_cli.lint.check import check_file
         from dancetutor_cli.lint.subject import FileSubject
 
         task, song, charts = self._task, self._song, self._with_meters()
@@ -316,8 +315,6 @@ def _unselected(song: Song, selected: tuple[Chart, ...]) -> tuple[str, ...]:
 
 def load_song(task: AnalyzeTask) -> Song:
     """Read the task's file; FileError if that fails."""
-    from dancetutor_cli import chart as reader
-
     return reader.load(task.path) if task.data is None else reader.parse(task.data, task.path)
 
 
@@ -368,7 +365,6 @@ class Drawable:
 def drawable_charts(task: AnalyzeTask) -> Iterator[Drawable]:
     """The selected charts of a file that have notes; FileError if the file cannot be read."""
     from dancetutor_cli.chart.density import density
-    from dancetutor_cli.lint.check import check_chart, merged_by_foot
 
     song = load_song(task)
     for subject in solved(song, task.selection.charts(song), task):

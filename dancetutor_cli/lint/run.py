@@ -21,8 +21,11 @@ from dancetutor_cli.lint.configuration import (
     with_assignments,
     with_selection,
 )
+from dancetutor_cli.lint.pack_sync import PackSyncs
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.run.errors import DancetutorError
+from dancetutor_cli.run.pool import Task as Work
+from dancetutor_cli.run.pool import default_jobs, open_workers
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.cache import ResultCache
@@ -113,8 +116,6 @@ class LintRun:
 
     def with_packs(self, results: Iterable[FileResult]) -> Iterator[FileResult]:
         """The results, and behind them one for each pack whose songs together have findings."""
-        from dancetutor_cli.lint.pack_sync import PackSyncs
-
         packs = PackSyncs()
         for result in results:
             packs.add(result)
@@ -241,9 +242,6 @@ def _here(tasks: Sequence[AnalyzeTask], _: int | None) -> _Fresh:
 
 
 def _in_workers(tasks: Sequence[AnalyzeTask], jobs: int | None) -> _Fresh:
-    from dancetutor_cli.run.pool import Task as Work
-    from dancetutor_cli.run.pool import default_jobs, open_workers
-
     count = jobs or default_jobs()
     workers = open_workers(count, lambda key, n: None)
     try:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
+from dancetutor_cli.chart.music import music_file
 from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.overrides import FeetProblem, Ignores, Overrides
@@ -21,6 +22,7 @@ from dancetutor_cli.feet.play import SAME_TIME, Ambiguity, StepKind, too_quick
 from dancetutor_cli.feet.preset import LEAP, DropReason, Preset
 from dancetutor_cli.feet.solved import Solved, solve_song
 from dancetutor_cli.lint.candidates import Candidates
+from dancetutor_cli.lint.meter.estimate import size
 from dancetutor_cli.lint.meter.oddities import Oddities, timing_oddities
 from dancetutor_cli.lint.note_facts import NoteFacts, PlacedChart
 from dancetutor_cli.lint.other_foot import Beginnings
@@ -66,7 +68,6 @@ class FileSubject:
     def music(self) -> AudioHead | None:
         """What the head of the song's music says; None where it is missing or damaged, which has rules of its own."""
         from dancetutor_cli.chart.audio import read_head
-        from dancetutor_cli.chart.music import music_file
 
         try:
             return read_head(music_file(self.song))
@@ -131,8 +132,6 @@ class ChartSubject(PlacedChart):
 
     def sized(self, rate: float = 1.0) -> MeteredChart | None:
         """The chart's meters on every scale, for music that plays so fast; None without a play or a model."""
-        from dancetutor_cli.lint.meter.estimate import size
-
         if self.feet is None:
             return None
         ask = partial(self.feet.candidates.features, self.feet.number)
@@ -140,7 +139,6 @@ class ChartSubject(PlacedChart):
 
     def oddities(self) -> Oddities:
         """What the chart is scored by; for charts with a play."""
-
         assert self.play is not None
         assert self.feet is not None
         timing = timing_oddities(self.chart.timing, self.play.rows.tick[self.step_rows])

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from dancetutor_cli import chart as charts
 from dancetutor_cli.chart import find_files, twin
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.film.media.encoder import Encoding
@@ -108,8 +109,6 @@ def film_list(batch: BatchRequest) -> FilmList:
     taken: set[str] = set()
     for path in chart_files(batch.paths, batch.exclude):
         try:
-            from dancetutor_cli import chart as charts
-
             song = charts.load(path)
         except NoChartsError:  # the music of a menu: nobody meant it to be danced
             without.append(path)
@@ -126,7 +125,6 @@ def film_list(batch: BatchRequest) -> FilmList:
 
 def chart_files(paths: Sequence[Path], exclude: Sequence[str] = ()) -> Iterator[Path]:
     """Chart files; of a song with both kinds the .ssc, as the games do. exclude : as `find_files` has it"""
-
     for path in find_files(paths, exclude):
         if path.suffix.lower() == ".sm" and path not in paths and twin(path) is not None:
             continue

@@ -9,9 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dancetutor_cli.character import DANCER, dressed, load_character
+from dancetutor_cli.character.mesh import with_foot_colours
+from dancetutor_cli.character.retarget import retarget
 from dancetutor_cli.chart.density import fastest_bpm
+from dancetutor_cli.dance.bake import mines_of
 from dancetutor_cli.dance.motion import Motion, shifted
 from dancetutor_cli.dance.performance import as_heard, pad_of, perform, play_of_all, playable, pooled, solve
+from dancetutor_cli.dance.quality.contact import feet_on_mines, mine_messages
 from dancetutor_cli.dance.two import place_on
 from dancetutor_cli.film.choices import parse_ahead
 from dancetutor_cli.film.clock import whole_song
@@ -24,6 +29,8 @@ from dancetutor_cli.film.overlay.diagram import step_rows
 from dancetutor_cli.film.overlay.header import title_warnings, words_of
 from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.film.plan import FilmPlan, turned
+from dancetutor_cli.film.scene.scene import Scene
+from dancetutor_cli.film.scene.visibility import feet_hidden
 from dancetutor_cli.film.scroll import ScrollSegments, SpeedSegments, reading_bpm, segments_of, speeds_of
 from dancetutor_cli.film.words import PanelNames
 from dancetutor_cli.film.work.request import (
@@ -34,6 +41,7 @@ from dancetutor_cli.film.work.request import (
     quiet_after,
     quiet_in,
 )
+from dancetutor_cli.formats.npz import read_npz
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.languages import load_language
 
@@ -99,8 +107,6 @@ def _cut(request: FilmRequest, performance: Performance, clock: Clock) -> tuple[
 
 def _file_motions(request: FilmRequest, performance: Performance) -> tuple[Motion, ...]:
     """The motions of files in place of the performance's own."""
-    from dancetutor_cli.formats.npz import read_npz
-
     count = len(performance.dancers)
     if performance.rate != 1.0:
         raise UsageError("--dance is of music at its own speed; leave --rate out, or bake the file again")
@@ -113,9 +119,6 @@ def _mines(
     motions: Mapping[float, Sequence[Motion]], plays: Sequence[tuple[Solved, Play]], fastest: float
 ) -> tuple[dict[float, tuple[Motion, ...]], tuple[OnMine, ...]]:
     """The motions, whose notes tell of mines that a foot is on, and these mines at the fastest rate."""
-    from dancetutor_cli.dance.bake import mines_of
-    from dancetutor_cli.dance.quality.contact import feet_on_mines, mine_messages
-
     pad = pad_of([one for one, _ in plays])
     out: dict[float, tuple[Motion, ...]] = {}
     found: list[OnMine] = []
@@ -161,8 +164,6 @@ class PreparedFilm:
 
 def prepare(request: FilmRequest, subject: FilmSubject) -> PreparedFilm:
     """Do everything dear that comes before the first frame. DancetutorError says in one line what is wrong."""
-    from dancetutor_cli.character import dressed
-
     song, chart, clock = subject.song, subject.chart, subject.clock
     dance = film_dance(request, subject)
     play, pad = dance.play, dance.pad
@@ -222,8 +223,6 @@ def _with_feet_camera(look: FilmLook, character: Character | None, pad: Pad) -> 
     part = look.layout.dancer
     if character is None or part is None or look.camera is not None or look.layout.screen is not None:
         return look
-    from dancetutor_cli.film.scene.scene import Scene
-    from dancetutor_cli.film.scene.visibility import feet_hidden
 
     camera = Scene(character, pad).camera(part.camera, look.size, part.region)
     return replace(look, camera=HIGH) if feet_hidden(character, camera, look.size) else look
@@ -293,12 +292,8 @@ def _fitted(
 
     given : the motions are of files, which may be for the character's skeleton already
     """
-    from dancetutor_cli.character import DANCER, load_character
-
     if not motions or (name == DANCER and not given):
         return None, motions
-    from dancetutor_cli.character.mesh import with_foot_colours
-    from dancetutor_cli.character.retarget import retarget
 
     character = with_foot_colours(load_character(name))
 

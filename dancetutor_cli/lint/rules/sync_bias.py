@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.findings import ITG, NULL, Finding
 from dancetutor_cli.lint.rule import SyncRule
 
 if TYPE_CHECKING:
@@ -34,8 +34,6 @@ class SyncBias(SyncRule):
 
     def message(self, sync: Sync, subject: FileSubject) -> str | None:
         """What to change, to the one and to the other."""
-        from dancetutor_cli.lint.findings import ITG, NULL
-
         bias = sync.bias_ms
         if bias is None or sync.beat_off or min(abs(bias - NULL), abs(bias - ITG)) <= self.options["tolerance"]:
             return None
