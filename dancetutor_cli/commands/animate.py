@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +12,7 @@ import click
 from dancetutor_cli.chart import one_song
 from dancetutor_cli.chart.selection import Selection, note_bytes
 from dancetutor_cli.chart.timing import FASTEST, SLOWEST, heard
-from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, into
+from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, default_name, into, warn
 from dancetutor_cli.commands.chart_options import (
     TABLE,
     character_option,
@@ -31,12 +30,10 @@ from dancetutor_cli.commands.chart_options import (
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.formats.writers import FORMATS
-from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import check_file, one_of, write_atomic
 
 if TYPE_CHECKING:
-    from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.dance.performance import Performance
     from dancetutor_cli.dance.quality.figures import MotionReport
     from dancetutor_cli.dance.request import ChartChoice
@@ -127,9 +124,8 @@ def command(file: Path, selection: Selection, result: Result, **dance: Any) -> N
     check_request(request)
     choice = read_chart(request, result.section)
     performance = perform(solve(request, choice), request, result.rate)
-    for note in choice.warnings:
-        click.echo(f"warning: {safe(note)}", err=True)
-    target = output or Path(default_name(choice.song, choice.parts[0]))
+    warn(choice.warnings)
+    target = output or default_name(choice.song, choice.parts[0], ".glb")
     check_file(target, tuple(FORMATS))
     section = _section(choice, result.section, performance)
     _allow_long(performance, section, file, result.yes)
@@ -193,8 +189,7 @@ def _allow_long(performance: Performance, section: tuple[float, float] | None, f
 def _write(dance: AnimatedDancer, places: _Places, report: bool) -> None:
     form = FORMATS[places.output.suffix.lower()]
     measured = report or places.plot is not None
-    for note in dance.notes(form.has_motion or measured):
-        click.echo(f"warning: {note}", err=True)
+    warn(dance.notes(form.has_motion or measured))
     click.echo(f"{places.output}: {form.write(places.output, dance)}, {dance.label}")
     if measured:
         from dancetutor_cli.dance.bake import mines_of
@@ -204,13 +199,6 @@ def _write(dance: AnimatedDancer, places: _Places, report: bool) -> None:
         dancer = dance.animation.performance.dancers[dance.number]
         whole = report_of(dance.baked.motion, mines_of(dancer.play, dancer.pad))
         _report(with_distances(whole, dance.baked.distances, dance.animation.performance.request.style), report, places)
-
-
-def default_name(song: Song, chart: Chart) -> str:
-    """SONG-difficulty.glb, in characters that every file system takes."""
-    name = f"{song.title or song.path.stem}-{chart.difficulty or 'chart'}".lower()
-    plain = re.sub(r"[^\w.-]+", "_", name).strip("._")
-    return f"{plain or 'dance'}.glb"
 
 
 def _report(report: MotionReport, asked_for: bool, places: _Places) -> None:

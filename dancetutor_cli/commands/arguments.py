@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from dataclasses import fields
 from functools import wraps
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import click
 from click.shell_completion import CompletionItem
@@ -20,9 +20,12 @@ from dancetutor_cli.chart.names import COLUMNS
 from dancetutor_cli.chart.selection import without_links_out
 from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.errors import UsageError
-from dancetutor_cli.run.files import UCS_SUFFIX, write_atomic
+from dancetutor_cli.run.files import UCS_SUFFIX, plain_name, write_atomic
 from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.trust import exclude
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart, Song
 
 # The names that options take, for the Tab key: asked for only while a shell completes.
 
@@ -108,11 +111,8 @@ class GivenPath(click.Path):
 def within_folders(paths: Sequence[Path], files: Sequence[Path]) -> list[Path]:
     """The files that may be written of those that a search has found; each link out of its folders is one line."""
     kept, links = without_links_out(paths, files)
-    for link in links:
-        where = safe(f"{link}: is a link to {os.path.realpath(link)}")
-        click.echo(
-            f"warning: {where}, outside the folder that is searched; it is left alone, name it to write it", err=True
-        )
+    where = "outside the folder that is searched; it is left alone, name it to write it"
+    warn(f"{link}: is a link to {os.path.realpath(link)}, {where}" for link in links)
     return kept
 
 
@@ -160,6 +160,12 @@ def open_output(path: Path | None) -> Iterator[IO[str]]:
     write_atomic(path, content.getvalue())
 
 
+def default_name(song: Song, chart: Chart, suffix: str) -> Path:
+    """SONG-difficulty, in characters that every file system takes: where a result goes that is given no name."""
+    name = f"{song.title or song.path.stem}-{chart.difficulty or 'chart'}"
+    return Path(plain_name(name) + suffix)
+
+
 # Options of a command as one record: a dataclass whose fields are named like them.
 
 
@@ -179,6 +185,15 @@ def into(name: str, kind: type) -> Callable[[Callable[..., Any]], Callable[..., 
         return gathered
 
     return decorate
+
+
+# What a command says beside its result.
+
+
+def warn(warnings: Iterable[str]) -> None:
+    """Each as a line of standard error."""
+    for warning in warnings:
+        click.echo(f"warning: {safe(warning)}", err=True)
 
 
 # Asks before hours of work: films and dances longer than anybody means.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,7 @@ import click
 
 from dancetutor_cli.chart import one_song
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.commands.arguments import GivenPath, into
+from dancetutor_cli.commands.arguments import GivenPath, into, warn
 from dancetutor_cli.commands.chart_options import (
     character_option,
     exclude_option,
@@ -29,7 +28,7 @@ from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.reports.terminal import JoinedWarnings, failures_table, safe, safe_path
 from dancetutor_cli.run.errors import DancetutorError, UsageError
-from dancetutor_cli.run.files import check_file, check_folder, make_folder, write_atomic
+from dancetutor_cli.run.files import check_file, check_folder, make_folder, plain_name, write_atomic
 
 if TYPE_CHECKING:
     from dancetutor_cli.page.work import PageRequest
@@ -117,12 +116,12 @@ def _page(request: PageRequest, output: Path | None, quiet: bool) -> None:
     from dancetutor_cli.page.work import look_up_page, pack_page
 
     subject = look_up_page(request)
-    target = output or Path(_default_name(subject.title, subject.label))
+    target = output or Path(f"{plain_name(f'{subject.title}-{subject.label}') or 'page'}.html")
     check_file(target, SUFFIXES)
     page = pack_page(subject)
     write_atomic(target, page.html)
     if not quiet:
-        _warn(page.warnings)
+        warn(page.warnings)
         click.echo(f"{target}: {len(page.html) / 1e6:.1f} MB, {page.label}")
 
 
@@ -163,14 +162,3 @@ def _pages(request: PageRequest, folder: Path, wish: PageWish) -> None:
     if failed or bad:
         failures_table([*((str(path), "", error) for path, error in bad), *failed])
         sys.exit(2)
-
-
-def _warn(warnings: Iterable[str]) -> None:
-    for warning in warnings:
-        click.echo(f"warning: {safe(warning)}", err=True)
-
-
-def _default_name(title: str, label: str) -> str:
-    from dancetutor_cli.film.work.batch import plain_name
-
-    return f"{plain_name(f'{title}-{label}') or 'page'}.html"

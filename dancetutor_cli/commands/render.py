@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.chart import one_song
-from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long
+from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, default_name, warn
 from dancetutor_cli.commands.chart_options import (
     exclude_option,
     preset_option,
@@ -27,10 +27,9 @@ from dancetutor_cli.film.media.encoder import Encoding, choose
 from dancetutor_cli.film.media.film_formats import FILES, FORMATS, PICTURES, target_of
 from dancetutor_cli.reports.terminal import FilmProgress, safe
 from dancetutor_cli.run.errors import UsageError
-from dancetutor_cli.run.files import check_file, check_folder, make_folder, one_of
+from dancetutor_cli.run.files import check_file, check_folder, make_folder, one_of, plain_name
 
 if TYPE_CHECKING:
-    from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.film.work.request import FilmRequest, FilmSubject
 
 
@@ -133,8 +132,6 @@ def _background(path: Path, frames: Path | None, options: dict[str, Any]) -> lis
 
 def into_file_name(path: Path, options: dict[str, Any]) -> str:
     """What a film is called that is entered into a chart file: SONG-which.dancetutor.mp4."""
-    from dancetutor_cli.film.work.batch import plain_name
-
     which = options["difficulty"] or (f"{options['index']}" if options["index"] is not None else "")
     stem = plain_name(f"{path.stem}-{which}" if which else path.stem) or "film"
     return "".join("_" if letter in ",;:=#\\" else letter for letter in stem) + ".dancetutor.mp4"
@@ -184,7 +181,7 @@ def _render_one(
     subject = look_up(request)
     start, end = subject.chart.notes_span
     announce_compiling(choice_for(path, request.dance.preset), lambda: end - start, quiet=quiet)
-    target = folder or output or Path(default_name(subject.song, subject.chart))
+    target = folder or output or default_name(subject.song, subject.chart, ".mp4")
     if folder is None:
         check_file(target)
     if not options["poses"]:
@@ -198,13 +195,6 @@ def _render_one(
         if is_new:
             with suppress(OSError):
                 target.rmdir()  # only while nothing is in it
-
-
-def default_name(song: Song, chart: Chart) -> str:
-    """SONG-difficulty.mp4, in characters that every file system takes."""
-    from dancetutor_cli.film.work.batch import plain_name
-
-    return f"{plain_name(f'{song.title or song.path.stem}-{chart.difficulty}') or 'film'}.mp4"
 
 
 def _allow_long(subject: FilmSubject, file: Path, yes: bool) -> None:
@@ -230,8 +220,8 @@ def _make(
         film = prepare(request, subject)
         return replace(film, plan=extras.poses(film.plan, subject.chart.label)) if options["poses"] else film
 
-    warn = (lambda _warnings: None) if quiet else _warn
-    warn(subject.warnings)
+    say = (lambda _warnings: None) if quiet else warn
+    say(subject.warnings)
     encoding = Encoding(kind, request.look.size, request.fps, request.look.quality)
     if subject.clock.seconds > encoding.format.largest and not quiet:
         what = f"{subject.clock.seconds:.0f} s of .{kind} make a very large file"
@@ -240,22 +230,17 @@ def _make(
         encoding = replace(encoding, encoder=choose(options["encoder"]))
     with FilmProgress(target.name, quiet) as progress:
         film = make_film(prepared, encoding, target, options["jobs"] or default_jobs(), progress, request.look.renderer)
-    warn(film.warnings)
+    say(film.warnings)
     if options["poses"]:
         extras.write_pose_index(target, subject.song, subject.chart, film.plan)
     if options["poster"]:
         extras.write_poster(options["poster"], film.plan)
     if options["srt"] and (warning := extras.write_subtitles(target.with_suffix(".srt"), film.plan)):
-        warn([warning])
+        say([warning])
     if not quiet:
         width, height = request.look.size
         length = f"{film.plan.clock.frames} pictures" if kind == PICTURES else f"{film.plan.clock.seconds:.1f} s"
         click.echo(f"{target}: {length}, {width}x{height} at {request.fps} fps, {subject.chart.label}")
-
-
-def _warn(warnings: Iterable[str]) -> None:
-    for warning in warnings:
-        click.echo(f"warning: {safe(warning)}", err=True)
 
 
 def _end_on_term() -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.commands.arguments import GivenPath, into
+from dancetutor_cli.commands.arguments import GivenPath, into, warn
 from dancetutor_cli.commands.chart_options import TABLE, push_options, report_option, style_option
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.run.errors import UsageError, did_you_mean
@@ -87,8 +87,7 @@ def command(file: Path, wanted: RetargetOptions) -> None:
     task = RetargetTask(file, wanted.character, wanted.animation, wanted.style or "neutral", wishes)
     work = Retargeting(task)
     words = _written(work, wanted.output, wanted.with_input)
-    for note in work.ragdoll_result.motion.notes:
-        click.echo(f"warning: {note}", err=True)
+    warn(work.ragdoll_result.motion.notes)
     click.echo(f"{wanted.output}: {words}")
     if wanted.report_to is not None or wanted.plot is not None:
         _report(work, wanted)

@@ -339,6 +339,11 @@ def one_of(names: Iterable[str]) -> str:
     return f"{', '.join(most)} or {last}" if most else last
 
 
+def plain_name(text: str) -> str:
+    """A name for a file, of any text: lower case, with "_" for whatever a file system might refuse; may be empty."""
+    return re.sub(r"[^\w.-]+", "_", text.lower()).strip("._")[:120]
+
+
 def check_folder(path: Path) -> None:
     """Raise if no folder can be here or be filled: a file is in its place or above it, or nobody may write there.
 

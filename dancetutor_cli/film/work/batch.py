@@ -21,6 +21,7 @@ from dancetutor_cli.film.work.records import FilmRecord, FilmRecords, find_recor
 from dancetutor_cli.film.work.request import FilmRequest
 from dancetutor_cli.film.work.segments import FilmJob, FilmOutcome, OpenedFilm, render_segment
 from dancetutor_cli.run.errors import DancetutorError, NoChartsError, UsageError
+from dancetutor_cli.run.files import plain_name
 from dancetutor_cli.run.pool import FinishedWork, Task, Workers
 
 if TYPE_CHECKING:
@@ -165,12 +166,6 @@ def file_name(template: str, song: Song, chart: Chart) -> str:
         "index": chart.index,
     }
     return plain_name(template.format(**values)) or "film"
-
-
-def plain_name(text: str) -> str:
-    """Lower case, with "_" for whatever a file system might refuse."""
-    plain = re.sub(r"[^\w.-]+", "_", text.lower()).strip("._")
-    return plain[:120]
 
 
 # Many films: what is wanted, what is done already, and the work list that any workers may take apart.

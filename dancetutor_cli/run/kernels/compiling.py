@@ -61,7 +61,6 @@ _types: Any = numba.types
 _plain: Any = numba.njit  # what it says of its options has not all that are used here
 pin(_core.config)
 
-
 F = TypeVar("F")
 
 
@@ -143,12 +142,8 @@ def machine_code(function: FunctionType, args: tuple[Any, ...], results: int) ->
     places = count(RESULTS)
     call = f"kernel({', '.join(_expression(one, places, names) for one in args)})"
     given = f"{', '.join(f'words[{n}]' for n in range(results))} = " if results else ""
-    lines = [
-        "def entry(address):",
-        f"    words = array_at(address, ({next(places)},), int64)",
-        f"    {given}{call}",
-    ]
-    exec("\n".join(lines), names)
+    words = f"array_at(address, ({next(places)},), int64)"
+    exec(f"def entry(address):\n    words = {words}\n    {given}{call}", names)
     signature = (_types.int64,)
     compiled = njit(counted=False, no_cpython_wrapper=True)(names["entry"])
     compiled.compile(signature)

@@ -81,18 +81,15 @@ class Kernel:
                 self._last = self._loaded_for(args, arguments)
             words = _words(arguments, self._last)
         if words is None or self._last is None:
-            return self._as_python(args)
+            try:
+                with np.errstate(over="ignore"):  # numbers of hash functions wrap round
+                    return self.function(*args)
+            except Exception as error:
+                raise self._error(error) from error
         if status := self._last.run(_Unused(), _Unused(), _address(words)):
             raise self._error(status)
         given = words[:RESULTS].tolist()
         return None if self._results == 0 else given[0] if self._results == 1 else tuple(given)
-
-    def _as_python(self, args: tuple[Any, ...]) -> Any:
-        try:
-            with np.errstate(over="ignore"):  # numbers of hash functions wrap round
-                return self.function(*args)
-        except Exception as error:
-            raise self._error(error) from error
 
     def _error(self, cause: object) -> DancetutorError:
         return DancetutorError(f"the kernel {self.function.__qualname__} raised an exception ({cause})")
