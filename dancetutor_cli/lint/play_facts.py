@@ -36,7 +36,7 @@ class PlayFacts:
         self.candidates, self.number = candidates, number
         plays = self._plays = candidates.plays
         self._first, self._after = plays.first[number], plays.first[number + 1]
-        self._play = plays.play(number)
+        self._play = plays.plays[number]
         self._timing = timing
 
     @cached_property
@@ -93,13 +93,6 @@ class PlayFacts:
     def crossed(self, row: int) -> bool:
         """Whether the feet are crossed after a row."""
         return bool(abs(self._play.facing[row]) > CROSSED)
-
-    def is_unconstrained(self, row: int) -> bool:
-        """Whether one panel is stepped on in a row and one in that before it, and neither a mine nor a hold has a say.
-
-        A foot whose hold ended after the row before these two has just been let go.
-        """
-        return bool(self._plays.free[self._first + row])
 
     def crossed_rows(self, least: float) -> Iterator[list[int]]:
         """The rows of every run of at least so many stepped rows with crossed feet."""

@@ -16,12 +16,53 @@ from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 
-# Plays on one pad, one after the other, as arrays over the rows of all of them.
+# Plays on one pad, one after the other: what rules ask of every chart is worked out for all of them at once.
+#
+# Most charts have few rows and most rules find nothing in them, so that to ask each chart takes many times as long as
+# to answer: a question here is an array over the rows of all plays, or one number for each.
 
+EPSILON = 1e-6
 _PLAY = 40  # bits of a tick: a later play comes after every tick of the one before
+CROSSED = 90 + EPSILON  # degrees that the body is turned
+_LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
+_NONE, _ROLL_TAP = int(StepKind.NONE), int(StepKind.ROLL_TAP)
+ALL_KINDS = np.ones(len(StepKind), dtype=bool)  # by kind: whether the file has such a step
+ALL_KINDS[[_NONE, _ROLL_TAP]] = False
 
 
-class JoinedPlays:
+@dataclass(frozen=True, slots=True)
+class PlayedSteps:
+    """Steps that are played, in order of rows and columns; arrays of one length."""
+
+    row: NDArray[np.int64]
+    column: NDArray[np.int64]
+    limb: NDArray[np.int8]
+
+    def of(self, limb: int) -> PlayedSteps:
+        """Those of one limb; of a bracket only its first panel."""
+        mine = np.flatnonzero(self.limb == limb)
+        row = self.row[mine]
+        if (row[1:] == row[:-1]).any():
+            mine = mine[np.diff(row, prepend=-1) > 0]
+            row = self.row[mine]
+        return PlayedSteps(row, self.column[mine], self.limb[mine])
+
+    def between(self, first: int, after: int) -> PlayedSteps:
+        """Those of rows from `first` on and before `after`, whose numbers count from `first`."""
+        here = slice(*self.row.searchsorted((first, after)).tolist())
+        return PlayedSteps(self.row[here] - first, self.column[here], self.limb[here])
+
+
+class Travels(NamedTuple):
+    """Steps of one foot on a new panel: row, column, way (panel widths), time (s) since the foot's last step."""
+
+    row: NDArray[np.int64]
+    column: NDArray[np.int64]
+    way: NDArray[np.float64]
+    seconds: NDArray[np.float64]
+
+
+class Plays:
     """k plays of c columns; n rows in all, and what is about rows counts them from the first of the first play.
 
     plays : as they were given; first : for each its first row; and n
@@ -31,10 +72,9 @@ class JoinedPlays:
         self.plays = plays
         self.pad = pad
         self.first = [0, *accumulate(len(play.rows) for play in plays)]
-
-    def play(self, number: int) -> Play:
-        """One of the plays."""
-        return self.plays[number]
+        self._rows_with: dict[str, NDArray[np.int64]] = {}
+        self._having: dict[str, list[bool]] = {}
+        self._soonest: dict[str, list[float]] = {}
 
     def own(self, rows: NDArray[np.int64], number: int) -> NDArray[np.int64]:
         """Those of some ascending rows that are of one play, counted from its first."""
@@ -119,65 +159,6 @@ class JoinedPlays:
         """(c, n) kinds of steps."""
         return np.ascontiguousarray(self.steps.T)
 
-    def tick_in(self, tick: NDArray[np.int64], row: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Ticks of the plays that some rows are of, as `tick` counts them."""
-        return np.asarray(tick + (self.number[row] << _PLAY))
-
-
-# Plays on one pad, one after the other: what rules ask of every chart is worked out for all of them at once.
-#
-# Most charts have few rows and most rules find nothing in them, so that to ask each chart takes many times as long as
-# to answer: a question here is an array over the rows of all plays, or one number for each.
-
-EPSILON = 1e-6
-CROSSED = 90 + EPSILON  # degrees that the body is turned
-_LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
-_NONE, _ROLL_TAP = int(StepKind.NONE), int(StepKind.ROLL_TAP)
-ALL_KINDS = np.ones(len(StepKind), dtype=bool)  # by kind: whether the file has such a step
-ALL_KINDS[[_NONE, _ROLL_TAP]] = False
-
-
-@dataclass(frozen=True, slots=True)
-class PlayedSteps:
-    """Steps that are played, in order of rows and columns; arrays of one length."""
-
-    row: NDArray[np.int64]
-    column: NDArray[np.int64]
-    limb: NDArray[np.int8]
-
-    def of(self, limb: int) -> PlayedSteps:
-        """Those of one limb; of a bracket only its first panel."""
-        mine = np.flatnonzero(self.limb == limb)
-        row = self.row[mine]
-        if (row[1:] == row[:-1]).any():
-            mine = mine[np.diff(row, prepend=-1) > 0]
-            row = self.row[mine]
-        return PlayedSteps(row, self.column[mine], self.limb[mine])
-
-    def between(self, first: int, after: int) -> PlayedSteps:
-        """Those of rows from `first` on and before `after`, whose numbers count from `first`."""
-        here = slice(*self.row.searchsorted((first, after)).tolist())
-        return PlayedSteps(self.row[here] - first, self.column[here], self.limb[here])
-
-
-class Travels(NamedTuple):
-    """Steps of one foot on a new panel: row, column, way (panel widths), time (s) since the foot's last step."""
-
-    row: NDArray[np.int64]
-    column: NDArray[np.int64]
-    way: NDArray[np.float64]
-    seconds: NDArray[np.float64]
-
-
-class Plays(JoinedPlays):
-    """What rules ask of plays: k of them, n rows in all and c columns, as in `JoinedPlays`."""
-
-    def __init__(self, plays: Sequence[Play], pad: Pad) -> None:
-        super().__init__(plays, pad)
-        self._rows_with: dict[str, NDArray[np.int64]] = {}
-        self._having: dict[str, list[bool]] = {}
-        self._soonest: dict[str, list[float]] = {}
-
     @cached_property
     def real(self) -> NDArray[np.bool_]:
         """(c, n) where a step is that the file has: no tap of a roll."""
@@ -189,7 +170,7 @@ class Plays(JoinedPlays):
         ends = self.joined(play.rows.hold_end for play in self.plays).ravel()
         cell = np.flatnonzero(ends >= 0)
         row, column = np.divmod(cell, len(self.pad))
-        return row, column, self.tick_in(ends[cell], row)
+        return row, column, ends[cell] + (self.number[row] << _PLAY)
 
     @cached_property
     def mined(self) -> NDArray[np.bool_]:
@@ -255,7 +236,10 @@ class Plays(JoinedPlays):
 
     @cached_property
     def free(self) -> NDArray[np.bool_]:
-        """(n,) see `Feet.is_unconstrained`."""
+        """(n,) whether a row and that before it step on one panel each, and neither a mine nor a hold has a say.
+
+        A foot whose hold ended after the row before these two has just been let go.
+        """
         foot, lone = self.foot, self.lone
         free = lone & (foot <= _RIGHT) & ~self.mined
         free[1:] &= lone[:-1]
