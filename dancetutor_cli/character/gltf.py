@@ -35,11 +35,7 @@ _TRIANGLES, _STRIP, _FAN = 4, 5, 6  # glTF's primitive modes
 
 def read_character(path: Path) -> Character:
     """Read the meshes and the skeleton of a .glb file. Raises FileError, one line, for what it cannot use."""
-    return character_of(read_container(path))
-
-
-def character_of(container: Container) -> Character:
-    """The character in a container that was read and checked."""
+    container = read_container(path)
     return character_with_nodes(container, read_nodes(container), ())[0]
 
 

@@ -33,12 +33,8 @@ def check_not_a_link_out(path: Path) -> None:
         raise FileError(path, "is a link that leads out of its folder; put a copy there, or name it with --config")
 
 
-def places_of_settings_file(start: Path) -> Iterator[Path]:
-    """Where a dancetutor.yaml for the charts of the folder `start` may be, nearest first."""
-    return map(Path, _places(start))
-
-
 def _places(start: Path) -> Iterator[str]:
+    """Where a dancetutor.yaml for the charts of the folder `start` may be, nearest first."""
     folder, below = os.path.abspath(start), ""  # noqa: PTH100 (links stay links)
     while folder != below:
         yield os.path.join(folder, FILE_NAME)  # noqa: PTH118
@@ -148,7 +144,7 @@ def places_of_feet(song: Path) -> Iterator[Path]:
     """
     yield song
     yield song.parent / EDITOR_FILE
-    yield from places_of_settings_file(song.parent)
+    yield from map(Path, _places(song.parent))
 
 
 def feet_fingerprint(song: Path) -> str:

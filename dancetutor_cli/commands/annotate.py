@@ -226,7 +226,7 @@ class _Talk:
             self.warnings.add(outcome.source, note)
         if outcome.error is not None:
             self.files["failed"] += 1
-            click.echo(f"dancetutor: {_safe(outcome.error)}", err=True)
+            click.echo(f"dancetutor: {safe(outcome.error)}", err=True)
             return
         self.files["changed" if outcome.changed else "unchanged"] += 1
         if outcome.unselected:
@@ -234,15 +234,15 @@ class _Talk:
         self.lacking |= bool(outcome.lacks or outcome.problems)
         if self.check:
             for line in (*outcome.problems, *outcome.lacks):
-                click.echo(_safe(line))
+                click.echo(safe(line))
         if self.order.diff:
             for line in coloured(outcome.diff):
                 click.echo(line)
         elif not self.check and not self.quiet:
             details = _leftover_message(outcome) if self.order.strip else _details(outcome)
-            click.echo(f"{self._verb(outcome)} {_safe(str(outcome.source))}{details}")
+            click.echo(f"{self._verb(outcome)} {safe(str(outcome.source))}{details}")
             for path in outcome.companions:
-                click.echo(f"  {_safe(path.name)}")
+                click.echo(f"  {safe(path.name)}")
 
     def _verb(self, outcome: AnnotateOutcome) -> str:
         if not outcome.changed:
@@ -257,7 +257,7 @@ class _Talk:
     def end(self) -> int:
         total = sum(self.files.values())
         if self.unselected and len(self.unselected) == total - self.files["failed"]:
-            has = _safe("; ".join(self.unselected[:20]))
+            has = safe("; ".join(self.unselected[:20]))
             raise UsageError(f"no chart is of the steps type, difficulty and index asked for; there are {has}")
         words = {} if self.order.write else {"changed": "would change"}
         parts = ", ".join(f"{n} {words.get(name, name)}" for name, n in sorted(self.files.items()) if n)
@@ -285,7 +285,3 @@ def _details(outcome: AnnotateOutcome) -> str:
         return ""
     parts = [f"{counts[name]} {word}" for name, word in words if counts[name]]
     return f": {measures} measure{'s' if measures > 1 else ''}" + (f" ({', '.join(parts)})" if parts else "")
-
-
-def _safe(text: str) -> str:
-    return safe(text)

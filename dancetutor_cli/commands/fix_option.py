@@ -37,12 +37,8 @@ class FixRequest:
     number: int | None = None
 
 
-def parse_fix_requests(texts: Sequence[str]) -> tuple[FixRequest, ...]:
-    """What the options mean; UsageError for a rule that has no fix."""
-    return tuple(_parse_fix_request(text) for text in texts)
-
-
 def _parse_fix_request(text: str) -> FixRequest:
+    """What the option means; UsageError for a rule that has no fix."""
     if text.strip().lower() == SAFE:
         return FixRequest(SAFE)
     match = re.fullmatch(r"\s*([^:]+?)\s*(?::\s*([1-9]\d{0,8})\s*)?", text)
@@ -56,7 +52,7 @@ def _parse_fix_request(text: str) -> FixRequest:
 
 def fix_all(run: LintRun, tasks: Sequence[AnalyzeTask], options: dict[str, Any]) -> int:
     """Mend every file, tell what was done; the exit status: 1 if a finding that was asked for is left."""
-    wanted = parse_fix_requests(options["fix"])
+    wanted = [_parse_fix_request(text) for text in options["fix"]]
     _check(tasks, options)
     talk = _Talk(diff=options["diff"])
     files = within_folders(options["paths"], [task.path for task in tasks])
@@ -122,7 +118,7 @@ class _Talk:
         self.files += 1
         if outcome.error is not None:
             self.failed += 1
-            click.echo(f"dancetutor: {_safe(outcome.error)}", err=True)
+            click.echo(f"dancetutor: {safe(outcome.error)}", err=True)
             return
         for line in coloured(outcome.diff) if self.diff else ():
             click.echo(line)
@@ -141,11 +137,11 @@ class _Talk:
             self.warn(note)
 
     def warn(self, text: str) -> None:
-        click.echo(f"warning: {_safe(text)}", err=True)
+        click.echo(f"warning: {safe(text)}", err=True)
 
     def _say(self, text: str) -> None:
         """Under --diff the diff alone goes to standard output, so that `patch` can read it."""
-        click.echo(_safe(text), err=self.diff)
+        click.echo(safe(text), err=self.diff)
 
     def end(self) -> int:
         would = "would change" if self.diff else "changed"
@@ -154,7 +150,3 @@ class _Talk:
         text += f", {self.unfixed} finding{'' if self.unfixed == 1 else 's'} left alone" if self.unfixed else ""
         click.echo(text + (f", {self.failed} failed" if self.failed else ""), err=self.diff)
         return 2 if self.failed else int(bool(self.unfixed))
-
-
-def _safe(text: str) -> str:
-    return safe(text)

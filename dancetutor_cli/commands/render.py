@@ -106,7 +106,9 @@ def command(path: Path, output: Path | None, frames: Path | None, yes: bool, qui
             raise UsageError(f"--{name} is for folders of charts, and {path} is none")
     if files:
         output = output or path.with_name(into_file_name(path, options))
-        _check_entry(output, files)
+        from dancetutor_cli.markers.background import check_place
+
+        check_place(output, files)
     _render_one(path, output, frames or poses, yes, quiet, options)
     if files and output is not None:
         _enter(output, files, quiet)
@@ -135,12 +137,6 @@ def into_file_name(path: Path, options: dict[str, Any]) -> str:
     which = options["difficulty"] or (f"{options['index']}" if options["index"] is not None else "")
     stem = plain_name(f"{path.stem}-{which}" if which else path.stem) or "film"
     return "".join("_" if letter in ",;:=#\\" else letter for letter in stem) + ".dancetutor.mp4"
-
-
-def _check_entry(film: Path, files: Sequence[Path]) -> None:
-    from dancetutor_cli.markers.background import check_place
-
-    check_place(film, files)
 
 
 def _enter(film: Path, files: Sequence[Path], quiet: bool) -> None:

@@ -9,7 +9,7 @@ from typing import Annotated
 from dancetutor_cli.film.choices import LEAST_SIDE, MOST_SIDE, Ahead, Quality, RendererKind
 from dancetutor_cli.film.scroll import Scroll, parse_scroll
 from dancetutor_cli.run.errors import FileError
-from dancetutor_cli.run.reading import config_names, named_file
+from dancetutor_cli.run.reading import named_file
 from dancetutor_cli.run.schema import Bounds, Box, Entries, Share
 from dancetutor_cli.run.yaml_files import load
 
@@ -189,11 +189,6 @@ def lowered(box: PixelBox, top: float) -> PixelBox:
 def overlap(a: PixelBox, b: PixelBox) -> bool:
     """Do two boxes share a pixel?"""
     return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
-
-
-def layout_names() -> list[str]:
-    """The layouts there are."""
-    return config_names("layouts")
 
 
 def load_layout(name: str) -> Layout:

@@ -107,13 +107,9 @@ class PlacedChart:
         assert self.play is not None
         return [column for column, kind in enumerate(self.play.rows.steps[row].tolist()) if kind]
 
-    def file_line(self, row: int) -> int:
-        """Line in the file of a row of the play; where only a roll made it, of the row written before."""
-        return int(self.file_lines[row])
-
     @cached_property
     def file_lines(self) -> NDArray[np.int32]:
-        """The same of every row."""
+        """(n,) lines in the file of the rows of the play; where only a roll made one, of the row written before."""
         assert self.play is not None
         lines, written = self.play.rows.line, self.chart.rows
         if not len(written.tick) or (lines > 0).all():
@@ -126,7 +122,7 @@ class PlacedChart:
         assert self.play is not None
         if note_column is None:
             note_column = next(iter(self.pressed(row)), None)
-        line = self.file_line(row)
+        line = int(self.file_lines[row])
         return {
             "line": line,
             "column": self._text_column(line, note_column or 0),

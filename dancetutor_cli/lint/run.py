@@ -219,8 +219,9 @@ def analyze_all(
         cache.prune()
     if missing:
         before_work([tasks[n] for n in missing])
-    work = _in_workers if jobs != 1 and len(missing) >= _WORTH_WORKERS else _here
-    fresh = work([tasks[n] for n in missing], jobs)
+    new = [tasks[n] for n in missing]
+    has_workers = jobs != 1 and len(missing) >= _WORTH_WORKERS
+    fresh = _in_workers(new, jobs) if has_workers else ((n, one, True) for n, one in enumerate(analyze_files(new)))
     done: dict[int, FileResult] = dict(known)
     for n in range(len(tasks)):
         while n not in done:
@@ -234,11 +235,6 @@ def analyze_all(
 
 # Place and result of each task, and whether the result is about the file: not that a worker broke down.
 _Fresh = Iterator[tuple[int, FileResult, bool]]
-
-
-def _here(tasks: Sequence[AnalyzeTask], _: int | None) -> _Fresh:
-    for place, result in enumerate(analyze_files(tasks)):
-        yield place, result, True
 
 
 def _in_workers(tasks: Sequence[AnalyzeTask], jobs: int | None) -> _Fresh:

@@ -111,8 +111,10 @@ class _Trial:
         assert self.subject.play is not None
         place, solved = (finding.rule, finding.beat), 0
         for edit in self._candidates(finding):
-            if len(edit.moves) == 1 and not self._may_do(edit.moves[0], place):
-                continue
+            if len(edit.moves) == 1:
+                move = edit.moves[0]
+                if self._outline(move).total >= self.subject.play.total or self._still_happens(move, place):
+                    continue
             if edit not in self._edited:
                 solved += 1
                 if solved > _MOST_SOLVED:
@@ -133,17 +135,10 @@ class _Trial:
         begins = set(steps[self.subject.beginnings.anew(RESTED)].tolist())
         yield from self._shape.mirrored_phrases(row, _PHRASE, begins)
 
-    def _may_do(self, move: PanelMove, place: _Place) -> bool:
-        assert self.subject.play is not None
-        return self._total(move) < self.subject.play.total and not self._still_happens(move, place)
-
     @cached_property
     def _shape(self) -> Shape:
         assert self.subject.play is not None and self.subject.pad is not None
         return Shape(self.subject.play, self.subject.pad, self.subject.chart)
-
-    def _total(self, edit: PanelMove) -> int:
-        return self._outline(edit).total
 
     def _outline(self, edit: PanelMove) -> Outline:
         if edit not in self._outlines:

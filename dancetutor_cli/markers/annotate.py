@@ -221,8 +221,12 @@ class _Work:
             counts=tuple(sorted(self.counts.items())),
             changed=any(change.needed for change in self.changes),
             companions=tuple(change.path for change in self.changes[1:] if change.needed),
-            diff=tuple(_diff(self.changes)) if self.order.diff else (),
+            diff=tuple(self._diff()) if self.order.diff else (),
         )
+
+    def _diff(self) -> Iterator[str]:
+        for change in self.changes:
+            yield from unified(str(change.path), change.old, change.new)
 
     @property
     def _in_place(self) -> bool:
@@ -280,11 +284,6 @@ def _configured(preset: str | None) -> LintRun:
     from dancetutor_cli.lint.run import LintRequest, LintRun
 
     return LintRun(LintRequest(preset=preset))
-
-
-def _diff(changes: Sequence[FileChange]) -> Iterator[str]:
-    for change in changes:
-        yield from unified(str(change.path), change.old, change.new)
 
 
 def annotate_task(report: Callable[[int], None], items: Sequence[Item], order: Order) -> list[AnnotateOutcome]:

@@ -219,8 +219,3 @@ def facts_of(counts: Sequence[tuple[str, int]], numbers: Sequence[str]) -> list[
     """Lines under the name of a chart: its numbers, and how often each move happens."""
     told = " · ".join(f"{name} {count}" for name, count in counts if count)
     return [" · ".join(numbers), told] if told else [" · ".join(numbers)]
-
-
-def length_of(subject: ChartSubject) -> str:
-    """Time from the first to the last step, "1:42"."""
-    return clock(subject.seconds_played())[:-4]

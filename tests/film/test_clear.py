@@ -13,9 +13,10 @@ from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.feet import load_pad
 from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.film import Film
-from dancetutor_cli.film.layout import FilmLook, layout_names, load_layout
+from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.notes import Callout, Presses
 from dancetutor_cli.film.words import MOMENT_STEP, MOST_MOMENTS, clear, dancing, moments
+from dancetutor_cli.run.reading import config_names
 
 BOX = (100, 10, 300, 60)
 
@@ -87,7 +88,9 @@ def jumping(layout: str, camera: str | None) -> Film:
 
 
 CAMERAS = (None, "front", "front-high", "three-quarter", "side")
-CASES = [(n, c) for n in layout_names() if load_layout(n).dancer for c in CAMERAS if c is None or n != "television"]
+CASES = [
+    (n, c) for n in config_names("layouts") if load_layout(n).dancer for c in CAMERAS if c is None or n != "television"
+]
 
 
 @pytest.mark.parametrize(("layout", "camera"), CASES)

@@ -11,10 +11,10 @@ from click.testing import CliRunner
 from PIL import ImageFont
 
 from dancetutor_cli.commands import cli
-from dancetutor_cli.film.layout import layout_names, load_layout
+from dancetutor_cli.film.layout import load_layout
 from dancetutor_cli.film.overlay.text import font, has_glyph
 from dancetutor_cli.run.errors import DancetutorError, FileError
-from dancetutor_cli.run.reading import charts_path
+from dancetutor_cli.run.reading import charts_path, config_names
 
 NOTES = "size: [640, 360]\nhighway: {box: [0, 0, 1, 1], lane: 64}\n"
 SONG = charts_path() / "two_left_feet" / "two_left_feet.ssc"
@@ -47,7 +47,7 @@ def test_a_layout_with_impossible_numbers_is_refused(text: str, said: str, tmp_p
 
 
 def test_those_of_the_program_are_taken(tmp_path: Path) -> None:
-    assert all(load_layout(name) for name in layout_names())
+    assert all(load_layout(name) for name in config_names("layouts"))
     (tmp_path / "mine.yaml").write_text(NOTES)
     assert load_layout(str(tmp_path / "mine.yaml")).size == (640, 360)
 

@@ -28,11 +28,6 @@ def box_of(sprite: Sprite, x: float, y: float) -> Box:
     return x, y, x + sprite.shape[1], y + sprite.shape[0]
 
 
-def pill(text: str, size: float, colour: tuple[int, int, int], face: Typeface) -> Sprite:
-    """Dark words on a coloured lozenge."""
-    return plate([text], size, colour, face)
-
-
 def plate(lines: Sequence[str], size: float, colour: tuple[int, int, int], face: Typeface) -> Sprite:
     """Lines of dark words on a coloured plate with round ends."""
     words = [face.sprite(line, size, INK, weight=size / 62) for line in lines]

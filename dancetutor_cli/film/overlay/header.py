@@ -15,7 +15,7 @@ from dancetutor_cli.chart.density import bpm_text
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.film.layout import PixelBox, lowered
 from dancetutor_cli.film.overlay.blit import Box, Sprite, blit
-from dancetutor_cli.film.overlay.captions import SOFT, WHITE, box_of, pill
+from dancetutor_cli.film.overlay.captions import SOFT, WHITE, box_of, plate
 from dancetutor_cli.film.overlay.sprites import HighwayStyle
 from dancetutor_cli.film.overlay.text import LONGEST, Typeface, clean, fitted, in_lines
 from dancetutor_cli.film.picture import Frame
@@ -102,7 +102,9 @@ class Header:
         self.title_end = (max(x + ink.shape[1] for ink, x, _ in self.lines), self.bottom)
         if words.artist:
             self._artist(words.artist, small)
-        badge = pill(words.badge, small * 0.95, style.difficulty.get(words.difficulty, style.difficulty["Edit"]), face)
+        badge = plate(
+            [words.badge], small * 0.95, style.difficulty.get(words.difficulty, style.difficulty["Edit"]), face
+        )
         top = self.bottom + 6 * scale
         self._add(badge, box[0] + 2 * scale, 6 * scale)
         if words.detail:

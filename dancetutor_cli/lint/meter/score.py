@@ -116,18 +116,13 @@ class ScoreModel:
 _PLACE = {name: n for n, name in enumerate(ODDITIES)}
 
 
-@cache
 def score_model_for(steps_type: str) -> ScoreModel | None:
     """The model of a steps type; None where nobody has rated charts. FileError says what is wrong with its file."""
-    model = _shipped()
+    model = load_score_model(config_path("score.yaml"))
     return model if steps_type in model.start else None
 
 
 @cache
-def _shipped() -> ScoreModel:
-    return load_score_model(config_path("score.yaml"))
-
-
 def load_score_model(path: Path) -> ScoreModel:
     """Read a model; FileError names the line of what cannot be."""
     source = read(path)

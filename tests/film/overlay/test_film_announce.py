@@ -9,7 +9,7 @@ import pytest
 
 from dancetutor_cli.feet.limbs import limb_colours
 from dancetutor_cli.film.clock import Clock, Pass
-from dancetutor_cli.film.layout import PixelBox, layout_names, load_layout
+from dancetutor_cli.film.layout import PixelBox, load_layout
 from dancetutor_cli.film.notes import Callout
 from dancetutor_cli.film.overlay import announce
 from dancetutor_cli.film.overlay.announce import CALL_STAYS, Calls, Runs, _foot_colour, _phrases, _remaining_share
@@ -18,6 +18,7 @@ from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.film.words import CALLS_WIDE, calls_room
 from dancetutor_cli.run.languages import load_language
+from dancetutor_cli.run.reading import config_names
 
 SIZE = (640, 360)
 FACE = Typeface()
@@ -37,7 +38,7 @@ def apart(a: PixelBox, b: PixelBox) -> bool:
     return a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1]
 
 
-@pytest.mark.parametrize(("name", "columns"), [*product(layout_names(), (4, 8))])
+@pytest.mark.parametrize(("name", "columns"), [*product(config_names("layouts"), (4, 8))])
 def test_the_count_in_covers_nothing_that_is_taught(name: str, columns: int) -> None:
     layout = load_layout(name)
     count = layout.box("count", layout.size, columns)

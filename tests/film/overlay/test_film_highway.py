@@ -12,14 +12,14 @@ from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.feet.limbs import limb_colours
 from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.film import Film
-from dancetutor_cli.film.layout import layout_names, load_layout
+from dancetutor_cli.film.layout import load_layout
 from dancetutor_cli.film.notes import QUANTISATIONS, Callout, PanelLights, Presses, quantisation
 from dancetutor_cli.film.overlay import sprites
 from dancetutor_cli.film.overlay.blit import Run, blit, rectangle, strip
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.scroll import parse_scroll
 from dancetutor_cli.run.errors import FileError, UsageError
-from dancetutor_cli.run.reading import config_path
+from dancetutor_cli.run.reading import config_names, config_path
 from dancetutor_cli.run.yaml_files import load
 
 
@@ -159,8 +159,8 @@ def test_no_tag_covers_another(down: bool, monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_every_layout_loads_and_names_are_listed() -> None:
-    assert {"side-by-side", "dancer", "highway", "television", "vertical", "practice"} <= set(layout_names())
-    for name in layout_names():
+    assert {"side-by-side", "dancer", "highway", "television", "vertical", "practice"} <= set(config_names("layouts"))
+    for name in config_names("layouts"):
         load_layout(name)
     with pytest.raises(UsageError, match="there are: background, dancer, highway"):
         load_layout("nope")

@@ -13,12 +13,13 @@ from film_plans import DIRECTIONS, film_plan
 
 from dancetutor_cli.film.clock import Pass
 from dancetutor_cli.film.film import Film
-from dancetutor_cli.film.layout import WIDE_PAD, FilmLook, layout_names, load_layout
+from dancetutor_cli.film.layout import WIDE_PAD, FilmLook, load_layout
 from dancetutor_cli.film.overlay import text
 from dancetutor_cli.film.overlay.captions import Legend
 from dancetutor_cli.film.overlay.header import Header, Words, WordsRoom
 from dancetutor_cli.film.overlay.sprites import highway_style
 from dancetutor_cli.film.overlay.text import Typeface, clean, fitted, in_lines, parts_of, system_fonts, wrapped
+from dancetutor_cli.run.reading import config_names
 
 
 @pytest.fixture
@@ -108,7 +109,7 @@ def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 @pytest.mark.parametrize("columns", [4, 8])
-@pytest.mark.parametrize("name", [n for n in layout_names() if load_layout(n).header])
+@pytest.mark.parametrize("name", [n for n in config_names("layouts") if load_layout(n).header])
 @pytest.mark.parametrize(("title", "artist"), [*((t, "x") for t in TITLES), *(("Adore", a) for a in ARTISTS)])
 def test_titles_and_artists_are_not_cut(name: str, title: str, artist: str, columns: int, written: list[str]) -> None:
     """They become smaller, then take more lines; nothing is left out, and nothing leaves what is beside her head."""
@@ -203,7 +204,7 @@ def test_a_longer_line_is_as_wide_as_its_letters() -> None:
 
 
 @pytest.mark.parametrize("columns", [4, 8])
-@pytest.mark.parametrize("name", layout_names())
+@pytest.mark.parametrize("name", config_names("layouts"))
 def test_parts_of_a_layout_do_not_cover_each_other(name: str, columns: int) -> None:
     layout = load_layout(name)
     names = [n for n in ("dancer", "highway", "calls", "feet", "runs", "next", "progress") if getattr(layout, n)]

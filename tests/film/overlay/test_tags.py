@@ -12,13 +12,14 @@ from film_plans import film_plan
 
 from dancetutor_cli.feet import load_pad
 from dancetutor_cli.film.film import Film
-from dancetutor_cli.film.layout import FilmLook, layout_names, load_layout
+from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.media.film_formats import FORMATS
 from dancetutor_cli.film.notes import Callout
 from dancetutor_cli.film.overlay import sprites, text
 from dancetutor_cli.film.overlay.blit import Sprite
 from dancetutor_cli.film.overlay.highway import Highway
 from dancetutor_cli.film.overlay.marks import row_tags
+from dancetutor_cli.run.reading import config_names
 
 GIF = round(FORMATS["gif"].side)
 CALL = Callout(2.0, 4.0, "crossover", "move", 1.0, 2.0, "crossover")
@@ -107,7 +108,7 @@ def test_short_tags_of_usual_pads_are_larger(
         assert drawn_tag(highway, said, monkeypatch)[1] >= least, said
 
 
-@pytest.mark.parametrize("name", layout_names())
+@pytest.mark.parametrize("name", config_names("layouts"))
 def test_these_are_all_the_layouts_with_tags(name: str) -> None:
     part = load_layout(name).highway
     assert (part is not None and part.tags) == (name in ("side-by-side", "practice", "television", "highway"))
