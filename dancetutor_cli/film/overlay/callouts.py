@@ -16,7 +16,7 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import MOVE
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
 from dancetutor_cli.film.notes import Callout
-from dancetutor_cli.film.overlay.phrases import Phrase, crossing_phrase, plain, stepped_phrase
+from dancetutor_cli.film.overlay.phrases import Phrase, crossing_phrase, plain, stepped_phrase, turning_phrase
 from dancetutor_cli.film.words import IMPLIED_BY_BRACKET, MINE, PanelNames, filled
 from dancetutor_cli.run.languages import Language, load_language
 
@@ -241,6 +241,10 @@ def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[in
         known |= {now, _CROSSED[-1]} if now else set()
         told = {n for n in names if n in words and n not in _CROSSED}
         for name in sorted(told - IMPLIED_BY_BRACKET if "bracket" in told else told):
+            if name in HALF_TURNS:
+                turned = turning_phrase(words[name], (play, row), pad, style.language)
+                yield _Move(ticks[row], ticks[row], turned)
+                continue
             reason = f" ({why[ticks[row]]})" if name == MOVE and ticks[row] in why else ""
             if "{" not in words[name] and not reason:
                 limbs = play.limb[row].tolist()

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.run.languages import Language
 
 FRONT, BACK, JUMP = "crossover-front", "crossover-back", "crossover-jump"
+TURN_FRONT, TURN_BEHIND, TURN_ROUND = "half-turn-front", "half-turn-behind", "half-turn-round"
 JUST = 2.0  # seconds ago at most, that a foot "has just stepped"
 
 
@@ -81,8 +82,30 @@ def crossing_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Languag
     return Phrase(move, calls[name].replace("{who}", who), calls[f"{name}-tag"], why, calls["several"])
 
 
+def turning_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language) -> Phrase:
+    """Half a turn: which foot goes round, whether it comes down in front of the other one or behind it, and why.
+
+    move : its name for people, which says where she looks then; at : the play and the row that turns her. In front is
+    towards the screen; of two feet that jump it is told which one is.
+    """
+    (play, row), calls = at, language.calls
+    feet = [foot for foot in (0, 1) if foot in play.limb[row]]
+    if not feet or (play.feet[row] < 0).any():
+        return plain(move)
+    ahead = np.asarray(pad.panels)[play.feet[row]][:, 1]
+    if len(feet) == 2 and ahead[0] == ahead[1]:
+        return plain(move)
+    foot = feet[0] if len(feet) == 1 else int(np.argmax(ahead))
+    over = float(ahead[foot] - ahead[1 - foot])
+    name = TURN_FRONT if over > 0 else TURN_BEHIND if over < 0 else TURN_ROUND
+    where = calls[name].replace("{who}", language.limbs[LIMBS[foot]])
+    reason = _reason(play, row, foot) if len(feet) == 1 else ""
+    why = calls[reason].replace("{other}", language.limbs[LIMBS[1 - foot]]) if reason else ""
+    return Phrase(move, f"{move}, {where}", short_words(move), why, calls["several"].replace("{said}", where))
+
+
 def _reason(play: Play, row: int, foot: int) -> str:
-    """Why it is this foot that crosses: its label in the language's `calls`, or ""."""
+    """Why it is this foot that crosses or turns her: its label in the language's `calls`, or ""."""
     rows, other = play.rows, 1 - foot
     before = slice(0, row)
     if ((play.limb[before] == other) & (rows.hold_end[before] > rows.tick[row])).any():

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.rule import EPSILON, ChartRule, MoveRule, Occurrence
 from dancetutor_cli.lint.rules.fast_step import burst
@@ -224,4 +225,19 @@ class HalfTurn(ChartRule):
         """One finding for each half turn."""
         for row in subject.feet.half_turns() if subject.feet else ():
             if subject.pause(row) <= self.options["max_seconds"] + EPSILON:
-                yield self.finding("the body turns by 180 degrees at once", subject.at_row(row))
+                yield self.finding(f"the body turns by 180 degrees at once{_landing(subject, row)}", subject.at_row(row))
+
+
+def _landing(subject: ChartSubject, row: int) -> str:
+    """With which foot she turns, and where it comes down: ": the left foot lands behind the right one"; "" of a jump
+    or where there is neither in front nor behind."""
+    play = subject.play
+    if play is None or subject.pad is None or (play.feet[row] < 0).any() or subject.is_jump(row):
+        return ""
+    foot = int((play.limb[row] == Limb.RIGHT_FOOT).any())
+    ahead = subject.pad.panels[play.feet[row], 1]
+    if ahead[0] == ahead[1]:
+        return ""
+    way = "in front of" if ahead[foot] > ahead[1 - foot] else "behind"
+    one, other = ("left", "right")[foot], ("right", "left")[foot]
+    return f": the {one} foot lands {way} the {other} one"

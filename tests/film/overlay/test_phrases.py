@@ -19,10 +19,17 @@ from dancetutor_cli.feet import load_pad
 from dancetutor_cli.feet.limbs import limb_colours
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.solved import Solved
+from dancetutor_cli.feet.solver.techniques import half_turned
 from dancetutor_cli.film.choices import Ahead
 from dancetutor_cli.film.overlay.announce import _foot_colour
 from dancetutor_cli.film.overlay.callouts import CalloutSubject, CallStyle, callouts_of
-from dancetutor_cli.film.overlay.phrases import Phrase, crossing_phrase, standing_tags, stepped_phrase
+from dancetutor_cli.film.overlay.phrases import (
+    Phrase,
+    crossing_phrase,
+    standing_tags,
+    stepped_phrase,
+    turning_phrase,
+)
 from dancetutor_cli.film.overlay.sprites import callout_words
 from dancetutor_cli.film.scroll import parse_segments
 from dancetutor_cli.run.languages import load_language
@@ -35,14 +42,16 @@ PATTERNS = {
     "dance-single": ("L D R D L", "L U R U L", "R D L D R", "R U L U R", "L *D R", "R *D L", "R *U L", "L *U R"),
     "pump-single": ("DL C DR C DL", "DR C DL C DR", "UR C UL C UR", "UL C UR C UL", "DL C UR C DL"),
 }
+ROUND = ("DL C UR C UL", "DR C UL C UR", "UL C DR C DL", "UR C DL C DR")  # half turns and back
+NONE = parse_segments("")
 COLUMNS = {"dance-single": ("L", "D", "U", "R"), "pump-single": ("DL", "UL", "C", "UR", "DR")}
 JUMP = {"dance-single": "1001", "pump-single": "10001"}  # before each pattern: her feet are apart then
 
 
-def written(folder: Path, steps: str) -> Path:
+def written(folder: Path, steps: str, patterns: tuple[str, ...] = ()) -> Path:
     """A chart of all patterns."""
     names, lines = COLUMNS[steps], []
-    for pattern in PATTERNS[steps]:
+    for pattern in patterns or PATTERNS[steps]:
         rows = [list(JUMP[steps]), *(["0"] * len(names) for _ in range(7))]
         held = None
         for beat, name in enumerate(pattern.split(), 1):
@@ -128,8 +137,6 @@ def test_a_call_says_why(danced: Danced) -> None:
     reasons = set()
     for row in crossings(play):
         one = by_second[round(float(play.rows.second[row]), 3)]
-        if one.text.startswith("half turn"):
-            continue
         (foot,) = {0, 1} & set(play.limb[row].tolist())
         other, tick = 1 - foot, int(play.rows.tick[row])
         holds = any(
@@ -137,10 +144,38 @@ def test_a_call_says_why(danced: Danced) -> None:
         )
         reason = "is on the hold" if holds else "has just stepped"
         assert one.why == f"{('left', 'right')[other]} foot {reason}"
-        assert " crosses " in one.text
+        assert " crosses " in one.text or one.text.startswith("half turn")
         reasons.add(reason)
     holds_too = bool((play.rows.hold_end >= 0).any())
     assert reasons == {"has just stepped", *(["is on the hold"] if holds_too else [])}
+
+
+def test_calls_of_half_turns_say_which_foot_comes_down_where(tmp_path: Path) -> None:
+    """As the ball of that foot does in the file's own joints, away from the screen and back to it, of both feet."""
+    wanted = DanceRequest(written(tmp_path, "pump-single", ROUND), Selection(index=0), fps=60.0)
+    (solved,) = some = solve(wanted)
+    play, pad = solved.play, solved.pad
+    assert play is not None and pad is not None
+    style = CallStyle(callout_words(ENGLISH), Ahead(0.5))
+    calls = {round(c.second, 3): c for c in callouts_of(CalloutSubject(solved.chart, pad, tuple), play, style, NONE)}
+    second = play.rows.second
+    motion = perform(some, wanted, 1.0).motions(Cut(float(second[0]) - 1.0, float(second[-1]) + 0.5))[0].motion
+    told = set()
+    for row in (np.flatnonzero(half_turned(play.facing)) + 1).tolist():
+        (foot,) = {0, 1} & set(play.limb[row].tolist())
+        joints = joint_matrices(motion.skeleton, *sample(motion, second[row : row + 1]))[0]
+        depth = [joints[motion.skeleton.index(f"{side}_metatarsal"), 2, 3] for side in "lr"]
+        ahead = depth[foot] - depth[1 - foot]
+        assert abs(ahead) > 0.05
+        screen = "face the screen" if abs(play.facing[row]) < 90 else "back to the screen"
+        one = ("left", "right")[foot], "in front" if ahead > 0 else "behind"
+        phrase = turning_phrase(f"half turn: {screen}", (play, row), pad, ENGLISH)
+        assert phrase.said == f"half turn: {screen}, {one[0]} foot {one[1]}"
+        assert phrase.why == f"{('right', 'left')[foot]} foot has just stepped"
+        if (call := calls.get(round(float(second[row]), 3))) is not None:
+            assert call.text.startswith(f"half turn: {screen}") and f"{one[0]} foot {one[1]}" in call.text
+        told.add(one)
+    assert told == {(foot, way) for foot in ("left", "right") for way in ("in front", "behind")}
 
 
 def rows(*some: tuple[tuple[str, ...], dict[int, int], tuple[int, int]], steps: str = "dance-single") -> Any:
@@ -176,7 +211,8 @@ def test_every_language_names_the_one_foot_that_a_call_is_of(name: str) -> None:
     crossing, pad = rows(((), {0: 0}, (0, 3)), (("crossover-back", "crossover-half"), {0: 1}, (3, 0)))
     turn = crossing_phrase(language.moves["crossover-half"], (crossing, 1), pad, language)
     swap = stepped_phrase(language.moves["footswitch-up"], "footswitch-up", [-1, -1, 1, -1], language)
-    for phrase in (turn, swap):
+    away = turning_phrase(language.moves["half-turn-away"], (crossing, 1), pad, language)
+    for phrase in (turn, swap, away):
         assert own in phrase.said and other not in phrase.said and "{" not in "".join(phrase[:4])
         assert _foot_colour(phrase.said, language) == limb_colours().by_limb[1]
         assert own not in phrase.tag
