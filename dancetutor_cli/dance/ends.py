@@ -1,8 +1,8 @@
 """The ends of a cut where the dancer does not play on: she waits for its first step, and comes to rest after its last.
 
 Both are small dances of their own in which the feet step as in the dance itself, but none of the steps before the first
-one, or after the last. Within a second the one becomes the other; the feet, which are the same there, stay where they
-are while the body moves over.
+one, or after the last: in place of these they go home, if there is time. Within a second the one becomes the other; the
+feet, which are the same there, stay where they are while the body moves over.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.footwork.homing import homeward
 from dancetutor_cli.dance.motion import Cut, Motion, sample
 from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
 from dancetutor_cli.dance.pieces import MARGIN, OVERLAP, Keys, Piece, RagdollStyle, Span, piece_of, track_from
@@ -72,13 +73,14 @@ def rest_from(plan: Plan, cut: Cut, walks_off: bool) -> float | None:
     return until if any(until - NOW <= start < cut.end for start in starts) else None
 
 
-def exit_of(plan: Plan, until: float) -> Plan:
-    """The plan of who makes no step from a second on."""
+def exit_of(plan: Plan, span: Span, context: Context) -> Plan:
+    """The plan of who makes no step of the chart in a span, seconds, but goes home in it if there is time."""
+    until = span[0]
     touches = tuple(one for one in plan.touches if one.start < until - NOW)
     left, right = (
         replace(track, moves=tuple(move for move in track.moves if move.land <= until + NOW)) for track in plan.feet
     )
-    return replace(
+    rest = replace(
         plan,
         feet=(left, right),
         turns=tuple(turn for turn in plan.turns if turn.end <= until + NOW),
@@ -89,6 +91,7 @@ def exit_of(plan: Plan, until: float) -> Plan:
         grips=tuple(grip for grip in plan.grips if grip.start < until),
         let_go=(),
     )
+    return homeward(rest, span, context)
 
 
 def entrance_piece(plan: Plan, context: Context, fps: float, cut: Cut, ragdoll: RagdollStyle | None) -> Piece:

@@ -251,6 +251,7 @@ class HomeSettings:
     pause: Seconds
     pause_least: Seconds
     rest: Seconds
+    settle: Seconds
     step: Seconds
     step_least: Seconds
     near: Metres

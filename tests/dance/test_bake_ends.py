@@ -8,11 +8,14 @@ from dance_requests import apart
 
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.ends import CROSSING
+from dancetutor_cli.dance.footwork.footfalls import stand_at
 from dancetutor_cli.dance.motion import Cut, Motion
 from dancetutor_cli.dance.performance import Performance, perform, solve
 from dancetutor_cli.dance.quality.figures import body_of
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.request import DanceRequest
+from dancetutor_cli.dance.settings import default_settings
+from dancetutor_cli.film.clock import REST
 from dancetutor_cli.run.reading import charts_path
 
 HEAD = "#TITLE:x;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n :\n Hard:\n 8:\n :\n"
@@ -24,8 +27,8 @@ MEASURES = {
 }
 START, END = 4.0, 8.0  # of the passage
 COUNTED = Cut(START - 2.0, END, steps_from=START)
-RESTS = Cut(START, END + 1.5, steps_until=END)
-FILM = Cut(START - 2.0, END + 1.5, START, END)
+RESTS = Cut(START, END + REST, steps_until=END)
+FILM = Cut(START - 2.0, END + REST, START, END)
 WHOLE = Cut(-np.inf, np.inf)
 
 
@@ -79,10 +82,27 @@ def test_no_foot_moves_before_it_lifts_for_the_first_step(performance: Performan
     assert feet_moved(shown[COUNTED], COUNTED.start, until) < 0.003 < feet_moved(shown[WHOLE], COUNTED.start, until)
 
 
-def test_in_the_end_both_feet_stand(shown: dict[Cut, Motion]) -> None:
-    assert body_of(shown[RESTS]).standing[-1].all()
-    assert feet_moved(shown[RESTS], RESTS.end - 0.8, RESTS.end) < 0.003
-    assert feet_moved(shown[WHOLE], RESTS.end - 0.8, RESTS.end) > 0.05
+@pytest.mark.parametrize("cut", [RESTS, FILM])
+def test_in_the_end_she_stands_at_home(shown: dict[Cut, Motion], cut: Cut) -> None:
+    """On the pad's middle, feet side by side, both on the ground, and no limb has met another one on the way."""
+    motion = shown[cut]
+    body, skeleton = body_of(motion), motion.skeleton
+    assert body.standing[-1].all()
+    assert feet_moved(motion, cut.end - 0.15, cut.end) < 0.003
+    assert feet_moved(shown[WHOLE], cut.end - 0.3, cut.end) > 0.01
+    home = stand_at(np.zeros(2), 0.0, default_settings())
+    balls = body.joints[-1][[skeleton.index(f"{side}_metatarsal") for side in "lr"]][:, [0, 2]]
+    np.testing.assert_allclose(balls, home.balls, atol=0.004)
+    across = body.joints[-1, skeleton.index("l_hip")] - body.joints[-1, skeleton.index("r_hip")]
+    assert abs(np.degrees(np.arctan2(across[2], across[0]))) < 12.0, "facing the screen"
+    measured = report(motion)
+    for name in ("plant slide", "penetration", "limb in torso", "leg in leg", "frames past joint limits", "balance"):
+        assert measured[name].met is not False, f"{name}: {measured[name].value}"
+
+
+def test_where_there_is_no_time_she_stays(performance: Performance, shown: dict[Cut, Motion]) -> None:
+    (one,) = performance.motions(Cut(START, END + 0.9, steps_until=END), walks_off=False)
+    assert feet_moved(one.motion, END + 0.35, END + 0.9) < 0.003
 
 
 def test_a_second_from_its_ends_it_is_the_whole_dance(shown: dict[Cut, Motion]) -> None:

@@ -1,4 +1,4 @@
-"""Waits of the feet: steps back to where one rests, and legs shaken out."""
+"""Waits of the feet: steps back to where one rests, also at the end, and legs shaken out."""
 
 from __future__ import annotations
 
@@ -14,8 +14,18 @@ from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.footwork.footfalls import Footfall, Stand, room, stand_at, standing
 from dancetutor_cli.dance.footwork.foothold import Pose, legs_crossed
 from dancetutor_cli.dance.footwork.footing import Footing, Proposal, Row
-from dancetutor_cli.dance.footwork.walks import StepsInWaits, stand_of, stepped, waits, walks_there
-from dancetutor_cli.dance.plan import Bulge, Plan, Press, Shake, Turn
+from dancetutor_cli.dance.footwork.walks import (
+    StepsInWaits,
+    places_along,
+    sidestep,
+    stand_of,
+    stepped,
+    waits,
+    walks_there,
+)
+from dancetutor_cli.dance.plan import Bulge, Move, Plan, Press, Shake, Turn
+from dancetutor_cli.dance.settings import MotionSettings
+from dancetutor_cli.dance.settings_feet import HomeSettings, StepSettings
 
 # Home: in a long wait she steps back to where one rests: on the pad's middle, feet at hip width, facing the screen.
 
@@ -53,9 +63,9 @@ class HomeSteps(StepsInWaits):
             return None
         begin = stand_of(footing)
         whole = 360.0 * round(footing.normal / 360.0)
-        goal = stand_at(np.array([self._place(begin), 0.0]), float(np.radians(whole)), settings)
-        falls = self._falls(begin, goal, footing.lead, row)
-        pause, step = self._pace(wait - settings.walk.settle, len(falls))
+        goal = stand_at(np.array([_nearest(self.places, begin), 0.0]), float(np.radians(whole)), settings)
+        falls = _falls(begin, goal, footing.lead, row.feet, settings)
+        pause, step = _pace(wait - settings.walk.settle, len(falls), home)
         if not falls or pause + len(falls) * step > wait - settings.walk.settle + 1e-9:
             return None
         start = free + pause
@@ -64,14 +74,6 @@ class HomeSteps(StepsInWaits):
         turn = Turn(start, start + len(falls) * step, goal.heading)
         footing = replace(footing, normal=whole, aim=goal.heading, faced=goal.heading, resting=(True, True))
         return Proposal(footing, start, turn)
-
-    def _pace(self, time: float, count: int) -> tuple[float, float]:
-        """How long she stands before so many steps, and how long each takes, seconds: where there is little `time` she
-        stands less, and where there is less than that her steps are quicker."""
-        home = self.settings.home
-        pause = float(np.clip(time - count * home.step - home.rest, home.pause_least, home.pause))
-        step = float(np.clip((time - pause) / max(count, 1), home.step_least, home.step))
-        return pause, step
 
     def _walks(self, row: Row, free: float, footing: Footing) -> bool:
         """Whether she will walk to the other pad in this wait."""
@@ -84,47 +86,97 @@ class HomeSteps(StepsInWaits):
                 places[side] = self.panels[self.play.limb[self.steps[side][k]] == side].mean(axis=0)
         return walks_there(stand_of(footing), places, (free, row.time), footing)
 
-    def _place(self, begin: Stand) -> float:
-        """Where along x she waits: the nearest of the places for that."""
-        return float(self.places[np.argmin(np.round(np.abs(self.places - begin.middle[0]), 6))])
 
-    def _falls(self, begin: Stand, goal: Stand, lead: int, row: Row) -> Falls:
-        """The fewest steps home in which no foot turns too far or meets the other; none if she is there, or none do.
+def _falls(begin: Stand, goal: Stand, lead: int, following: Sequence[int], settings: MotionSettings) -> Falls:
+    """The fewest steps home in which no foot turns too far or meets the other; none if she is there, or none do.
 
-        Of two ways it is that on which legs cross less, then that which does not end with the foot of the next note.
-        """
-        home = self.settings.home
-        off = np.linalg.norm(begin.balls - goal.balls, axis=1).max()
-        if off < home.near and np.abs(begin.yaws - goal.yaws).max() < np.radians(home.facing):
-            return []
-        for count in range(2, int(home.most) + 1):
-            ways = [self._way(begin, goal, count, first) for first in (lead, 1 - lead)]
-            free = [way for way in ways if way is not None]
-            if free:
-                again = [row.feet == [way.falls[-1][0]] for way in free]
-                return min(zip(free, again, strict=True), key=lambda w: (w[0].crossed, w[1], -w[0].room))[0].falls
+    Of two ways it is that on which legs cross less, then that which does not end with the foot of the next note.
+    lead : the foot that is tried first; following : feet of the next note
+    """
+    home = settings.home
+    off = np.linalg.norm(begin.balls - goal.balls, axis=1).max()
+    if off < home.near and np.abs(begin.yaws - goal.yaws).max() < np.radians(home.facing):
         return []
+    for count in range(2, int(home.most) + 1):
+        ways = [_way(begin, goal, count, first, settings) for first in (lead, 1 - lead)]
+        free = [way for way in ways if way is not None]
+        if free:
+            again = [list(following) == [way.falls[-1][0]] for way in free]
+            return min(zip(free, again, strict=True), key=lambda w: (w[0].crossed, w[1], -w[0].room))[0].falls
+    return []
 
-    def _way(self, begin: Stand, goal: Stand, count: int, first: int) -> _Home | None:
-        """So many steps home, a foot first; or None where a foot turns too far or meets the other."""
-        apart, most = self.settings.step.apart, np.radians(self.settings.home.turn)
-        places = [(ball, float(yaw)) for ball, yaw in zip(begin.balls, begin.yaws, strict=True)]
-        falls, crossed, least = [], 0.0, np.inf
-        for k in range(count):
-            side, share = (first + k) % 2, min((k + 1) / (count - 1), 1.0)
-            heading = begin.heading + share * (goal.heading - begin.heading)
-            there = stand_at(begin.middle + share * (goal.middle - begin.middle), heading, self.settings)
-            fall = Footfall(there.balls[side], float(there.yaws[side]), heading)
-            (ball, yaw), other, outward = places[side], places[1 - side], 1.0 - 2.0 * side
-            if abs(fall.yaw - yaw) > most:
-                return None
-            bulge = detour(Way(ball, yaw, fall.ball, fall.yaw), *other, self.settings.step, outward)
-            least = min(least, room(places[side], fall, bulge, other))
-            toes = np.array([fall.yaw])
-            crossed += float(legs_crossed(outward, fall.ball[None], toes, Pose(*other), heading, self.settings.step)[0])
-            places[side] = (fall.ball, fall.yaw)
-            falls.append((side, fall))
-        return _Home(round(crossed, 6), round(least, 6), falls) if least >= apart - 1e-9 else None
+
+def _way(begin: Stand, goal: Stand, count: int, first: int, settings: MotionSettings) -> _Home | None:
+    """So many steps home, a foot first; or None where a foot turns too far or meets the other."""
+    apart, most = settings.step.apart, np.radians(settings.home.turn)
+    places = [(ball, float(yaw)) for ball, yaw in zip(begin.balls, begin.yaws, strict=True)]
+    falls, crossed, least = [], 0.0, np.inf
+    for k in range(count):
+        side, share = (first + k) % 2, min((k + 1) / (count - 1), 1.0)
+        heading = begin.heading + share * (goal.heading - begin.heading)
+        there = stand_at(begin.middle + share * (goal.middle - begin.middle), heading, settings)
+        fall = Footfall(there.balls[side], float(there.yaws[side]), heading)
+        yaw, other, outward = places[side][1], places[1 - side], 1.0 - 2.0 * side
+        if abs(fall.yaw - yaw) > most:
+            return None
+        bulge = _bulge(places, side, fall, settings.step)
+        least = min(least, room(places[side], fall, bulge, other))
+        toes = np.array([fall.yaw])
+        crossed += float(legs_crossed(outward, fall.ball[None], toes, Pose(*other), heading, settings.step)[0])
+        places[side] = (fall.ball, fall.yaw)
+        falls.append((side, fall))
+    return _Home(round(crossed, 6), round(least, 6), falls) if least >= apart - 1e-9 else None
+
+
+def _bulge(places: list[tuple[Array, float]], side: int, fall: Footfall, step: StepSettings) -> Bulge:
+    """How a foot goes around the other one; places : ball and yaw of both."""
+    (ball, yaw), other = places[side], places[1 - side]
+    return detour(Way(ball, yaw, fall.ball, fall.yaw), *other, step, 1.0 - 2.0 * side)
+
+
+def _pace(time: float, count: int, home: HomeSettings) -> tuple[float, float]:
+    """How long she stands before so many steps, and how long each takes, seconds: where there is little `time` she
+    stands less, and where there is less than that her steps are quicker."""
+    pause = float(np.clip(time - count * home.step - home.rest, home.pause_least, home.pause))
+    step = float(np.clip((time - pause) / max(count, 1), home.step_least, home.step))
+    return pause, step
+
+
+def _nearest(places: Array, begin: Stand) -> float:
+    """Where along x she waits: the nearest of the places for that."""
+    return float(places[np.argmin(np.round(np.abs(places - begin.middle[0]), 6))])
+
+
+def homeward(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
+    """The plan, whose feet stand from the first second of a span on, with steps home until its last one.
+
+    Unchanged at the bar, where she is at home already, or where there is too little time: she stands `home.settle`
+    before the end.
+    """
+    settings, step = context.settings, context.settings.step
+    free = max(span[0], *(move.land for track in plan.feet for move in track.moves[-1:]))
+    free = max(free, *(press.end + settings.hands.reach_down for press in plan.presses[-2:]), free)
+    if context.bar is not None:
+        return plan
+    begin = standing(plan.feet, free, plan.turns)
+    whole = 2.0 * np.pi * round(begin.heading / (2.0 * np.pi))
+    place = _nearest(places_along(context.squares, plan.lead), begin)
+    goal = stand_at(np.array([place, 0.0]), whole, settings)
+    falls = _falls(begin, goal, plan.lead, (), settings)
+    time = span[1] - free - settings.home.settle
+    pause, long = _pace(time, len(falls), settings.home)
+    if not falls or pause + len(falls) * long > time + 1e-9:
+        return plan
+    moves: tuple[list[Move], list[Move]] = ([], [])
+    places = [(ball, float(yaw)) for ball, yaw in zip(begin.balls, begin.yaws, strict=True)]
+    for k, (side, fall) in enumerate(falls):
+        start = free + pause + k * long
+        when = start + step.double_support * long, start + long, long
+        moves[side].append(sidestep(when, fall, _bulge(places, side, fall, step), step))
+        places[side] = (fall.ball, fall.yaw)
+    left, right = (replace(track, moves=(*track.moves, *own)) for track, own in zip(plan.feet, moves, strict=True))
+    turn = Turn(free + pause, free + pause + len(falls) * long, goal.heading)
+    return replace(plan, feet=(left, right), turns=(*plan.turns, turn))
 
 
 def faces_as_at_home(row: Row, footing: Footing) -> bool:

@@ -24,8 +24,8 @@ from dancetutor_cli.dance.footwork.footfalls import (
 from dancetutor_cli.dance.footwork.foothold import around, heel_of_step, heel_up
 from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, Row, pair
 from dancetutor_cli.dance.motion import Ground
-from dancetutor_cli.dance.plan import STRAIGHT, FootTrack, Hover, Plan, Press, Sidestep, Swing, Turn
-from dancetutor_cli.dance.settings_feet import AsideSettings
+from dancetutor_cli.dance.plan import STRAIGHT, Bulge, FootTrack, Hover, Plan, Press, Sidestep, Swing, Turn
+from dancetutor_cli.dance.settings_feet import AsideSettings, StepSettings
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind
 
@@ -331,13 +331,18 @@ def walks_there(begin: Stand, targets: Array, wait: tuple[float, float], footing
 def stepped(footing: Footing, foot: FootState, fall: Footfall, start: float, duration: float) -> Footing:
     """The footing in which a foot has stepped aside."""
     step = footing.settings.step
-    cut = float(reduction(duration, step.fast, step.longest))
-    height = step.height_slow + cut * (step.height_fast - step.height_slow)
-    pitches = heel_up(step, cut, heel_of_step(step), [0])
     lift = max(start + step.double_support * duration, foot.free)
     bulge = around(footing, foot, (lift, start + duration), fall.ball, fall.heading, footing.other(foot))
-    aside = Sidestep(lift, start + duration, pair(fall.ball), fall.yaw, pitches, height, bulge)
+    aside = sidestep((lift, start + duration, duration), fall, bulge, step)
     return footing.with_foot(replace(foot.with_move(aside, fall.ball, fall.heading), evading=None))
+
+
+def sidestep(when: tuple[float, float, float], fall: Footfall, bulge: Bulge, step: StepSettings) -> Sidestep:
+    """The move of a foot that steps aside. when : it leaves and lands, and how long all of it takes, seconds"""
+    lift, land, duration = when
+    cut = float(reduction(duration, step.fast, step.longest))
+    height = step.height_slow + cut * (step.height_fast - step.height_slow)
+    return Sidestep(lift, land, pair(fall.ball), fall.yaw, heel_up(step, cut, heel_of_step(step), [0]), height, bulge)
 
 
 def _between(places: Array) -> Array:

@@ -225,7 +225,9 @@ class HalfTurn(ChartRule):
         """One finding for each half turn."""
         for row in subject.feet.half_turns() if subject.feet else ():
             if subject.pause(row) <= self.options["max_seconds"] + EPSILON:
-                yield self.finding(f"the body turns by 180 degrees at once{_landing(subject, row)}", subject.at_row(row))
+                yield self.finding(
+                    f"the body turns by 180 degrees at once{_landing(subject, row)}", subject.at_row(row)
+                )
 
 
 def _landing(subject: ChartSubject, row: int) -> str:
