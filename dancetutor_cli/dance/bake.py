@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypedDict, Unpack
 
@@ -9,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.dance.changes import mixed_bodies, mixed_feet, mixed_poses
 from dancetutor_cli.dance.context import Context, bar_of, context_of, holding, panels_on_ground
-from dancetutor_cli.dance.foot_path import both_feet
+from dancetutor_cli.dance.foot_path import Feet, both_feet
 from dancetutor_cli.dance.footwork.planner import plan_footwork
 from dancetutor_cli.dance.grips import grips_of
 from dancetutor_cli.dance.ik.ankles import ease_ankles, rolled_soles
@@ -35,7 +37,7 @@ from dancetutor_cli.dance.pieces import (
     refined,
 )
 from dancetutor_cli.dance.plan import Plan
-from dancetutor_cli.dance.settings import MotionSettings, default_settings
+from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, default_settings, state_weights
 from dancetutor_cli.dance.settings_feet import WalkSettings
 from dancetutor_cli.dance.settle import heels_may_rise, mass_of, settle, targets_at
 from dancetutor_cli.dance.smoothing import sample_path
@@ -58,13 +60,13 @@ REFINEMENTS = 2  # rounds of adding keys half-way between others
 class Manner(TypedDict, total=False):
     """How a play is danced.
 
-    settings : numbers of the motion, those of `configs/motion.yaml` unless given
+    settings : numbers of the motion, those of `configs/motion.yaml` unless given; or what they are over the song
     bar : whether she holds the bar behind the pad; gait : how she walks on and off, a name or file as for `load_gait`
     sides : from which she comes and to which she goes, 0 left or 1 right, where another one dances beside her
     let_go : why notes that no limb has in the play are let go, where the caller has decided that
     """
 
-    settings: MotionSettings | None
+    settings: MotionSettings | SettingsCourse | None
     bar: bool
     gait: str
     sides: tuple[int, int] | None
@@ -110,10 +112,13 @@ def plan_of(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> P
 
 def planned(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> tuple[Plan, Context]:
     """The plan of a play, with the context that it is danced in. Arguments as in `bake`."""
-    settings, bar = manner.get("settings") or default_settings(), manner.get("bar", False)
-    rail = bar_of(pad, settings.bar) if bar else None
-    context = context_of(pad, holding(settings) if bar else settings, _beats(timing, play), rail)
-    context = replace(context, sides=manner.get("sides"))
+    given, bar = manner.get("settings") or default_settings(), manner.get("bar", False)
+    course = given if isinstance(given, SettingsCourse) else SettingsCourse((given,), ())
+    rail = bar_of(pad, course.states[0].bar) if bar else None
+    if bar:
+        course = replace(course, states=tuple(map(holding, course.states)))
+    context = context_of(pad, course.states[0], _beats(timing, play), rail)
+    context = replace(context, sides=manner.get("sides"), course=course if course.changes else None)
 
     def second(tick: int) -> float:
         return float(timing.seconds(np.array([tick], dtype=np.int64))[0])
@@ -161,14 +166,17 @@ def bake_piece(piece: Piece) -> BakedPiece:
     skeleton, settings = context.skeleton, context.settings
     rate = settings.sampling.work_rate
     grid = np.arange(np.floor(piece.span[0] * rate), np.ceil(piece.span[1] * rate) + 1) / rate
-    body = settle(plan, grid, both_feet(plan.feet, grid, settings), context).trajectory
-    body = replace(body, hands=free_hands(plan, body, context))  # all keys ask for them, and each round of more keys
+    states, changes = context.states(*piece.span)
+    bodies = [settle(plan, grid, both_feet(plan.feet, grid, one.settings), one).trajectory for one in states]
+    body = bodies[0] if len(bodies) == 1 else mixed_bodies(bodies, changes)
+    # all keys ask for free hands, and each round of more keys
+    dressed = tuple((replace(body, hands=free_hands(plan, body, one)), one) for one in states)
     at = key_times(plan, piece.fps, *piece.baked)
-    keys = (at, *posed(plan, body, at, context))
+    keys = (at, *_posed_in(plan, dressed, at, changes))
     for _ in range(REFINEMENTS):
         middles = doubtful(skeleton, keys, plan.grips)
         if len(middles):
-            between = (middles, *posed(plan, body, middles, context))
+            between = (middles, *_posed_in(plan, dressed, middles, changes))
             keys = refined(skeleton, keys, between, plan.grips)
     first, last = piece.baked
     notes = tuple(
@@ -202,10 +210,24 @@ def _followed(motion: Motion, piece: Piece, ragdoll: RagdollStyle) -> BakedPiece
     return BakedPiece(replace(passed.motion, notes=notes), passed.distances)
 
 
-def posed(plan: Plan, body: Trajectory, at: Array, context: Context) -> Poses:
-    """Solve the body at times `at` (f,), and move it so that its centre of mass, head and all, is where it shall be."""
+def _posed_in(plan: Plan, bodies: Sequence[tuple[Trajectory, Context]], at: Array, changes: Sequence[Span]) -> Poses:
+    """The body at times `at` (f,), of each state with its context, which turn into each other as `changes` say."""
+    feet = [both_feet(plan.feet, at, context.settings) for _, context in bodies]
+    if len(bodies) == 1:
+        return posed(plan, bodies[0][0], (at, feet[0]), bodies[0][1])
+    weights = state_weights(changes, at)
+    mean = mixed_feet(feet, weights)
+    poses = [posed(plan, body, (at, mean), context) for body, context in bodies]
+    return mixed_poses(bodies[0][1].skeleton, poses, weights)
+
+
+def posed(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Context) -> Poses:
+    """Solve the body at times (f,), and move it so that its centre of mass, head and all, is where it shall be.
+
+    sampled : the times, and the feet at them
+    """
     skeleton, settings, reach = context.skeleton, context.settings, context.settings.body.reach
-    feet = both_feet(plan.feet, at, settings)
+    at, feet = sampled
     targets = targets_at(plan, body, (at, feet), context)
     poses = solve(skeleton, targets, reach, 0.0)
     ground = sample_path(body.mass, body.times, at)

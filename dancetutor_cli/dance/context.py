@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.dance.motion import Bar, Contact, Grip, Ground, Motion
 from dancetutor_cli.dance.rig.body import BALL_AHEAD
 from dancetutor_cli.dance.rig.skeleton import Skeleton, dancer_skeleton
-from dancetutor_cli.dance.settings import MotionSettings
+from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, Span
 from dancetutor_cli.dance.settings_arms import BarSettings
 from dancetutor_cli.dance.settings_feet import StepSettings
 from dancetutor_cli.dance.smoothing import smooth
@@ -93,7 +93,7 @@ class Context:
     panels : (c, 2) world x and z of every panel's centre; squares : (s, 2) of the middle of each square of nine panels
     ground : the pad as a rectangle, and the floor around it
     beats : seconds of the song's beats, in order; bar : what she holds on to, None for no bar
-    stays : she does not walk off after the last step
+    stays : she does not walk off after the last step; course : settings that change over the song, None: they do not
     sides : from which she comes and to which she goes, 0 left or 1 right, None: as the notes say
     """
 
@@ -106,6 +106,18 @@ class Context:
     bar: Bar | None = None
     sides: tuple[int, int] | None = None
     stays: bool = False
+    course: SettingsCourse | None = None
+
+    def at(self, second: float) -> Context:
+        """The context with the settings of a second."""
+        return self if self.course is None else replace(self, settings=self.course.at(second))
+
+    def states(self, start: float, end: float) -> tuple[tuple[Context, ...], tuple[Span, ...]]:
+        """The context with the settings of each state between two seconds, and when each turns into the next one."""
+        if self.course is None:
+            return (self,), ()
+        part = self.course.within(start, end)
+        return tuple(replace(self, settings=settings, course=None) for settings in part.states), part.changes
 
 
 def context_of(pad: Pad, settings: MotionSettings, beats: tuple[float, ...] = (), bar: Bar | None = None) -> Context:

@@ -18,7 +18,7 @@ from dancetutor_cli.dance.ends import (
     with_exit,
 )
 from dancetutor_cli.dance.motion import Cut, Motion
-from dancetutor_cli.dance.physics.style import load_style
+from dancetutor_cli.dance.physics.blend import Blend, load_choice
 from dancetutor_cli.dance.pieces import BakedPiece, Each, Piece, RagdollStyle, in_turn, pieces_of, whole_span
 from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_request, no_pad, read_chart
 from dancetutor_cli.dance.settings import load_settings
@@ -58,7 +58,7 @@ class Performer:
 class Performance:
     """How a chart is danced at one rate of its music. One dancer is a tuple of length one.
 
-    pad : under all; timing : of the music as it is heard
+    pad : under all; timing : of the music as it is heard; blend : the styles in which a ragdoll follows, None: none
     """
 
     request: DanceRequest
@@ -66,6 +66,7 @@ class Performance:
     timing: Timing
     pad: Pad
     dancers: tuple[Performer, ...]
+    blend: Blend | None = None
 
     @property
     def span(self) -> tuple[float, float]:
@@ -101,7 +102,7 @@ class Performance:
         return replace(done, motion=motion)
 
     def _ragdoll(self, wanted: Cut) -> RagdollStyle | None:
-        if self.request.style is None:
+        if self.blend is None:
             return None
         from dancetutor_cli.dance.physics.pipeline import wishes_of
 
@@ -110,7 +111,7 @@ class Performance:
         for name, second in befalls:
             if not wanted.start <= second <= wanted.end:
                 raise UsageError(f"{name} {second:g}: the motion lasts from {wanted.start:.3f} s to {wanted.end:.3f} s")
-        return RagdollStyle(load_style(self.request.style), wishes)
+        return RagdollStyle(self.blend, wishes)
 
 
 def _one(each: Each, piece: Piece) -> Motion:
@@ -143,6 +144,7 @@ def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) 
     parts = [one.chart for one in solved]
     pad = pad_of(solved)
     sides = sides_of(parts) if len(parts) > 1 else (None,)
+    blend = None if request.style is None else load_choice(request.style).blend(timing)
     dancers = []
     for one, side in zip(solved, sides, strict=True):
         play, own = one.play, one.pad
@@ -153,13 +155,17 @@ def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) 
             )
         fastest, gone = without_unplayable(as_heard(play, one.chart.timing.at_rate(max(request.rates))), own)
         play = as_heard(fastest, timing)
-        settings = load_settings(request.motion, request.form)
+        settings = (
+            load_settings(request.motion, request.form)
+            if blend is None
+            else blend.settings(request.motion, request.form)
+        )
         plan, context = planned(
             timing, play, own, settings=settings, bar=request.bar, gait=request.gait, sides=side, let_go=gone
         )
         place = place_on(pad, one.chart, own) if len(parts) > 1 else (0.0, 0.0)
         dancers.append(Performer(one, own, play, plan, context, place))
-    return Performance(request, rate, timing, pad, tuple(dancers))
+    return Performance(request, rate, timing, pad, tuple(dancers), blend)
 
 
 def pad_of(solved: Sequence[Solved]) -> Pad:

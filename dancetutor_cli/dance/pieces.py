@@ -21,6 +21,7 @@ from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.feet.play import dropped_notes_message
 
 if TYPE_CHECKING:
+    from dancetutor_cli.dance.physics.blend import Blend
     from dancetutor_cli.dance.physics.pipeline import Wishes
     from dancetutor_cli.dance.physics.style import Style
 
@@ -136,9 +137,9 @@ BLEND = 0.5  # seconds before a piece's end in which it turns into the next one
 
 @dataclass(frozen=True, slots=True)
 class RagdollStyle:
-    """The style in which a ragdoll follows the dancer, and what befalls her."""
+    """The style or styles in which a ragdoll follows the dancer, and what befalls her."""
 
-    style: Style
+    style: Style | Blend
     wishes: Wishes
 
 

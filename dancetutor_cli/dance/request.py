@@ -20,6 +20,12 @@ if TYPE_CHECKING:
 FPS = 60.0  # frames per second that a dance is baked at, unless a file with others is wanted
 
 
+def _style_sources(style: str) -> object:
+    from dancetutor_cli.dance.physics.blend import style_sources
+
+    return style_sources(style)
+
+
 @dataclass(frozen=True, slots=True)
 class DanceRequest:
     """What dance is wanted. Pickles, so that another process can do it.
@@ -32,7 +38,8 @@ class DanceRequest:
     bar : the dancer holds the bar behind the pad; gait : name or file of how she walks on and off
     form : name or file of how she stands and turns
     motion : file with numbers of the motion that are other than those of configs/motion.yaml
-    style : name or file of the style in which a ragdoll follows the dancer; None: no ragdoll
+    style : name or file of the style in which a ragdoll follows the dancer, or a blend, as
+    `dance.physics.blend.load_choice` takes it; None: no ragdoll
     push, trip : what befalls her, as `dance.physics.pushes.parse_push` takes it, and seconds of the song; only with a
     style
     """
@@ -47,7 +54,7 @@ class DanceRequest:
     gait: str = field(default="flat", metadata={NAMED: "gaits"})
     form: str = field(default=USUAL, metadata={NAMED: "forms"})
     motion: Path | None = None
-    style: str | None = field(default=None, metadata={NAMED: "styles"})
+    style: str | None = field(default=None, metadata={NAMED: _style_sources})
     push: tuple[str, ...] = ()
     trip: tuple[float, ...] = ()
 
@@ -81,9 +88,10 @@ def check_request(request: DanceRequest) -> None:
     load_settings(request.motion, request.form)
     load_gait(request.gait)
     if request.style is not None:
-        from dancetutor_cli.dance.physics.style import engine, load_style
+        from dancetutor_cli.dance.physics.blend import load_choice
+        from dancetutor_cli.dance.physics.style import engine
 
-        load_style(request.style)
+        load_choice(request.style)
         engine()
     if request.push:
         from dancetutor_cli.dance.physics.pushes import parse_push

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
 
 from dancetutor_cli.dance.settings_arms import AcrossSettings, ArmSettings, BarSettings, FingerSettings, HandSettings
 from dancetutor_cli.dance.settings_body import (
@@ -28,6 +32,7 @@ from dancetutor_cli.dance.settings_feet import (
     StepSettings,
     WalkSettings,
 )
+from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.run.reading import config_path, named_file
 from dancetutor_cli.run.yaml_files import load
 
@@ -67,14 +72,19 @@ class MotionSettings:
     sampling: SamplingSettings
 
 
-def load_settings(path: Path | None = None, form: str = USUAL) -> MotionSettings:
-    """The numbers of `configs/motion.yaml`, with those on top that a form names, and those that another file names.
+def load_settings(
+    path: Path | None = None, form: str = USUAL, styles: Sequence[tuple[MotionSettings, float]] = ()
+) -> MotionSettings:
+    """The numbers of `configs/motion.yaml`, with those on top that a form names, then styles, then another file.
 
+    styles : the numbers of each of them, and how much of it there is, 0 to 1
     Raises FileError naming the file, the line and the names that exist, UsageError for a form that there is not.
     """
     settings = default_settings()
     if form != USUAL:
         settings = load(named_file("forms", form), MotionSettings, settings)
+    if styles:
+        settings = mixed([(_changed(settings, numbers), share) for numbers, share in styles])
     return settings if path is None else load(path, MotionSettings, settings)
 
 
@@ -82,3 +92,72 @@ def load_settings(path: Path | None = None, form: str = USUAL) -> MotionSettings
 def default_settings() -> MotionSettings:
     """The settings that the program comes with."""
     return load(config_path("motion.yaml"), MotionSettings)
+
+
+def mixed(parts: Sequence[tuple[MotionSettings, float]]) -> MotionSettings:
+    """The mean of settings, each with its share; shares sum to 1."""
+    first = parts[0][0]
+    sections = {}
+    for section in _SECTIONS:
+        own = [(getattr(one, section), share) for one, share in parts]
+        head = own[0][0]
+        if any(other is not head and other != head for other, _ in own):
+            values = {f.name: sum(share * getattr(one, f.name) for one, share in own) for f in fields(head)}
+            sections[section] = replace(head, **values)
+    return replace(first, **sections)
+
+
+def _changed(settings: MotionSettings, other: MotionSettings) -> MotionSettings:
+    """The settings with those numbers of another one that are not the program's own."""
+    sections = {}
+    for section in _SECTIONS:
+        usual, new = getattr(default_settings(), section), getattr(other, section)
+        if new != usual:
+            names = [f.name for f in fields(new) if getattr(new, f.name) != getattr(usual, f.name)]
+            sections[section] = replace(getattr(settings, section), **{name: getattr(new, name) for name in names})
+    return replace(settings, **sections)
+
+
+_SECTIONS = tuple(f.name for f in fields(MotionSettings))
+
+
+# Numbers that change over a song: a state before the first change, one after it, and so on.
+
+Array = NDArray[np.float64]
+Span = tuple[float, float]
+WHOLE = 1.0 - 1e-9  # of a state beside which there is no other one
+
+
+def state_weights(changes: Sequence[Span], times: Array) -> Array:
+    """How much (f, k + 1) of each state there is at times (f,); changes : k spans, seconds, in order, apart."""
+    after = np.array([smooth((times - start) / (end - start)) for start, end in changes]).reshape(-1, len(times))
+    risen = np.vstack((np.ones(len(times)), after))
+    return np.asarray((risen - np.vstack((after, np.zeros(len(times))))).T)
+
+
+@dataclass(frozen=True, slots=True)
+class SettingsCourse:
+    """The numbers over a song. states : before the first change, after it, ...; changes : as in `state_weights`"""
+
+    states: tuple[MotionSettings, ...]
+    changes: tuple[Span, ...]
+
+    def at(self, second: float) -> MotionSettings:
+        """The numbers at a second; while one state turns into the next one, their mean by share."""
+        weights = state_weights(self.changes, np.array([second]))[0]
+        return self._mean(tuple(np.round(weights, 9).tolist()))
+
+    def _mean(self, weights: tuple[float, ...]) -> MotionSettings:
+        largest = int(np.argmax(weights))
+        return self.states[largest] if weights[largest] >= WHOLE else _mean_of(self.states, weights)
+
+    def within(self, start: float, end: float) -> SettingsCourse:
+        """The same with only the states that there are between two seconds."""
+        weights = state_weights(self.changes, np.array([start, end]))
+        first, last = int(np.argmax(weights[0] > 0.0)), int(np.max(np.flatnonzero(weights[1] > 0.0)))
+        return SettingsCourse(self.states[first : last + 1], self.changes[first:last])
+
+
+@cache
+def _mean_of(states: tuple[MotionSettings, ...], weights: tuple[float, ...]) -> MotionSettings:
+    return mixed([(state, share) for state, share in zip(states, weights, strict=True) if share > 0.0])

@@ -15,6 +15,7 @@ import numpy as np
 from dancetutor_cli.character import load_character
 from dancetutor_cli.character.humanoid import humanoid_of
 from dancetutor_cli.character.retarget import onto, retarget
+from dancetutor_cli.dance.physics.blend import load_choice
 from dancetutor_cli.dance.physics.captured import on_body
 from dancetutor_cli.dance.physics.hair import add_hair
 from dancetutor_cli.dance.physics.pipeline import Tuning, through_ragdoll, tuned
@@ -35,8 +36,8 @@ if TYPE_CHECKING:
 
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.dance.motion import Motion
+    from dancetutor_cli.dance.physics.blend import Blend
     from dancetutor_cli.dance.physics.pipeline import RagdollResult, Wishes
-    from dancetutor_cli.dance.physics.style import Style
     from dancetutor_cli.dance.quality.figures import MotionReport
     from dancetutor_cli.dance.rig.skeleton import Skeleton
 
@@ -49,7 +50,7 @@ SCHEMA = b"1"  # of what a body's tuning depends on besides body and neutral sty
 class RetargetTask:
     """What to retarget. source : the file; animation : the one wanted of a .glb, None for its first
 
-    style : name or file, as `dance.physics.style.load_style` takes it; wishes : corrections, pushes, trips
+    style : as `dance.physics.blend.load_choice` takes it; wishes : corrections, pushes, trips
     """
 
     source: Path
@@ -91,19 +92,21 @@ class Retargeting:
         return on_body(captured, {joint: node for node, joint in found.items()}, self.body)
 
     @cached_property
-    def style(self) -> Style:
-        """The style, with springs and densities of the body."""
-        style = load_style(self.task.style)
+    def blend(self) -> Blend:
+        """The style or styles, with springs and densities of the body."""
+        blend = load_choice(self.task.style).blend()
+        styles = blend.styles
         if "limits" not in self.task.wishes.corrections:
-            style = replace(style, limits=False)
-        same = self.body.offsets.tobytes() == dancer_skeleton().offsets.tobytes()
-        return style if same else tuning_of(self.body).of(style)
+            styles = tuple(replace(style, limits=False) for style in styles)
+        if self.body.offsets.tobytes() != dancer_skeleton().offsets.tobytes():
+            styles = tuple(map(tuning_of(self.body).of, styles))
+        return replace(blend, styles=styles)
 
     @cached_property
     def ragdoll_result(self) -> RagdollResult:
         """Behind the ragdoll, on the body."""
         try:
-            passed = through_ragdoll(self.source_motion, self.style, self.task.wishes)
+            passed = through_ragdoll(self.source_motion, self.blend, self.task.wishes)
         except FileError:
             raise
         except DancetutorError as error:
@@ -126,7 +129,7 @@ class Retargeting:
         """Names of the p retargeting points, and their places (f, p, 3) at the keys of input and output, metres."""
         before, after = self.source_motion, self.ragdoll_result.motion
         bones = bones_of(self.body)
-        points = tuple(p for p in points_of(self.body, bones, self.style) if not p.extra)
+        points = tuple(p for p in points_of(self.body, bones, self.blend.styles[0]) if not p.extra)
         given, made = (place_points(self.body, bones, points, m.rotations, m.root) for m in (before, after))
         return tuple(p.name for p in points), given, made
 

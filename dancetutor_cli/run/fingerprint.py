@@ -19,7 +19,9 @@ from dancetutor_cli.run.reading import PACKAGE, config_path
 if TYPE_CHECKING:
     from hashlib import _Hash
 
-NAMED = "named"  # metadata of a field: its value is one of these names, or in this folder of configs/, or else a file
+# metadata of a field: its value is one of these names, or in this folder of configs/, or else a file; or it counts as
+# what a function says of it
+NAMED = "named"
 _PARTS = (".py", ".glb", ".yaml", ".glsl", ".vert", ".frag")  # files of the program that make results
 _TEXT = "utf-8", "surrogateescape"
 
@@ -40,7 +42,9 @@ def _add(digest: _Hash, value: Any) -> None:
         for name, named in _fields(value.__class__):
             one = getattr(value, name)
             digest.update(name.encode())
-            _add(digest, one if named is None or one is None or one in _names(named) else Path(one))
+            if one is not None and named is not None:
+                one = named(one) if callable(named) else one if one in _names(named) else Path(one)
+            _add(digest, one)
     elif isinstance(value, tuple | list):
         digest.update(b"%d" % len(value))
         for part in value:

@@ -227,6 +227,11 @@ class Footing:
         """How far toes point outward, radians."""
         return float(np.radians(self.context.settings.step.toe_out))
 
+    def in_context(self, context: Context) -> Footing:
+        """The same footing with other settings."""
+        left, right = (replace(foot, step=context.settings.step) for foot in self.feet)
+        return replace(self, context=context, feet=(left, right))
+
     def other(self, foot: FootState) -> FootState:
         """The foot that is not this one."""
         return self.feet[1 - foot.side]

@@ -72,6 +72,9 @@ class Planner:
 
     def _row(self, i: int) -> None:
         time = float(self.play.rows.second[i])
+        if self.context.course is not None:
+            self.context = self.context.at(time)
+            self.settings, self.footing = self.context.settings, self.footing.in_context(self.context)
         row = Row(self.play, self.context, i, time, pressed_by(self.play, i))
         soon = slice(int(np.searchsorted(self.play.rows.second, self._stays(i, time))))
         panels, mines = self.context.panels, self.play.rows.mines[soon]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from dancetutor_cli.chart.timing import heard
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.ankles import eased_ankles
 from dancetutor_cli.dance.physics.arms import clear_arms, push_arms_out
+from dancetutor_cli.dance.physics.blend import Blend
 from dancetutor_cli.dance.physics.legs import mass_of, restore_mass_path, risen, soft_legs
 from dancetutor_cli.dance.physics.plants import Plants, flatten_toes, let_go, planted, tidied
 from dancetutor_cli.dance.physics.pushes import (
@@ -97,8 +98,8 @@ def wishes_of(push: Sequence[str], trip: Sequence[float], rate: float = 1.0) -> 
     )
 
 
-def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> RagdollResult:
-    """Let the ragdoll of a style follow a motion of a skeleton with the dancer's joints.
+def through_ragdoll(motion: Motion, style: Style | Blend, wishes: Wishes = Wishes()) -> RagdollResult:
+    """Let the ragdoll of a style, or the mean of those of a blend, follow a motion of a skeleton with the dancer's joints.
 
     Joints without a body keep their turns, feet their places in the world, unless corrected; times stay, and contacts,
     unless she is pushed or caught so that she misses them: then the motion's notes say which.
@@ -107,12 +108,15 @@ def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> 
     """
     skeleton, corrections = motion.skeleton, wishes.corrections
     motion, blows = disturbed(motion, wishes.pushes, wishes.trips)
-    _, made, distances, held_at = _followed(motion, style, wishes, blows)
-    rotations, root = _read(held_at.at, *made, motion.times)
+    styles, shares = (Blend.of(style) if isinstance(style, Style) else style).within(motion.times)
+    runs = [_followed(motion, one, wishes, blows) for one in styles]
+    held_at, limits = runs[0].steps, any(one.limits for one in styles)
+    rotations, root = _mean([_read(run.steps.at, *run.made, motion.times) for run in runs], shares)
+    distances = _mean_distances([run.distances for run in runs], shares.mean(axis=0))
     share = 1.0 - _pressing(motion)
     rotations = quat.slerp(motion.rotations, rotations, share[:, None])
     root = motion.root + share[:, None] * (root - motion.root)
-    if style.limits:
+    if limits:
         rotations = restrained(skeleton, rotations, motion.times, share * _undisturbed(motion, wishes))
     if wishes.own_legs and not (wishes.pushes or wishes.trips or "feet" in corrections):
         done = replace(motion, rotations=quat.continuous(rotations), root=root)
@@ -152,7 +156,7 @@ def through_ragdoll(motion: Motion, style: Style, wishes: Wishes = Wishes()) -> 
         rotations = push_arms_out(skeleton, (rotations, root), motion.times)
     if plants is not None:
         flatten_toes(skeleton, rotations, feet, plants, held)
-        if style.limits:
+        if limits:
             rotations = restrained(skeleton, rotations, motion.times)
     done = replace(motion, rotations=quat.continuous(rotations), root=root)
     return RagdollResult(with_push_notes(done, motion.root, wishes.pushes, missed), distances, plants)
@@ -189,10 +193,38 @@ class _Steps:
     soles: BreakableSoles | None
 
 
-def _followed(
-    motion: Motion, style: Style, wishes: Wishes, blows: Sequence[Blow]
-) -> tuple[Poses, Poses, Distances, _Steps]:
-    """The input and what the ragdoll made of it at the update rate, and how far it was."""
+class _Run(NamedTuple):
+    """What a ragdoll made of its input at the update rate, and how far from it that is."""
+
+    made: Poses
+    distances: Distances
+    steps: _Steps
+
+
+def _mean(poses: Sequence[Poses], shares: Array) -> Poses:
+    """The mean of poses, each with its share (f, s) at every key."""
+    if len(poses) == 1:
+        return poses[0]
+    root = sum(shares[:, k, None] * one for k, (_, one) in enumerate(poses))
+    return quat.mean([rotations for rotations, _ in poses], shares), np.asarray(root)
+
+
+def _mean_distances(runs: Sequence[Distances], shares: Array) -> Distances:
+    """The mean of distances, each with its share (s,), of the points that all ragdolls have."""
+    first = runs[0]
+    if len(runs) == 1:
+        return first
+    names = tuple(name for name in first.names if all(name in one.names for one in runs))
+    values = np.zeros((len(first.times), len(names)))
+    for one, share in zip(runs, shares, strict=True):
+        values += (
+            share * np.array([np.interp(first.times, one.times, one.values[:, one.names.index(n)]) for n in names]).T
+        )
+    return Distances(names, first.times, values)
+
+
+def _followed(motion: Motion, style: Style, wishes: Wishes, blows: Sequence[Blow]) -> _Run:
+    """What the ragdoll of one style makes of a motion."""
     skeleton, rate = motion.skeleton, style.body.update_rate
     bones = bones_of(skeleton)
     points = points_of(skeleton, bones, style)
@@ -210,7 +242,7 @@ def _followed(
     shown = tuple(p for p in points if not p.extra)
     apart = place_points(skeleton, bones, shown, *given) - place_points(skeleton, bones, shown, *made)
     distances = Distances(tuple(p.name for p in shown), at[first:], 100.0 * np.linalg.norm(apart[first:], axis=2))
-    return given, made, distances, _Steps(at, soles)
+    return _Run(made, distances, _Steps(at, soles))
 
 
 def _at_keys(plants: Plants, at: Array, times: Array) -> Plants:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib.util import find_spec
 from typing import Annotated, Any, Literal
 
+from dancetutor_cli.dance.settings import MotionSettings, default_settings
 from dancetutor_cli.run.errors import FileError, UnavailableError, install_command
 from dancetutor_cli.run.reading import config_path, named_file
-from dancetutor_cli.run.schema import NOT_IN_FILES, THREE, Bounds, Names
+from dancetutor_cli.run.schema import NOT_IN_FILES, THREE, Bounds, Names, Text
 from dancetutor_cli.run.yaml_files import load
 
 # The physics engine, imported only when a ragdoll is asked for: plain bakes never wait for it.
@@ -100,6 +101,8 @@ class Style:
     density : kg/m^3; force : newtons (x aside and outward for pairs, y up, z ahead in the pelvis's axes)
     disabled : names of retargeting points that do nothing; follower : by `FOLLOWED`, None for none
     placement : of the points; limits, extra_points : whether there are any
+    motion : numbers of `configs/motion.yaml` of the motion that the ragdoll follows
+    measures : by measure of the song, another style or blend, as `--style` takes it, that there is from there on
     """
 
     placement: Literal["end", "center", "hybrid"]
@@ -113,6 +116,8 @@ class Style:
     force: dict[_Part, Annotated[tuple[_Force, _Force, _Force], THREE]]
     disabled: tuple[str, ...]
     follower: dict[Annotated[str, Names(FOLLOWED)], Follower]
+    motion: MotionSettings = field(default_factory=default_settings)
+    measures: dict[Annotated[int, Bounds(0, 100_000)], Text] = field(default_factory=dict)
     name: Annotated[str, NOT_IN_FILES] = ""
 
 

@@ -6,6 +6,8 @@ therefore ``multiply(main, layer)``.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -97,6 +99,16 @@ def slerp(a: ArrayLike, b: ArrayLike, t: ArrayLike) -> Array:
     left = np.where(small, 1.0 - t, np.sin((1.0 - t) * angle) / divisor)
     right = np.where(small, t, np.sin(t * angle) / divisor)
     return normalize(left * a + right * b)
+
+
+def mean(turns: Sequence[Array], weights: Array) -> Array:
+    """The mean (f, ..., 4) of k turns that are near each other, each with its weight, (f, k)."""
+    shape = (-1,) + (1,) * (turns[0].ndim - 1)
+    total = weights[:, 0].reshape(shape) * turns[0]
+    for k, other in enumerate(turns[1:], 1):
+        sign = np.where(np.sum(turns[0] * other, axis=-1, keepdims=True) < 0.0, -1.0, 1.0)
+        total = total + weights[:, k].reshape(shape) * sign * other
+    return normalize(total)
 
 
 def to_matrix(q: ArrayLike) -> Array:

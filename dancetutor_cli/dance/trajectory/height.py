@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -162,6 +163,13 @@ UNIT = 0.02  # metres; heights differ by about so much, which scales the program
 GIVE_FORCE, GIVE_ROOM = 1e-5, 1e-4  # prices of pushing harder than legs do and of stretching them, see `qp.Limits`
 LOOSE = 1e-3  # how much the wanted height counts in flight
 LEAST_STAND = 0.012  # seconds; a flight that begins so soon after another one is left out
+
+
+class Height(Protocol):
+    """Of the centre of mass, metres, at any times."""
+
+    def at(self, times: Array) -> Array:
+        """(f,) at times (f,), seconds."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,7 +30,7 @@ from dancetutor_cli.dance.trajectory.facing import (
 )
 from dancetutor_cli.dance.trajectory.groove import Occupation, groove_of
 from dancetutor_cli.dance.trajectory.height import (
-    HeightPath,
+    Height,
     HeightWish,
     height_path,
     jump_crouch,
@@ -67,7 +67,7 @@ class Trajectory:
 
     times: Array
     mass: Array
-    mass_height: HeightPath
+    mass_height: Height
     ground: Array
     height: Array
     yaw: Array

@@ -1,0 +1,82 @@
+"""Numbers of the motion that change over a song (`settings.SettingsCourse`): how a piece with such a change is danced.
+
+Each step is planned with the numbers of its time. The body's path is planned with those of each state over the same
+steps, and the paths are mixed as one state turns into the next one, before any joint is turned: so what feet and palms
+touch is the same in all states. Poses are then solved with the numbers of each state, and mixed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.foot_path import Feet, FootPath
+from dancetutor_cli.dance.ik.full_body import Poses
+from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.settings import WHOLE, Span, state_weights
+from dancetutor_cli.dance.trajectory.height import Height
+from dancetutor_cli.dance.trajectory.posture import Trajectory
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class MixedHeight:
+    """The mean of heights, each with the weight of its state."""
+
+    heights: tuple[Height, ...]
+    changes: tuple[Span, ...]
+
+    def at(self, times: Array) -> Array:
+        """(f,) at times (f,), seconds."""
+        weights = state_weights(self.changes, times)
+        return np.asarray(sum(weights[:, k] * one.at(times) for k, one in enumerate(self.heights)))
+
+
+def mixed_feet(feet: Sequence[Feet], weights: Array) -> Feet:
+    """Both feet as the mean of those of each state; weights (f, k). All have the same plan, so they stand together."""
+    sides = []
+    for paths in zip(*feet, strict=True):
+        ball = np.einsum("fk,kfx->fx", weights, np.array([p.ball for p in paths]))
+        rest = (np.einsum("fk,kf->f", weights, np.array([getattr(p, n) for p in paths])) for n in ("yaw", "pitch"))
+        sides.append(FootPath(ball, *rest, paths[0].down, paths[0].progress))
+    return sides[0], sides[1]
+
+
+def mixed_poses(skeleton: Skeleton, poses: Sequence[Poses], weights: Array) -> Poses:
+    """The mean of poses that have the same feet, each with its weight (f, k); legs end in the feet."""
+    rotations = quat.mean([p.rotations for p in poses], weights)
+    root = np.einsum("fk,kfx->fx", weights, np.array([p.root for p in poses]))
+    feet = [feet_of(skeleton, p.rotations, p.root) for p in poses]
+    places = np.einsum("fk,kfsx->fsx", weights, np.array([f.places for f in feet]))
+    turns = quat.mean([f.turns for f in feet], weights)
+    mean = Poses(*repinned(skeleton, (rotations, root), AnkleTracks(places, turns)))
+    whole = weights.max(axis=1) >= WHOLE  # there nothing is mixed
+    for k, pose in enumerate(poses):
+        own = whole & (weights[:, k] >= WHOLE)
+        mean.rotations[own], mean.root[own] = pose.rotations[own], pose.root[own]
+    return mean
+
+
+def mixed_bodies(bodies: Sequence[Trajectory], changes: Sequence[Span]) -> Trajectory:
+    """The mean of the body's paths in all states, each with the weight of its state at the same even times."""
+    first = bodies[0]
+    weights = state_weights(changes, first.times)
+    paths = {}
+    for name in _PATHS:
+        values = np.array([getattr(body, name) for body in bodies])
+        paths[name] = np.einsum("fk,kf...->f...", weights, values)
+    height = MixedHeight(tuple(body.mass_height for body in bodies), tuple(changes))
+    softened = tuple(dict.fromkeys(what for body in bodies for what in body.softened))
+    return replace(first, mass_height=height, softened=softened, hands=None, **paths)
+
+
+_PATHS = (
+    "mass", "ground", "height", "yaw", "chest_yaw", "head_yaw", "tilt", "reaching", "heels", "knees", "beat", "sway",
+    "listed", "arms",
+)  # fmt: skip

@@ -1,0 +1,193 @@
+"""How much of which style there is: one, a blend as `fierce:0.6,heavy:0.4`, and what changes by measures of a song."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from itertools import combinations
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.chart.model import TICKS_PER_MEASURE
+from dancetutor_cli.dance.physics.style import NEUTRAL, Style, load_style
+from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, Span, load_settings, state_weights
+from dancetutor_cli.run.errors import DancetutorError, UsageError
+from dancetutor_cli.run.reading import config_names, named_file
+from dancetutor_cli.run.yaml_files import read
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.timing import Timing
+
+Array = NDArray[np.float64]
+TOLERANCE = 1e-6  # by which weights may sum to more than 1: thirds that are written with six digits
+SHORTEST = 0.5  # seconds that a change lasts at least, where a warp leaves nothing of its measure
+
+
+@dataclass(frozen=True, slots=True)
+class Blend:
+    """Styles, and how much of each there is over a song. Pickles.
+
+    styles : s of them; states : before the first change, after it, ..., each s shares that sum to 1
+    changes : when each state turns into the next one, seconds, in order, apart from each other
+    """
+
+    styles: tuple[Style, ...]
+    states: tuple[tuple[float, ...], ...]
+    changes: tuple[Span, ...] = ()
+
+    @classmethod
+    def of(cls, style: Style) -> Blend:
+        """All of one style, all the time."""
+        return cls((style,), ((1.0,),))
+
+    def shares(self, times: Array) -> Array:
+        """How much (f, s) of each style there is at times (f,), seconds."""
+        return np.asarray(state_weights(self.changes, times) @ np.array(self.states))
+
+    def within(self, times: Array) -> tuple[list[Style], Array]:
+        """The styles that there are at some of the times (f,), the one with most first, and their shares (f, s)."""
+        shares = self.shares(times)
+        total = shares.sum(axis=0)
+        order = [int(k) for k in np.argsort(-total, kind="stable") if total[k] > 0.0]
+        return [self.styles[k] for k in order], shares[:, order]
+
+    def settings(self, motion: Path | None, form: str) -> MotionSettings | SettingsCourse:
+        """The numbers of the motion that it makes of a form and a file of changes, as `load_settings` takes them."""
+        numbers = [style.motion for style in self.styles]
+        states = tuple(load_settings(motion, form, tuple(zip(numbers, state, strict=True))) for state in self.states)
+        return states[0] if len(set(states)) == 1 else SettingsCourse(states, self.changes)
+
+
+@dataclass(frozen=True, slots=True)
+class StyleChoice:
+    """What `--style` names. styles, states : as in `Blend`; measures : of each change, at which it is complete"""
+
+    text: str
+    styles: tuple[Style, ...]
+    states: tuple[tuple[float, ...], ...]
+    measures: tuple[int, ...] = ()
+
+    def blend(self, timing: Timing | None = None) -> Blend:
+        """The blend in a song, which takes the measure before each change for it; UsageError where there is no song."""
+        if self.measures and timing is None:
+            raise UsageError(
+                f"style {self.text} changes by measures, and captured motion has none; name a style without 'measures'"
+            )
+        changes = []
+        for measure in self.measures:
+            assert timing is not None
+            ticks = np.array([measure - 1, measure], dtype=np.int64) * TICKS_PER_MEASURE
+            start, end = timing.seconds(ticks).tolist()
+            start = max(min(start, end - SHORTEST), changes[-1][1] if changes else -np.inf)
+            changes.append((start, max(end, start + SHORTEST)))
+        return Blend(self.styles, self.states, tuple(changes))
+
+
+@cache
+def load_choice(text: str) -> StyleChoice:
+    """What a `--style` names: NAME or FILE, or NAME:WEIGHT,NAME:WEIGHT; a file may change by measures.
+
+    Raises UsageError for what is no such text and for names that there are not, FileError with the line for a file that
+    is wrong.
+    """
+    parts = _parts(text)
+    changing = [style for style, _ in parts if style.measures]
+    if not changing:
+        return StyleChoice(text, *_states([parts]))
+    if len(parts) > 1:
+        raise UsageError(
+            f"style {changing[0].name} changes by measures and cannot be blended; write the blend in its file"
+        )
+    own, source = changing[0], read(named_file("styles", text))
+    blends, measures = [parts], sorted(own.measures)
+    for measure in measures:
+        try:
+            blends.append(_parts(own.measures[measure], source.path.parent))
+            if nested := [style.name for style, _ in blends[-1] if style.measures]:
+                raise UsageError(f"style {nested[0]} changes by measures itself; name another one")
+        except DancetutorError as error:
+            raise source.error(("measures", str(measure)), f"measures.{measure}: {error}") from error
+    if measures[0] == 0:
+        del blends[0], measures[0]
+    return StyleChoice(text, *_states(blends), tuple(measures))
+
+
+def style_sources(text: str) -> tuple[tuple[str | Path, float], ...]:
+    """What a `--style` is made of, for fingerprints: names of `configs/styles` and files, with their weights."""
+    out: list[tuple[str | Path, float]] = []
+    for name, weight in named_weights(text):
+        is_file = name not in config_names("styles")
+        out.append((Path(name) if is_file else name, weight))
+        if is_file:
+            for _, other in sorted(load_style(name).measures.items()):
+                own = ((_beside(one, Path(name).parent), share) for one, share in named_weights(other))
+                out += ((one if one in config_names("styles") else Path(one), share) for one, share in own)
+    return tuple(out)
+
+
+def named_weights(text: str) -> list[tuple[str, float]]:
+    """Names of styles and their weights in a `--style`, one with the weight 1. UsageError for what is no such text."""
+    parts = [part.strip() for part in text.split(",")]
+    if len(parts) == 1 or named_whole(text):
+        name, colon, weight = text.rpartition(":")
+        return [(name, _weight(text, weight))] if colon and _is_number(weight) else [(text, 1.0)]
+    out = []
+    for part in parts:
+        name, _, weight = part.rpartition(":")
+        if not name:
+            raise UsageError(f"style '{text}': give each style a weight, as fierce:0.6,heavy:0.4")
+        out.append((name, _weight(text, weight)))
+    return out
+
+
+def named_whole(text: str) -> bool:
+    """Whether a text is the name of one file, whatever signs it has."""
+    return text in config_names("styles") or Path(text).is_file()
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _weight(text: str, weight: str) -> float:
+    if not _is_number(weight) or not 0.0 < float(weight) <= 1.0:
+        raise UsageError(f"style '{text}': a weight must be a number above 0, at most 1, not '{weight}'")
+    return float(weight)
+
+
+def _beside(name: str, folder: Path | None) -> str:
+    """A name of `configs/styles`, or the path of a file, which may lie in a folder."""
+    beside = None if folder is None or name in config_names("styles") else folder / name
+    return str(beside) if beside is not None and beside.is_file() else name
+
+
+def _parts(text: str, folder: Path | None = None) -> list[tuple[Style, float]]:
+    """Styles with their shares, which sum to 1: what is missing is neutral. folder : where files may lie"""
+    parts = [(load_style(_beside(name, folder)), weight) for name, weight in named_weights(text)]
+    total = sum(weight for _, weight in parts)
+    if any(one is other for (one, _), (other, _) in combinations(parts, 2)):
+        raise UsageError(f"style '{text}' names one style twice; name each once")
+    if total > 1.0 + TOLERANCE:
+        raise UsageError(
+            f"style '{text}': the weights sum to {total:g}; they may sum to 1 at most, and what is missing is {NEUTRAL}"
+        )
+    if total < 1.0 - TOLERANCE:
+        return [*parts, (load_style(NEUTRAL), 1.0 - total)]
+    return [(style, weight / total) for style, weight in parts]
+
+
+def _states(blends: list[list[tuple[Style, float]]]) -> tuple[tuple[Style, ...], tuple[tuple[float, ...], ...]]:
+    """All styles of some blends, and how much of each there is in each of them."""
+    styles: list[Style] = []
+    for style, _ in (part for blend in blends for part in blend):
+        if not any(style is one for one in styles):
+            styles.append(style)
+    states = tuple(tuple(sum(w for one, w in blend if one is style) for style in styles) for blend in blends)
+    return tuple(styles), states
