@@ -155,11 +155,8 @@ def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) 
             )
         fastest, gone = without_unplayable(as_heard(play, one.chart.timing.at_rate(max(request.rates))), own)
         play = as_heard(fastest, timing)
-        settings = (
-            load_settings(request.motion, request.form)
-            if blend is None
-            else blend.settings(request.motion, request.form)
-        )
+        numbers = request.motion, request.form
+        settings = load_settings(*numbers) if blend is None else blend.settings(*numbers)
         plan, context = planned(
             timing, play, own, settings=settings, bar=request.bar, gait=request.gait, sides=side, let_go=gone
         )

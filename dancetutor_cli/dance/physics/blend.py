@@ -76,7 +76,7 @@ class StyleChoice:
             raise UsageError(
                 f"style {self.text} changes by measures, and captured motion has none; name a style without 'measures'"
             )
-        changes = []
+        changes: list[Span] = []
         for measure in self.measures:
             assert timing is not None
             ticks = np.array([measure - 1, measure], dtype=np.int64) * TICKS_PER_MEASURE
@@ -98,9 +98,8 @@ def load_choice(text: str) -> StyleChoice:
     if not changing:
         return StyleChoice(text, *_states([parts]))
     if len(parts) > 1:
-        raise UsageError(
-            f"style {changing[0].name} changes by measures and cannot be blended; write the blend in its file"
-        )
+        name = changing[0].name
+        raise UsageError(f"style {name} changes by measures and cannot be blended; write the blend in its file")
     own, source = changing[0], read(named_file("styles", text))
     blends, measures = [parts], sorted(own.measures)
     for measure in measures:

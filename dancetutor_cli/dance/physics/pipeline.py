@@ -99,7 +99,7 @@ def wishes_of(push: Sequence[str], trip: Sequence[float], rate: float = 1.0) -> 
 
 
 def through_ragdoll(motion: Motion, style: Style | Blend, wishes: Wishes = Wishes()) -> RagdollResult:
-    """Let the ragdoll of a style, or the mean of those of a blend, follow a motion of a skeleton with the dancer's joints.
+    """Let the ragdoll of a style follow a motion of a skeleton with the dancer's joints; of a blend, those of its styles.
 
     Joints without a body keep their turns, feet their places in the world, unless corrected; times stay, and contacts,
     unless she is pushed or caught so that she misses them: then the motion's notes say which.
@@ -217,9 +217,8 @@ def _mean_distances(runs: Sequence[Distances], shares: Array) -> Distances:
     names = tuple(name for name in first.names if all(name in one.names for one in runs))
     values = np.zeros((len(first.times), len(names)))
     for one, share in zip(runs, shares, strict=True):
-        values += (
-            share * np.array([np.interp(first.times, one.times, one.values[:, one.names.index(n)]) for n in names]).T
-        )
+        own = [one.values[:, one.names.index(name)] for name in names]
+        values += share * np.column_stack([np.interp(first.times, one.times, value) for value in own])
     return Distances(names, first.times, values)
 
 
