@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -34,8 +35,8 @@ _SIDED = {
     "Foot": ("talocrural", "foot ankle talocrural"),
     "Toes": ("metatarsal", "toes toe toebase ball metatarsal midtarsal"),
     "Shoulder": ("sternoclavicular", "shoulder clavicle collar collarbone scapula sternoclavicular"),
-    "UpperArm": ("shoulder", "arm upperarm uparm armupper shldr humerus"),
-    "LowerArm": ("elbow", "forearm lowerarm armlower elbow radius"),
+    "UpperArm": ("shoulder", "arm upperarm uparm uarm armupper shldr humerus"),
+    "LowerArm": ("elbow", "forearm lowerarm farm armlower elbow radius"),
     "Hand": ("radiocarpal", "hand wrist radiocarpal"),
     "Eye": ("eyeball_joint", "eye"),
 }
@@ -50,6 +51,7 @@ _PREFIX = re.compile(r"(mixamorig\d*|character\d+|(valvebiped)?bip\d+|ccbase|def
 _ASF = frozenset({"femur", "tibia", "foot", "toes", "clavicle", "humerus", "radius", "wrist", "hand"})
 # and of MakeHuman's and Daz's CMU conversions: rshoulder
 _ASF |= {"collar", "shldr", "shoulder", "elbow", "forearm", "thigh", "hip", "knee", "shin", "ankle", "toe"}
+_ASF |= {"uarm", "farm"}  # of OptiTrack's Motive: LUArm, LFArm
 # of MikuMikuDance, whose standard bones have Japanese names; 左 and 右 come first
 _MMD = {
     "センター": "center",
@@ -64,6 +66,7 @@ _MMD_SIDED |= {"足首": "foot", "つま先": "toe"}
 _LIMBS = {"Leg": ("UpperLeg", "LowerLeg", "Foot", "Toes"), "Arm": ("Shoulder", "UpperArm", "LowerArm", "Hand")}
 _OLD = {"talocrural": "ankle", "radiocarpal": "wrist", "metatarsal": "midtarsal"}  # H-Anim's names before version 2
 _PAIRED = ("UpperLeg", "LowerLeg", "Foot", "UpperArm", "LowerArm", "Hand")
+SHARED = 0.8  # part of all names from which a word that they share says nothing
 REQUIRED = ("hips", "spine", "head", *(side + bone for side in ("left", "right") for bone in _PAIRED))
 
 
@@ -189,6 +192,8 @@ def words_of(name: str) -> tuple[str, str]:
         return "", _MMD[plain]
     if plain[:1] in ("左", "右"):
         return "left" if plain[0] == "左" else "right", _MMD_SIDED.get(plain[1:], "")
+    if plain[:-2] in _MMD_SIDED and plain[-2:] in (".L", ".R", "_L", "_R"):  # as Blender's mmd_tools have them
+        return "left" if plain[-1] == "L" else "right", _MMD_SIDED[plain[:-2]]
     name = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     tokens = [t for t in re.split(r"[^A-Za-z0-9]+", name) if t]
     tokens = [t.lower() for t in tokens]
@@ -211,7 +216,7 @@ def words_of(name: str) -> tuple[str, str]:
 
 def _from_names(nodes: Nodes, order: list[int]) -> dict[str, int]:
     """Bones among the nodes `order`, by the words of their names."""
-    words = {i: words_of(name) for i, name in _unnumbered({i: nodes.names[i] for i in order}).items()}
+    words = {i: words_of(name) for i, name in _without_shared(_unnumbered({i: nodes.names[i] for i in order})).items()}
     rigify = _rigify_spine(words)
     bones: dict[str, int] = dict(rigify)
     for i in order:
@@ -234,6 +239,19 @@ def _unnumbered(names: dict[int, str]) -> dict[int, str]:
     return {i: re.sub(r"_\d+$", "", name) for i, name in names.items()}
 
 
+def _without_shared(names: dict[int, str]) -> dict[int, str]:
+    """The names without name spaces (`Sarah:`), and without first and last words that most share (`B_`, `_JNT`)."""
+    plain = {i: re.split(r"[:|]", name)[-1] or name for i, name in names.items()}
+    for shared in (r"^[^\W_]+[\W_]+(?=.)", r"(?<=.)[\W_]+[^\W_]+$"):
+        while True:
+            ends = {i: found[0] for i, name in plain.items() if (found := re.search(shared, name))}
+            most, count = Counter(ends.values()).most_common(1)[0] if ends else ("", 0)
+            if count < max(5, SHARED * len(plain)):
+                break
+            plain = {i: re.sub(shared, "", name) if ends.get(i) == most else name for i, name in plain.items()}
+    return plain
+
+
 def _complete(nodes: Nodes, words: dict[int, tuple[str, str]], bones: dict[str, int]) -> None:
     """Bones whose names mean another one elsewhere, by their place: a thigh called leg, an arm called shoulder."""
     knees = {side: i for i, (side, word) in reversed(words.items()) if word in ("knee", "shin", "calf")}
@@ -248,10 +266,28 @@ def _complete(nodes: Nodes, words: dict[int, tuple[str, str]], bones: dict[str, 
                 bones[f"{side}{upper}"] = above
         if bones.get(f"{side}Shoulder") == bones.get(f"{side}UpperArm", -1):
             del bones[f"{side}Shoulder"]
+    _complete_tips(nodes, words, bones)
     tops = [bones[b] for b in ("leftUpperLeg", "rightUpperLeg", "head") if b in bones]
     if "hips" not in bones and len(tops) == 3:
         shared = [n for n in _above(nodes, tops[0]) if all(n in _above(nodes, top) for top in tops)]
         bones.update({"hips": shared[0]} if shared else {})
+
+
+def _complete_tips(nodes: Nodes, words: dict[int, tuple[str, str]], bones: dict[str, int]) -> None:
+    """Hands, feet and head that are no joints of their own: the tips of forearms, shanks and neck; or face or neck."""
+    faces = [i for i, word in words.items() if word == ("", "face")]
+    if "head" not in bones and faces:
+        bones["head"] = faces[0]
+    tips = [(f"{side}{below}", f"{side}{bone}") for side in ("left", "right")
+            for below, bone in (("LowerArm", "Hand"), ("LowerLeg", "Foot"))]  # fmt: skip
+    for above, bone in (*tips, ("neck", "head")):
+        if bone in bones or above not in bones:
+            continue
+        named = {f"{nodes.names[bones[above]]}{end}" for end in (" end", "_end")}
+        found = [i for i in words if int(nodes.parents[i]) == bones[above] and nodes.names[i] in named]
+        bones.update({bone: found[0]} if found else {})
+    if "head" not in bones and "neck" in bones:
+        bones["head"] = bones.pop("neck")
 
 
 def _is_second(plain: str) -> bool:

@@ -41,17 +41,18 @@ class _Joint:
     end: tuple[float, float, float] | None = None
 
 
-def read_bvh(path: Path, scale: float | None = None) -> Motion:
+def read_bvh(path: Path, scale: float | None = None, ends: bool = False) -> Motion:
     """The motion in a BVH file.
 
     Parameters
     ----------
     path : the file
     scale : metres per unit of the file; None takes the unit of `UNITS` that makes the skeleton most like a human
+    ends : whether End Sites become joints, named as their joint and " end"
 
     Returns
     -------
-    Motion with the file's own skeleton (without End Sites), time 0 at the first frame, no contacts. Where hips move
+    Motion with the file's own skeleton, time 0 at the first frame, no contacts. Where hips move
     under a root, they are joint 0, with all that the root does. Other bones keep their median place; a note says which
 
     Raises
@@ -62,6 +63,8 @@ def read_bvh(path: Path, scale: float | None = None) -> Motion:
     joints, at = _hierarchy(path, lines)
     values, frame_time = _frames(path, lines, at, sum(len(j.channels) for j in joints))
     scale = _scale(joints) if scale is None else scale
+    if ends:
+        joints += [_Joint(f"{one.name} end", j, one.end) for j, one in enumerate(joints) if one.end is not None]
     rotations, moved = _channels_of(joints, values)
     base = _moving_base(joints, moved)
     root, first = _carried(joints, base, rotations, moved)

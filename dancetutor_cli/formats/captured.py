@@ -41,7 +41,7 @@ def read_captured(path: Path, animation: str | None = None) -> CapturedMotion:
         raise UsageError(f"{path}: the name of a motion must end in {one_of(SUFFIXES)}")
     if suffix in (".glb", ".vrm"):
         return _of_container(read_container(path), animation)
-    return of_motion(path, read_bvh(path) if suffix == ".bvh" else read_npz(path))
+    return of_motion(path, read_bvh(path, ends=True) if suffix == ".bvh" else read_npz(path))
 
 
 def of_motion(path: Path, motion: Motion) -> CapturedMotion:
@@ -79,7 +79,9 @@ def _of_container(container: Container, wanted: str | None) -> CapturedMotion:
     place = np.argsort(order)
     parents = np.array([-1 if nodes.parents[n] < 0 else place[nodes.parents[n]] for n in order], dtype=np.int32)
     rate = (len(times) - 1) / float(times[-1] - times[0])
-    names = tuple(nodes.names[n] for n in order)
+    items = container.items("nodes")
+    skinned = bool(container.items("skins"))  # then a mesh may be called Head, and moves nothing
+    names = tuple("" if skinned and "mesh" in items[n] else nodes.names[n] for n in order)
     rest = (rest_places[0, order], rest_turns[0, order])
     return CapturedMotion(container.path, names, parents, *rest, rate, times, places[:, order], turns[:, order])
 

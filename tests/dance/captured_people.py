@@ -43,6 +43,16 @@ NAMES = {
     "biped": "Bip01 Bip01_Spine Bip01_Spine1 Bip01_Spine2 Bip01_Neck Bip01_Head"
     "|Clavicle UpperArm Forearm Hand|Thigh Calf Foot Toe0|L R|Bip01_{}_{}",
     "mmd": "センター 上半身 - 上半身2 首 頭|肩 腕 ひじ 手首|足 ひざ 足首 つま先|左 右|{}{}",
+    "mmd_tools": "センター 上半身 - 上半身2 首 頭|肩 腕 ひじ 手首|足 ひざ 足首 つま先|L R|{1}.{0}",
+    "motive": "Hip Ab - Chest Neck Head|Shoulder UArm FArm Hand|Thigh Shin Foot Toe|L R|{}{}",
+    "name space": "Sarah:Hips Sarah:Spine Sarah:Spine1 Sarah:Spine2 Sarah:Neck Sarah:Head"
+    "|Shoulder Arm ForeArm Hand|UpLeg Leg Foot ToeBase|Left Right|Sarah:{}{}",
+    "prefix": "B_Hips B_Spine1 B_Spine2 B_Spine4 B_Neck B_Head"
+    "|Clavicle UpperArm ForeArm Hand|Hip Knee Ankle Toe|Left Right|B_{1}_{0}",
+    "two prefixes": "CC_Base_Hip CC_Base_Waist CC_Base_Spine01 CC_Base_Spine02 CC_Base_NeckTwist01 CC_Base_Head"
+    "|Clavicle Upperarm Forearm Hand|Thigh Calf Foot ToeBase|L R|CC_Base_{}_{}",
+    "suffix": "hips_JNT spine_JNT spine1_JNT spine2_JNT neck_JNT head_JNT"
+    "|shoulder arm forearm hand|upleg leg foot toebase|l r|{}_{}_JNT",
     "hanim": "HumanoidRoot vl5 vt10 vt4 vc4 skullbase"
     "|sternoclavicular shoulder elbow wrist|hip knee ankle midtarsal|l r|{}_{}",
 }
@@ -77,6 +87,16 @@ def renamed(given: Motion, naming: str) -> Motion:
     return replace(
         given, skeleton=skeleton, rotations=local_rotations(skeleton, world[:, keep]), root=places[:, keep[0]]
     )
+
+
+def without(motion: Motion, names: tuple[str, ...]) -> Motion:
+    """The motion without these joints, which must carry none but each other."""
+    ours = motion.skeleton
+    keep = [k for k, name in enumerate(ours.names) if name not in names]
+    place = {k: n for n, k in enumerate(keep)}
+    parents = np.array([place.get(int(ours.parents[k]), -1) for k in keep], dtype=np.int32)
+    skeleton = Skeleton(tuple(ours.names[k] for k in keep), parents, ours.offsets[keep])
+    return replace(motion, skeleton=skeleton, rotations=motion.rotations[:, keep])
 
 
 def rested(motion: Motion, turns: Array) -> Motion:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import pairwise
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from captured_people import (
     renamed,
     rested,
     turned,
+    without,
     write_under_root,
     zero_frames,
     zero_pose,
@@ -89,6 +91,28 @@ def test_hips_under_a_root_move(tmp_path: Path) -> None:
     one, two = read_on_dancer(plain), read_on_dancer(under)
     assert np.abs(one.root - two.root).max() < 1e-6 and np.ptp(two.root[:, 0]) > 0.04
     assert np.degrees(quat.angle_between(one.rotations, two.rotations)).max() < 1e-3
+
+
+@pytest.mark.parametrize("head", ["face", "", "neck"])
+def test_hands_and_heads_may_be_tips_of_other_bones(head: str, tmp_path: Path) -> None:
+    """As FreeMoCap has them: the forearm's End Site is the wrist, and there is a face, the neck's end or nothing."""
+    truth, path = phrase(1.0), tmp_path / "x.bvh"
+    given = renamed(truth, "unreal")
+    cut = ("hand_l", "hand_r", *([] if head == "face" else ["head"]))
+    offsets = dict(zip(given.skeleton.names, given.skeleton.offsets, strict=True))
+    write_bvh(path, without(given, cut), units_per_metre=100.0)
+    text = path.read_text().replace("JOINT head", "JOINT face")
+    for name, tip in (("lowerarm_l", "hand_l"), ("lowerarm_r", "hand_r"), *([("neck_01", "head")] if not head else [])):
+        at = text.index("End Site", text.index(f"JOINT {name}"))
+        line = text.index("OFFSET", at)
+        place = " ".join(f"{x:.6f}" for x in 100.0 * offsets[tip])
+        text = f"{text[:line]}OFFSET {place}{text[text.index(chr(10), line):]}"
+    if head == "neck":  # and no tip either
+        start = text.index("JOINT neck_01")
+        text = text[:start] + re.sub(r"End Site\s*\{[^}]*\}", "", text[start:], count=1)
+    path.write_text(text)
+    off = degrees_apart(read_on_dancer(path), truth)
+    assert off[1:].max() < 6.0 and off[0] < (25.0 if head == "neck" else 6.0)  # 0: the neck
 
 
 @pytest.mark.parametrize("kind", ["same", "T", "x"])
