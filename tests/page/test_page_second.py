@@ -149,7 +149,7 @@ def test_without_script_a_sentence_stands(opened: Browser, page_file: Path) -> N
 def lanes_at(browser: Browser) -> tuple[list[float], float]:
     """The middles of the lanes and their height."""
     x, y, w, h = browser.box(".lanes")
-    words = min(max((0.34 if w > 200 else 0.24) * w, 46), 80)
+    words = min(max(0.34 * w, 46), 80) if w > 200 else 8
     lane = min(72, (w - 22 - words) / 4)
     left = x + 22 + 0.28 * (w - 22 - words - 4 * lane)
     return [left + (k + 0.5) * lane for k in range(4)], y + h / 2

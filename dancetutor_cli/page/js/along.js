@@ -41,11 +41,11 @@ export function alongPanel(app) {
   show();
   refresh();
   return el("div", {},
-    el("p", { class: "hint" }, t("alongHint")), el("p", { class: "group" }, along, wait, coach), score,
-    el("p", { class: "hint" }, t("windows", { good: 1000 * GOOD, wide: 1000 * WINDOW })),
+    el("div", { class: "modes" }, along, wait, coach), el("p", { class: "hint" }, t("alongHint")), score,
+    keys, pads, el("div", { class: "modes two" }, assign, calibrate),
     el("p", { class: "field whole" }, el("label", { for: "foot" }, t("foot")), foot),
     el("p", { class: "field whole" }, el("label", { for: "feet-help" }, t("feetHelp")), help),
-    keys, pads, el("p", { class: "group" }, assign, calibrate), el("p", { class: "hint" }, t("padHint")));
+    el("p", { class: "hint" }, t("windows", { good: 1000 * GOOD, wide: 1000 * WINDOW })), el("p", { class: "hint" }, t("padHint")));
 }
 
 /** Press a key or button for each panel in turn. @param {import("./app.js").App} app @param {() => void} done */

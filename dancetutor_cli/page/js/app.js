@@ -136,12 +136,27 @@ export class App {
 
   async play() {
     if (this.transport.playing) return this.transport.pause();
+    const opened = !this.played && !this.transport.loop && this.transport.at > this.opening && this.transport.at < this.chart.first;
+    if (opened) this.transport.seek(this.opening); // time to get ready
     this.played = true;
     this.notice = "";
     await this.sound.start();
     this.transport.play();
     if (this.practice.along) this.practice.restart(this.transport.second()); // from the start again after the end
     this.practice.updateHold();
+  }
+
+  /** From the beginning, without a loop. */
+  async begin() {
+    this.setLoop(null, null);
+    this.transport.pause();
+    this.seek(this.opening);
+    await this.play();
+  }
+
+  /** Where whoever plays begins: a little before the first step. */
+  get opening() {
+    return Math.max(this.start, this.chart.first - 2);
   }
 
   /** @param {number} second */

@@ -150,9 +150,9 @@ export function makeBar(app, ui) {
       button("measureBack", "«", () => app.stepMeasure(-1), "⇧←"), button("rowBack", "◂", () => app.step(-1), "←"), play,
       button("rowOn", "▸", () => app.step(1), "→"), button("measureOn", "»", () => app.stepMeasure(1), "⇧→")),
     el("div", { class: "group place" }, where),
-    el("div", { class: "group extra" }, button("slower", "−", () => app.setRate(transport.rate - 0.05), "↓"), rate,
+    el("div", { class: "group extra" }, el("span", { class: "name", "aria-hidden": "true" }, t("speedName")), button("slower", "−", () => app.setRate(transport.rate - 0.05), "↓"), rate,
       button("faster", "+", () => app.setRate(transport.rate + 0.05), "↑"), rateText),
-    el("div", { class: "group extra" }, button("loopA", "A", () => app.loopHere("a"), "["), button("loopB", "B", () => app.loopHere("b"), "]"),
+    el("div", { class: "group extra" }, el("span", { class: "name", "aria-hidden": "true" }, t("loopName-bar")), button("loopA", "A", () => app.loopHere("a"), "["), button("loopB", "B", () => app.loopHere("b"), "]"),
       clear),
     el("div", { class: "group extra" }, ...toggles.map((one) => one.button)),
     el("div", { class: "group last" }, more, button("helpSheet", "?", () => ui.help(), "?")));

@@ -63,7 +63,8 @@ export class Highway {
     if (this.canvas.height !== height) this.canvas.height = height;
     const { columns, beats } = this.chart;
     const numbers = (8 + 7 * String(beats.length >> 2).length) * ratio; // room left of the lanes, for the last measure's number
-    const words = clamp((columns > 5 ? 0.12 : width > 200 * ratio ? 0.34 : 0.24) * width, 46 * ratio, 80 * ratio); // and right of them
+    const wide = width > 200 * ratio; // else there is no room for words, and lanes are worth more
+    const words = wide ? clamp((columns > 5 ? 0.12 : 0.34) * width, 46 * ratio, 80 * ratio) : 8 * ratio; // and right of them
     const lane = Math.min((width - numbers - words) / columns, 72 * ratio);
     const left = numbers + 0.28 * (width - numbers - words - lane * columns);
     return { ratio, width, height, lane, left, receptor: Math.max(0.11 * height, 0.62 * lane), size: 0.92 * lane };
@@ -82,7 +83,7 @@ export class Highway {
     const y = (/** @type {number} */ second) => m.receptor + (second - scene.second) * scene.speed * m.height;
     const until = scene.second + (m.height - m.receptor + m.lane) / (scene.speed * m.height);
     const from = scene.second - (m.receptor + m.lane) / (scene.speed * m.height);
-    c.fillStyle = style.background;
+    c.fillStyle = GROUND;
     c.fillRect(0, 0, m.width, m.height);
     this.drawLanes(m);
     if (scene.loop) {
@@ -105,15 +106,18 @@ export class Highway {
       this.drawNote(n, m, scene, y);
     }
     this.drawLabels(m, y, from, until);
-    if (feedback) drawWord(c, feedback.verdict, this.words[feedback.verdict], m.left + 0.5 * m.lane * chart.columns, m.receptor + 1.1 * m.lane, m.ratio);
+    if (!feedback) return;
+    const middle = m.left + 0.5 * m.lane * chart.columns;
+    drawWord(c, feedback.verdict, this.words[feedback.verdict], middle, m.receptor + 1.1 * m.lane, m.ratio);
+    if (feedback.run >= RUN) drawWord(c, feedback.verdict, String(feedback.run), middle, m.receptor + 1.1 * m.lane + 30 * m.ratio, 1.5 * m.ratio);
   }
 
   /** @param {ReturnType<Highway["measure"]>} m */
   drawLanes(m) {
     const c = this.context;
-    c.fillStyle = "rgba(255, 255, 255, 0.035)";
+    c.fillStyle = this.style.background;
     c.fillRect(m.left, 0, m.lane * this.chart.columns, m.height);
-    c.fillStyle = "rgba(255, 255, 255, 0.08)";
+    c.fillStyle = "rgba(255, 255, 255, 0.1)";
     for (let k = 0; k <= this.chart.columns; ++k) c.fillRect(Math.round(m.left + k * m.lane), 0, m.ratio, m.height);
   }
 
@@ -278,6 +282,8 @@ export function linesOf(text, fits) {
 }
 
 const LEAST = 12; // pixels of the smallest words
+const RUN = 4; // notes in a row from which their number is shown
+const GROUND = "#171a30"; // beside the lanes: that of the panels
 const SLOWEST = 0.42; // canvas heights a second
 const FASTEST = 1.2; // what comes quicker cannot be read
 const APART = 0.085; // heights between the rows of a chart's quick parts: about a note's

@@ -7,7 +7,8 @@ import { el } from "./dom.js";
 import { findingsPanel, passagesPanel, settingsPanel } from "./panels.js";
 import { resultsPanel } from "./results.js";
 import { CAMERAS, FIRST_VIEW } from "./settings.js";
-import { besideCaption, besideText, countOf, musicText, saidOf } from "./said.js";
+import { resultCard, standing } from "./scores.js";
+import { besideCaption, besideText, countOf, musicText, quiet, saidOf } from "./said.js";
 
 /**
  * @typedef {object} Canvases what is drawn on; it stays when the words change
@@ -54,20 +55,21 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
     el("p", { class: `caption ${k ? "right" : "left"}` }, who, el("span", {}, rows && ` (${rows})`)));
   const count = el("p", { class: "count", "aria-hidden": "true" }); // it is heard too
   for (const old of stage.querySelectorAll(":scope > :not(canvas)")) old.remove();
-  stage.append(cameraButtons(app), count, ...captions);
+  stage.append(cameraButtons(app), count, ...captions, standing(app), resultCard(app));
   const note = el("p", { class: "unseen", role: "status" });
   app.listeners.add((what) => { if (what === "feet") note.textContent = app.chosen >= 0 ? noteText(app, app.chosen) : ""; });
   const root = /** @type {HTMLElement} */ (document.getElementById("app"));
   const main = el("main", { class: app.chart.columns > 5 ? "wide" : "" }, stage, el("section", { class: "notes", "aria-label": t("notes") }, lanes, note), tabs.side);
   root.replaceChildren(
-    el("header", {}, el("h1", {}, words.title), badge, el("p", {}, about.filter(Boolean).join(" · ")), app.doc.pair ? players(style) : null),
-    el("div", { class: "status" }, said, pick),
+    el("header", {}, el("div", { class: "song" }, el("h1", {}, words.title), badge, app.doc.pair ? players(style) : null,
+      el("p", { class: "about" }, about.filter(Boolean).join(" · "))), said, pick),
     main, el("footer", {}, el("div", { class: "place-in-song" }, strip, makeZoom(app, ui)), makeBar(app, ui)));
   if (open) tabs.choose(open);
   app.highway?.speak(t);
   app.listeners.add((what) => {
     if (what !== "frame") return;
     said.textContent = said.title = saidOf(app);
+    said.classList.toggle("quiet", quiet(app));
     count.textContent = countOf(app);
     pick.hidden = app.sound.music !== null;
     pick.title = musicText(app);

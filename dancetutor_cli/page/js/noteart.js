@@ -142,7 +142,7 @@ export function drawMarker(c, { limb, colour, changed }, x, y, size) {
   c.fillText(right ? "R" : "L", x, y + 0.04 * size);
 }
 
-const COLOURS = /** @type {Record<string, string>} */ ({ hit: "#6fe38a", early: "#ffc857", late: "#ffa14a", miss: "#ff6b6b", wrong: "#ff6b6b" });
+export const COLOURS = /** @type {Record<string, string>} */ ({ hit: "#6fe38a", early: "#ffc857", late: "#ffa14a", miss: "#ff6b6b", wrong: "#ff6b6b" });
 export const VERDICTS = Object.keys(COLOURS);
 
 /**

@@ -13,7 +13,7 @@ export function passagesPanel(app) {
   const list = el("ol", { class: "cards" });
   const buttons = doc.passages.map((passage, k) => {
     const button = el("button", { type: "button", class: "card", "aria-pressed": "false", onclick: () => void app.loopPassage(k) },
-      el("strong", {}, `${passage.number}. ${stretch(t, passage.from, passage.to)}`),
+      el("strong", {}, el("span", { class: "number" }, `${passage.number}`), el("span", {}, stretch(t, passage.from, passage.to))),
       el("span", { class: "figure" }, t("rate", { rate: Math.round(10 * passage.rate) / 10 })),
       el("span", { class: "text" }, passage.sentence[language] ?? passage.sentence.en),
       passage.again.length ? el("span", { class: "text" }, t("again", { where: passage.again.map((/** @type {[number, number]} */ one) => stretch(t, ...one)).join("; ") })) : null,
@@ -34,7 +34,21 @@ export function passagesPanel(app) {
     });
   });
   const empty = doc.passages.length ? null : el("p", {}, t("noPassages"));
-  return el("div", {}, el("p", { class: "hint" }, t("passagesHint")), empty, list, loopsPart(app));
+  return el("div", {}, startPart(app), el("h3", {}, t("passagesTitle")), el("p", { class: "hint" }, t("passagesHint")), empty, list, loopsPart(app));
+}
+
+/** The three ways to begin. @param {import("./app.js").App} app */
+function startPart(app) {
+  const { t, practice } = app;
+  const begin = (/** @type {boolean} */ along) => {
+    practice.setAlong(along);
+    void app.begin();
+  };
+  const ways = /** @type {[string, string, string, () => void][]} */ ([
+    ["watch", "▶", t("watch"), () => begin(false)], ["step", "✥", t("along"), () => begin(true)], ["coached", "↻", t("coach"), () => void practice.coach.start()],
+  ]);
+  return el("div", { class: "ways", role: "group", "aria-label": t("waysTitle") }, ...ways.map(([name, sign, text, run]) =>
+    el("button", { type: "button", class: `way ${name}`, onclick: run }, el("span", { class: "icon", "aria-hidden": "true" }, sign), el("strong", {}, text), el("span", { class: "text" }, t(`way-${name}`)))));
 }
 
 /**

@@ -8,7 +8,7 @@ import { FEET, HELPS } from "./settings.js";
 const STRAY = 5000; // milliseconds that the keys are said
 const SHOWN = 700; // milliseconds that a verdict stands beside the receptors
 
-/** @typedef {{verdict: string, column: number, at: number}} Feedback of the last press, or of a miss (column -1); at: ms */
+/** @typedef {{verdict: string, column: number, at: number, run: number}} Feedback of the last press, or of a miss (column -1); at: ms; run: notes in a row */
 
 const EARLY = 0.2; // seconds before a row from which its press counts while the clock waits for rows
 
@@ -32,6 +32,8 @@ export class Practice {
     this.strayAt = 0; // milliseconds
     /** @type {Feedback | null} */
     this.feedback = null;
+    this.run = 0; // notes in a row without a miss or a wrong press
+    this.longest = 0; // the longest such run
   }
 
   /** What was hit in the loop, or in all. */
@@ -125,6 +127,8 @@ export class Practice {
   restart(second) {
     const { loop } = this.app.transport;
     this.over = null;
+    this.run = 0;
+    if (!loop) this.longest = 0;
     this.keep();
     this.judge.restart(loop && second < loop.b ? Math.max(second, loop.a) : second);
     this.app.tell("hits");
@@ -166,7 +170,10 @@ export class Practice {
 
   /** A verdict is shown for a moment. @param {string | null} verdict null: neither here nor there @param {number} column */
   show(verdict, column) {
-    if (verdict) this.feedback = { verdict, column, at: performance.now() };
+    if (!verdict) return;
+    this.run = verdict === "miss" || verdict === "wrong" ? 0 : this.run + 1;
+    this.longest = Math.max(this.longest, this.run);
+    this.feedback = { verdict, column, at: performance.now(), run: this.run };
   }
 
   /** The verdict that is shown now; what is no longer is forgotten. */

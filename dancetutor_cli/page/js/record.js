@@ -9,6 +9,7 @@ const MOST = { days: 1000, rows: 20000, loops: 50, best: 500, charts: 2000, name
 export const LARGEST = 4_000_000; // bytes of a file that is taken in
 const FORMAT = "dancetutor-practice";
 const APART = 1; // measures between missed rows of one stretch
+const LONGEST = 4; // measures of one stretch: what is longer is practised in parts
 const LOWEST = 0.25;
 const FIRST = 0.6; // the speed of what was never passed
 
@@ -95,7 +96,7 @@ export function missedOf(record, rows, most = 6) {
     if (!own?.missed) continue;
     const measure = Math.floor(beat / 4 + 1e-6);
     const last = out[out.length - 1];
-    if (last && measure <= last.to / 4 + APART - 1 + 1e-6) [last.to, last.misses] = [4 * (measure + 1), last.misses + 1];
+    if (last && measure <= last.to / 4 + APART - 1 + 1e-6 && measure < last.from / 4 + LONGEST) [last.to, last.misses] = [4 * (measure + 1), last.misses + 1];
     else out.push({ from: 4 * measure, to: 4 * (measure + 1), misses: 1, rate: FIRST });
   }
   for (const one of out) {
@@ -103,6 +104,28 @@ export function missedOf(record, rows, most = 6) {
     if (passed.length) one.rate = clamp(Math.min(...passed) / 100, LOWEST, 1);
   }
   return out.sort((a, b) => b.misses - a.misses || a.from - b.from).slice(0, most);
+}
+
+/**
+ * Share of missed notes through the song, of left and right foot, in parts of as many measures each.
+ * @param {PracticeRecord} record @param {import("./chart.js").Row[]} rows @param {number} [most] parts
+ * @returns {[number, number][]} percent
+ */
+export function missesThrough(record, rows, most = 48) {
+  const count = rows.length ? Math.floor(rows[rows.length - 1].beat / 4 + 1e-6) + 1 : 0;
+  const long = Math.ceil(count / most) || 1;
+  const sums = Array.from({ length: Math.ceil(count / long) }, () => [0, 1].map(() => ({ tries: 0, misses: 0 })));
+  for (const { row, beat, steps } of rows) {
+    const own = record.rows[row];
+    if (!own) continue;
+    for (const { limb } of steps) {
+      const sum = sums[Math.floor(Math.floor(beat / 4 + 1e-6) / long)][limb];
+      if (!sum) continue;
+      sum.tries += own.tries;
+      sum.misses += own.misses;
+    }
+  }
+  return sums.map((feet) => /** @type {[number, number]} */ (feet.map(({ tries, misses }) => Math.round((100 * misses) / Math.max(tries, 1)))));
 }
 
 /**

@@ -2,7 +2,7 @@
 
 import { bars, download, el, toggle } from "./dom.js";
 import { placeOf, stretch } from "./places.js";
-import { BIN, BINS, LARGEST, dayOf, fromFile, hitShare, missedOf, streakOf, toFile } from "./record.js";
+import { BIN, BINS, LARGEST, dayOf, fromFile, hitShare, missedOf, missesThrough, streakOf, toFile } from "./record.js";
 import { allRecords, loadRecord, saveRecord, takeRecords } from "./settings.js";
 
 const DAYS = 14; // that are shown
@@ -30,7 +30,7 @@ export function resultsPanel(app) {
   const show = () => {
     coach.setAttribute("aria-pressed", String(practice.coach.on));
     const today = app.record.days.find(({ day }) => day === dayOf(new Date()));
-    body.replaceChildren(...(app.record.days.length ? [summary(app), histogram(app, today), missed(app), rowsOf(app), days(app)] : [el("p", {}, t("noResults"))]));
+    body.replaceChildren(...(app.record.days.length ? [summary(app), histogram(app, today), missed(app), through(app), rowsOf(app), days(app)] : [el("p", {}, t("noResults"))]));
   };
   app.listeners.add((what) => {
     if (["record", "coach", "settings", "pass", "along"].includes(what)) show();
@@ -75,7 +75,7 @@ function histogram({ t, record, doc }, today) {
   });
   const edge = BIN * (BINS >> 1);
   return el("figure", {}, el("figcaption", {}, t(today ? "histogramToday" : "histogramAll")),
-    bars(feet, doc.style.limbs, `${about.join("; ")}`),
+    bars(feet, doc.style.limbs, `${about.join("; ")}`, undefined, "timing"),
     el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, t("early", { ms: edge })), el("span", {}, "0"), el("span", {}, t("late", { ms: edge }))),
     el("p", { class: "legend" }, ...about.map((text, foot) => {
       const sign = el("span", { "aria-hidden": "true" }, "■ ");
@@ -93,6 +93,15 @@ function missed(app) {
     el("button", { type: "button", class: "card missed", onclick: () => void app.loopBeats(one.from, one.to, one.rate) },
       el("strong", {}, stretch(t, one.from / 4, one.to / 4)), el("span", { class: "figure" }, `${Math.round(100 * one.rate)} %`),
       el("span", { class: "text" }, t("missedRows", { count: one.misses })))))));
+}
+
+/** Where in the song notes were missed, by foot. @param {import("./app.js").App} app */
+function through({ t, record, chart, doc }) {
+  const shares = missesThrough(record, chart.rows);
+  const last = Math.floor((chart.rows[chart.rows.length - 1]?.beat ?? 0) / 4 + 1e-6);
+  const title = t("throughTitle");
+  return el("figure", {}, el("figcaption", {}, title), bars([0, 1].map((foot) => shares.map((one) => one[foot])), doc.style.limbs, title, 100, "low"),
+    el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, t("oneMeasure", { from: 0 })), el("span", {}, t("oneMeasure", { from: last }))));
 }
 
 /** Rows that went wrong most often. @param {import("./app.js").App} app */

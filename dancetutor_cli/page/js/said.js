@@ -16,6 +16,9 @@ export function saidOf(app) {
   return told || (!app.played && !sound.music ? musicText(app) : "");
 }
 
+/** Whether nothing happens that is worth a look: only that there is no music. @param {import("./app.js").App} app */
+export const quiet = (app) => !app.notice && !app.practice.along && !app.transport.loop;
+
 /** Whether there is music, and whose; told in the same words wherever it is asked. @param {import("./app.js").App} app */
 export function musicText(app) {
   const { t, sound, musicName, musicBad } = app;

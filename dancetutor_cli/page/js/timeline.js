@@ -133,10 +133,15 @@ export class Timeline {
     const wide = this.density.length ? (x(this.density[0].end) - x(this.density[0].start)) / ratio : NARROW;
     for (const bar of together(this.density, Math.ceil(NARROW / Math.max(wide, 0.01)))) {
       if (bar.end < this.view.from || bar.start > this.view.to) continue;
-      c.fillStyle = bar.end <= second ? "#5b66b8" : "#3c447f";
-      const tall = (bar.rate / most) * (bars - 10 * ratio);
-      c.fillRect(x(bar.start), bars - tall, Math.max(1, x(bar.end) - x(bar.start) - ratio), tall);
+      c.fillStyle = heat(bar.rate / most);
+      c.globalAlpha = bar.end <= second ? 1 : 0.62; // what was played is lighter
+      const tall = (bar.rate / most) * (bars - 16 * ratio);
+      const wider = Math.max(1, x(bar.end) - x(bar.start) - ratio);
+      c.beginPath();
+      c.roundRect(x(bar.start), bars - tall, wider, tall, Math.min(2 * ratio, wider / 2));
+      c.fill();
     }
+    c.globalAlpha = 1;
     this.drawFacing(x, bars, height, ratio);
     this.drawMarks(x, bars, ratio, chosen);
     this.drawLoop(this.drag ?? loop, x, height, ratio);
@@ -156,8 +161,8 @@ export class Timeline {
     const middle = (top + height) / 2 + ratio;
     c.fillStyle = "rgba(255,255,255,0.18)";
     c.fillRect(0, middle, this.canvas.width, ratio);
-    c.strokeStyle = "#c9cfe8";
-    c.lineWidth = 1.5 * ratio;
+    c.strokeStyle = "#8a92bd";
+    c.lineWidth = ratio;
     c.beginPath();
     let before = middle;
     for (const { second, facing } of thinned(this.chart.rows, this.view, (NARROW * ratio * this.shown) / this.canvas.width)) {
@@ -172,14 +177,18 @@ export class Timeline {
   /** @param {(s: number) => number} x @param {number} bars @param {number} ratio @param {(passage: number) => boolean} chosen */
   drawMarks(x, bars, ratio, chosen) {
     const c = this.context;
-    this.doc.passages.forEach((passage, k) => {
+    let free = -Infinity;
+    const byPlace = this.doc.passages.map((/** @type {import("./doc.js").Passage} */ passage, /** @type {number} */ k) => ({ passage, k })).sort((one, two) => one.passage.start - two.passage.start);
+    for (const { passage, k } of byPlace) {
       c.fillStyle = chosen(k) ? "#fff" : "#ffb454";
       c.fillRect(x(passage.start), bars - 4 * ratio, x(passage.end) - x(passage.start), 3 * ratio);
       c.font = `700 ${12 * ratio}px system-ui, sans-serif`;
       c.textBaseline = "top";
       c.textAlign = "left";
-      c.fillText(String(passage.number), x(passage.start) + ratio, 1.5 * ratio);
-    });
+      const at = Math.max(x(passage.start) + ratio, free); // two of one place stand side by side
+      free = at + c.measureText(String(passage.number)).width + 4 * ratio;
+      c.fillText(String(passage.number), at, 1.5 * ratio);
+    }
     for (const one of this.doc.findings) {
       if (one.second === null) continue;
       const at = x(one.second);
@@ -238,6 +247,9 @@ export function together(density, count) {
   return Array.from({ length: Math.ceil(density.length / count) }, (_, k) => density.slice(k * count, (k + 1) * count))
     .map((some) => ({ start: some[0].start, end: some[some.length - 1].end, rate: Math.max(...some.map(({ rate }) => rate)) }));
 }
+
+/** A bar's colour: blue where it is calm, red where most is to be done. @param {number} share 0..1 */
+const heat = (share) => `hsl(${Math.round(232 + 108 * clamp(share, 0, 1) ** 1.5)} 58% 64%)`;
 
 /** Rows a second in every measure. @param {import("./chart.js").Chart} chart */
 function densityOf(chart) {

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import {
-  BINS, addClean, addOutcomes, coachRate, dayOf, emptyRecord, fromFile, hitShare, merged, missedOf, streakOf, toFile, validRecord,
+  BINS, addClean, addOutcomes, coachRate, dayOf, emptyRecord, fromFile, hitShare, merged, missedOf, missesThrough, streakOf, toFile, validRecord,
 } from "../../../dancetutor_cli/page/js/record.js";
 import { thinned, together } from "../../../dancetutor_cli/page/js/timeline.js";
 
@@ -114,4 +114,20 @@ test("where rows lie closer than a few pixels, the strip draws their mean facing
   assert.ok(some.length >= 3 && some.length <= 5);
   assert.ok(some.slice(0, -1).every(({ facing }) => Math.abs(facing) <= 10)); // the last one may be of a row alone
   assert.equal(thinned(rows, { from: 2, to: 4 }, 0.05).length, 21);
+});
+
+test("a long stretch of misses is practised in parts of four measures", () => {
+  const rows = Array.from({ length: 40 }, (_, row) => ({ row, beat: row }));
+  const record = emptyRecord();
+  addOutcomes(record, "2026-11-24", rows.map(({ row }) => outcome(row, "miss")), 0, 1);
+  assert.deepEqual(missedOf(record, rows).map(({ from, to }) => [from, to]), [[0, 16], [16, 32], [32, 40]]);
+});
+
+test("misses through the song are counted by foot, in parts of as many measures each", () => {
+  const rows = Array.from({ length: 24 }, (_, row) => ({ row, beat: row, steps: [{ limb: row % 2 }] }));
+  const record = emptyRecord();
+  addOutcomes(record, "2026-11-24", [0, 1, 2, 3, 9, 23].map((row) => outcome(row, row % 2 ? "miss" : "hit", 0)), 0, 1);
+  assert.deepEqual(missesThrough(record, rows), [[0, 100], [0, 0], [0, 100], [0, 0], [0, 0], [0, 100]]);
+  addOutcomes(record, "2026-11-25", [outcome(1, "hit", 0)], 0, 1); // one of two tries: of the first part's rows 2 of 3
+  assert.deepEqual(missesThrough(record, rows, 3), [[0, 67], [0, 100], [0, 100]]);
 });
