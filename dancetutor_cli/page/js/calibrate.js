@@ -36,7 +36,7 @@ export function calibrateDialog(app) {
   const tap = el("button", { type: "button", class: "tap", disabled: true }, t("calibrateTap"));
   const ends = el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, t("calibrateEarly")), el("span", {}, "0"), el("span", {}, t("calibrateLate")));
   const figures = el("p", { class: "hint" });
-  const ear = el("button", { type: "button", id: "by-ear", onclick: () => void begin("latency") }, t("byEar"));
+  const ear = el("button", { type: "button", id: "by-ear", class: "main", onclick: () => void begin("latency") }, t("byEar"));
   const eye = el("button", { type: "button", id: "by-eye", onclick: () => void begin("sight") }, t("byEye"));
   const dialog = el("dialog", { class: "assign calibrate", "aria-label": t("calibrate") }, el("h2", {}, t("calibrate")), text,
     el("p", { class: "group" }, ear, eye), light, tap, scale, ends, figures,

@@ -90,7 +90,7 @@ export class Highway {
       c.fillStyle = "rgba(255, 255, 255, 0.07)";
       c.fillRect(0, y(scene.loop.a), m.width, y(scene.loop.b) - y(scene.loop.a));
       c.fillStyle = style.accent;
-      for (const edge of [scene.loop.a, scene.loop.b]) c.fillRect(0, Math.round(y(edge)), m.width, m.ratio);
+      for (const edge of [scene.loop.a, scene.loop.b]) c.fillRect(m.left, Math.round(y(edge)), m.lane * chart.columns, 2 * m.ratio);
     }
     this.drawBeats(m, y, from, until);
     for (let column = 0; column < chart.columns; ++column) {
@@ -162,7 +162,7 @@ export class Highway {
     c.lineWidth = Math.max(1.5, (scene.held[column] ? 0.14 : 0.05) * m.size);
     c.strokeStyle = scene.held[column] ? "#fff" : this.style.receptor;
     c.stroke();
-    if (!scene.keys[column]) return;
+    if (!scene.keys[column] || ARROWS.includes(scene.keys[column])) return; // the receptor is that arrow
     c.fillStyle = "#c9cfe8";
     c.font = `700 ${Math.round(Math.max(LEAST * m.ratio, 0.22 * m.size))}px ui-monospace, monospace`;
     c.textAlign = "center";
@@ -283,6 +283,7 @@ export function linesOf(text, fits) {
 
 const LEAST = 12; // pixels of the smallest words
 const RUN = 4; // notes in a row from which their number is shown
+const ARROWS = "←↑→↓↖↗↘↙";
 const GROUND = "#171a30"; // beside the lanes: that of the panels
 const SLOWEST = 0.42; // canvas heights a second
 const FASTEST = 1.2; // what comes quicker cannot be read

@@ -6,7 +6,9 @@ import { drawFromAbove } from "./topview.js";
 import { Viewer } from "./viewer.js";
 
 const SLOW = 24; // milliseconds between pictures beyond which the canvas gets fewer pixels
-const LEAST = 0.4; // of the pixels across that it keeps
+const SHARP = 0.7; // of the pixels across with which the shadow goes first
+const LEAST = 0.5; // of the pixels across that it keeps
+const ENOUGH = 70_000; // pixels of a canvas that loses none: a phone's is drawn as quickly with fewer, and only looks worse
 
 /**
  * @typedef {object} Wanted
@@ -146,10 +148,10 @@ export class Picture {
 
   /** @param {Wanted} wanted */
   draw(wanted) {
-    this.pace(wanted.playing);
+    const box = this.place.getBoundingClientRect();
+    this.pace(wanted.playing, box.width * box.height);
     const hurried = this.viewer !== null && wanted.playing; // a picture that stands is worth its time
     const ratio = Math.min(window.devicePixelRatio || 1, 2) * (hurried ? this.scale : 1);
-    const box = this.place.getBoundingClientRect();
     const width = Math.max(2, Math.round(box.width * ratio));
     const height = Math.max(2, Math.round(box.height * ratio));
     if (this.canvas.width !== width) this.canvas.width = width;
@@ -205,15 +207,16 @@ export class Picture {
     return [0, 1].map((limb) => (next.steps.some((step) => step.limb === limb) && marks[limb].near >= 0 ? marks[limb] : null));
   }
 
-  /** Fewer pixels where drawing is slow, as with WebGL in software. @param {boolean} playing */
-  pace(playing) {
+  /** Fewer pixels, then no shadow, then fewer still, where drawing is slow, as with WebGL in software. @param {boolean} playing @param {number} area pixels of CSS */
+  pace(playing, area) {
     const now = performance.now();
     const apart = now - this.last;
     this.last = now;
     if (!playing || apart > 1000) return;
     this.slow = 0.9 * this.slow + 0.1 * Math.min(apart, 4 * SLOW);
     if (this.slow <= SLOW) return;
-    if (this.scale > LEAST) this.scale = Math.max(LEAST, this.scale * 0.85);
+    const least = this.simple ? LEAST : SHARP;
+    if (this.scale > least && this.scale ** 2 * area > ENOUGH) this.scale = Math.max(least, this.scale * 0.8);
     else this.simple = true;
     this.slow = 0;
   }

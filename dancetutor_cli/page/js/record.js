@@ -82,7 +82,7 @@ export function streakOf(days, today) {
   return { now: all.length && number(today) - all[all.length - 1] <= 1 ? run : 0, most };
 }
 
-/** @typedef {{from: number, to: number, misses: number, rate: number}} Missed whole measures, in beats; rate: to begin at */
+/** @typedef {{from: number, to: number, misses: number, rate: number, passed: boolean}} Missed whole measures, in beats; rate: to begin at; passed: some time before */
 
 /**
  * Stretches whose rows were missed the last time, the most missed first; each with the speed at which all of it was passed last.
@@ -97,11 +97,12 @@ export function missedOf(record, rows, most = 6) {
     const measure = Math.floor(beat / 4 + 1e-6);
     const last = out[out.length - 1];
     if (last && measure <= last.to / 4 + APART - 1 + 1e-6 && measure < last.from / 4 + LONGEST) [last.to, last.misses] = [4 * (measure + 1), last.misses + 1];
-    else out.push({ from: 4 * measure, to: 4 * (measure + 1), misses: 1, rate: FIRST });
+    else out.push({ from: 4 * measure, to: 4 * (measure + 1), misses: 1, rate: FIRST, passed: false });
   }
   for (const one of out) {
     const passed = rows.filter(({ row, beat }) => beat >= one.from - 1e-6 && beat < one.to - 1e-6 && record.rows[row]?.rate).map(({ row }) => record.rows[row].rate);
-    if (passed.length) one.rate = clamp(Math.min(...passed) / 100, LOWEST, 1);
+    one.passed = passed.length > 0;
+    if (one.passed) one.rate = clamp(Math.min(...passed) / 100, LOWEST, 1);
   }
   return out.sort((a, b) => b.misses - a.misses || a.from - b.from).slice(0, most);
 }

@@ -92,7 +92,7 @@ function missed(app) {
   return el("section", {}, el("h3", {}, t("missedTitle")), el("ol", { class: "cards" }, ...list.map((one) => el("li", {},
     el("button", { type: "button", class: "card missed", onclick: () => void app.loopBeats(one.from, one.to, one.rate) },
       el("strong", {}, stretch(t, one.from / 4, one.to / 4)), el("span", { class: "figure" }, `${Math.round(100 * one.rate)} %`),
-      el("span", { class: "text" }, t("missedRows", { count: one.misses })))))));
+      el("span", { class: "text" }, t(one.passed ? "missedRows" : "missedNew", { count: one.misses })))))));
 }
 
 /** Where in the song notes were missed, by foot. @param {import("./app.js").App} app */

@@ -34,9 +34,9 @@ test("errors are counted by day and foot, and by row", () => {
 test("a row's last outcome says whether it is missed, and the stretch begins where all of it was passed", () => {
   const rows = Array.from({ length: 40 }, (_, row) => ({ row, beat: row }));
   const record = played(); // row 1, in measure 0; rows 0 to 2 passed at 90, 80 and 90 %
-  assert.deepEqual(missedOf(record, rows), [{ from: 0, to: 4, misses: 1, rate: 0.8 }]);
+  assert.deepEqual(missedOf(record, rows), [{ from: 0, to: 4, misses: 1, rate: 0.8, passed: true }]);
   addOutcomes(record, "2026-11-24", [4, 5, 6, 24].map((row) => outcome(row, "miss")), 0, 1);
-  assert.deepEqual(missedOf(record, rows), [{ from: 0, to: 8, misses: 4, rate: 0.8 }, { from: 24, to: 28, misses: 1, rate: 0.6 }]);
+  assert.deepEqual(missedOf(record, rows), [{ from: 0, to: 8, misses: 4, rate: 0.8, passed: true }, { from: 24, to: 28, misses: 1, rate: 0.6, passed: false }]);
   addOutcomes(record, "2026-11-24", [1, 4, 5, 6, 24].map((row) => outcome(row, "hit", 0)), 0, 1);
   assert.deepEqual(missedOf(record, rows), []);
 });
