@@ -130,7 +130,7 @@ def _as_sure_as_they_are(
             continue
         margin, confidence = subject.confidence(finding.beat)
         if margin is not None and margin <= settings.coin_toss:
-            said = f"other feet are as good here; with these: {finding.message}"
+            said = f"other feet are as good here; with the feet shown: {finding.message}"
             if ambiguity is None:
                 yield replace(finding, severity="info", message=said)
             elif finding.beat not in known:
@@ -138,7 +138,7 @@ def _as_sure_as_they_are(
                 tossed = replace(finding, rule=_AMBIGUITY, name=_rules_of_charts()[_AMBIGUITY].name)
                 yield replace(tossed, severity=ambiguity.options["severity"], message=said)
         elif confidence is not None and 100 * confidence < settings.sure_feet:
-            said = f"{finding.message}, if the feet are these: {confidence:.0%} sure".replace("%", " %")
+            said = f"{finding.message} (with these feet, which are {confidence:.0%} sure)".replace("%", " %")
             yield replace(finding, severity="info", message=said)
         else:
             yield finding
@@ -270,7 +270,7 @@ def load_baseline(path: Path) -> Baseline:
     try:
         data = read_json(path)
     except MissingFileError:
-        raise FileError(path, "there is no such baseline; make it with --update-baseline") from None
+        raise FileError(path, "there is no such baseline; add --update-baseline to make it") from None
     if not isinstance(data, Mapping) or data.get("schema") != SCHEMA or not isinstance(data.get("entries"), list):
         raise FileError(path, f'is not a baseline: it needs "schema": {SCHEMA} and "entries"')
     known: Counter[Key] = Counter()
@@ -279,5 +279,5 @@ def load_baseline(path: Path) -> Baseline:
             place = round(float(entry["beat"]) * 48) if entry["chart"] else int(entry["line"])
             known[str(entry["file"]), str(entry["chart"]), str(entry["rule"]), place] += int(entry.get("count", 1))
         except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
-            raise FileError(path, f"entry {number} is no finding with file, chart, rule and beat") from None
+            raise FileError(path, f"entry {number} is not a finding with file, chart, rule and beat") from None
     return Baseline(path, known)

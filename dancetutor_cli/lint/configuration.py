@@ -136,7 +136,7 @@ def _located(source: str | Path) -> Path:
     named = config_path(f"lint/{source}.yaml")
     if not named.is_file():
         names = ", ".join(config_names("lint"))
-        raise UsageError(f"there is no lint configuration '{source}'; there are: {names}, or give a file")
+        raise UsageError(f"there is no lint configuration '{source}'; there are: {names}, or name a file")
     return named
 
 
@@ -144,7 +144,7 @@ def _extend(base: Configuration, path: Path, seen: tuple[Path, ...], *, confined
     source = read(path)
     here = (*seen, path.resolve())
     if len(here) > _MOST_EXTENDED:
-        raise FileError(path, f"extends more than {_MOST_EXTENDED} files one after the other")
+        raise FileError(path, f"extends a chain of more than {_MOST_EXTENDED} files; shorten the chain")
     for name in convert(source, Texts, ("extends",)) if source.data.get("extends") else ():
         extended = _extended(source, name)
         if extended.resolve() in here:
@@ -160,7 +160,7 @@ def _extended(source: MarkedYaml, name: str) -> Path:
     if name in names and not is_regular(folder / name):
         return config_path(f"lint/{name}.yaml")
     if is_outside(folder / name, folder):
-        raise source.error(("extends",), "'extends' leads out of the folder of this file; put what it names beside it")
+        raise source.error(("extends",), "'extends' names a file outside this file's folder; put it beside this file")
     if not is_regular(folder / name):
         there = ", ".join(names)
         raise source.error(
@@ -184,7 +184,7 @@ def _apply(base: Configuration, source: MarkedYaml, *, confined: bool) -> Config
     if file.feet:
         _check_feet(source)
     if confined and file.baseline and is_outside(folder / file.baseline, folder):
-        why = "'baseline' leads out of the folder of this file; put it beside it, or name it with --baseline"
+        why = "'baseline' names a file outside this file's folder; put it beside this file, or name it with --baseline"
         raise source.error(("baseline",), why)
     numbers = {name: getattr(file, name) for name in ("stream_rows", "sure_feet", "coin_toss", "sync")}
     settings = replace(settings, **{name: value for name, value in numbers.items() if value is not None})
@@ -199,7 +199,7 @@ def _preset(source: MarkedYaml, name: str, place: Keys) -> str:
     folder = source.path.parent
     path = folder / name
     if is_outside(path, folder):
-        raise source.error(place, "'preset' leads out of the folder of this file; put the preset beside it")
+        raise source.error(place, "'preset' names a file outside this file's folder; put it beside this file")
     if path.suffix.lower() not in (".yaml", ".yml") and not is_regular(path):
         there, near = ", ".join(preset_names()), did_you_mean(name, preset_names())
         raise source.error(

@@ -171,7 +171,7 @@ class Estimate:
     def span(self) -> str:
         """For people: "10.2 to 12.6 on the scale itg"; what is not known is said."""
         rate = "" if self.rate == 1.0 else f" at rate {self.rate:g}"
-        guess = "" if self.is_scale_known else ", a guess: nothing tells the scale for sure"
+        guess = "" if self.is_scale_known else ", a guess: the scale is not sure"
         return f"{self.low:.1f} to {self.high:.1f} on the scale {self.scale}{rate}{guess}"
 
 

@@ -25,16 +25,14 @@ from dancetutor_cli.run.files import ChangedError, back_up, remove_leftovers, wr
 
 FIXABLE = (*FIXED_BY_MOVES, *fix_edits.RULES)  # rules that `--fix` knows a fix for
 _RANKED = "DT213"  # tells the rows that are least sure: the next one takes the place of one that is gone
-NO_MOVE = (
-    "no edit of a note or a phrase removes it and keeps the shape: without a jack, a lost figure or another finding"
-)
+NO_MOVE = "no edit of a note or a phrase removes it without making a jack, losing a figure or causing another finding"
 NO_FIX = {
-    fix_edits.BROKEN_HOLD: "its chart holds more than plain notes, or mending it would bring another finding",
-    fix_edits.OFF_GRID: "it is 3 ms or more off the grid, or there is no free row for it in the file",
+    fix_edits.BROKEN_HOLD: "its chart holds more than plain notes, or the edit would cause another finding",
+    fix_edits.OFF_GRID: "it is 3 ms or more off the grid, or the file has no free row for it",
 }
-ALREADY_REMOVED = "an edit before it has removed it, too"
+ALREADY_REMOVED = "an earlier edit has removed it, too"
 
-NEVER_WRITTEN = "a .ucs file is never written; mend it in its editor"
+NEVER_WRITTEN = "dancetutor never writes a .ucs file; change it in its editor"
 
 PresetOf = Callable[[Chart], Preset]
 
@@ -147,7 +145,7 @@ def _notes(order: FixOrder, session: FixSession) -> Iterator[str]:
         return
     path = order.task.path
     if b"{dt1 " in session.song.data:
-        yield f"{path}: has feet in its measures that were found before; `dancetutor annotate` brings them up to date"
+        yield f"{path}: the feet in its measures are from before this edit; run `dancetutor annotate` to update them"
 
 
 def pick(findings: Sequence[tuple[Finding, int]], rule: str, number: int | None) -> tuple[tuple[Finding, int], ...]:

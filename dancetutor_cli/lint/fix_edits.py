@@ -175,7 +175,7 @@ def _of_column(cells: list[Cell]) -> Iterator[Fix]:
 
 def _dropped(cell: Cell, what: str) -> Fix:
     """Half a hold goes: the games drop it too, so they read the same notes as before."""
-    words = f"take {what} out, on beat {_beat(cell)}; the games drop it as well"
+    words = f"remove {what} on beat {_beat(cell)}; the games drop it as well"
     return Fix(BROKEN_HOLD, frozenset({cell.line}), words, replaced([(cell, EMPTY)]))
 
 
@@ -183,7 +183,7 @@ def _without_mines(head: Cell, mines: list[Cell], tail: Cell) -> Fix:
     """The mines go, and the hold is one: the games delete a head that has a mine before its end."""
     kind = _KIND[head.text]
     many = "a mine" if len(mines) == 1 else f"{len(mines)} mines"
-    words = f"take {many} out from under the head of the {kind.name.lower()} on beat {_beat(head)}"
+    words = f"remove {many} from under the head of the {kind.name.lower()} on beat {_beat(head)}"
     return Fix(
         BROKEN_HOLD,
         frozenset({head.line, tail.line}),
@@ -207,9 +207,9 @@ def _off_grid(data: bytes, chart: Chart, grid: Sequence[int]) -> Iterator[Fix]:
             continue
         changed = {note: _shifted(note, moves) for note in known}
         gone = frozenset(note for note, new in changed.items() if note != new)
-        words = f"move {count} row{'s' if count > 1 else ''} from beat {first / TICKS_PER_BEAT:g} on onto the grid"
+        words = f"move {count} row{'s' if count > 1 else ''} from beat {round(first / TICKS_PER_BEAT, 3):g} to the grid"
         come = frozenset(changed[note] for note in gone)
-        yield Fix(OFF_GRID, frozenset({line}), f"{words}, by less than 3 ms", replaced(cells), gone, come)
+        yield Fix(OFF_GRID, frozenset({line}), f"{words}, each by less than 3 ms", replaced(cells), gone, come)
 
 
 def _is_on(tick: int, grid: Sequence[int]) -> bool:

@@ -207,7 +207,7 @@ def differences(song: Song) -> Iterator[tuple[str, int | None, int | None]]:
     here, there = _by_key(song), _by_key(other)
     for key, chart in here.items():
         if key in there and (what := _difference(chart, there[key])):
-            yield f"{chart.label} has other {what} in {name}", chart.line, chart.index
+            yield f"{chart.label} has different {what} in {name}", chart.line, chart.index
     if added := [chart for key, chart in here.items() if key not in there]:
         yield f"{_labels(added)} not in {name}", added[0].line, added[0].index
     if lost := [chart for key, chart in there.items() if key not in here]:

@@ -240,7 +240,7 @@ def _hardest(song: Song, chart: Chart, preset: Preset, number: int) -> tuple[flo
     found = () if play is None else hardest(play, chart.timing)
     if not 1 <= number <= len(found):
         many = f"{len(found)} passage{'' if len(found) == 1 else 's'}"
-        raise UsageError(f"section hardest:{number}: the chart has {many} harder than the rest of it")
+        raise UsageError(f"section hardest:{number}: the chart has only {many} harder than the rest of it")
     return max(0.0, found[number - 1].start), found[number - 1].end
 
 

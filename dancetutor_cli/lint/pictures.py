@@ -56,7 +56,7 @@ class PictureRule(FileRule):
             return None
         size = picture_size(path)
         if size is None:
-            return f"#{self.tag} names a file that is no picture: {name}"
+            return f"#{self.tag} names a file that is not a picture: {name}"
         return self._size_fault(size, name)
 
     def _size_fault(self, size: tuple[int, int], name: str) -> str | None:
@@ -73,7 +73,7 @@ class PictureRule(FileRule):
 def sizes_fault(sizes: Sequence[object]) -> str | None:
     """What is wrong with a list of sizes, or None."""
     wrong = [size for size in sizes if not re.fullmatch(r"[1-9]\d*x[1-9]\d*", str(size))]
-    return f"'{wrong[0]}' is no size; write it as 418x164" if wrong else None
+    return f"'{wrong[0]}' is not a size; write it as 418x164" if wrong else None
 
 
 def picture_size(path: Path) -> tuple[int, int] | None:

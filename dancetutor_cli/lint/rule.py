@@ -194,8 +194,8 @@ class TimedRule(ChartRule):
     def fault(cls, option: str, value: Any) -> str | None:
         """A time is a number or by-meter, a share one of per cent."""
         if option == "max_seconds" and isinstance(value, str) and value != BY_METER:
-            return f"is a number of seconds, or {BY_METER}"
-        return "is a number of per cent, at most 100" if option == "share" and value > 100 else None
+            return f"must be a number of seconds, or {BY_METER}"
+        return "must be a number of per cent, at most 100" if option == "share" and value > 100 else None
 
     @abstractmethod
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
@@ -209,7 +209,8 @@ class TimedRule(ChartRule):
             rows = [one.row for one in passage]
             row, _, said, column = passage[self.representative(subject, rows) if len(rows) > 1 else 0]
             if len(rows) > 1:
-                said += f"; {len(rows)} of them from beat {subject.beat(rows[0]):g} to {subject.beat(rows[-1]):g}"
+                first, last = (round(subject.beat(one), 3) for one in (rows[0], rows[-1]))
+                said += f"; {len(rows)} of them from beat {first:g} to {last:g}"
             least = {"severity": "info"} if self.no_surprise(subject, rows) else {}
             yield self.finding(said, subject.at_row(row, column), **least)
 

@@ -180,7 +180,7 @@ def _options(source: MarkedYaml, code: str, options: Any, place: Keys) -> Option
     if isinstance(options, str) or options is False:
         options = {"severity": options}
     elif not isinstance(options, dict):
-        raise source.error(place, f"settings of a rule are a severity or a mapping of {', '.join(defaults)}")
+        raise source.error(place, f"the settings of a rule are a severity or a mapping of {', '.join(defaults)}")
     source.check_names(place, options, defaults)
     for key, value in options.items():
         at = (*place, key)

@@ -186,7 +186,7 @@ class LintRun:
         what = "1 entry is" if len(unused) == 1 else f"{len(unused)} entries are"
         file, chart, rule, place = unused[0]
         first = f"{file} {chart} {rule} " + (f"beat {place / 48:g}" if chart else f"line {place}")
-        return [f"{path}: {what} no longer needed (the first: {first}); --update-baseline takes them out"]
+        return [f"{path}: {what} no longer needed (the first: {first}); --update-baseline removes them"]
 
 
 def _name(chart: ChartResult | None) -> str:

@@ -147,7 +147,7 @@ def _git(folder: Path, revision: str, *words: str) -> bytes:
             timeout=_PATIENCE, check=False,
         )  # fmt: skip
     except (OSError, ValueError, subprocess.TimeoutExpired) as error:
-        raise UsageError(f"--compare {revision}: git does not answer: {error}") from None
+        raise UsageError(f"--compare {revision}: git failed: {error}") from None
     if done.returncode == 0:
         return done.stdout
     why = done.stderr.decode("utf-8", "replace")
@@ -224,7 +224,7 @@ def of_last_run(path: Path, exclude: Sequence[str] = ()) -> Snapshot:
             files[path.name] = stored
     if not files:
         raise UsageError(
-            f"--compare {LAST}: no run of analyze on {path} is kept; `dancetutor analyze {path}` keeps one"
+            f"--compare {LAST}: no earlier run of analyze on {path} is stored; `dancetutor analyze {path}` stores one"
         )
     return Snapshot("the last run", files, "is new, or was not analyzed before")
 

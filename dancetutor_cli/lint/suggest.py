@@ -226,7 +226,7 @@ def _in_words(edit: Edit, subject: ChartSubject) -> str:
     others = beats[each::each]
     again = f", and the same from beat {' '.join(others)} on" if others and edit.mirrored else ""
     if edit.mirrored:
-        return f"turn the notes on beats {beats[0]} to {beats[each - 1]} left for right{again}"
+        return f"mirror the notes on beats {beats[0]} to {beats[each - 1]} left to right{again}"
     again = f", and the same on beat{'s' if len(others) > 1 else ''} {' '.join(others)}" if others else ""
     move = edit.moves[0]
     return f"move the note on beat {beats[0]} from {names[move.column]} to {names[move.to]}{again}"

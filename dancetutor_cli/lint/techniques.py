@@ -95,7 +95,7 @@ def read_theirs(path: Path) -> Mapping[Key, Theirs]:
         files = [path] if path.is_file() else sorted(one for one in path.rglob("*") if one.is_file())
         found = {key: counts for file in files for key, counts in _cached(file)}
     if not found:
-        raise UsageError(f"{path}: has no #TECHCOUNTS; give ITGmania's Cache/Songs, or a CSV with its technique names")
+        raise UsageError(f"{path}: has no #TECHCOUNTS; name ITGmania's Cache/Songs, or a CSV with its technique names")
     return found
 
 
@@ -147,7 +147,7 @@ def _table(path: Path, rows: Iterable[tuple[int, dict[str, str]]]) -> Iterator[t
         try:
             counts = {name: round(float(row[name])) for name in TEN if row.get(name)}
         except (ValueError, OverflowError) as error:
-            raise FileError(path, "a count is no number", number) from error
+            raise FileError(path, "a count is not a number", number) from error
         if counts:
             yield _key_of(row), counts
 
@@ -162,7 +162,7 @@ def _technique_times(path: Path, rows: Sequence[tuple[int, dict[str, str]]]) -> 
             try:
                 times[row["technique"]].append(round(float(row["beat"]) * TICKS_PER_BEAT))
             except (ValueError, OverflowError) as error:
-                raise FileError(path, "a beat is no number", number) from error
+                raise FileError(path, "a beat is not a number", number) from error
     for times in found.values():
         for ticks in times.values():
             ticks.sort()

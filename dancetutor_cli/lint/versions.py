@@ -61,7 +61,7 @@ def _file(name: str, before: StoredFile, now: StoredFile) -> Iterator[ChartChang
     try:
         data = now.read()
     except FileError as error:
-        yield ChartChange(name, "", (f"cannot be read any more: {error.message}",))
+        yield ChartChange(name, "", (f"can no longer be read: {error.message}",))
         return
     try:
         if before.is_same(data):  # a file that is no chart is as it was, too
@@ -73,7 +73,7 @@ def _file(name: str, before: StoredFile, now: StoredFile) -> Iterator[ChartChang
     try:
         new = parse(data, Path(name))
     except FileError as error:
-        yield ChartChange(name, "", (f"cannot be read any more: {error.message}",))
+        yield ChartChange(name, "", (f"can no longer be read: {error.message}",))
         return
     if said := tuple(_head(old, new)):
         yield ChartChange(name, "", said)

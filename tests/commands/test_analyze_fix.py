@@ -93,7 +93,7 @@ def test_safe_mends_what_no_one_hears(tmp_path: Path) -> None:
     assert said.status == 0, said.err
     assert path.read_text() == BROKEN.replace("M000", "0000").replace("4000", "0000")
     assert (tmp_path / "x.sm.bak").read_text() == BROKEN
-    assert "a mine out from under the head of the hold on beat 0" in said.out
+    assert "remove a mine from under the head of the hold on beat 0" in said.out
     again = Said(path, "--fix", "safe")
     assert "nothing to change" in again.out and again.status == 0
 
@@ -109,7 +109,7 @@ def test_what_went_with_another_edit_is_gone_and_no_failure(capsys: pytest.Captu
         talk.tell(Path("x.sm"), FixOutcome(unfixed=(left,)))
         assert talk.end() == status
         said = capsys.readouterr().out
-        assert ("left alone" in said) == (status == 1) and ("] gone: an edit before it" in said or status == 1)
+        assert ("left alone" in said) == (status == 1) and ("] gone: an earlier edit" in said or status == 1)
 
 
 def test_what_cannot_be_mended_is_told_and_left(tmp_path: Path) -> None:
@@ -173,7 +173,7 @@ def test_markers_stay_and_their_author_is_told(ssc: Path) -> None:
     assert Annotated([ssc]).status == 0
     before = ssc.read_bytes()
     said = Said(ssc, *HARD, "--fix", "DT202")
-    assert said.status == 0 and "`dancetutor annotate` brings them up to date" in said.err
+    assert said.status == 0 and "run `dancetutor annotate` to update them" in said.err
     assert len(changed(before, ssc.read_bytes())) == 2
 
 

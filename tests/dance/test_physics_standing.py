@@ -106,7 +106,7 @@ def test_hands_and_heads_may_be_tips_of_other_bones(head: str, tmp_path: Path) -
         at = text.index("End Site", text.index(f"JOINT {name}"))
         line = text.index("OFFSET", at)
         place = " ".join(f"{x:.6f}" for x in 100.0 * offsets[tip])
-        text = f"{text[:line]}OFFSET {place}{text[text.index(chr(10), line):]}"
+        text = f"{text[:line]}OFFSET {place}{text[text.index(chr(10), line) :]}"
     if head == "neck":  # and no tip either
         start = text.index("JOINT neck_01")
         text = text[:start] + re.sub(r"End Site\s*\{[^}]*\}", "", text[start:], count=1)

@@ -69,8 +69,8 @@ def test_a_file_changes_single_entries(tmp_path: Path) -> None:
         ("DT401: {grid: [0]}", "divisors of 192"),
         ("DT401: {grid: [4, 7]}", "divisors of 192"),
         ("DT401: {grid: [a]}", "by default it is [4, 8"),
-        ("DT504: {sizes: [418x]}", "'418x' is no size; write it as 418x164"),
-        ("DT505: {sizes: [10x0]}", "'10x0' is no size"),
+        ("DT504: {sizes: [418x]}", "'418x' is not a size; write it as 418x164"),
+        ("DT505: {sizes: [10x0]}", "'10x0' is not a size"),
     ],
 )
 def test_values_that_no_rule_can_use_are_refused(option: str, words: str, tmp_path: Path) -> None:
@@ -181,7 +181,7 @@ def test_a_link_out_of_the_folder_is_no_preset(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text("extends: itg\n")
     (tmp_path / "pack").mkdir()
     (tmp_path / "pack" / "mine.yaml").symlink_to(tmp_path / "mine.yaml")
-    with pytest.raises(FileError, match="leads out of the folder"):
+    with pytest.raises(FileError, match="outside this file's folder"):
         configured("preset: mine.yaml\n", tmp_path / "pack")
 
 
@@ -218,8 +218,8 @@ def test_it_is_found_up_the_tree(tmp_path: Path) -> None:
         ("overrides:\n  - when:\n      steps-type: danse-*\n", 3, ["danse-*", "dance-*", "pump-*"]),
         ("preset: gpt\n", 1, ["gpt", ", ".join(preset_names())]),
         ("overrides:\n  - when: {meter: 3}\n    preset: begginer\n", 3, ["did you mean beginner", "thesis"]),
-        ("preset: ../mine.yaml\n", 1, ["'preset' leads out of the folder"]),
-        ("overrides:\n  - when: {meter: 3}\n    preset: /etc/mine.yaml\n", 3, ["leads out of the folder"]),
+        ("preset: ../mine.yaml\n", 1, ["'preset' names a file outside this file's folder"]),
+        ("overrides:\n  - when: {meter: 3}\n    preset: /etc/mine.yaml\n", 3, ["outside this file's folder"]),
         ("feet:\n  - when: {difficulty: Herd}\n    steps: {16: L}\n", 2, ["Herd", "Beginner, Easy"]),
         ("rules: [\n", 2, ["expected"]),
         ("- a\n", 1, ["mapping"]),

@@ -63,7 +63,7 @@ def test_every_warning_of_the_odd_files_becomes_a_finding(hostile: Path) -> None
             assert len(rules) == 1, f"{path.name}: {code} has {rules}"
             if rules == ["DT106"] and any(told_at[0] == "DT102" for told_at in told):
                 continue  # may come of a misread row beside it
-            if rules == ["DT102"] and any(f"in line {line}" in said or f", {line}" in said for said in folded):
+            if rules == ["DT102"] and any(f"on line {line}" in said or f", {line}" in said for said in folded):
                 continue  # one finding with the lines of all that is odd in the same way
             assert (rules[0], line) in told, f"{path.name}: {code} in line {line} is not told"
             found += 1

@@ -80,7 +80,7 @@ class TestLastRun:
 
     def test_without_a_cache_nothing_is_kept(self, pack: Path) -> None:
         analyze(pack, "--no-cache")
-        with pytest.raises(UsageError, match=r"no run of analyze on .* is kept"):
+        with pytest.raises(UsageError, match=r"no earlier run of analyze on .* is stored"):
             snapshots.of_last_run(pack)
 
     def test_a_damaged_one_is_a_line(self, pack: Path, tmp_path: Path) -> None:

@@ -49,9 +49,9 @@ def test_sure_feet_make_a_warning() -> None:
 def test_a_coin_toss_is_an_ambiguity(margins: list[int]) -> None:  # of its row, or of the step before
     (finding,) = found(margins)
     assert (finding.rule, finding.name, finding.severity) == ("DT207", "ambiguous-start", "info")
-    assert (
-        finding.message
-        == "other feet are as good here; with these: the right foot steps twice in a row though the other is free"
+    assert finding.message == (
+        "other feet are as good here; with the feet shown: "
+        "the right foot steps twice in a row although the other foot is free"
     )
 
 
@@ -78,7 +78,7 @@ def test_what_an_author_has_silenced_stays_silent_as_a_coin_toss(rule: str) -> N
 def test_unsure_feet_make_an_info_that_says_so() -> None:
     (finding,) = found([SURE] * 7, [1, 1, 0.72, 1, 1, 1, 1])
     assert (finding.rule, finding.severity) == ("DT201", "info")
-    assert finding.message.endswith("if the feet are these: 72 % sure")
+    assert finding.message.endswith("(with these feet, which are 72 % sure)")
 
 
 def test_no_severity_makes_an_unsure_finding_more() -> None:

@@ -83,7 +83,7 @@ def test_explain_says_the_numbers(code: str) -> None:
 @pytest.mark.parametrize(
     ("said", "words"),
     [
-        ("DT201.max_seconds=soon", "is a number of seconds, or by-meter"),
+        ("DT201.max_seconds=soon", "must be a number of seconds, or by-meter"),
         ("DT201.share=101", "per cent, at most 100"),
         ("DT201.max_seconds=-1", "a number of 0 or more"),
         ("DT201.max_seconds=true", "by default it is 'by-meter'"),

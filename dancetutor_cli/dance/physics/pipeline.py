@@ -99,7 +99,7 @@ def wishes_of(push: Sequence[str], trip: Sequence[float], rate: float = 1.0) -> 
 
 
 def through_ragdoll(motion: Motion, style: Style | Blend, wishes: Wishes = Wishes()) -> RagdollResult:
-    """Let the ragdoll of a style follow a motion of a skeleton with the dancer's joints; of a blend, those of its styles.
+    """Let the ragdoll of a style, or those of a blend, follow a motion of a skeleton with the dancer's joints.
 
     Joints without a body keep their turns, feet their places in the world, unless corrected; times stay, and contacts,
     unless she is pushed or caught so that she misses them: then the motion's notes say which.

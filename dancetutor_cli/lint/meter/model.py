@@ -178,11 +178,11 @@ def _fault(curve: Curve) -> str:
     if len(curve.meters) != len(curve.at):
         return f"'meters' must have {len(curve.at)} numbers, as many as 'at'"
     if any(b < a for a, b in pairwise(curve.meters)):
-        return "'meters' must not fall: what is played faster is never easier"
+        return "'meters' must not fall: a faster chart is never easier"
     if (curve.seconds == 0) != (curve.how == "count"):
         return "'seconds' must be above 0, and 0 for a count"
     if curve.how != "mean" and curve.of != "steps":
-        return "only steps have a peak or a count; of others 'how' is mean"
+        return "only steps have a peak or a count; for others 'how' must be mean"
     return ""
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Credit(FileRule):
-    """Neither the song's #CREDIT nor the chart's own (in .sm: its description) says who made a chart.
+    """Neither the song's #CREDIT nor the chart's own credit (in .sm: its description) names the author of a chart.
 
     Bad: #CREDIT:; Better: #CREDIT:A. Stepartist;
     """

@@ -25,16 +25,21 @@ _WIDE = 2.5  # panel widths: more than from one side of a pad to the other
 class Crossover(TimedRule):
     """The feet cross in a chart whose players do not know crossovers yet.
 
-    Off for most charts; configs/lint/default.yaml switches it on for the lowest difficulties, and a contest or your own
-    dancetutor.yaml may do so for others.
+    Off for most charts. configs/lint/default.yaml switches it on for the lowest difficulties. A contest or your own
+    dancetutor.yaml can switch it on for other charts.
 
-    `max_seconds`: only steps at most this long after the step before count; with more time a beginner does not cross,
-    but begins anew, and so from 0.25 s where the next step takes half the time; nor where the steps from one rest or
-    jump to the next can be danced uncrossed on the other foot, nor in a walk from one pad to the other; nor where at
-    0.3 s and slower the feet may change on a panel that is stepped on twice, or one foot step twice in a row, once, out
-    of such steps or to the other pad. A single crossed step on the way from one pad to the other is an info.
-    by-meter: what at most `share` per cent of the charts of a meter have, and 0.4 s at most: who has more moves
-    both feet; on two pads, where walking from one to the other crosses the feet, few crossings are so quick.
+    Not reported:
+    - steps between two rests or jumps that can be danced uncrossed if the other foot begins;
+    - a walk from one pad to the other;
+    - at 0.3 s and slower: where the feet can change on a jack instead, or where one doublestep, out of a jack or to the
+      other pad, avoids the crossover.
+
+    A single crossed step on the way from one pad to the other is an info.
+
+    `max_seconds`: only steps at most this long after the step before count. With more time a beginner does not cross
+    but starts again with the other foot. From 0.25 s on this is so where the next step comes in half the time.
+    by-meter: the longest time at which at most `share` per cent of the charts of this meter have the move, and at most
+    0.4 s. On two pads the walk from one to the other crosses the feet too; few of those crossovers are so quick.
 
     Bad (max_seconds = 0.6):
 
@@ -71,7 +76,7 @@ class Crossover(TimedRule):
                 continue
             if goes_on_the_other_foot(subject, first, self.longest(subject)) or _walks_over(subject, first):
                 continue
-            said = f"the feet cross here, or one doublesteps, in a chart of meter {subject.chart.meter}"
+            said = f"the feet cross here, or one foot doublesteps, in a chart of meter {subject.chart.meter}"
             yield Occurrence(first, subject.pause(first), said)
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
@@ -122,11 +127,11 @@ def _onwards(before: list[int], after: list[int], x: NDArray[np.float64]) -> boo
 class CrossedRun(ChartRule):
     """The feet stay crossed over many rows, so the dancer plays with her side or her back to the screen.
 
-    `max_rows`: the longest run of rows with crossed feet that is not reported.
-    `max_seconds`: only rows at most this far apart make a run; with more time nobody stays crossed. Nor past a rest of
-    about twice the pace of the passage, in the run or shortly before it, from which the other foot goes on uncrossed.
-    Of the 7,100 times that players crossed their feet in 168,000 labelled rows, 31 were longer than five rows, and in
-    nine of ten no step came later than 0.45 s after the one before.
+    `max_rows`: the longest run of crossed rows that is not reported.
+    `max_seconds`: only rows at most this far apart make a run; with more time nobody stays crossed. A rest ends a run
+    if it is about twice the pace of the passage and the other foot goes on uncrossed after it. Players crossed their
+    feet 7,100 times in 168,000 labelled rows. 31 of these runs were longer than five rows, and in nine of ten no step
+    came later than 0.45 s after the one before.
 
     Bad (max_rows = 1, max_seconds = 0.6):
 
@@ -168,13 +173,13 @@ class CrossedRun(ChartRule):
 
 
 class HeldCrossover(TimedRule):
-    """One foot steps across the other, which has to stay on a hold: neither a switch nor a turn gets her out of it.
+    """One foot crosses over the other foot, which has to stay on a hold: the dancer can neither switch feet nor turn.
 
-    In a crossover the foot that is crossed goes on with the next step; here it cannot, and the other one has to come
-    back the way it went. Crossings at most four measures apart are one finding: a foot that goes round a held one
-    turns her again and again.
+    In a usual crossover the other foot takes the next step. Here it cannot, so the crossing foot has to come back the
+    way it went. Crossovers at most four measures apart are one finding: a foot that goes round a held foot makes many.
 
-    `max_seconds`: only steps at most this long after the step before count; with more time she turns and comes back.
+    `max_seconds`: only steps at most this long after the step before count; with more time the dancer turns and comes
+    back.
 
     Bad (max_seconds = 0.6):
 
@@ -209,5 +214,5 @@ class HeldCrossover(TimedRule):
             foot = int(limbs[row].max())
             if len(pressed) == 1 and foot <= 1 and subject.feet.holds(1 - foot, row):
                 feet = ("left", "right") if foot == 0 else ("right", "left")
-                said = f"the {feet[0]} foot crosses the {feet[1]} one, which a hold keeps on its panel"
+                said = f"the {feet[0]} foot crosses the {feet[1]} foot, which is on a hold"
                 yield Occurrence(row, subject.pause(row), said)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class DuplicateDifficulty(ReaderRule):
-    """Two charts of the same steps type have the same difficulty: the games show the second as an Edit.
+    """Two charts of the same steps type have the same difficulty: the games show the second one as an Edit.
 
     Bad: dance-single Hard twice.
 
@@ -27,7 +27,7 @@ class DuplicateDifficulty(ReaderRule):
 
 
 class SameNotes(FileRule):
-    """Two charts of one steps type have the same notes at the same times: one was meant to be another.
+    """Two charts of the same steps type have the same notes at the same times: one of them was meant to be different.
 
     Bad: Hard copied to Challenge and left so. Better: only one of them.
     """
@@ -43,7 +43,7 @@ class SameNotes(FileRule):
             parts = (notes.tick, notes.column, notes.kind, notes.end, notes.judged)
             key = (chart.steps_type, chart.timing, *(part.tobytes() for part in parts))
             if key in first:
-                said = f"{chart.label} has the notes of {first[key]}"
+                said = f"{chart.label} has the same notes as {first[key]}"
                 yield self.finding(said, subject.place(chart.line), chart=chart.index)
             first.setdefault(key, chart.label)
 
@@ -51,7 +51,7 @@ class SameNotes(FileRule):
 class MeterOrder(FileRule):
     """The meters of a steps type do not rise with its difficulties.
 
-    `strictly`: whether the same meter twice is reported too.
+    `strictly`: whether two difficulties with the same meter are reported too.
 
     Bad: Medium 7, Hard 6. Better: Medium 6, Hard 8.
     """
@@ -70,12 +70,12 @@ class MeterOrder(FileRule):
             for easier, harder in pairwise(charts):
                 rises = harder.meter > easier.meter or (harder.meter == easier.meter and not self.options["strictly"])
                 if easier.difficulty != harder.difficulty and not rises:
-                    message = f"{harder.label} is harder than {easier.label} by name but not by meter"
+                    message = f"{harder.label} has a harder difficulty than {easier.label} but no higher meter"
                     yield self.finding(message, subject.place(harder.line), chart=harder.index)
 
 
 class Length(ChartRule):
-    """From its first to its last step the chart is shorter or longer than the limits.
+    """The time from the first to the last step of the chart is outside the limits.
 
     `min_seconds`, `max_seconds`: the limits.
 
@@ -94,11 +94,11 @@ class Length(ChartRule):
 
 
 class MeterOff(SongRule):
-    """The meter is far from how hard the chart plays, on the scale of the song's other charts.
+    """The meter is far from how hard the chart plays, measured on the scale of the song's other charts.
 
-    `by`: how many meters too high or too low, at least; and the meter has to be outside of where four of five charts
-    that play like this one are. Nothing is said where nothing tells the scale: two other charts of the pad in the file,
-    the tag #METERTYPE or --meter-scale do. What counts is in docs/meter.md.
+    `by`: the least difference that is reported, in meters. The meter also has to be outside the range in which four of
+    five charts that play like this one are. Nothing is reported if the scale is unknown. Two other charts of the pad in
+    the file, the tag #METERTYPE or --meter-scale set the scale. docs/meter.md explains the estimate.
 
     Bad: Easy 3, Medium 9 (plays like 6), Hard 8. Better: Easy 3, Medium 6, Hard 8.
     """
@@ -112,14 +112,14 @@ class MeterOff(SongRule):
         off = estimate.meter - chart.meter
         if chart.meter > 0 and abs(off) >= self.options["by"] and not estimate.low <= chart.meter <= estimate.high:
             how = "harder" if off > 0 else "easier"
-            message = f"plays {abs(off):.1f} meters {how} than its {chart.meter}, like {estimate.most(4)}"
+            message = f"plays {abs(off):.1f} meters {how} than its meter {chart.meter}, like {estimate.most(4)}"
             yield self.finding(message, chart.place)
 
 
 class OrderOfPlay(SongRule):
-    """A difficulty plays easier than one that is easier by name, whatever their meters say (DT503 reads those).
+    """A chart plays easier than a chart with an easier difficulty. Their meters do not matter; DT503 compares those.
 
-    `by`: how many meters easier, at least.
+    `by`: the least difference that is reported, in meters.
 
     Bad: a Medium that plays like 7, a Hard that plays like 5. Better: the two exchanged.
     """
@@ -138,5 +138,5 @@ class OrderOfPlay(SongRule):
         hardest = max(below, key=lambda one: one.estimate.meter, default=None)
         if hardest is not None and hardest.estimate.meter - chart.estimate.meter >= self.options["by"]:
             here, there = f"{chart.estimate.meter:.1f}", f"{hardest.estimate.meter:.1f}"
-            message = f"plays like {here}, easier than {hardest.label}: that plays like {there}"
+            message = f"plays like {here} and is easier than {hardest.label}, which plays like {there}"
             yield self.finding(message, chart.place)

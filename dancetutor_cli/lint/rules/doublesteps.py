@@ -22,20 +22,26 @@ _LED = 3  # the same, between two pads
 class Doublestep(MoveRule):
     """The cheapest way to play this row moves the foot that has just stepped, although the other foot is free.
 
-    Players expect left and right in turn; a doublestep makes them stumble, and is mostly an accident of the pattern
-    before it. It is reported at the pace of the passage only: who has about twice that time just before or soon after
-    takes the panel on her side with the foot of that side. Doublesteps that a hold forces or a mine asks for are not
-    reported, nor brackets: both panels at once are no step after the other. Nor those beside two panels that can be
-    jumped, after a wall of mines, or beside a hold that changes feet: any foot may go on there. Nor those that cross
-    the feet, nor 16ths that a short crossover solves, nor groups of steps that go uncrossed if each begins, about twice
-    the time of its steps after the one before, with a foot of its own; nor where at 0.25 s and slower a quicker group
-    begins with it, or the next step can be the repeat after a rest. Around the centre of a Pump pad at 0.25 s and
-    slower, where in turn one crossover would lead to a jump, and between two pads, to where a panel that is stepped on
-    twice leads the feet across the middle in turn, it is an info.
+    Players expect left and right in turn. A doublestep makes them stumble, and is mostly an accident of the pattern
+    before it.
 
-    `max_seconds`: only steps at most this long after the step before count; after a longer rest players put down
-    whichever foot they like. by-meter: what at most `share` per cent of the charts of a meter have, 0.32 s at
-    most: quarters of an easy chart make nobody stumble.
+    Not reported:
+    - doublesteps that a hold forces or a mine asks for, and brackets (two panels at once are one step);
+    - steps at another pace than the passage: with twice that time just before or soon after, players take a side panel
+      with the foot of that side;
+    - steps beside two panels that can be jumped, after a wall of mines, or beside a hold on which the feet change: any
+      foot can go on there;
+    - doublesteps that cross the feet, and 16ths that a short crossover solves;
+    - groups of steps that are uncrossed if each group begins with its own foot, where the time between groups is about
+      twice the time between steps;
+    - at 0.25 s and slower: where a quicker group begins with the step, or where the repeat can wait until after a rest.
+
+    An info: around the centre of a Pump pad at 0.25 s and slower, if alternating feet would cross once before a jump;
+    and between two pads, on the way to a jack from which alternating feet cross the middle.
+
+    `max_seconds`: only steps at most this long after the step before count; after a longer rest players begin with
+    whichever foot they like. by-meter: the longest time at which at most `share` per cent of the charts of this meter
+    have the move, and at most 0.32 s: quarters of an easy chart make nobody stumble.
     `min_seconds`: steps closer together are a flam, one movement of the foot.
 
     Bad (max_seconds = 0.6):
@@ -90,7 +96,7 @@ class Doublestep(MoveRule):
 
     def message(self, subject: ChartSubject, row: int) -> str:
         """Which foot."""
-        return f"the {subject.foot_name(row)} foot steps twice in a row though the other is free"
+        return f"the {subject.foot_name(row)} foot steps twice in a row although the other foot is free"
 
 
 def _at_a_pause(subject: ChartSubject, row: int) -> bool:
@@ -195,12 +201,12 @@ def _own_side(subject: ChartSubject, row: int, *, exchanged: bool = False) -> bo
 class TripleStep(TimedRule):
     """One foot plays three rows in a row and moves each time: two doublesteps without a rest.
 
-    Steps while the other foot is held down, taps of a roll and steps around a mine do not count; nor those beside two
-    panels that can be jumped, after a wall of mines, or beside a hold that changes feet: any foot may go on there; nor
-    steps that go uncrossed in turn after a panel that is stepped on twice.
+    Not reported: steps while the other foot is on a hold, taps of a roll, steps around a mine; steps beside two panels
+    that can be jumped, after a wall of mines, or beside a hold on which the feet change (any foot can go on there);
+    steps after a jack that are uncrossed with alternating feet.
 
-    `max_seconds`: only steps at most this far apart count. by-meter: the time of a doublestep (DT201) that at most
-    `share` per cent of the charts of a meter have.
+    `max_seconds`: only steps at most this far apart count. by-meter: the longest time at which at most `share` per cent
+    of the charts of this meter have a doublestep (DT201).
     `min_seconds`: steps closer together are a flam, one movement of the foot.
 
     Bad (max_seconds = 0.6):

@@ -22,7 +22,7 @@ _AS_ONE = 0.03  # seconds between two rows that look meant as one
 _NEIGHBOUR_TAP_METER = 13  # meter from which a foot that holds a panel taps a neighbour of it
 _QUICK = 20  # meter of charts that nobody plays to the last note
 _NEIGHBOUR = 1.5  # panel widths
-_FEW = 2  # far steps of a passage that are told one by one
+_FEW = 2  # far steps of a passage that are reported one by one
 _NUMBERS = {3: "three", 4: "four"}
 _RESTED = 0.2  # seconds since its last step, and a foot is as good as the other
 
@@ -30,18 +30,19 @@ _RESTED = 0.2  # seconds since its last step, and a foot is as good as the other
 class FastStep(ChartRule):
     """One foot has to travel farther than it can in the time since its last step.
 
-    Whatever the limits, it is told what the dancer of the films lets go: a step within 80 ms of the foot's last one, to
-    a panel apart from that; once in two measures, and as an info in charts of meter 20 and more, in rolls,
-    and where the other foot could take it.
+    Whatever the limits, steps that the dancer of the films cannot take are reported: a step within 80 ms of the foot's
+    last step, to a panel that is not next to it. Such steps are reported once in two measures. They are an info in
+    charts of meter 20 and more, in rolls, and where the other foot could take them.
 
-    Two steps of a flam are none if the other foot is free to take the first, or the second where its hold ends. Three
-    panels among 16ths, and two, one and two again, are told as such. On Pump pads it is an info from meter 14, whose
-    players take neighbours with heel and toe, and none from meter 13 where the other foot holds a panel and can tap a
-    neighbour of it. Rows less than 30 ms apart are told as
-    what they are, a slip of the grid, and three rows or more less than 45 ms apart as a burst, once in two measures.
-    Of other steps three or more of one foot, at most two measures apart, are one finding.
+    - A flam is not reported if the other foot is free for one of its two steps, or becomes free where its hold ends.
+    - Three panels among 16ths, and two, one and two panels in a row, have a message of their own.
+    - Rows less than 30 ms apart are reported as a slip of the grid; three or more rows less than 45 ms apart as a
+      burst, once in two measures.
+    - On Pump pads it is an info from meter 14 on, because these players take neighbouring panels with heel and toe.
+      From meter 13 on it is not reported where the other foot is on a hold and can tap a panel next to it.
+    - Three or more other steps of one foot, at most two measures apart, are one finding.
 
-    `max_speed`: panel widths per second, on the straight way from panel to panel. `min_seconds`: steps closer together
+    `max_speed`: panel widths per second, in a straight line from panel to panel. `min_seconds`: steps closer together
     are a flam, one movement of the foot, and do not count.
 
     Bad (max_speed = 2): the left foot crosses the whole pad in half a second.
@@ -77,14 +78,14 @@ class FastStep(ChartRule):
                 least = {"severity": "info"} if _heel_and_toe(subject, row) else {}
                 if not message and subject.pause(row) >= _AS_ONE:
                     foot = feet.limb_name(row, column)
-                    message = f"the {foot} moves {way:.1f} panels in {seconds * 1000:.0f} ms"
+                    message = f"the {foot} has to travel {way:.1f} panel widths in {seconds * 1000:.0f} ms"
                     moves.setdefault((foot, least.get("severity", "")), []).append((row, column, message))
                     reported.add((row, message))
                     continue
                 if subject.pause(row) < _AS_ONE:
                     place = row
                     apart = f"{subject.pause(row) * 1000:.0f} ms"
-                    message = f"this row comes {apart} after the one before: were they meant as one?"
+                    message = f"this row comes {apart} after the row before: were they meant as one?"
                     least = {}
                 if (place, message) not in reported:
                     yield self.finding(message, subject.at_row(place, column if place == row else None), **least)
@@ -95,7 +96,7 @@ class FastStep(ChartRule):
         for rows in sorted(bursts):
             if subject.beat(rows[0]) > end + _PASSAGE:
                 quickest = 1000 * min(subject.pause(row) for row in rows[1:])
-                message = f"{len(rows)} rows {quickest:.0f} ms apart: quicker than feet step"
+                message = f"{len(rows)} rows {quickest:.0f} ms apart: too quick for feet"
                 yield self.finding(message, subject.at_row(rows[1]))
             end = subject.beat(rows[-1])
         yield from self._leaps(subject, {row for rows in bursts for row in rows} | {row for row, _ in reported})
@@ -103,7 +104,7 @@ class FastStep(ChartRule):
     def _moves(
         self, subject: ChartSubject, found: list[tuple[int, int, str]], least: dict[str, str]
     ) -> Iterable[Finding]:
-        """One finding for each far step of a foot, or of many in a passage one, at the row whose feet are surest."""
+        """A finding for each far step of a foot, or one for many in a passage, at the row whose feet are surest."""
         for passage in passages(found, lambda one: subject.beat(one[0]), _PASSAGE):
             rows = [row for row, _, _ in passage]
             if len(rows) <= _FEW:
@@ -111,11 +112,12 @@ class FastStep(ChartRule):
                     yield self.finding(message, subject.at_row(row, column), **least)
                 continue
             row, column, message = passage[subject.most_confident(rows)]
-            message += f"; {len(rows)} of them from beat {subject.beat(rows[0]):g} to {subject.beat(rows[-1]):g}"
+            first, last = (round(subject.beat(one), 3) for one in (rows[0], rows[-1]))
+            message += f"; {len(rows)} of them from beat {first:g} to {last:g}"
             yield self.finding(message, subject.at_row(row, column), **least)
 
     def _leaps(self, subject: ChartSubject, reported: set[int]) -> Iterable[Finding]:
-        """One finding for each passage of steps that are let go and of which nothing is told yet."""
+        """One finding for each passage of steps that are not played and not reported yet."""
         from dancetutor_cli.feet.play import StepKind  # numpy comes with it, which a kept result does not need
 
         end = -math.inf
@@ -130,7 +132,7 @@ class FastStep(ChartRule):
                 expected = roll or subject.chart.meter >= _QUICK or _heel_and_toe(subject, row)
                 expected = expected or _free_foot_takes_it(subject, row, self.options["max_speed"])
                 least = {"severity": "info"} if expected else {}
-                yield self.finding(f"the {foot} would have to leap here at once", subject.at_row(row, column), **least)
+                yield self.finding(f"the {foot} would have to leap to this panel", subject.at_row(row, column), **least)
             end = beat
 
 
@@ -146,7 +148,7 @@ def burst(subject: ChartSubject, row: int) -> list[int]:
 
 
 def _heel_and_toe(subject: ChartSubject, row: int) -> bool:
-    """Whether the panels lie as on a Pump pad, and who plays this chart takes two of them with heel and toe."""
+    """Whether the panels lie as on a Pump pad, and players of this chart take two of them with heel and toe."""
     return subject.chart.steps_type.startswith("pump") and subject.chart.meter >= _HEEL_AND_TOE
 
 
@@ -171,7 +173,7 @@ def _dense(subject: ChartSubject, row: int) -> tuple[int, str]:
             counts = [len(subject.pressed(int(one))) for one in rows[first : first + 3]]
             apart = max(subject.pause(int(one)) for one in rows[first + 1 : first + 3])
             if counts == [2, 1, 2] and apart < _SIXTEENTH:
-                return row, f"two panels, one and two again in 16ths, {1000 * apart:.0f} ms apart"
+                return row, f"two panels, then one, then two in 16ths, {1000 * apart:.0f} ms apart"
     return row, ""
 
 

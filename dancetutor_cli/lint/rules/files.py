@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Unreadable(FileRule):
-    """The file cannot be opened, is no .sm or .ssc, or has no chart. The exit status is 2.
+    """The file cannot be opened, is not a .sm, .ssc or .ucs file, or has no chart. The exit status is 2.
 
     Bad: an empty file. Better: save it again from the editor.
     """
@@ -28,7 +28,7 @@ class Unreadable(FileRule):
 
 
 class DifferingPair(FileRule):
-    """The song has both formats, and they do not hold the same charts: games that read one play something else.
+    """The song has a .sm and a .ssc with different charts: games that read the one play something else than the others.
 
     Reported for the .ssc, which newer games load.
 
@@ -53,7 +53,7 @@ class DifferingPair(FileRule):
 class OddChart(ReaderRule):
     """A chart lacks its steps type, its notes or a field, or its steps type is unknown.
 
-    The games skip it or mix it up with the next.
+    The games skip such a chart or mix it up with the next one.
 
     Bad: a #NOTEDATA without #NOTES.
 
@@ -69,10 +69,10 @@ _ENDED = ("BPMS", "STOPS", "DELAYS", "WARPS", "OFFSET", "DISPLAYBPM")
 
 
 class TwoReadings(FileRule):
-    """A `;` is missing after a tag of the timing, or #DISPLAYBPM is written as #BPMS: not all read it alike.
+    """A `;` is missing after a timing tag, or #DISPLAYBPM is written like #BPMS: programs read the value differently.
 
-    The games end a value where a line starts with `#`; other readers go on to the next `;`. Of #DISPLAYBPM:0=120; the
-    games show 0.
+    The games end a value where a line starts with `#`; other programs read on to the next `;`. For #DISPLAYBPM:0=120;
+    the games show 0.
 
     Bad: #BPMS:0.000=120.000 without `;`. Better: #BPMS:0.000=120.000;
     """
@@ -91,7 +91,7 @@ class TwoReadings(FileRule):
             if data[end : end + 1] != b";":
                 yield self.finding(f"no ';' after #{tag.name}", place)
             elif tag.name == "DISPLAYBPM" and any(b"=" in data[a:b] for a, b in tag.spans):
-                yield self.finding("#DISPLAYBPM has a '=': it is a BPM, two as 90:180, or *", place)
+                yield self.finding("#DISPLAYBPM has a '='; write one BPM, two such as 90:180, or *", place)
 
 
 _MODIFIERS = ("ATTACKS", "MODS")
@@ -99,7 +99,7 @@ _CHANGES = ("BGCHANGES", "FGCHANGES", "BGCHANGES2")
 
 
 class Attacks(FileRule):
-    """The song has attacks (modifiers that come while it is played), or scripts in Lua. Off by default.
+    """The song has attacks (modifiers that appear during play) or Lua scripts. Off by default.
 
     Bad for a tournament: #ATTACKS:TIME=1.0:LEN=4:MODS=drunk; Better: #ATTACKS:;
     """

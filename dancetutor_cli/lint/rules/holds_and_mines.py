@@ -18,7 +18,7 @@ _NEAR = 2  # measures
 class BrokenHold(ReaderRule):
     """A hold has no end, an end has no head, or a note stands inside a hold: the games drop one of the two.
 
-    Where a row near it is misread (DT102) nothing is said: its head or end may stand there.
+    Near a misread row (DT102) nothing is reported: the missing head or end may be in that row.
 
     Bad:
 
@@ -55,12 +55,14 @@ class BrokenHold(ReaderRule):
 
 
 class MineUnderHold(TimedRule):
-    """A mine comes under a foot that can hardly step aside: the weight is on a panel that is held down.
+    """A mine comes under a foot that can hardly step aside, because a hold keeps the weight on it.
 
-    The foot holds the panel beside it, or the other foot holds one, and the step was just now. Before a wall of three
-    mines or more everybody waits between the panels. `max_seconds`: just now means at most this long before the mine:
-    who taps a panel has left it after about a tenth of a second; by-meter: what at most `share` per cent of the charts
-    of a meter have.
+    The foot is on the hold, or the other foot is and this foot has just stepped. Before a wall of three or more mines
+    nothing is reported: everybody waits between the panels.
+
+    `max_seconds`: the longest time between the step and the mine; a foot has left a tap after about a tenth of a
+    second.
+    by-meter: the longest time at which at most `share` per cent of the charts of this meter have the move.
 
     Bad (max_seconds = 1.5):
 
@@ -89,7 +91,7 @@ class MineUnderHold(TimedRule):
         """Each row with such a mine, with the time since the foot's step; none where it cannot leave at all."""
         reported: set[int] = set()
         for row, column, foot, seconds in subject.feet.mines_under_pinned_feet() if subject.feet else ():
-            message = f"a mine under the {('left', 'right')[foot]} foot, which a hold keeps from stepping aside"
+            message = f"a mine is under the {('left', 'right')[foot]} foot, which cannot step aside because of a hold"
             if row not in reported and seconds <= self.longest(subject) + EPSILON:  # once for a row, not for each foot
                 reported.add(row)
                 yield Occurrence(row, seconds, message, column)
@@ -99,8 +101,8 @@ class StuckHold(ChartRule):
     """There is no way to release a hold: a mine waits on its panel, or the limb is needed elsewhere at once.
 
     `mine_seconds`: a mine on the same panel at most this long after the end of the hold is reported.
-    `min_seconds`: the least time between the end of the hold and the limb's next step on another panel; 0: any will do,
-    because the games are content with a hold that is left shortly before its end.
+    `min_seconds`: the least time between the end of the hold and the limb's next step on another panel. 0 allows any
+    time, because the games still count a hold that is left shortly before its end.
 
     Bad (mine_seconds = 0.6):
 
@@ -129,7 +131,7 @@ class StuckHold(ChartRule):
         """One finding for each such mine, and for each step that comes too early."""
         feet = subject.feet
         for row, column, seconds in feet.mines_after_holds(self.options["mine_seconds"]) if feet else ():
-            message = f"a mine lies on this panel {seconds * 1000:.0f} ms after the end of its hold"
+            message = f"a mine is on this panel {seconds * 1000:.0f} ms after the end of its hold"
             yield self.finding(message, subject.at_row(row, column))
         for row, column, seconds in feet.releases(self.options["min_seconds"]) if feet else ():
             late = f"{max(seconds, 0) * 1000:.0f} ms"
@@ -139,7 +141,7 @@ class StuckHold(ChartRule):
 
 
 class MineInTheWay(ChartRule):
-    """A mine lies on the panel that a foot comes to, so close before the step that it may be hit.
+    """A mine is on the panel of the next step, so shortly before it that the foot may hit the mine.
 
     `max_seconds`: mines at most this long before the step count; the games' mine window is about 0.07 s.
 
@@ -174,5 +176,5 @@ class MineInTheWay(ChartRule):
             if row in reported:  # once for a row, not for each foot
                 continue
             reported.add(row)
-            message = f"a mine lies on this panel {seconds * 1000:.0f} ms before the foot arrives"
+            message = f"a mine is on this panel {seconds * 1000:.0f} ms before the foot arrives"
             yield self.finding(message, subject.at_row(row, column))

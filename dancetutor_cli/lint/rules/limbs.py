@@ -18,12 +18,14 @@ _NEAR = 0.3  # seconds
 class LowBracket(TimedRule):
     """One foot has to press two panels in a chart whose players do not know brackets yet.
 
-    Where three panels are down at once it is a hand (DT302). Two panels again and again are jumps, however quick; so
-    are those of which a foot has just stepped one. It is one finding for a chart.
+    Three panels down at once are a hand (DT302). Not reported: the same two panels again and again, or two panels of
+    which a foot has just stepped one; these are jumps, however quick. All brackets of a chart are one finding.
 
-    `least_meter`: the meter from which on brackets are expected. `max_seconds`: only rows at most this long after the
-    step before count, less than a 16th at 150 BPM; with more time players jump. `most_quick`: in a chart in which more
-    per cent of the steps are so quick only the number is low, and nothing is said.
+    `least_meter`: the meter from which on brackets are expected.
+    `max_seconds`: only rows at most this long after the step before count, less than a 16th at 150 BPM; with more time
+    players jump.
+    `most_quick`: nothing is reported in a chart in which more per cent of the steps are so quick: such a chart is not
+    for beginners, whatever its meter says.
 
     Bad (least_meter = 10, max_seconds = 0.6, most_quick = 100):
 
@@ -56,7 +58,7 @@ class LowBracket(TimedRule):
         for row in subject.rows_with("bracket"):
             if feet and feet.down[row] < 3 and not _jumped(subject, row):
                 pause = subject.pause(row)
-                said = f"two panels {1000 * pause:.0f} ms after a step, too quick for a jump: a bracket"
+                said = f"a bracket: two panels {1000 * pause:.0f} ms after a step, too quick for a jump,"
                 yield Occurrence(row, pause, f"{said} in a chart of meter {meter}")
 
     def _quick_throughout(self, subject: ChartSubject) -> bool:
@@ -80,12 +82,12 @@ _SLIP = 0.02  # seconds between two rows that are meant as one
 
 
 class Unplayable(MoveRule):
-    """No limb is left for a step of this row: both feet and both hands press something already.
+    """No limb is left for a step of this row: both feet and both hands already press something.
 
-    Those at most two measures apart are one finding. In a chart whose meter is the 99 of gimmicks, or where the rows
-    come less than 20 ms apart, it is an info: nobody is surprised. An info is also where a hand would have to be down
-    again within 0.4 s: a foot may bracket instead. The dancer of the films lets such steps go, like those for which a
-    foot would have to leap (DT305).
+    Such rows at most two measures apart are one finding. It is an info in charts of meter 99 (gimmicks) and where rows
+    come less than 20 ms apart. It is also an info where a hand would have to come down again within 0.4 s, because a
+    foot may bracket instead. The dancer of the films does not play such steps, nor steps that a foot would have to leap
+    for (DT305).
 
     Bad: five panels at once.
 
@@ -129,7 +131,7 @@ class Unplayable(MoveRule):
         """How many steps are left over."""
         if count := subject.unplayed(row):
             return f"no limb is left for {count} step{'s' if count > 1 else ''} of this row"
-        return f"a hand would have to be down again less than {HAND:g} s after it was"
+        return f"a hand would have to come down again within {HAND:g} s"
 
 
 def _hands(subject: ChartSubject) -> set[int]:
@@ -142,13 +144,15 @@ _SCALE = "itg"  # of meters, on which `least_meter` is measured
 
 
 class Hand(MoveRule):
-    """Three panels are down at once: a foot brackets two of them, or a hand helps; these players do neither yet.
+    """Three panels are down at once: a bracket or a hand, and the players of this chart know neither.
 
-    The games count such rows as hands. Held panels count. Those at most two measures apart are one finding.
+    The games count such rows as hands. Held panels count. Rows at most two measures apart are one finding.
 
-    Off for most charts; configs/lint/default.yaml switches it on for the lower difficulties. `least_meter`: the meter
-    from which on hands are expected, whatever the difficulty says. A chart of meter 1 that plays like such a meter
-    (docs/meter.md) has no meter yet, and one of a single row is a stub: nothing is said of them.
+    Off for most charts; configs/lint/default.yaml switches it on for the lower difficulties.
+
+    `least_meter`: the meter from which on hands are expected, whatever the difficulty. A chart of meter 1 that plays
+    like such a meter (docs/meter.md) has no real meter yet, and a chart of one row is a stub: nothing is reported for
+    them.
 
     Bad (least_meter = 10):
 
@@ -197,4 +201,4 @@ class Hand(MoveRule):
     def message(self, subject: ChartSubject, row: int) -> str:
         """Whether a bracket would do."""
         bracketed = self.move not in (subject.play.moves[row] if subject.play else ())
-        return "three panels at once: " + ("a bracket, or a hand" if bracketed else "a hand has to press one")
+        return "three panels at once: " + ("a bracket or a hand" if bracketed else "a hand has to press one")

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class MissingMusic(FileRule):
-    """The file that #MUSIC names is not in the song's folder, is no audio file, or its name leads out of the folder.
+    """The file that #MUSIC names is missing, is not an audio file, or is outside the song's folder.
 
     Bad: #MUSIC:C:/Users/me/song.ogg;
 
@@ -38,7 +38,7 @@ class MissingMusic(FileRule):
 class MusicEnd(FileRule):
     """The last note of a chart, or the end of its last hold, comes after the end of the music.
 
-    `tolerance`: seconds after it that are no finding.
+    `tolerance`: notes at most this many seconds after the end are not reported.
 
     Bad: a chart of two minutes with the cut music of one. Better: the whole music, or a shorter chart.
     """
@@ -60,14 +60,15 @@ class MusicEnd(FileRule):
         ]
         last, chart = max(ends, key=lambda end: end[0], default=(0.0, None))
         if chart is not None and last > music.seconds + self.options["tolerance"]:
-            said = f"{chart.label} goes on to {last:.1f} s, and the music ends at {music.seconds:.1f} s"
+            said = f"{chart.label} goes on to {last:.1f} s, but the music ends at {music.seconds:.1f} s"
             yield self.finding(said, subject.place(chart.line), chart=chart.index)
 
 
 class Preview(FileRule):
-    """#SAMPLESTART and #SAMPLELENGTH name a part that the music has not, or none: the games play something else.
+    """#SAMPLESTART and #SAMPLELENGTH name a part outside the music, or an empty one: the games play something else.
 
-    `tolerance`: seconds after the end of the music that are no finding. Without the tags the games choose a part.
+    `tolerance`: a preview that ends at most this many seconds after the music is not reported. Without the tags the
+    games choose a part.
 
     Bad: #SAMPLELENGTH:0; Better: #SAMPLELENGTH:15;
     """
@@ -87,7 +88,7 @@ class Preview(FileRule):
         elif start is not None and start < 0:
             yield self.finding(f"the preview starts at {start:g} s, before the music", subject.tag_place("SAMPLESTART"))
         elif start is not None and end is not None and start + (length or 0) > end + self.options["tolerance"]:
-            said = f"the preview goes from {start:g} to {start + (length or 0):g} s, and the music ends at {end:.1f} s"
+            said = f"the preview goes from {start:g} to {start + (length or 0):g} s, but the music ends at {end:.1f} s"
             yield self.finding(said, subject.tag_place("SAMPLESTART"))
 
 
@@ -95,11 +96,12 @@ _SUFFIXES = {".ogg": "vorbis", ".oga": "vorbis", ".mp3": "mp3", ".wav": "wav", "
 
 
 class MusicFormat(FileRule):
-    """The music is damaged, empty, of a format or sample rate that games refuse, or another one than its name says.
+    """The music is damaged or empty, has a format or sample rate that games refuse, or is not what its name says.
 
-    `formats`: of vorbis, mp3, wav, flac, opus those that are accepted; wav is WAV as StepMania and ITGmania read it:
-    8 to 32 bits, floats of 32, ADPCM, and no extensible head, which editors write for 24 bits. `rates`: accepted
-    sample rates in Hz; an empty list accepts all. `channels`: at most so many.
+    `formats`: the accepted ones of vorbis, mp3, wav, flac and opus. wav means WAV as StepMania and ITGmania read it: 8
+    to 32 bits, 32-bit floats or ADPCM, without the extensible header that editors write for 24 bits.
+    `rates`: accepted sample rates in Hz; an empty list accepts all.
+    `channels`: the most channels that are accepted.
 
     Bad: song.ogg that holds Opus. Better: Ogg Vorbis at 44100 Hz.
     """
@@ -129,7 +131,7 @@ class MusicFormat(FileRule):
         elif named != head.kind:
             said = f"is {head.kind}, whatever its name says"
         elif rates and head.rate not in rates:
-            said = f"has {head.rate} samples a second, not {' or '.join(map(str, rates))}"
+            said = f"has a sample rate of {head.rate} Hz, not {' or '.join(map(str, rates))}"
         elif head.channels > self.options["channels"]:
             said = f"has {head.channels} channels, more than {self.options['channels']}"
         elif subject.sync is not None and subject.sync.damage:
@@ -139,9 +141,9 @@ class MusicFormat(FileRule):
 
 
 class LeadIn(FileRule):
-    """The first note comes before the music, or sooner after its start than a player can be ready.
+    """The first note comes before the music, or too soon after its start for a player to be ready.
 
-    `min_seconds`: from the start of the music to the first note.
+    `min_seconds`: the least time from the start of the music to the first note.
 
     Bad: a first note at second -0.5. Better: music with a second before the first note.
     """
@@ -159,9 +161,9 @@ class LeadIn(FileRule):
 
 
 class Silence(FileRule):
-    """The music begins with a long silence, through which players wait.
+    """The music begins with a long silence. Players have to wait through it.
 
-    `max_seconds`: of silence at the start. Needs `--sync`.
+    `max_seconds`: the longest silence at the start that is not reported. Needs `--sync`.
 
     Bad: ten seconds of nothing. Better: cut them off, and change #OFFSET by as much.
     """
@@ -177,9 +179,9 @@ class Silence(FileRule):
 
 
 class Clipping(FileRule):
-    """Much of the music is at full scale, as where it was made louder than a file can hold: it crackles.
+    """Many samples of the music are at full scale, because it is louder than its file can hold: it crackles.
 
-    `share`: per cent of the samples that may be. Loud masters have up to half a per cent. Needs `--sync`.
+    `share`: per cent of the samples that may be at full scale. Loud masters have up to half a per cent. Needs `--sync`.
 
     Bad: music amplified until its waves have flat tops. Better: the music as it was published.
     """

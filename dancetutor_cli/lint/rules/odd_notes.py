@@ -1,4 +1,4 @@
-"""DT102: note data that the games read in a way of their own."""
+"""DT102: note data that games read differently."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _LISTED = 5  # lines
 class OddNotes(ReaderRule):
     """Rows are too short or too long, characters are unknown, or rows are so close that one overwrites the other.
 
-    The games read around it, each in its own way, and so does the program, as ITGmania does. What StepF2 writes for
-    itself, StepManiaX's notes in charts of other games, and charts for several players are told as an info. The same in
-    several rows of a chart is one finding, and a file without line breaks is one.
+    Each game reads such notes in its own way; this program reads them as ITGmania does. StepF2's own notation,
+    StepManiaX notes in charts of other games, and charts for several players are an info. The same problem in several
+    rows of a chart is one finding, and so is a file without line breaks.
 
     Bad:
 
@@ -80,7 +80,7 @@ def _with_lines(same: list[Finding]) -> Finding:
     if not lines:
         return same[0]
     more = f"{', '.join(lines[:_LISTED])}{' ...' if len(lines) > _LISTED else ''}"
-    return replace(same[0], message=f"{same[0].message}; in {len(same)} rows: also in line {more}")
+    return replace(same[0], message=f"{same[0].message}; {len(same)} rows are like this, also on line {more}")
 
 
 def _flattened(song: Song, chart: Chart) -> bool:

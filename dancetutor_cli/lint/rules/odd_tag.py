@@ -1,4 +1,4 @@
-"""DT104: a value of the file that the games read in a way of their own."""
+"""DT104: a value of the file that games read differently."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from dancetutor_cli.lint.rule import ReaderRule
 
 
 class OddTag(ReaderRule):
-    """A tag is not what it should be: a decimal comma, a meter that is no number, a difficulty no game knows.
+    """A tag has a wrong value: a decimal comma, a meter that is no number, a difficulty that no game knows.
 
-    A value that is lost where no player sees it, such as MENUCOLOR's, is an info.
+    A lost value that no player sees, such as that of MENUCOLOR, is an info.
 
     Bad: #OFFSET:1,5;
 

@@ -13,10 +13,9 @@ if TYPE_CHECKING:
 
 
 class OddTiming(ReaderRule):
-    """A BPM, stop, delay or warp is negative, not a number, overlaps another or has no BPM to stand on.
+    """A BPM, stop, delay or warp is negative, is not a number, overlaps another one or has no BPM before it.
 
-    Negative values are an old gimmick; as warps in .ssc they say what they do. They are told as an info, and once in a
-    file.
+    Negative values are an old gimmick. #WARPS in .ssc do the same openly. They are an info, once for each file.
 
     Bad: #BPMS:0.000;
 
@@ -45,9 +44,9 @@ class OddTiming(ReaderRule):
 
 
 class OffGrid(ChartRule):
-    """A note stands where none of the usual quantisations has one, mostly after a conversion or a slip of the mouse.
+    """A note is on none of the usual quantisations, mostly after a conversion or a slip of the mouse.
 
-    `grid`: the quantisations that are usual, as players name them (16 for 16ths). Rows in a run count once.
+    `grid`: the usual quantisations, as players name them (16 for 16ths). Several such rows in a row are one finding.
 
     Bad (grid = [3]):
 
@@ -79,7 +78,7 @@ class OffGrid(ChartRule):
         """One finding for each run of such rows, at its first."""
         for tick, line, count in subject.notes.off_grid([int(name) for name in self.options["grid"]]):
             more = f" and {count - 1} more after it" if count > 1 else ""
-            yield self.finding(f"this note{more} stands on no {self._names()}", subject.at_tick(tick, line))
+            yield self.finding(f"this note{more} is on no {self._names()}", subject.at_tick(tick, line))
 
     def _names(self) -> str:
         names = [f"{name}{'nd' if name % 10 == 2 and name != 12 else 'th'}" for name in self.options["grid"]]
@@ -87,9 +86,9 @@ class OffGrid(ChartRule):
 
 
 class HiddenNote(ChartRule):
-    """A note stands inside a warp or a fake segment: it is drawn, or skipped, but it never counts.
+    """A note is inside a warp or a fake segment: the games draw it or skip it, but never count it.
 
-    That may be a gimmick. Notes in a run count once.
+    That may be a gimmick. Several such notes in a row are one finding.
 
     Bad: taps inside #WARPS or #FAKES.
 
@@ -102,8 +101,8 @@ class HiddenNote(ChartRule):
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each run of such notes, at its first."""
         for tick, line, count in subject.notes.unjudged():
-            what = "a note lies" if count == 1 else f"{count} notes lie"
-            yield self.finding(f"{what} inside a warp or a fake segment and never count", subject.at_tick(tick, line))
+            what = "a note is inside" if count == 1 else f"{count} notes are inside"
+            yield self.finding(f"{what} a warp or a fake segment, where nothing counts", subject.at_tick(tick, line))
 
 
 # Kinds of the file, and what several notes at once make.

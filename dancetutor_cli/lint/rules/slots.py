@@ -1,4 +1,4 @@
-"""DT512: a chart that every song of a pack shall have is missing."""
+"""DT512: a chart that every song of a pack must have is missing."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 
 class Slots(FileRule):
-    """The song lacks a chart that is required. Off by default.
+    """The song lacks a chart that every song of the pack must have. Off by default.
 
-    `charts`: steps type and difficulty of each, as "dance-single Hard".
+    `charts`: steps type and difficulty of each, such as "dance-single Hard".
 
     Bad for a pack with an Easy of every song: a song without. Better: a dance-single Easy.
     """

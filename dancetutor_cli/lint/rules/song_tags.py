@@ -16,7 +16,7 @@ _TAGS = ("MUSIC", "BANNER", "BACKGROUND", "CDTITLE", "JACKET", "LYRICSPATH")
 
 
 class LetterCase(FileRule):
-    """A tag names a file with other capitals than it has: found on Windows and in the games, but not everywhere.
+    """A tag and the file that it names differ in capitals: Windows and the games find the file, other systems do not.
 
     Bad: #MUSIC:Song.OGG; beside song.ogg. Better: #MUSIC:song.ogg;
     """
@@ -32,14 +32,15 @@ class LetterCase(FileRule):
         for tag in _TAGS:
             name = subject.song.tags.get(tag, "").strip()
             if name and (there := other_case(folder, name)):
-                yield self.finding(f"#{tag} names {name}, and the file is called {there}", subject.tag_place(tag))
+                yield self.finding(f"#{tag} names {name}, but the file is called {there}", subject.tag_place(tag))
 
 
 class BannerSize(PictureRule):
-    """#BANNER is empty, names a file that is not there or empty, or a picture of an unusual size.
+    """#BANNER is empty, names a missing or empty file, or a picture of an unusual size.
 
-    `required`: whether a song without the tag is reported. `sizes`: the sizes that are accepted, as "418x164";
-    `proportions`: sizes with an accepted proportion. Of an empty list every one is accepted. Films have no size here.
+    `required`: whether a song without the tag is reported.
+    `sizes`: the accepted sizes, such as "418x164".
+    `proportions`: sizes whose proportions are accepted. An empty list accepts all. The size of a video is not checked.
 
     Bad: #BANNER:nowhere.png; Better: a picture of 418x164 beside the song.
     """
@@ -50,10 +51,11 @@ class BannerSize(PictureRule):
 
 
 class BackgroundSize(PictureRule):
-    """#BACKGROUND is empty, names a file that is not there or empty, or a picture of an unusual size.
+    """#BACKGROUND is empty, names a missing or empty file, or a picture of an unusual size.
 
-    `required`: whether a song without the tag is reported. `sizes`: the sizes that are accepted, as "1920x1080";
-    `proportions`: sizes with an accepted proportion. Of an empty list every one is accepted. Films have no size here.
+    `required`: whether a song without the tag is reported.
+    `sizes`: the accepted sizes, such as "1920x1080".
+    `proportions`: sizes whose proportions are accepted. An empty list accepts all. The size of a video is not checked.
 
     Bad: #BACKGROUND:nowhere.png; Better: a picture of 1920x1080 beside the song.
     """
@@ -64,7 +66,7 @@ class BackgroundSize(PictureRule):
 
 
 class BpmRange(ChartRule):
-    """A BPM of the chart's timing is below or above the limits. Off by default; contests switch it on.
+    """A BPM of the chart's timing is outside the limits. Off by default; contests switch it on.
 
     `min_bpm`, `max_bpm`: the limits.
 
@@ -79,15 +81,16 @@ class BpmRange(ChartRule):
         for bpm in subject.tempos():
             if not self.options["min_bpm"] <= bpm <= self.options["max_bpm"]:
                 low, high = self.options["min_bpm"], self.options["max_bpm"]
-                yield self.finding(f"a tempo of {bpm:g} BPM, not {low:g} to {high:g}", subject.at_chart())
+                yield self.finding(f"a tempo of {bpm:g} BPM, not {low:g} to {high:g} BPM", subject.at_chart())
                 break
 
 
 class CdTitle(PictureRule):
-    """#CDTITLE is empty, names a file that is not there or is empty, or a picture of an unusual size.
+    """#CDTITLE is empty, names a missing or empty file, or a picture of an unusual size.
 
-    `required`: whether a song without the tag is reported. `proportions`: of width and height that are accepted.
-    `sizes`: the sizes that are accepted; an empty list accepts every size.
+    `required`: whether a song without the tag is reported.
+    `proportions`: the accepted proportions of width and height.
+    `sizes`: the accepted sizes; an empty list accepts all.
 
     Bad: #CDTITLE:nowhere.png; Better: a picture beside the song, or in the pack's folder: ../pack.png.
     """
@@ -102,9 +105,9 @@ _LEAST = {"GREEK": 3}  # letters of a word: single ones stand for something else
 
 
 class Translit(FileRule):
-    """Title, subtitle or artist is in another script than the Latin one, and nothing says how it is read.
+    """Title, subtitle or artist is not in Latin letters, and no transliteration is given.
 
-    Players who cannot read it search in vain, and some fonts of the games do not have its letters.
+    Players who cannot read it cannot search for it, and some fonts of the games lack its letters.
 
     Bad: #TITLE:\u65e5\u672c; without #TITLETRANSLIT. Better: #TITLETRANSLIT:Nihon;
     """
@@ -117,7 +120,7 @@ class Translit(FileRule):
         for tag in ("TITLE", "SUBTITLE", "ARTIST"):
             value = subject.song.tags.get(tag, "")
             if _is_other_script(value) and not subject.song.tags.get(f"{tag}TRANSLIT", "").strip():
-                yield self.finding(f"#{tag} is in another script, and #{tag}TRANSLIT is empty", subject.tag_place(tag))
+                yield self.finding(f"#{tag} is not in Latin letters, #{tag}TRANSLIT is empty", subject.tag_place(tag))
 
 
 def _is_other_script(text: str) -> bool:
@@ -133,7 +136,7 @@ _ROOTS = ("songs", "additionalsongs")
 
 
 class SongFolder(FileRule):
-    """The song's folder lies directly in Songs, or the file does: the games look for songs in the folders of packs.
+    """The song's folder or its file is directly in Songs: the games look for songs in the folders of packs.
 
     Bad: Songs/My Song/song.ssc. Better: Songs/My Pack/My Song/song.ssc
     """
@@ -145,7 +148,7 @@ class SongFolder(FileRule):
         """At most one finding."""
         folder = subject.song.path.absolute().parent
         if folder.name.lower() in _ROOTS:
-            yield self.finding(f"the file lies directly in {folder.name}, in no folder of a pack", subject.place())
+            yield self.finding(f"the file is directly in {folder.name}, in no folder of a pack", subject.place())
         elif folder.parent.name.lower() in _ROOTS:
-            said = f"the song's folder lies directly in {folder.parent.name}, in no folder of a pack"
+            said = f"the song's folder is directly in {folder.parent.name}, in no folder of a pack"
             yield self.finding(said, subject.place())

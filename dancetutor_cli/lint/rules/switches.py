@@ -16,15 +16,16 @@ _LONGER = 1.4  # times the pace of the run: a pause before it, in which a foot i
 
 
 class Footswitch(MoveRule):
-    """One foot takes over the panel that the other stands on, in a chart whose players do not know footswitches yet.
+    """One foot takes over the panel that the other foot is on, in a chart whose players do not know footswitches yet.
 
-    Off for most charts; configs/lint/default.yaml switches it on for the lowest difficulties.
+    Off for most charts; configs/lint/default.yaml switches it on for the lowest difficulties. To these players two
+    steps on one panel are a jack, whatever foot the pattern after them wants. So a footswitch is reported only if the
+    author means it (a mine on the panel, or feet that the author set), or if a jack would lead to the wrong foot: eight
+    such quick steps follow without a rest, none of them on the panel before it. It is not reported if a jack can be
+    danced without crossing.
 
     `max_seconds`: only steps at most this long after the step before count; with more time the same foot steps again.
-    by-meter: what at most `share` per cent of the charts of a meter have. Two steps on one panel are a jack to these
-    players, whatever foot the pattern after them wants. So it is told only where the author means a switch, by a mine
-    at it or feet laid down, or where eight such quick steps, none of them on the panel before it, follow without a
-    rest: who jacks it runs into those with the wrong foot. Nor where it can be danced as a jack without crossing.
+    by-meter: the longest time at which at most `share` per cent of the charts of this meter have the move.
 
     Bad (max_seconds = 0.6):
 
@@ -45,10 +46,10 @@ class Footswitch(MoveRule):
     name = "footswitch"
     move = "footswitch"
     times = "footswitch"
-    description = "a foot takes over the panel of the other: footswitch"
+    description = "footswitch: a foot takes over the panel of the other foot"
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
-        """Footswitches on one panel; what a bracket does beside it is DT210's."""
+        """Footswitches on one panel; those with a bracket belong to DT210."""
         found = self.quick(subject, subject.rows_with(self.move))
         return [row for row in found if not subject.brackets(row) and self._is_switched(subject, row)]
 
@@ -65,7 +66,7 @@ class Footswitch(MoveRule):
 
 
 def _is_laid_down(subject: ChartSubject, row: int) -> bool:
-    """Whether people have said whose foot it is."""
+    """Whether the author has set the foot."""
     assert subject.play is not None
     return subject.overrides is not None and bool((subject.overrides.ticks == subject.play.rows.tick[row]).any())
 
@@ -85,11 +86,13 @@ def _leads_a_run(subject: ChartSubject, row: int, quick: float) -> bool:
 
 
 class Sideswitch(MoveRule):
-    """One foot takes over the left or right panel that the other stands on, so the body has to turn sideways for it.
+    """One foot takes over the left or right panel that the other foot is on, so the body has to turn sideways.
 
-    `max_seconds`: only steps at most this long after the step before count; with more time the same foot steps again, a
-    jack. So it does in a passage of jacks, where a panel just before is stepped on twice, and where the steps up to the
-    next rest go uncrossed after it; unless a mine at it asks for the switch. What a bracket does beside it is DT210's.
+    Not reported, because players jack there with the same foot: in a passage of jacks, where a panel shortly before is
+    stepped on twice, and where the steps up to the next rest are uncrossed after a jack. A mine on the panel asks for
+    the switch, and then it is reported. Switches with a bracket belong to DT210.
+
+    `max_seconds`: only steps at most this long after the step before count; with more time the same foot steps again.
 
     Bad (max_seconds = 0.6):
 
@@ -109,10 +112,10 @@ class Sideswitch(MoveRule):
     code = "DT208"
     name = "sideswitch"
     move = "sideswitch"
-    description = "a foot takes over a side panel from the other: sideswitch"
+    description = "sideswitch: a foot takes over a side panel from the other foot"
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
-        """Quick ones that nobody dances as a jack."""
+        """Quick ones that nobody plays as a jack."""
         from dancetutor_cli.lint.other_foot import goes_on_the_other_foot, has_mine_since_step, led_by_a_jack
 
         quick = self.longest(subject)
@@ -148,14 +151,14 @@ class Holdswitch(MoveRule):
     code = "DT211"
     name = "holdswitch"
     move = "holdswitch"
-    description = "the feet change on a held panel: holdswitch"
+    description = "holdswitch: the feet change on a held panel"
 
 
 class JumpFootswitch(MoveRule):
-    """In this jump a foot that already stands on one of its panels has to change to another one, and quickly.
+    """In this jump a foot that is already on one of the panels has to change to the other panel, and quickly.
 
-    `max_seconds`: only jumps at most this long after the step before count; with more time nobody notices. by-meter:
-    what at most `share` per cent of the charts of a meter have.
+    `max_seconds`: only jumps at most this long after the step before count; with more time nobody notices.
+    by-meter: the longest time at which at most `share` per cent of the charts of this meter have the move.
 
     Bad (max_seconds = 0.6): the right foot has just come to the panel that the left foot needs.
 
@@ -176,15 +179,17 @@ class JumpFootswitch(MoveRule):
     name = "jump-footswitch"
     move = "jump-footswitch"
     times = "jump-footswitch"
-    description = "a foot changes panels within this jump: jump footswitch"
+    description = "jump footswitch: a foot changes panels within this jump"
 
 
 class SwitchJack(TimedRule):
-    """Several quick steps on one panel, which players read as a jack, but the feet have to change in it.
+    """Several quick steps on one panel look like a jack, but the feet have to change in it.
 
-    Who jacks them all with one foot comes out on the wrong one and doublesteps. `min_rows`: so many steps on the panel
-    at least; two are a plain footswitch. `max_seconds`: only steps at most this long after the step before count; with
-    more time players see which foot is due.
+    A player who jacks them with one foot ends on the wrong foot and doublesteps.
+
+    `min_rows`: the least number of steps on the panel; two are a plain footswitch.
+    `max_seconds`: only steps at most this long after the step before count; with more time players see which foot is
+    next.
 
     Bad (max_seconds = 0.6):
 
@@ -205,10 +210,10 @@ class SwitchJack(TimedRule):
     name = "switch-jack"
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
-        """Each run, at the first step for which the feet change; how quick it is says the slowest step in it."""
+        """Each run, at the first step for which the feet change, with the slowest pause in it."""
         least = max(self.options["min_rows"], 2)
         for rows, limbs in subject.feet.switching_runs(least, self.longest(subject)) if subject.feet else ():
             if limbs[0] != limbs[-1]:  # otherwise who jacks them all comes out on the right foot
                 change = next(at for at in range(1, len(rows)) if limbs[at] != limbs[at - 1])
-                said = f"the feet change in {len(rows)} quick steps on one panel: footswitch or jack?"
+                said = f"footswitch or jack? the feet change in {len(rows)} quick steps on one panel"
                 yield Occurrence(rows[change], max(map(subject.pause, rows[1:])), said)

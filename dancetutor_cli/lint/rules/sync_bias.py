@@ -1,4 +1,4 @@
-"""DT601: the music is neither at the beats nor 9 ms after them."""
+"""DT601: the music is neither on the beats nor 9 ms after them."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 
 class SyncBias(SyncRule):
-    """The music's attacks come neither with the beats (null) nor 9 ms after them (ITG): one hears it as off.
+    """The music is neither on the beats (null) nor 9 ms after them (ITG): players hear that it is off.
 
-    `tolerance`: ms on either side of both that are no finding. Needs `--sync`. Half a beat off is DT603. A file without
-    #OFFSET is told, too: the games take 0.
+    `tolerance`: differences of at most this many ms from both are not reported. Needs `--sync`. A song that is half a
+    beat off is reported by DT603. A file without #OFFSET is reported too: the games take 0.
 
     Bad: #OFFSET:0.025; with music that is at the beats. Better: #OFFSET:0.000;
     """
@@ -29,7 +29,7 @@ class SyncBias(SyncRule):
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """Those of its syncs, and one for a file without #OFFSET."""
         if subject.sync is not None and "OFFSET" not in subject.song.tags:
-            yield self.finding("there is no #OFFSET: the games take 0", subject.place())
+            yield self.finding("there is no #OFFSET; the games take 0 s", subject.place())
         yield from super().check(subject)
 
     def message(self, sync: Sync, subject: FileSubject) -> str | None:

@@ -1,4 +1,4 @@
-"""Whether the music is at the beats: half a beat off, drifting, or mixed in a pack."""
+"""Whether the music is on the beats: half a beat off, drifting, or mixed in a pack."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 
 class SyncDrift(SyncRule):
-    """The music moves against the beats from the first to the last third: the tempo is a little off.
+    """The music moves against the beats between the first and the last third: the tempo is a little off.
 
-    `most`: ms of drift that are no finding. Needs `--sync`; `--plot FILE.svg` shows where.
+    `most`: drifts of at most this many ms are not reported. Needs `--sync`; `--plot FILE.svg` shows where it drifts.
 
     Bad: #BPMS:0=140.01; for music of 140 BPM: 9 ms in two minutes. Better: #BPMS:0=140;
     """
@@ -67,9 +67,9 @@ _LISTED = 5
 
 
 class MixedSync(PackRule):
-    """Some songs of the pack are at the beats (null) and some 9 ms after them (ITG): no setting suits both.
+    """Some songs of the pack are on the beats (null) and others 9 ms after them (ITG): no setting suits both.
 
-    `least`: songs of the rarer kind that are a finding. Needs `--sync`.
+    `least`: the least number of songs of the rarer kind that is reported. Needs `--sync`.
 
     Bad: ten songs at 0 ms and two at 9 ms. Better: all at one of them, and #OFFSET of the others changed.
     """
@@ -86,7 +86,7 @@ class MixedSync(PackRule):
         more = f" and {len(kinds[rarer]) - _LISTED} more" if len(kinds[rarer]) > _LISTED else ""
         listed = f"{', '.join(kinds[rarer][:_LISTED])}{more}"
         many, few = (_count(len(kinds[kind]), _KINDS[kind]) for kind in (usual, rarer))
-        return f"of the songs {many}, and {few}: {listed}"
+        return f"of the songs in this pack {many}, and {few}: {listed}"
 
 
 def _count(count: int, kind: str) -> str:
@@ -98,9 +98,11 @@ _KINDS_OF_INI = {"NULL": "null", "ITG": "itg"}
 
 
 class PackSync(PackRule):
-    """`SyncOffset` of the pack's Pack.ini says NULL and most songs are ITG, or the other way round.
+    """`SyncOffset` in Pack.ini says NULL and most songs are ITG, or the other way round.
 
-    ITGmania shifts the songs by what it says. `least`: sure songs that decide. Needs `--sync`.
+    ITGmania shifts the songs by that setting.
+
+    `least`: the least number of songs with a sure sync. Needs `--sync`.
 
     Bad: SyncOffset=ITG with songs at 0 ms. Better: SyncOffset=NULL
     """

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Title(FileRule):
-    """Title or artist is missing, or nothing but blanks. The games take off blanks at the ends of others.
+    """Title or artist is missing, or only blanks. The games remove blanks at the ends of other titles.
 
     Bad: #TITLE:; Better: #TITLE:Two Left Feet;
     """

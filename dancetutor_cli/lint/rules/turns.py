@@ -24,17 +24,20 @@ ONE_PAD = 2.0  # panel widths from the leftmost to the rightmost panel
 
 
 class Spin(MoveRule):
-    """The pattern goes on round behind the dancer's back, beyond 180 degrees: a spin, or a doublestep to avoid it.
+    """The pattern turns the dancer past 180 degrees: a spin, or a doublestep to avoid it.
 
-    Nothing is said where the steps from one rest or jump to the next can be danced uncrossed on the other foot; a rest
-    is about twice the pace of the passage, or the long half of a swing rhythm; two panels at once may always be a jump.
-    Nor of a walk along two pads, on which one foot passes the other; nor of a phrase that begins after a jump and needs
-    one crossover in place of the spin; nor in a burst, of which DT305 tells. More than four in a chart are one finding.
-    It is an info on Pump pads from meter 20, on pads of more than four panels where the steps go round no four of them,
-    as in twists about a Pump centre, and on all pads where mines leave no other panel. A spin in a jump is DT203.
+    Not reported:
+    - steps between two rests or jumps that can be danced uncrossed if the other foot begins; a rest is about twice the
+      pace of the passage, or the long half of a swing rhythm, and two panels at once can always be jumped;
+    - a walk along two pads on which one foot passes the other;
+    - a phrase that begins after a jump and needs one crossover in place of the spin;
+    - spins in a burst, which DT305 reports.
 
-    `max_seconds`: only steps at most this long after the step before count. With more time nobody spins, but turns
-    back.
+    More than four spins in a chart are one finding. A spin in a jump is DT203. It is an info on Pump pads from meter 20
+    on; on pads of more than four panels where the steps go round no four of them, as in twists about a Pump centre; and
+    on all pads where mines leave no other panel.
+
+    `max_seconds`: only steps at most this long after the step before count. With more time players turn back instead.
 
     Bad (max_seconds = 0.6): the crossover goes on in place of being unwound.
 
@@ -54,15 +57,15 @@ class Spin(MoveRule):
     code = "DT202"
     name = "spin"
     move = "spin"
-    description = "the pattern goes all the way round: a spin, or a doublestep to avoid it"
+    description = "spin: the pattern turns the dancer past 180 degrees, unless a foot doublesteps"
     times = "spin"
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
-        """Spins; DT203 tells of those in a jump."""
+        """Spins; DT203 reports those in a jump."""
         return [row for row in subject.rows_with(self.move) if not subject.is_jump(row)]
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
-        """Each spin, with the longest time between steps since the feet were not crossed: who has time uncrosses."""
+        """Each spin, with the longest time between steps since the feet were not crossed: with time players uncross."""
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed
 
         play, longest = subject.play, self.longest(subject)
@@ -122,7 +125,7 @@ class Spin(MoveRule):
         return [found] if len(found) > _MANY else [[one] for one in found]
 
     def _walks(self, subject: ChartSubject, row: int) -> bool:
-        """Whether she only goes along a pad for two: a foot has passed the other, side by side."""
+        """Whether the dancer only walks along two pads: a foot has passed the other, side by side."""
         play, pad = subject.play, subject.pad
         if play is None or pad is None or row == 0:
             return False
@@ -161,7 +164,7 @@ def _between_mines(subject: ChartSubject, row: int) -> bool:
 class JumpSpin(ChartRule):
     """The feet land on a jump only after turning past the dancer's back: a spin in the air.
 
-    Both feet leave the pad, so unlike in a spin nothing guides the turn, and the screen is out of sight while landing.
+    Both feet leave the pad, so nothing guides the turn as in a usual spin, and she cannot see the screen as she lands.
 
     Bad:
 
@@ -183,20 +186,21 @@ class JumpSpin(ChartRule):
     about_feet = True
 
     def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether she never spins."""
+        """Whether the dancer never spins."""
         return not subject.has("spin")
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each spin that ends in a jump."""
         for row in subject.rows_with("spin"):
             if subject.is_jump(row):
-                yield self.finding("the body turns beyond 180 degrees within this jump", subject.at_row(row))
+                yield self.finding("spin in a jump: the body turns past 180 degrees", subject.at_row(row))
 
 
 class HalfTurn(ChartRule):
-    """Between two rows the body turns by 180 degrees at once, from facing one side of the room to facing the other.
+    """Between two rows the body turns by 180 degrees at once, from one side to the other.
 
-    `max_seconds`: only rows at most this long after the step before count; with more time she turns as she likes.
+    `max_seconds`: only rows at most this long after the step before count; with more time the dancer turns step by
+    step.
 
     Bad (max_seconds = 0.6):
 
@@ -226,12 +230,12 @@ class HalfTurn(ChartRule):
         for row in subject.feet.half_turns() if subject.feet else ():
             if subject.pause(row) <= self.options["max_seconds"] + EPSILON:
                 yield self.finding(
-                    f"the body turns by 180 degrees at once{_landing(subject, row)}", subject.at_row(row)
+                    f"half turn: the body turns by 180 degrees at once{_landing(subject, row)}", subject.at_row(row)
                 )
 
 
 def _landing(subject: ChartSubject, row: int) -> str:
-    """With which foot she turns, and where it comes down: ": the left foot lands behind the right one"; "" of a jump
+    """Which foot turns the body, and where it lands: ": the left foot lands behind the right one"; "" of a jump
     or where there is neither in front nor behind."""
     play = subject.play
     if play is None or subject.pad is None or (play.feet[row] < 0).any() or subject.is_jump(row):

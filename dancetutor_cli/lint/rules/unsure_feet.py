@@ -1,4 +1,4 @@
-"""Feet that cannot be found, that nothing tells apart, or that are not as the author says."""
+"""Feet that are not known, not sure, or not as the author set them."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class NoPad(ChartRule):
 
 
 class FeetWish(ChartRule):
-    """A pinned measure or an override in data.sme contradicts the notes, or itself, and is left out of account.
+    """A pinned measure or an override in data.sme contradicts the notes or itself. It is ignored.
 
     Bad: `{dt1! LR}` on a measure of three rows.
 
@@ -48,10 +48,10 @@ class FeetWish(ChartRule):
 
 
 class AmbiguousStart(ChartRule):
-    """A step can be played as well with the other foot: players will begin the chart, or a passage, on different feet.
+    """Either foot can take this step at the same cost: players will begin the chart or the passage on different feet.
 
-    A tie is a play with the other foot that costs the same. Inside a chart only those steps are reported on which the
-    feet of what follows depend, and not those after a jump that can be turned round.
+    Such a tie is a play with the other foot that costs the same. Inside a chart a tie is reported only if the feet of
+    the steps after it depend on it. A tie after a jump that can be turned round is not reported.
 
     Bad:
 
@@ -80,23 +80,24 @@ class AmbiguousStart(ChartRule):
         for row, resolved in subject.ties():
             begins = row == subject.step_rows[0]
             if (begins or not resolved) and not subject.is_jump(row):
-                after = "the rows after it are stepped the same way" if resolved else "what follows depends on it"
+                after = "the feet after it are the same" if resolved else "the feet after it depend on it"
                 verb = "begin" if begins else "come"
                 yield self.finding(f"either foot can {verb} here at the same cost; {after}", subject.at_row(row))
 
 
 class UnsureFeet(ChartRule):
-    """Whose foot it is is a matter of taste here: of the passages of the chart these are the least sure ones.
+    """Here the solver is least sure which foot steps: these are the least sure passages of the chart.
 
-    Of 100 rows that are 60 % sure players step about 60 as the solver says. A look at these rows is worth more than one
-    at all the others; who disagrees pins the measure, `{dt1! ...}`. Silent where no confidence is known.
+    Players step about 60 of 100 rows that are 60 % sure as the solver says. Checking these rows helps more than
+    checking all others; if you disagree, pin the measure with `{dt1! ...}`. Nothing is reported if no confidence is
+    known.
 
-    `below`: rows that are less sure than this count, in per cent; those with at most two others between them make one
-    passage.
-    `most`: how many passages of a chart are reported: those in which the most rows are likely to be wrong.
+    `below`: rows that are less sure than this count, in per cent. Such rows with at most two others between them make
+    one passage.
+    `most`: the most passages of a chart that are reported, those with the most rows that are likely to be wrong.
 
     Bad: a footswitch that may as well be a jack. Better: a step on another panel before it, or a mine where the foot
-    shall be lifted; or leave it as it is, if either foot will do.
+    has to be lifted; or leave it as it is, if either foot will do.
     """
 
     code = "DT213"
@@ -106,9 +107,9 @@ class UnsureFeet(ChartRule):
     def fault(cls, option: str, value: Any) -> str | None:
         """Per cents, and at least one passage."""
         if option == "below" and not 0 < value <= 100:
-            return "is a number of per cent, more than 0 and at most 100"
+            return "must be a number of per cent, more than 0 and at most 100"
         if option == "most" and (value != int(value) or value < 1):
-            return "is a number of passages, at least 1"
+            return "must be a number of passages, at least 1"
         return None
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
@@ -121,6 +122,6 @@ class UnsureFeet(ChartRule):
                 message = f"the feet of this row are only {least:.0%} sure".replace("%", " %")
             else:
                 at, last = (round(subject.beat(one), 3) for one in (row, rows[-1][0]))
-                message = f"the feet of {len(rows)} rows up to beat {last:g} are unsure, on beat {at:g} only "
-                message += f"{least:.0%}".replace("%", " %")
+                message = f"the feet of {len(rows)} rows up to beat {last:g} are unsure: on beat {at:g} they are only "
+                message += f"{least:.0%} sure".replace("%", " %")
             yield self.finding(message, subject.at_row(rows[0][0]))

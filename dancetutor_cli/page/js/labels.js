@@ -39,14 +39,14 @@ export function findingWords(t, { rule, name }) {
   return at < 0 ? [name.replaceAll("-", " "), ""] : [label.slice(0, at), label.slice(at + 2)];
 }
 
-/** Figures in the linter's English messages, by the label that tells them. */
+/** Figures in the linter's English messages, by the label that shows them. */
 const FIGURES = /** @type {[string, RegExp][]} */ ([
   ["rows", /stay crossed for (\d+) rows/], ["sure", /only (\d+) %/], ["steps", /change in (\d+) quick steps/],
-  ["way", /([\d.]+) panels in (\d+) ms/], ["after", /comes (\d+) ms after/], ["apart", /(\d+) rows (\d+) ms apart/],
+  ["way", /([\d.]+) panel widths in (\d+) ms/], ["after", /comes (\d+) ms after/], ["apart", /(\d+) rows (\d+) ms apart/],
   ["among-before", /(\w+) panels in the middle of 16ths, (\d+) ms before/],
   ["among-after", /(\w+) panels in the middle of 16ths, (\d+) ms after/],
   ["dense-before", /(\w+) panels, (\d+) ms before/], ["dense-after", /(\w+) panels, (\d+) ms after/],
-  ["alternate", /two panels, one and two again in 16ths, (\d+) ms apart/],
+  ["alternate", /two panels, then one, then two in 16ths, (\d+) ms apart/],
   ["before", /(\d+) ms before the foot/], ["lasts", /lasts ([\d.]+) s, not ([\d.]+) to ([\d.]+) s/],
   ["tempo", /([\d.]+) BPM, not ([\d.]+) to ([\d.]+)/],
 ]);

@@ -167,22 +167,22 @@ test("words beside the notes have short forms for narrow lanes", () => {
   assert.equal(fillIn("{a} {b}", { a: 2.5, b: "2.5" }, ","), "2,5 2.5"); // numbers only, no names
 });
 
-test("the figures of a finding are told in another language too", () => {
+test("the figures of a finding are shown in another language too", () => {
   const words = wordsOf("de");
   const t = (name, values = {}) => fillIn(words[name] ?? name, values, words.decimal);
   const figures = (message) => findingFigures(t, { message });
-  assert.equal(figures("the feet of 2 rows up to beat 49.5 are unsure, on beat 49 only 50 %"), "(50 % sicher)");
+  assert.equal(figures("the feet of 2 rows up to beat 49.5 are unsure: on beat 49 they are only 50 % sure"), "(50 % sicher)");
   assert.equal(figures("the feet of this row are only 55 % sure"), "(55 % sicher)");
-  assert.equal(figures("the left foot moves 1.5 panels in 120 ms"), "(1,5 Felder in 120 ms)");
+  assert.equal(figures("the left foot has to travel 1.5 panel widths in 120 ms"), "(1,5 Felder in 120 ms)");
   assert.equal(figures("the chart lasts 95.3 s, not 100 to 150 s"), "(95,3 s statt 100 bis 150 s)");
-  assert.equal(figures("8 rows 45 ms apart: quicker than feet step"), "(8 Reihen, 45 ms auseinander)");
-  assert.equal(figures("this row comes 12 ms after the one before: were they meant as one?"), "(12 ms nach der Reihe davor)");
+  assert.equal(figures("8 rows 45 ms apart: too quick for feet"), "(8 Reihen, 45 ms auseinander)");
+  assert.equal(figures("this row comes 12 ms after the row before: were they meant as one?"), "(12 ms nach der Reihe davor)");
   const dense = { "120 ms before the next step": "120 ms vor dem nächsten Schritt", "95 ms after the step before": "95 ms nach dem Schritt davor" };
   for (const [english, german] of Object.entries(dense)) {
     assert.equal(figures(`three panels, ${english}`), `(3 Felder, ${german})`);
     assert.equal(figures(`5 panels in the middle of 16ths, ${english}`), `(5 Felder inmitten von 16teln, ${german})`);
   }
-  assert.equal(figures("two panels, one and two again in 16ths, 110 ms apart"), "(2, 1 und 2 Felder in 16teln, 110 ms auseinander)");
+  assert.equal(figures("two panels, then one, then two in 16ths, 110 ms apart"), "(2, 1 und 2 Felder in 16teln, 110 ms auseinander)");
   assert.equal(figures("something else"), "");
   assert.equal(figures("the body turns by 180 degrees"), "");
 });
