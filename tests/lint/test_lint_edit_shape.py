@@ -98,7 +98,7 @@ def test_where_no_edit_is_good_it_says_so(tmp_path: Path) -> None:
     assert rules == ["DT201"]
     before = path.read_bytes()
     said = fix(path, "DT201")
-    assert "left alone: no edit of a note or a phrase removes it and keeps the shape" in said.stdout
+    assert "left alone: no edit of a note or a phrase removes it without making a jack" in said.stdout
     assert said.return_value == 1 and path.read_bytes() == before
 
 
