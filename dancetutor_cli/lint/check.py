@@ -41,7 +41,7 @@ def check_file(subject: FileSubject, settings: Settings) -> tuple[Finding, ...]:
     for code, options in settings.for_file(subject.song.path).items():
         if code in _rules_of_files():
             rule = _rules_of_files()[code](options)
-            findings += () if _has_nothing_to_say(rule, subject) else rule.check(subject)
+            findings += () if _is_about_others(rule, subject) else rule.check(subject)
     return _in_order(findings)
 
 
@@ -87,15 +87,16 @@ def check_rule(code: str, rules: Rules, subject: ChartSubject, settings: Setting
 
 def _run_rule(rule: ChartRule | ReaderRule, subject: ChartSubject) -> list[Finding]:
     """What a rule finds; of a chart for two what is true of it as a whole is told with the first player's."""
-    if _has_nothing_to_say(rule, subject):
+    if _is_about_others(rule, subject):
         return []
     found = rule.check(subject)
     about_all = subject.chart.player <= 1
     return [one for one in found if (about_all or one.beat is not None) and not _silenced(one, subject)]
 
 
-def _has_nothing_to_say(rule: Rule, subject: FileSubject | ChartSubject) -> bool:
-    return (rule.about_tags and subject.song.format == "ucs") or rule.is_silent(subject)
+def _is_about_others(rule: Rule, subject: FileSubject | ChartSubject) -> bool:
+    """Whether the rule is about tags, of which a .ucs says nothing."""
+    return rule.about_tags and subject.song.format == "ucs"
 
 
 def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:

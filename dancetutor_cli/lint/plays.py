@@ -74,7 +74,6 @@ class Plays:
         self.first = [0, *accumulate(len(play.rows) for play in plays)]
         self._rows_with: dict[str, NDArray[np.int64]] = {}
         self._having: dict[str, list[bool]] = {}
-        self._soonest: dict[str, list[float]] = {}
 
     def own(self, rows: NDArray[np.int64], number: int) -> NDArray[np.int64]:
         """Those of some ascending rows that are of one play, counted from its first."""
@@ -303,13 +302,6 @@ class Plays:
         if move not in self._having:
             self._having[move] = [count > 0 for count in self.count_rows(self.rows_with(move))]
         return self._having[move]
-
-    def least_seconds(self, move: str) -> list[float]:
-        """For each play the least time (s) from a step to such a row."""
-        if move not in self._soonest:
-            rows = self.rows_with(move)
-            self._soonest[move] = self.least(rows, self.pauses[rows])
-        return self._soonest[move]
 
     @cached_property
     def counts(self) -> list[dict[str, int]]:

@@ -51,10 +51,6 @@ class Rule(ABC):
         """What is wrong with the value of an option, beyond its kind; None if nothing."""
         return None
 
-    def is_silent(self, subject: Any) -> bool:
-        """Whether a glance at what it would check tells that there is nothing: so it is with most rules and charts."""
-        return False
-
     def finding(self, message: str, place: Mapping[str, Any], **more: Any) -> Finding:
         """A finding of this rule; `place` is what `at_row`, `at_line` or `place` of the subject gave."""
         return Finding(
@@ -144,10 +140,6 @@ class ReaderRule(Rule):
     """
 
     usual: ClassVar[frozenset[str]] = frozenset()
-
-    def is_silent(self, subject: FileSubject | ChartSubject) -> bool:
-        """Whether the reader has warned of nothing."""
-        return not subject.is_warned_of
 
     def check(self, subject: FileSubject | ChartSubject) -> Iterable[Finding]:
         """One finding for each line with warnings that are claimed."""
@@ -268,10 +260,6 @@ class MoveRule(TimedRule):
 
     move: ClassVar[str]
     description: ClassVar[str]
-
-    def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether the move never happens, or never quickly enough."""
-        return not subject.has(self.move) or subject.least_seconds(self.move) > self.longest(subject) + EPSILON
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each quick row with the move, with the time since the step before."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -79,11 +78,6 @@ class FileSubject:
         """The charts that have notes and are no lights."""
         return tuple(one for one in self.song.charts if len(one.notes) and not is_lights(one.steps_type))
 
-    @property
-    def is_warned_of(self) -> bool:
-        """Whether the reader warned of anything about the song."""
-        return bool(self.song.warnings)
-
     def warnings(self, codes: Collection[str]) -> Iterator[tuple[str, dict[str, Any]]]:
         """Message and place of what the reader warned of about the song, if the warning has one of these codes."""
         for warning in self.song.warnings:
@@ -149,11 +143,6 @@ class ChartSubject(PlacedChart):
         """Rows of the play; 0 without one."""
         return len(self.play.rows) if self.play else 0
 
-    @property
-    def is_warned_of(self) -> bool:
-        """Whether the reader warned of anything about the chart."""
-        return bool(self.chart.warnings)
-
     def warnings(self, codes: Collection[str]) -> Iterator[tuple[str, dict[str, Any]]]:
         """Message and place of what the reader warned of about the chart, if the warning has one of these codes."""
         for warning in self.chart.warnings:
@@ -163,10 +152,6 @@ class ChartSubject(PlacedChart):
     def has(self, move: str) -> bool:
         """Whether a move of this name or of a kind of it happens in the play."""
         return self.feet is not None and self.feet.candidates.plays.having(move)[self.feet.number]
-
-    def least_seconds(self, move: str) -> float:
-        """The least time (s) from a step to a row with such a move; endless where there is none."""
-        return math.inf if self.feet is None else self.feet.candidates.plays.least_seconds(move)[self.feet.number]
 
     def rows_with(self, move: str) -> list[int]:
         """Rows with a move of this name or of a kind of it: "crossover" finds "crossover-half" too."""

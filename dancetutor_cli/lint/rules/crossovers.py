@@ -61,10 +61,6 @@ class Crossover(TimedRule):
     times = "crossover"
     slowest = 0.4
 
-    def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether the feet are never crossed."""
-        return subject.feet is None or not subject.feet.crossed_runs()
-
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each step after which the feet are newly crossed."""
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, goes_on_the_other_foot
@@ -152,10 +148,6 @@ class CrossedRun(ChartRule):
     name = "crossed-run"
     about_feet = True
 
-    def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether the feet are never crossed."""
-        return subject.feet is None or not subject.feet.crossed_runs()
-
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each run that is too long, at its first row."""
         from dancetutor_cli.lint.other_foot import exchanged_is_uncrossed, segment
@@ -199,10 +191,6 @@ class HeldCrossover(TimedRule):
     code = "DT215"
     name = "held-crossover"
     passage_beats = 16
-
-    def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether the feet are never crossed, or nothing is held."""
-        return subject.feet is None or not subject.feet.has_holds or not subject.feet.crossed_runs()
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each single step after which the feet are newly crossed, while the other foot holds."""

@@ -65,10 +65,6 @@ class Doublestep(MoveRule):
     times = "doublestep"
     slowest = 0.32
 
-    def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether there is no doublestep with nothing in the way."""
-        return subject.feet is None or not subject.feet.doublesteps()
-
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Doublesteps from one panel to another, no mine between them."""
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, in_groups

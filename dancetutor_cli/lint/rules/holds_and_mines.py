@@ -83,10 +83,6 @@ class MineUnderHold(TimedRule):
     name = "mine-under-hold"
     times = "mine-under-hold"
 
-    def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether there are no mines or no holds."""
-        return subject.feet is None or not (subject.feet.has_mines and subject.feet.has_holds)
-
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each row with such a mine, with the time since the foot's step; none where it cannot leave at all."""
         reported: set[int] = set()
@@ -122,10 +118,6 @@ class StuckHold(ChartRule):
     code = "DT306"
     name = "stuck-hold"
     about_feet = True
-
-    def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether there are no holds."""
-        return subject.feet is None or not subject.feet.has_holds
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each such mine, and for each step that comes too early."""
@@ -163,10 +155,6 @@ class MineInTheWay(ChartRule):
     code = "DT307"
     name = "mine-in-the-way"
     about_feet = True
-
-    def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether there are no mines."""
-        return subject.feet is None or not subject.feet.has_mines
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each row with such a step."""

@@ -46,14 +46,10 @@ class LowBracket(TimedRule):
     name = "low-bracket"
     passage_beats = math.inf
 
-    def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether there is no bracket."""
-        return not subject.has("bracket")
-
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each bracket in a chart of so low a meter."""
         meter, feet = subject.chart.meter, subject.feet
-        if meter >= self.options["least_meter"] or self._quick_throughout(subject):
+        if meter >= self.options["least_meter"] or not subject.has("bracket") or self._quick_throughout(subject):
             return
         for row in subject.rows_with("bracket"):
             if feet and feet.down[row] < 3 and not _jumped(subject, row):
@@ -109,10 +105,6 @@ class Unplayable(MoveRule):
     move = "unplayable"
     about_feet = False
     passage_beats = 8
-
-    def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether there is a limb for every step, and no hand in a hurry."""
-        return super().is_silent(subject) and not _hands(subject)
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Rows with such a step."""
@@ -174,10 +166,6 @@ class Hand(MoveRule):
     move = "hand"
     about_feet = False  # it is the number of panels that asks for it
     passage_beats = 8
-
-    def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether three panels are never down."""
-        return subject.feet is None or not (subject.has(self.move) or subject.feet.triples())
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Rows with a step in which a third panel is down, and those in which the solver uses a hand."""

@@ -185,10 +185,6 @@ class JumpSpin(ChartRule):
     name = "jump-spin"
     about_feet = True
 
-    def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether the dancer never spins."""
-        return not subject.has("spin")
-
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each spin that ends in a jump."""
         for row in subject.rows_with("spin"):
@@ -220,10 +216,6 @@ class HalfTurn(ChartRule):
     code = "DT304"
     name = "half-turn"
     about_feet = True
-
-    def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether the body never turns so."""
-        return subject.feet is None or not subject.feet.half_turns()
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each half turn."""

@@ -71,10 +71,6 @@ class AmbiguousStart(ChartRule):
     code = "DT207"
     name = "ambiguous-start"
 
-    def is_silent(self, subject: ChartSubject) -> bool:
-        """Whether no row costs the same with other limbs."""
-        return subject.feet is None or not subject.feet.ties()
-
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each run of rows that are ties, at its first."""
         for row, resolved in subject.ties():
