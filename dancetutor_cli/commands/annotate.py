@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -48,19 +48,13 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
 
 @dataclass(frozen=True, slots=True)
 class AnnotateWish:
-    """What the options ask for, besides the charts."""
+    """What the options ask for; the others are called like the fields of `markers.annotate.Order`."""
 
     styles: tuple[str, ...] | None
-    strip: bool
     check: bool
-    diff: bool
     dry_run: bool
     output: Path | None
-    into_file: bool
-    force: bool
-    backup: bool
     jobs: int | None
-    preset: str | None
     verbose: bool
     quiet: bool
     exclude: tuple[str, ...]
@@ -91,7 +85,7 @@ class AnnotateWish:
 @selection_options
 @into("selection", Selection)
 @into("wish", AnnotateWish)
-def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -> int:
+def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish, **given: Any) -> int:
     """Write L/R foot markers into chart files, or take them out.
 
     PATH is a .sm, .ssc or .ucs file, or a folder that is searched for them. Only comments are added, byte by
@@ -102,33 +96,23 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish) -
     from dancetutor_cli.lint.configuration import choice_of
     from dancetutor_cli.markers.annotate import Order
 
-    if not wish.strip and "background" in (wish.styles or ()):
+    if not given["strip"] and "background" in (wish.styles or ()):
         raise UsageError("the style 'background' is a film: `render --background --into-file` writes it; add --strip")
     if selection.player is not None:
         raise UsageError("--player is for analyze, animate, render and page; annotate writes both players' feet")
-    wanted = wish.styles or (STRIPPED if wish.strip else STYLES[:1])
-    if wish.into_file and "edit" not in wanted:
+    wanted = wish.styles or (STRIPPED if given["strip"] else STYLES[:1])
+    if given["into_file"] and "edit" not in wanted:
         raise UsageError("--into-file belongs to the markers 'edit'; add --markers edit")
-    order = Order(
-        styles=wanted,
-        named=wish.styles is not None,
-        preset=wish.preset,
-        selection=selection,
-        strip=wish.strip,
-        force=wish.force,
-        into_file=wish.into_file,
-        write=not (wish.check or wish.diff or wish.dry_run),
-        backup=wish.backup,
-        diff=wish.diff,
-    )
+    writes = not (wish.check or given["diff"] or wish.dry_run)
+    order = Order(wanted, selection=selection, named=wish.styles is not None, write=writes, **given)
     files = find_files(paths, wish.exclude)
     files = files if wish.output is not None else within_folders(paths, files)
     songs = _songs(_items(paths, wish.output, files))
     talk = _Talk(order, wish.check, wish.quiet, JoinedWarnings(every=wish.verbose))
     talk.begin()
-    if not wish.strip:
+    if not order.strip:
         announce_compiling(
-            choice_of(wish.preset),
+            choice_of(order.preset),
             lambda: sum(note_bytes(item.source, Selection()) for song in songs for item in song),
             quiet=wish.quiet,
         )

@@ -12,37 +12,37 @@ from typing import NamedTuple
 import numpy as np
 
 from dancetutor_cli.feet.solver.itg_costs import (
-    EVENT_HAND,  # fmt: skip
-    EVENT_HOLDSWITCH,  # fmt: skip
-    EVENT_UNPLAYABLE,  # fmt: skip
-    HAND_HOLD,  # fmt: skip
-    HOLDSWITCH,  # fmt: skip
-    NEAR_HOLDSWITCH,  # fmt: skip
-    UNPLAYABLE,  # fmt: skip
-    charge_feet,  # fmt: skip
-    charge_hand,  # fmt: skip
-    charge_mines,  # fmt: skip
-    charge_pose,  # fmt: skip
-    reserved_panels,  # fmt: skip
+    EVENT_HAND,
+    EVENT_HOLDSWITCH,
+    EVENT_UNPLAYABLE,
+    HAND_HOLD,
+    HOLDSWITCH,
+    NEAR_HOLDSWITCH,
+    UNPLAYABLE,
+    charge_feet,
+    charge_hand,
+    charge_mines,
+    charge_pose,
+    reserved_panels,
 )
 from dancetutor_cli.feet.solver.jit import inner_kernel
 from dancetutor_cli.feet.solver.state import LAST, LEFT_AT, LEFT_HELD, LEFT_HOLDS, NUMBERS, RIGHT_AT, pack, unpack
 from dancetutor_cli.feet.solver.tables import (
-    ACTION,  # fmt: skip
-    COLUMN_BITS,  # fmt: skip
-    EARLIER,  # fmt: skip
-    EPSILON,  # fmt: skip
-    EVENTS,  # fmt: skip
-    FRESH,  # fmt: skip
-    HOLDS,  # fmt: skip
-    KEY,  # fmt: skip
-    MINES,  # fmt: skip
-    PART,  # fmt: skip
-    RELEASED,  # fmt: skip
-    ROLL_TAPS,  # fmt: skip
-    ROLLS,  # fmt: skip
-    TAPS,  # fmt: skip
-    TIMED,  # fmt: skip
+    ACTION,
+    COLUMN_BITS,
+    EARLIER,
+    EPSILON,
+    EVENTS,
+    FRESH,
+    HOLDS,
+    KEY,
+    MINES,
+    PART,
+    RELEASED,
+    ROLL_TAPS,
+    ROLLS,
+    TAPS,
+    TIMED,
 )
 
 _MASK = (1 << COLUMN_BITS) - 1

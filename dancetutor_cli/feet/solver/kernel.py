@@ -24,41 +24,41 @@ from dancetutor_cli.feet.solver.itg_moves import start_itg
 from dancetutor_cli.feet.solver.jit import inner_kernel
 from dancetutor_cli.feet.solver.state import PLACE_BITS, name_neighbours
 from dancetutor_cli.feet.solver.store import (
-    ACTION,  # fmt: skip
-    BASE,  # fmt: skip
-    COST_SHIFT,  # fmt: skip
-    DONE,  # fmt: skip
-    EDGE_COST_SHIFT,  # fmt: skip
-    EDGE_COUNT,  # fmt: skip
-    EDGE_MASK,  # fmt: skip
-    EVENT_BITS,  # fmt: skip
-    EVENTS,  # fmt: skip
-    FACTS,  # fmt: skip
-    FACTS_KNOWN,  # fmt: skip
-    FACTS_MASK,  # fmt: skip
-    FACTS_SHIFT,  # fmt: skip
-    FIRST,  # fmt: skip
-    FIRST_EDGE,  # fmt: skip
-    LAST_BIT,  # fmt: skip
-    LAYER_SIZE,  # fmt: skip
-    LIMBS,  # fmt: skip
-    MORE_NODES,  # fmt: skip
-    MORE_TIMED,  # fmt: skip
-    MOVES,  # fmt: skip
-    NEXT,  # fmt: skip
-    PART_SHIFT,  # fmt: skip
-    PATTERNS,  # fmt: skip
-    PLACE_MASK,  # fmt: skip
-    START,  # fmt: skip
-    TERMS_SHIFT,  # fmt: skip
-    TIMES,  # fmt: skip
-    TO_LAYER,  # fmt: skip
-    UNEXPLORED,  # fmt: skip
-    UNKNOWN,  # fmt: skip
-    find,  # fmt: skip
-    number_of_layer,  # fmt: skip
-    number_of_state,  # fmt: skip
-    slot_of,  # fmt: skip
+    ACTION,
+    BASE,
+    COST_SHIFT,
+    DONE,
+    EDGE_COST_SHIFT,
+    EDGE_COUNT,
+    EDGE_MASK,
+    EVENT_BITS,
+    EVENTS,
+    FACTS,
+    FACTS_KNOWN,
+    FACTS_MASK,
+    FACTS_SHIFT,
+    FIRST,
+    FIRST_EDGE,
+    LAST_BIT,
+    LAYER_SIZE,
+    LIMBS,
+    MORE_NODES,
+    MORE_TIMED,
+    MOVES,
+    NEXT,
+    PART_SHIFT,
+    PATTERNS,
+    PLACE_MASK,
+    START,
+    TERMS_SHIFT,
+    TIMES,
+    TO_LAYER,
+    UNEXPLORED,
+    UNKNOWN,
+    find,
+    number_of_layer,
+    number_of_state,
+    slot_of,
 )
 from dancetutor_cli.feet.solver.tables import ROLLS
 from dancetutor_cli.feet.solver.thesis_moves import start_thesis

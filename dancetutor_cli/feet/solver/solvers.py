@@ -14,12 +14,12 @@ from dancetutor_cli.feet.solver.jit import inner_kernel, kernel
 from dancetutor_cli.feet.solver.kernel import advance, begin, explain_path, margins, trace, wait
 from dancetutor_cli.feet.solver.state import PLACE_BITS
 from dancetutor_cli.feet.solver.store import (
-    ACTION,  # fmt: skip
-    COST,  # fmt: skip
+    ACTION,
+    COST,
     DONE,
-    EDGE_COST_SHIFT,  # fmt: skip
-    EDGE_COUNT,  # fmt: skip
-    EDGES,  # fmt: skip
+    EDGE_COST_SHIFT,
+    EDGE_COUNT,
+    EDGES,
     EDIT_COLUMN,
     EDIT_END,
     EDIT_MINE,
@@ -27,49 +27,49 @@ from dancetutor_cli.feet.solver.store import (
     EDIT_ROW,
     EDIT_STEP,
     EVENTS,
-    FACTS,  # fmt: skip
+    FACTS,
     FACTS_KNOWN,
-    FACTS_SHIFT,  # fmt: skip
-    FIRST_EDGE,  # fmt: skip
-    LAST_BIT,  # fmt: skip
-    LAYER_FIRST,  # fmt: skip
-    LAYER_SIZE,  # fmt: skip
-    LAYER_STATES,  # fmt: skip
-    LAYERS,  # fmt: skip
-    MET_IN,  # fmt: skip
-    MET_PLACE,  # fmt: skip
-    MORE_EDGES,  # fmt: skip
-    MORE_FACTS,  # fmt: skip
-    MORE_LAYER_STATES,  # fmt: skip
-    MORE_LAYERS,  # fmt: skip
-    MORE_MOVES,  # fmt: skip
-    MORE_PAIRS,  # fmt: skip
+    FACTS_SHIFT,
+    FIRST_EDGE,
+    LAST_BIT,
+    LAYER_FIRST,
+    LAYER_SIZE,
+    LAYER_STATES,
+    LAYERS,
+    MET_IN,
+    MET_PLACE,
+    MORE_EDGES,
+    MORE_FACTS,
+    MORE_LAYER_STATES,
+    MORE_LAYERS,
+    MORE_MOVES,
+    MORE_PAIRS,
     MORE_PATTERNS,
-    MORE_SCRATCH,  # fmt: skip
-    MORE_STATES,  # fmt: skip
-    MORE_TERMS,  # fmt: skip
+    MORE_SCRATCH,
+    MORE_STATES,
+    MORE_TERMS,
     MORE_TIMED,
-    MORE_TRANSITIONS,  # fmt: skip
-    MOVE_LIMBS,  # fmt: skip
-    MOVES,  # fmt: skip
-    NEXT,  # fmt: skip
-    PAIRS,  # fmt: skip
-    PART_SHIFT,  # fmt: skip
-    START,  # fmt: skip
-    STATES,  # fmt: skip
-    TERMS_KNOWN,  # fmt: skip
-    TERMS_SHIFT,  # fmt: skip
-    TO_LAYER,  # fmt: skip
-    TRANSITIONS,  # fmt: skip
-    TRIED,  # fmt: skip
-    UNEXPANDED,  # fmt: skip
+    MORE_TRANSITIONS,
+    MOVE_LIMBS,
+    MOVES,
+    NEXT,
+    PAIRS,
+    PART_SHIFT,
+    START,
+    STATES,
+    TERMS_KNOWN,
+    TERMS_SHIFT,
+    TO_LAYER,
+    TRANSITIONS,
+    TRIED,
+    UNEXPANDED,
     UNEXPLORED,
-    find,  # fmt: skip
-    number_of_facts,  # fmt: skip
-    number_of_layer,  # fmt: skip
-    number_of_state,  # fmt: skip
-    number_of_terms,  # fmt: skip
-    slot_of,  # fmt: skip
+    find,
+    number_of_facts,
+    number_of_layer,
+    number_of_state,
+    number_of_terms,
+    slot_of,
 )
 from dancetutor_cli.feet.solver.tables import MOST_MOVES
 from dancetutor_cli.feet.solver.thesis_moves import expand_thesis

@@ -6,16 +6,16 @@ import numpy as np
 
 from dancetutor_cli.feet.solver.jit import inner_kernel
 from dancetutor_cli.feet.solver.tables import (
-    DRILL_LENGTH,  # fmt: skip
-    DRILL_SECONDS,  # fmt: skip
-    DRILL_TICKS,  # fmt: skip
-    EPSILON,  # fmt: skip
-    GALLOP_NEIGHBOURS,  # fmt: skip
-    GALLOP_SECONDS,  # fmt: skip
-    GALLOP_TICKS,  # fmt: skip
-    STREAM_LENGTH,  # fmt: skip
-    STREAM_SECONDS,  # fmt: skip
-    STREAM_TICKS,  # fmt: skip
+    DRILL_LENGTH,
+    DRILL_SECONDS,
+    DRILL_TICKS,
+    EPSILON,
+    GALLOP_NEIGHBOURS,
+    GALLOP_SECONDS,
+    GALLOP_TICKS,
+    STREAM_LENGTH,
+    STREAM_SECONDS,
+    STREAM_TICKS,
 )
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 

@@ -24,19 +24,19 @@ from dancetutor_cli.feet.solver.state import (
     unpack,
 )
 from dancetutor_cli.feet.solver.tables import (
-    ACTION,  # fmt: skip
-    COLUMN_BITS,  # fmt: skip
-    EPSILON,  # fmt: skip
-    EVENTS,  # fmt: skip
-    HOLDS,  # fmt: skip
-    KEY,  # fmt: skip
-    MINES,  # fmt: skip
-    PART,  # fmt: skip
-    RELEASED,  # fmt: skip
-    ROLL_TAPS,  # fmt: skip
-    ROLLS,  # fmt: skip
-    TAPS,  # fmt: skip
-    TIMED,  # fmt: skip
+    ACTION,
+    COLUMN_BITS,
+    EPSILON,
+    EVENTS,
+    HOLDS,
+    KEY,
+    MINES,
+    PART,
+    RELEASED,
+    ROLL_TAPS,
+    ROLLS,
+    TAPS,
+    TIMED,
 )
 from dancetutor_cli.feet.solver.vocabulary import EVENTS as NAMES
 
