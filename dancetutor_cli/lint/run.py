@@ -24,8 +24,6 @@ from dancetutor_cli.lint.configuration import (
 from dancetutor_cli.lint.pack_sync import PackSyncs
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.run.errors import DancetutorError
-from dancetutor_cli.run.pool import Task as Work
-from dancetutor_cli.run.pool import default_jobs, open_workers
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.cache import ResultCache
@@ -238,6 +236,9 @@ _Fresh = Iterator[tuple[int, FileResult, bool]]
 
 
 def _in_workers(tasks: Sequence[AnalyzeTask], jobs: int | None) -> _Fresh:
+    from dancetutor_cli.run.pool import Task as Work
+    from dancetutor_cli.run.pool import default_jobs, open_workers
+
     count = jobs or default_jobs()
     workers = open_workers(count, lambda key, n: None)
     try:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.chart.msd import scan
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.rule import FileRule, ReaderRule
 
@@ -82,6 +81,8 @@ class TwoReadings(FileRule):
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """One finding for each tag."""
+        from dancetutor_cli.chart.msd import scan
+
         data = subject.song.data
         for tag in scan(data):
             if tag.name not in _ENDED or not tag.spans:
