@@ -41,7 +41,6 @@ from dancetutor_cli.film.work.request import (
     quiet_after,
     quiet_in,
 )
-from dancetutor_cli.formats.npz import read_npz
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.languages import load_language
 
@@ -112,6 +111,8 @@ def _file_motions(request: FilmRequest, performance: Performance) -> tuple[Motio
         raise UsageError("--dance is of music at its own speed; leave --rate out, or bake the file again")
     if len(request.motions) != count:
         raise UsageError(f"the chart is danced by {count}, so give --dance {count} time{'s' if count > 1 else ''}")
+    from dancetutor_cli.formats.npz import read_npz
+
     return tuple(read_npz(path) for path in request.motions)
 
 
