@@ -295,7 +295,7 @@ class _File:
 
 
 def _with_report(chart: ChartResult, told: MeterReport) -> ChartResult:
-    return replace(chart, estimate=told.estimate, score=told.score, findings=told.among(chart.findings))
+    return replace(chart, estimate=told.estimate, score=told.score, findings=told.with_findings(chart.findings))
 
 
 def _others(song: Song, selected: tuple[Chart, ...], task: AnalyzeTask, meters: Meters) -> Iterator[ChartSubject]:

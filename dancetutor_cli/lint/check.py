@@ -226,11 +226,11 @@ class Baseline:
         self._remaining[key] -= 1
         return True
 
-    def saw(self, file: str, chart: str, rules: Iterable[str]) -> None:
+    def mark_seen(self, file: str, chart: str, rules: Iterable[str]) -> None:
         """Remember which rules ran on a chart, or with chart "" on the file as a whole: theirs can be unused."""
         self._ran.setdefault((self._relative(file), chart), set()).update(rules)
 
-    def saw_all_charts(self, file: str) -> None:
+    def mark_all_seen(self, file: str) -> None:
         """Remember that every chart of a file was analysed: entries of any other chart are of one that is gone."""
         name = self._relative(file)
         self._whole[name] = set().union(*(rules for (of, _), rules in self._ran.items() if of == name))

@@ -63,7 +63,7 @@ class Beginnings:
         found[1:] = walls[self._rows[1:]] > walls[self._rows[:-1] + 1]
         return found
 
-    def anew(self, quick: float) -> NDArray[np.bool_]:
+    def fresh_starts(self, quick: float) -> NDArray[np.bool_]:
         """(k,) whether the dancer may begin with either foot at a step.
 
         After a rest, a wall of mines or two panels at once, or there is no step before; and at two panels at once.
@@ -79,7 +79,7 @@ class Beginnings:
     def segment(self, at: int, quick: float) -> tuple[int, int]:
         """First and last place around one in which the dancer does not begin anew."""
         if quick not in self._starts:
-            self._starts[quick] = np.flatnonzero(self.anew(quick))
+            self._starts[quick] = np.flatnonzero(self.fresh_starts(quick))
         starts = self._starts[quick]
         after = int(starts.searchsorted(at, side="right"))
         return int(starts[after - 1]), int(starts[after]) - 1 if after < len(starts) else len(self._rows) - 1
@@ -204,7 +204,7 @@ def fewest_crossed(subject: ChartSubject, row: int, freedom: Freedom) -> float:
     if ((play.limb[phrase] >= 0).sum(axis=1) != 1).any() or (feet.down[phrase] != 1).any():
         return math.inf
     columns = play.limb[phrase].argmax(axis=1).tolist()
-    anew = bool(subject.beginnings.anew(freedom.quick)[first])
+    anew = bool(subject.beginnings.fresh_starts(freedom.quick)[first])
     ways = _starts(subject, first, anew=anew)
     before = int(play.limb[int(rows[first - 1])].argmax()) if first and not anew else _UNKNOWN
     for place, column in enumerate(columns):
@@ -216,7 +216,7 @@ def fewest_crossed(subject: ChartSubject, row: int, freedom: Freedom) -> float:
 
 def _begins(subject: ChartSubject, at: int, freedom: Freedom) -> bool:
     """Whether a phrase begins with the `at`-th row with a step; where a rest is one for the rule, a breath is one."""
-    if subject.beginnings.anew(freedom.quick)[at]:
+    if subject.beginnings.fresh_starts(freedom.quick)[at]:
         return True
     return freedom.rest < math.inf and is_breath(subject, at, freedom.rest)
 

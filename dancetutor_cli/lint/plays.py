@@ -73,7 +73,7 @@ class Plays:
         self.pad = pad
         self.first = [0, *accumulate(len(play.rows) for play in plays)]
         self._rows_with: dict[str, NDArray[np.int64]] = {}
-        self._having: dict[str, list[bool]] = {}
+        self._has_move: dict[str, list[bool]] = {}
 
     def own(self, rows: NDArray[np.int64], number: int) -> NDArray[np.int64]:
         """Those of some ascending rows that are of one play, counted from its first."""
@@ -297,11 +297,11 @@ class Plays:
             self._rows_with[move] = np.flatnonzero(bits & kinds)
         return self._rows_with[move]
 
-    def having(self, move: str) -> list[bool]:
+    def has_move(self, move: str) -> list[bool]:
         """Which plays have such rows."""
-        if move not in self._having:
-            self._having[move] = [count > 0 for count in self.count_rows(self.rows_with(move))]
-        return self._having[move]
+        if move not in self._has_move:
+            self._has_move[move] = [count > 0 for count in self.count_rows(self.rows_with(move))]
+        return self._has_move[move]
 
     @cached_property
     def counts(self) -> list[dict[str, int]]:

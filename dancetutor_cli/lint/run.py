@@ -160,12 +160,12 @@ class LintRun:
     def _note_rules_run(self, baseline: Baseline, result: FileResult) -> None:
         path = Path(result.path).absolute()
         settings = self.configuration(Path(result.path)).settings
-        baseline.saw(result.path, "", settings.for_file(path))
+        baseline.mark_seen(result.path, "", settings.for_file(path))
         for chart in result.charts:
             rules = settings.for_chart(path, chart.steps_type, chart.difficulty, chart.meter)
-            baseline.saw(result.path, _name(chart), rules)
+            baseline.mark_seen(result.path, _name(chart), rules)
         if not result.unselected:
-            baseline.saw_all_charts(result.path)
+            baseline.mark_all_seen(result.path)
 
     def close_baseline(self) -> list[str]:
         """Write the baseline if that was asked for; lines to be said about it."""

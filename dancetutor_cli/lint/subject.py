@@ -151,7 +151,7 @@ class ChartSubject(PlacedChart):
 
     def has(self, move: str) -> bool:
         """Whether a move of this name or of a kind of it happens in the play."""
-        return self.feet is not None and self.feet.candidates.plays.having(move)[self.feet.number]
+        return self.feet is not None and self.feet.candidates.plays.has_move(move)[self.feet.number]
 
     def rows_with(self, move: str) -> list[int]:
         """Rows with a move of this name or of a kind of it: "crossover" finds "crossover-half" too."""

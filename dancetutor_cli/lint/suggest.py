@@ -132,7 +132,7 @@ class _Trial:
         yield from sorted((edit for edit in taps if edit is not None), key=lambda edit: edit.cost)
         row = int(play.rows.tick.searchsorted(round(finding.beat * TICKS_PER_BEAT)))
         steps = self.subject.step_rows
-        begins = set(steps[self.subject.beginnings.anew(RESTED)].tolist())
+        begins = set(steps[self.subject.beginnings.fresh_starts(RESTED)].tolist())
         yield from self._shape.mirrored_phrases(row, _PHRASE, begins)
 
     @cached_property

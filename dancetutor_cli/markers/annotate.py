@@ -234,7 +234,7 @@ class _Work:
 
     def _charts(self, song: Song) -> list[Chart]:
         """The charts that are meant; those that we added ourselves have no feet to write."""
-        return [chart for chart in self.order.selection.charts(song) if not edit.ours(chart)]
+        return [chart for chart in self.order.selection.charts(song) if not edit.is_ours(chart)]
 
     def _without_added(self) -> Song:
         """The song without the charts that an earlier run has added for the charts that are meant."""

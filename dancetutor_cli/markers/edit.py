@@ -114,7 +114,7 @@ class EditError(FileError):
     """A lane-split chart cannot be made in this form; the other styles are not concerned."""
 
 
-def ours(chart: Chart) -> bool:
+def is_ours(chart: Chart) -> bool:
     """Whether a chart is one that this style has added."""
     made = chart.steps_type == TARGET and chart.difficulty == "Edit"
     return made and chart.description.startswith(_NAME)
@@ -189,7 +189,7 @@ def without_added(song: Song, charts: Sequence[Chart]) -> list[Splice]:
     names = _names(song)
     meant = {chart.index for chart in charts}
     kept = {name for index, name in names.items() if index not in meant}
-    return [_block(song, chart) for chart in song.charts if ours(chart) and chart.description not in kept]
+    return [_block(song, chart) for chart in song.charts if is_ours(chart) and chart.description not in kept]
 
 
 def _block(song: Song, chart: Chart) -> Splice:

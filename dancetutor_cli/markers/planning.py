@@ -107,7 +107,7 @@ def strip(style: str, song: Song, charts: Sequence[Chart]) -> Iterator[FilePlan]
         table, lua = theme.paths_for(song.path)
         old, script = _read(table), _read(lua)
         theme.check_lua(lua, script)
-        kept = theme.without(table, old, charts)
+        kept = theme.without_charts(table, old, charts)
         said = {**theme.write(table, None, song, ()), "charts": kept}
         yield _removed(table, old, theme.as_json(said) if kept and old else None)
         yield _removed(lua, script, theme.as_lua(said) if kept and script else None)
@@ -227,7 +227,7 @@ def add_charts(song: Song, before: Song, plan: MarkerPlan, feet: Sequence[ChartF
     removed = len(before.data) - len(song.data)
     if not before.data.endswith(added) or removed != len(added):
         plan.lacks += (Lack(f"{c.label}: its chart for two pads is missing or stale", c.line) for c in singles)
-    made = [chart for chart in parse(plan.data, song.path).charts if edit.ours(chart)][-len(singles) :]
+    made = [chart for chart in parse(plan.data, song.path).charts if edit.is_ours(chart)][-len(singles) :]
     for chart, source in zip(made, singles, strict=True):
         if len(chart.notes) != len(source.notes) or chart.timing != source.timing:
             raise edit.EditError(song.path, f"{source.label}: cannot be added as a chart for two pads; nothing written")
@@ -256,7 +256,7 @@ def unmark(song: Song, charts: Sequence[Chart], styles: Sequence[str], force: bo
 def checked(song: Song, plan: MarkerPlan) -> MarkerPlan:
     """The plan, if its bytes read like the song they were made from; raises `chart.edits.HarmError` if not."""
     if plan.data != song.data:
-        unchanged(song, plan.data, edit.ours)
+        unchanged(song, plan.data, edit.is_ours)
     return plan
 
 

@@ -146,7 +146,7 @@ def write(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) 
     return {"schema": _SCHEMA, "program": "dancetutor", "title": song.title, "charts": charts}
 
 
-def without(path: Path, old: bytes | None, charts: Sequence[Chart]) -> list[Any]:
+def without_charts(path: Path, old: bytes | None, charts: Sequence[Chart]) -> list[Any]:
     """The entries of the JSON at `path` that belong to other charts than these."""
     gone = {chart.index for chart in charts}
     return [entry for entry in charts_in(path, old) if entry["index"] not in gone]

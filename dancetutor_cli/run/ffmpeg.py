@@ -45,7 +45,7 @@ def _find_executable(named: str | None, path: str) -> str:
         return named
     systems = list(programs(NAME, path))
     for program in systems:
-        if not lacking(program):
+        if not missing_abilities(program):
             return str(program)
     with suppress(ImportError, RuntimeError):
         import imageio_ffmpeg
@@ -56,7 +56,7 @@ def _find_executable(named: str | None, path: str) -> str:
     raise UnavailableError(f"no ffmpeg found; {MEND}")
 
 
-def lacking(program: Path) -> list[str]:
+def missing_abilities(program: Path) -> list[str]:
     """What films need and an ffmpeg cannot: names of encoders and filters; kept in the user's cache."""
     kept, key = _capability_file(), _fingerprint(program)
     with suppress(DancetutorError):

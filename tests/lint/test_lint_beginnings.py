@@ -43,7 +43,7 @@ def test_all_at_once_is_one_after_the_other(corpus: Path) -> None:
                 found = Beginnings(play, rows, pauses)
                 known = rows.tolist(), pauses.tolist()
                 said = [begins_anew(play, *known, at, quick) for at in range(len(rows))]
-                assert found.anew(quick).tolist() == said
+                assert found.fresh_starts(quick).tolist() == said
                 for at in range(0, len(rows), 37):
                     first, last = found.segment(at, quick)
                     assert said[first] and not any(said[first + 1 : last + 1]) and first <= at <= last

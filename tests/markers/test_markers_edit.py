@@ -29,7 +29,7 @@ def feet_of(song: Song) -> list[ChartFeet]:
 def added(song: Song) -> tuple[list[ChartFeet], list[Chart], bytes]:
     feet = feet_of(song)
     data = song.data + edit.added_charts(song, feet)
-    return feet, [chart for chart in parse(data, song.path).charts if edit.ours(chart)], data
+    return feet, [chart for chart in parse(data, song.path).charts if edit.is_ours(chart)], data
 
 
 def test_feet_holds_rolls_and_mines_go_where_they_belong() -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from dancetutor_cli.run import ffmpeg as chooser
 from dancetutor_cli.run.errors import UnavailableError, install_command
-from dancetutor_cli.run.ffmpeg import ENCODERS, FILTERS, VARIABLE, ffmpeg_program, lacking
+from dancetutor_cli.run.ffmpeg import ENCODERS, FILTERS, VARIABLE, ffmpeg_program, missing_abilities
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="a shell script stands in for ffmpeg")
 
@@ -41,7 +41,7 @@ def test_the_systems_is_taken_where_it_can_all(tmp_path: Path, monkeypatch: pyte
     assert (whole.parent / "asked").read_text().count("asked") == 2, "encoders and filters, once"
     program(tmp_path / "bin", "aac")  # an update
     os.utime(whole, ns=(1, 1))
-    assert lacking(whole) == [name for name in (*ENCODERS, *FILTERS) if name != "aac"]
+    assert missing_abilities(whole) == [name for name in (*ENCODERS, *FILTERS) if name != "aac"]
 
 
 def test_one_that_cannot_all_is_second_choice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -79,4 +79,4 @@ def test_a_kept_answer_that_is_none_is_asked_for_again(tmp_path: Path) -> None:
     for text in ("{", "[]", '{"key": 1}', '{"lacking": "aac"}'):
         kept.parent.mkdir(exist_ok=True)
         kept.write_text(text)
-        assert lacking(whole) == []
+        assert missing_abilities(whole) == []

@@ -195,7 +195,7 @@ class Highway:
     def _draw_flag(self, text: str, severity: str) -> Sprite:
         geometry = self.geometry
         size = max(0.24 * geometry.lane, FLAG_SHARE * (geometry.box[3] - geometry.box[1]), geometry.letters)
-        lines, size = marks.laid(text, size, geometry.letters, geometry.tags_room, self.face)
+        lines, size = marks.lay_out_tag(text, size, geometry.letters, geometry.tags_room, self.face)
         return sprites.flag(lines, size, self.style.callout[severity], self.face)
 
     def _draw_turned(self, frame: Frame) -> None:

@@ -321,7 +321,7 @@ def room_for(tags: Iterable[str], size: float, face: Typeface) -> float:
     return widest + FLAG_EDGE * size + LABEL
 
 
-def laid(tag: str, size: float, least: float, room: float, face: Typeface) -> tuple[list[str], float]:
+def lay_out_tag(tag: str, size: float, least: float, room: float, face: Typeface) -> tuple[list[str], float]:
     """The lines of a tag, and the size of its letters: at most `size`, at least `least` if they can be; none is cut.
 
     room : pixels for the label

@@ -25,7 +25,7 @@ class MeterReport:
     score: ScoreEstimate | None
     findings: tuple[Finding, ...]
 
-    def among(self, others: tuple[Finding, ...]) -> tuple[Finding, ...]:
+    def with_findings(self, others: tuple[Finding, ...]) -> tuple[Finding, ...]:
         """These findings and others of the chart in the order of lines."""
         if not self.findings:
             return others

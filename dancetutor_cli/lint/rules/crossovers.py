@@ -156,7 +156,7 @@ class CrossedRun(ChartRule):
         for rows in subject.feet.crossed_rows(most + 1) if subject.feet else ():
             start = int(subject.step_rows.searchsorted(rows[0]))
             slow = [n for n, row in enumerate(rows) if n and subject.pause(row) > longest]
-            anew = [n for n in range(1, len(rows)) if subject.beginnings.anew(longest)[start + n]]
+            anew = [n for n in range(1, len(rows)) if subject.beginnings.fresh_starts(longest)[start + n]]
             for first, after in pairwise(sorted({0, *slow, *anew, len(rows)})):
                 begun = segment(subject, start + first, longest)[0]
                 danced = subject.step_rows[begun : start + after]

@@ -97,7 +97,7 @@ class Spin(MoveRule):
         if goes_on_the_other_foot(subject, row, quick):
             return True
         at = int(rows.searchsorted(row))
-        if not at or not subject.beginnings.anew(quick)[at]:
+        if not at or not subject.beginnings.fresh_starts(quick)[at]:
             return False
         first, last = segment(subject, at, quick)
         return goes_on_the_other_foot(subject, int(rows[at - 1]), quick) and exchanged_is_uncrossed(
