@@ -103,8 +103,8 @@ def common_to_workers(kind: RendererKind) -> str:
     if renderer.resolve_renderer(kind) != "cpu":
         from dancetutor_cli.film.scene.gl.available import gpu_device
 
-        return "dancetutor_cli.film.film" if gpu_device() is not None else "dancetutor_cli.film.work.common_gl"
-    return "dancetutor_cli.film.work.common" if is_kept(resolve) else ""
+        return "dancetutor_cli.film.film" if gpu_device() is not None else "dancetutor_cli.film.work.worker_imports_gl"
+    return "dancetutor_cli.film.work.worker_imports" if is_kept(resolve) else ""
 
 
 def warm_up(report: Report) -> None:
