@@ -44,8 +44,8 @@ AFTER = 2.5  # seconds after the last row that a section may still reach
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
-    """What becomes of the dance; the other options are called like the fields of `dance.request.DanceRequest`."""
+class AnimateOptions:
+    """What becomes of the dance; the others are called like the fields of `dance.request.DanceRequest`."""
 
     output: Path | None
     report_to: str | None
@@ -96,8 +96,8 @@ class Result:
 @selection_options
 @preset_option
 @into("selection", Selection)
-@into("result", Result)
-def command(file: Path, selection: Selection, result: Result, **dance: Any) -> None:
+@into("options", AnimateOptions)
+def command(file: Path, selection: Selection, options: AnimateOptions, **dance: Any) -> None:
     """Bake a 3D dancer who plays one chart of FILE.
 
     The name of the output says what it is: .glb, which any glTF viewer plays; .npz, numpy arrays; .bvh, motion
@@ -111,44 +111,44 @@ def command(file: Path, selection: Selection, result: Result, **dance: Any) -> N
     from dancetutor_cli.formats.animation import AnimatedDancer, Animation
     from dancetutor_cli.lint.configuration import choice_for
 
-    _check(result)
-    output, character = result.output, result.character
+    _check(options)
+    output, character = options.output, options.character
     if character != DANCER and output is not None and not FORMATS[output.suffix.lower()].has_motion:
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
     dances = load_character(dressed(character, dance["gait"]))
-    request = DanceRequest(one_song(file), selection, rates=(result.rate,), **dance)
-    if result.physics and request.style is None:
+    request = DanceRequest(one_song(file), selection, rates=(options.rate,), **dance)
+    if options.physics and request.style is None:
         request = replace(request, style="neutral")
     request = with_style(request)
     announce_compiling(choice_for(request.path, request.preset), lambda: note_bytes(request.path, selection))
     check_request(request)
-    choice = read_chart(request, result.section)
-    performance = perform(solve(request, choice), request, result.rate)
+    choice = read_chart(request, options.section)
+    performance = perform(solve(request, choice), request, options.rate)
     warn(choice.warnings)
     target = output or default_name(choice.song, choice.parts[0], ".glb")
     check_file(target, tuple(FORMATS))
-    section = _section(choice, result.section, performance)
-    _allow_long(performance, section, file, result.yes)
-    places = _Places(target, _report_file(result), result.plot)
-    animation = Animation(performance, section, pooled(result.jobs))
+    section = _section(choice, options.section, performance)
+    _allow_long(performance, section, file, options.yes)
+    places = _Places(target, _report_file(options), options.plot)
+    animation = Animation(performance, section, pooled(options.jobs))
     for k, who in enumerate((dances,) if len(performance.dancers) == 1 else (dances, partner_of(dances))):
         player = choice.parts[k].player
         own = places if len(performance.dancers) == 1 else places.of(player)
-        _write(AnimatedDancer(animation, k, who), own, result.report_to is not None)
+        _write(AnimatedDancer(animation, k, who), own, options.report_to is not None)
 
 
-def _check(result: Result) -> None:
+def _check(options: AnimateOptions) -> None:
     """UsageError for files that cannot be written, before the work."""
-    if result.output is not None:
-        check_file(result.output, tuple(FORMATS))
-    if result.plot is not None:
-        check_file(result.plot, (".svg", ".png"))
-    if (report := _report_file(result)) is not None:
+    if options.output is not None:
+        check_file(options.output, tuple(FORMATS))
+    if options.plot is not None:
+        check_file(options.plot, (".svg", ".png"))
+    if (report := _report_file(options)) is not None:
         check_file(report, (".json",), or_device=True)
 
 
-def _report_file(result: Result) -> Path | None:
-    return None if result.report_to in (None, TABLE) else Path(str(result.report_to))
+def _report_file(options: AnimateOptions) -> Path | None:
+    return None if options.report_to in (None, TABLE) else Path(str(options.report_to))
 
 
 def _section(choice: ChartChoice, section: str | None, performance: Performance) -> tuple[float, float] | None:

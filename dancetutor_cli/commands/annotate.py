@@ -47,7 +47,7 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
 
 
 @dataclass(frozen=True, slots=True)
-class AnnotateWish:
+class AnnotateOptions:
     """What the options ask for; the others are called like the fields of `markers.annotate.Order`."""
 
     styles: tuple[str, ...] | None
@@ -84,8 +84,8 @@ class AnnotateWish:
 @preset_option
 @selection_options
 @into("selection", Selection)
-@into("wish", AnnotateWish)
-def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish, **given: Any) -> int:
+@into("options", AnnotateOptions)
+def command(paths: tuple[Path, ...], selection: Selection, options: AnnotateOptions, **given: Any) -> int:
     """Write L/R foot markers into chart files, or take them out.
 
     PATH is a .sm, .ssc or .ucs file, or a folder that is searched for them. Only comments are added, byte by
@@ -96,28 +96,28 @@ def command(paths: tuple[Path, ...], selection: Selection, wish: AnnotateWish, *
     from dancetutor_cli.lint.configuration import choice_of
     from dancetutor_cli.markers.annotate import Order
 
-    if not given["strip"] and "background" in (wish.styles or ()):
+    if not given["strip"] and "background" in (options.styles or ()):
         raise UsageError("the style 'background' is a film: `render --background --into-file` writes it; add --strip")
     if selection.player is not None:
         raise UsageError("--player is for analyze, animate, render and page; annotate writes both players' feet")
-    wanted = wish.styles or (STRIPPED if given["strip"] else STYLES[:1])
+    wanted = options.styles or (STRIPPED if given["strip"] else STYLES[:1])
     if given["into_file"] and "edit" not in wanted:
         raise UsageError("--into-file belongs to the markers 'edit'; add --markers edit")
-    writes = not (wish.check or given["diff"] or wish.dry_run)
-    order = Order(wanted, selection=selection, named=wish.styles is not None, write=writes, **given)
-    files = find_files(paths, wish.exclude)
-    files = files if wish.output is not None else within_folders(paths, files)
-    songs = _songs(_items(paths, wish.output, files))
-    talk = _Talk(order, wish.check, wish.quiet, JoinedWarnings(every=wish.verbose))
+    writes = not (options.check or given["diff"] or options.dry_run)
+    order = Order(wanted, selection=selection, named=options.styles is not None, write=writes, **given)
+    files = find_files(paths, options.exclude)
+    files = files if options.output is not None else within_folders(paths, files)
+    songs = _songs(_items(paths, options.output, files))
+    talk = _Talk(order, options.check, options.quiet, JoinedWarnings(every=options.verbose))
     talk.begin()
     if not order.strip:
         announce_compiling(
             choice_of(order.preset),
             lambda: sum(note_bytes(item.source, Selection()) for song in songs for item in song),
-            quiet=wish.quiet,
+            quiet=options.quiet,
         )
     try:
-        for outcome in _outcomes(songs, order, wish.jobs):
+        for outcome in _outcomes(songs, order, options.jobs):
             talk.tell(outcome)
     finally:
         talk.warn()

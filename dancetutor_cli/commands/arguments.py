@@ -172,7 +172,7 @@ def default_name(song: Song, chart: Chart, suffix: str) -> Path:
 def into(name: str, kind: type) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Give a command one argument `name`, a `kind`, in place of the options that are called like its fields.
 
-    To stand below the options: ``@options`` first, then ``@into("wish", Wish)``, then the function.
+    To stand below the options: ``@options`` first, then ``@into("options", CommandOptions)``, then the function.
     """
     known = tuple(field.name for field in fields(kind))
 

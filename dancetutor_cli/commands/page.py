@@ -38,7 +38,7 @@ SUFFIXES = (".html", ".htm")
 
 
 @dataclass(frozen=True, slots=True)
-class PageWish:
+class PageOptions:
     """What the options ask for, besides the charts and what is danced (`dance.request.DanceRequest`)."""
 
     output: Path | None
@@ -86,8 +86,8 @@ class PageWish:
 @selection_options
 @preset_option
 @into("selection", Selection)
-@into("wish", PageWish)
-def command(path: Path, selection: Selection, wish: PageWish, **dance: Any) -> None:
+@into("options", PageOptions)
+def command(path: Path, selection: Selection, options: PageOptions, **dance: Any) -> None:
     """Make a page to practise one chart of PATH with, in any browser, without a network.
 
     The dancer plays the chart beside its notes: slower or quicker, in loops, row by row, and she waits for whoever
@@ -98,18 +98,23 @@ def command(path: Path, selection: Selection, wish: PageWish, **dance: Any) -> N
     from dancetutor_cli.lint.configuration import choice_for
     from dancetutor_cli.page.work import PageRequest
 
-    output = wish.output
+    output = options.output
     file = one_song(path) if output is not None and output.suffix.lower() in SUFFIXES else path
     request = PageRequest(
-        DanceRequest(file, selection, **dance), wish.character, wish.music, wish.second, wish.jobs, wish.language or ""
+        DanceRequest(file, selection, **dance),
+        options.character,
+        options.music,
+        options.second,
+        options.jobs,
+        options.language or "",
     )
-    announce_compiling(choice_for(file, request.dance.preset), quiet=wish.quiet)
+    announce_compiling(choice_for(file, request.dance.preset), quiet=options.quiet)
     if file.is_dir():
-        _pages(request, output or Path("pages"), wish)
+        _pages(request, output or Path("pages"), options)
         return
     if output is not None:
         check_file(output, SUFFIXES)
-    _page(request, output, wish.quiet)
+    _page(request, output, options.quiet)
 
 
 def _page(request: PageRequest, output: Path | None, quiet: bool) -> None:
@@ -125,14 +130,14 @@ def _page(request: PageRequest, output: Path | None, quiet: bool) -> None:
         click.echo(f"{target}: {len(page.html) / 1e6:.1f} MB, {page.label}")
 
 
-def _pages(request: PageRequest, folder: Path, wish: PageWish) -> None:
+def _pages(request: PageRequest, folder: Path, options: PageOptions) -> None:
     """A page for each chart and the index; exit status 2 if one could not be made."""
     from dancetutor_cli.page.work import INDEX, make_all, page_jobs, write_index
 
     if request.dance.play is not None:
         raise UsageError(f"--play is for one chart, and {request.dance.path} is a folder")
     check_folder(folder)
-    wanted, bad = page_jobs(request, folder, wish.exclude)
+    wanted, bad = page_jobs(request, folder, options.exclude)
     if not wanted and not bad:
         raise UsageError(f"{request.dance.path}: no chart here matches")
     if not wanted and [path for path, _ in bad] == [request.dance.path]:  # a folder without charts, or a closed one
@@ -140,23 +145,23 @@ def _pages(request: PageRequest, folder: Path, wish: PageWish) -> None:
     if wanted:
         make_folder(folder)
     outcomes = {}
-    warnings = JoinedWarnings(every=wish.verbose)
+    warnings = JoinedWarnings(every=options.verbose)
     try:
-        for number, one in enumerate(make_all(wanted, wish.jobs), 1):
+        for number, one in enumerate(make_all(wanted, options.jobs), 1):
             outcomes[one.job.target] = one
             for warning in one.warnings:
                 warnings.add(one.job.request.dance.path, warning)
-            if not wish.quiet:
+            if not options.quiet:
                 said = f"FAILED: {one.error}" if one.error else f"{one.size / 1e6:.1f} MB"
                 click.echo(safe(f"[{number}/{len(wanted)}] {one.job.target.name}: {said}"))
     finally:
-        for line in warnings.lines() if not wish.quiet else ():
+        for line in warnings.lines() if not options.quiet else ():
             click.echo(line, err=True)
     ordered = [outcomes[job.target] for job in wanted]
     if wanted:
         write_index(folder, ordered, request.dance.path.resolve().name)
     failed = [(str(one.job.request.dance.path), one.job.entry.label, one.error) for one in ordered if one.error]
-    if wanted and not wish.quiet:
+    if wanted and not options.quiet:
         made = len(ordered) - len(failed)
         click.echo(f"{safe_path(str(folder / INDEX))}: {made} page{'' if made == 1 else 's'}")
     if failed or bad:

@@ -66,8 +66,8 @@ class RetargetOptions:
     is_flag=True,
     help="In a film the input is to the left; on the output each point's distance from it is drawn.",
 )
-@into("wanted", RetargetOptions)
-def command(file: Path, wanted: RetargetOptions) -> None:
+@into("options", RetargetOptions)
+def command(file: Path, options: RetargetOptions) -> None:
     """Put the motion of FILE (.bvh, .glb, .vrm or .npz) on a character, through a ragdoll.
 
     Joints are found by their names: those of H-Anim, CMU, Mixamo, Unreal, Rigify and others. The world's turns
@@ -76,21 +76,21 @@ def command(file: Path, wanted: RetargetOptions) -> None:
     from dancetutor_cli.dance.physics.pipeline import wishes_of
     from dancetutor_cli.formats.retarget import Retargeting, RetargetTask
 
-    check_file(wanted.output, SUFFIXES)
-    if wanted.with_input and wanted.output.suffix.lower() != ".mp4":
-        raise UsageError(f"--with-input shows two people in a film: {wanted.output} must end in .mp4")
-    if wanted.plot is not None:
-        check_file(wanted.plot, (".svg", ".png"))
-    if wanted.report_to is not None and wanted.report_to != TABLE:
-        check_file(Path(wanted.report_to), (".json",), or_device=True)
-    wishes = replace(wishes_of(wanted.push, wanted.trip), corrections=corrections_of(wanted.correct), own_legs=True)
-    task = RetargetTask(file, wanted.character, wanted.animation, wanted.style or "neutral", wishes)
+    check_file(options.output, SUFFIXES)
+    if options.with_input and options.output.suffix.lower() != ".mp4":
+        raise UsageError(f"--with-input shows two people in a film: {options.output} must end in .mp4")
+    if options.plot is not None:
+        check_file(options.plot, (".svg", ".png"))
+    if options.report_to is not None and options.report_to != TABLE:
+        check_file(Path(options.report_to), (".json",), or_device=True)
+    wishes = replace(wishes_of(options.push, options.trip), corrections=corrections_of(options.correct), own_legs=True)
+    task = RetargetTask(file, options.character, options.animation, options.style or "neutral", wishes)
     work = Retargeting(task)
-    words = _written(work, wanted.output, wanted.with_input)
+    words = _written(work, options.output, options.with_input)
     warn(work.ragdoll_result.motion.notes)
-    click.echo(f"{wanted.output}: {words}")
-    if wanted.report_to is not None or wanted.plot is not None:
-        _report(work, wanted)
+    click.echo(f"{options.output}: {words}")
+    if options.report_to is not None or options.plot is not None:
+        _report(work, options)
 
 
 def corrections_of(text: str) -> tuple[str, ...]:
@@ -132,19 +132,19 @@ def _written(work: Retargeting, output: Path, with_input: bool) -> str:
     return f"{len(motion.times)} keys, {seconds:.1f} s"
 
 
-def _report(work: Retargeting, wanted: RetargetOptions) -> None:
+def _report(work: Retargeting, options: RetargetOptions) -> None:
     report = work.report()
-    if wanted.report_to is not None:
+    if options.report_to is not None:
         from dancetutor_cli.reports.motion_report import as_json, print_report
 
         print_report(report)
         for note in report.notes:
             click.echo(f"note: {note}")
-        if wanted.report_to != TABLE:
-            write_atomic(Path(wanted.report_to), (json.dumps(as_json(report), indent=1) + "\n").encode())
-            click.echo(f"{wanted.report_to}: the report")
-    if wanted.plot is not None:
+        if options.report_to != TABLE:
+            write_atomic(Path(options.report_to), (json.dumps(as_json(report), indent=1) + "\n").encode())
+            click.echo(f"{options.report_to}: the report")
+    if options.plot is not None:
         from dancetutor_cli.reports.motion_report import write_plot
 
-        write_plot(wanted.plot, report)
-        click.echo(f"{wanted.plot}: the plot")
+        write_plot(options.plot, report)
+        click.echo(f"{options.plot}: the plot")
