@@ -43,9 +43,8 @@ def mixed_feet(feet: Sequence[Feet], weights: Array) -> Feet:
     sides = []
     for paths in zip(*feet, strict=True):
         ball = np.einsum("fk,kfx->fx", weights, np.array([p.ball for p in paths]))
-        yaw, pitch = (
-            np.einsum("fk,kf->f", weights, np.array([getattr(p, n) for p in paths])) for n in ("yaw", "pitch")
-        )
+        turned = (np.array([getattr(path, name) for path in paths]) for name in ("yaw", "pitch"))
+        yaw, pitch = (np.einsum("fk,kf->f", weights, one) for one in turned)
         sides.append(FootPath(ball, yaw, pitch, paths[0].down, paths[0].progress))
     return sides[0], sides[1]
 
