@@ -149,7 +149,7 @@ def through_ragdoll(motion: Motion, style: Style | Blend, wishes: Wishes = Wishe
             root, feet = soft_legs(skeleton, (poses[0], free + up), feet, held, motion.times)
             poses = repinned(skeleton, (poses[0], root), feet)
             poses, feet, plants = eased_ankles(skeleton, poses, feet, plants, held, motion.times)
-    if wishes.pushes or wishes.trips:
+    if not wishes.corrections:
         poses = _possible(motion, poses, feet)
     rotations, root = pin_hands(motion, poses, feet)
     if "limits" in corrections:
@@ -176,7 +176,7 @@ def _possible(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
     for _ in range(GIVING_BACK):
         past = np.zeros(len(motion.times))
         for name in (f"{s}_{n}" for s in "lr" for n in ("hip", "talocrural")):
-            past = np.maximum(past, beyond(motion.skeleton, name, poses[0][:, motion.skeleton.index(name)]) > 0.5)
+            past = np.maximum(past, beyond(motion.skeleton, name, poses[0][:, motion.skeleton.index(name)]) > 0.0)
         if not past.any():
             break
         share = 0.3 * np.minimum(upper_envelope(motion.times, past, 0.2), 1.0)
