@@ -59,6 +59,7 @@ def test_it_plays_by_the_real_clock(browser: Browser, page_file: Path) -> None:
 
 
 def test_it_plays_loops_and_seeks(browser: Browser) -> None:
+    browser.key("Home")
     start = second(browser)
     browser.key(" ", "Space")
     browser.turn(1.06)  # after the moment in which the sound is made ready

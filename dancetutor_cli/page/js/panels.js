@@ -68,7 +68,7 @@ export function findingsPanel(app) {
       type: "button", class: "card", title: about, disabled: one.second === null,
       onclick: () => { app.transport.pause(); app.seek(one.second ?? 0); },
     },
-      el("strong", {}, `${SIGNS[/** @type {keyof typeof SIGNS} */ (one.severity)] ?? ""} ${one.rule} ${name}`),
+      el("strong", {}, el("span", { class: "sign-of" }, SIGNS[/** @type {keyof typeof SIGNS} */ (one.severity)] ?? ""), el("span", {}, `${one.rule} ${name}`)),
       el("span", { class: "figure" }, one.beat === null ? "" : placeOf(t, one.beat)),
       language !== "en" && about ? el("span", { class: "text" }, `${about} ${findingFigures(t, one)}`.trim()) : el("span", { class: "text", lang: "en" }, one.message));
     const item = el("li", { class: `finding ${one.severity}` }, box, go);
