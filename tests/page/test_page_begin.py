@@ -86,6 +86,7 @@ def test_a_song_that_is_over_shows_its_result_and_what_to_practise(opened: Brows
     assert shown(opened, ".result") and not shown(opened, ".standing")
     result = text(opened, ".result")
     assert "1 hit" in result and "1 late" in result and "longest run: 2" in result
+    assert "a new best" in result
     share = opened.run("Number(/(\\d+) %/.exec(document.querySelector('.result strong').textContent)[1])")
     notes = opened.run(
         "[...document.querySelectorAll('.result .counts b')].slice(0, 4).reduce((n, e) => n + +e.textContent, 0)"
@@ -96,6 +97,7 @@ def test_a_song_that_is_over_shows_its_result_and_what_to_practise(opened: Brows
     opened.click(".way.step")
     for _ in range(4):
         opened.turn(30)
+    assert f"your best: {share} %" in text(opened, ".result")
     opened.click(".result .main")
     assert not shown(opened, ".result") and said(opened).startswith("0 hit") and text(opened, ".play") == "❚❚"
     for _ in range(4):

@@ -2,7 +2,7 @@
 
 import { Coach } from "./coach.js";
 import { Judge, ramp } from "./judge.js";
-import { addClean, addOutcomes, dayOf, whereOf } from "./record.js";
+import { addClean, addOutcomes, dayOf, hitShare, whereOf } from "./record.js";
 import { FEET, HELPS } from "./settings.js";
 
 const STRAY = 5000; // milliseconds that the keys are said
@@ -34,6 +34,7 @@ export class Practice {
     this.feedback = null;
     this.run = 0; // notes in a row without a miss or a wrong press
     this.longest = 0; // the longest such run
+    this.topBefore = 0; // % of the best play before this one
   }
 
   /** What was hit in the loop, or in all. */
@@ -202,6 +203,9 @@ export class Practice {
     if (!this.along) return;
     this.judge.advance(Infinity, this.app.transport.rate);
     this.over = this.judge.tally(-Infinity, Infinity);
+    this.topBefore = this.app.record.top;
+    const whole = this.judge.from <= this.app.chart.first && this.judge.foot < 0 && !this.wait;
+    if (whole && this.app.transport.rate >= 1) this.app.record.top = Math.max(this.topBefore, Math.round(100 * hitShare(this.over)));
     this.keep();
     this.app.tell("hits");
   }

@@ -21,11 +21,11 @@ const FIRST = 0.6; // the speed of what was never passed
  */
 /** @typedef {{tries: number, misses: number, timed: number, sum: number, missed: boolean, rate: number}} RowRecord sum: ms; missed: the last time; rate: % of the last hit, 0: none */
 /** @typedef {{name: string, from: number, to: number, rate: number}} SavedLoop beats, %; where it ends */
-/** @typedef {{days: Day[], rows: Record<string, RowRecord>, loops: SavedLoop[], best: Record<string, number>}} PracticeRecord best: % of clean passes, by beats "16-32" */
+/** @typedef {{days: Day[], rows: Record<string, RowRecord>, loops: SavedLoop[], best: Record<string, number>, top: number}} PracticeRecord best: % of clean passes, by beats "16-32"; top: most hits of a whole song at full speed, % */
 /** @typedef {{row: number, limb: number, verdict: import("./judge.js").Verdict, error: number | undefined}} Outcome of a note; error: seconds */
 
 /** @returns {PracticeRecord} */
-export const emptyRecord = () => ({ days: [], rows: {}, loops: [], best: {} });
+export const emptyRecord = () => ({ days: [], rows: {}, loops: [], best: {}, top: 0 });
 
 /** @param {Date} date */
 export const dayOf = (date) => [date.getFullYear(), date.getMonth() + 1, date.getDate()].map((n) => String(n).padStart(2, "0")).join("-");
@@ -146,7 +146,7 @@ export function merged(mine, theirs) {
     const own = days.get(one.day);
     if (!own || played(one) > played(own)) days.set(one.day, one);
   }
-  const out = { ...mine, days: [...days.values()].sort((a, b) => (a.day < b.day ? -1 : 1)).slice(-MOST.days), rows: { ...mine.rows }, best: { ...mine.best }, loops: [...mine.loops] };
+  const out = { ...mine, days: [...days.values()].sort((a, b) => (a.day < b.day ? -1 : 1)).slice(-MOST.days), rows: { ...mine.rows }, best: { ...mine.best }, loops: [...mine.loops], top: Math.max(mine.top, theirs.top) };
   for (const [row, one] of Object.entries(theirs.rows)) if (one.tries > (out.rows[row]?.tries ?? 0)) out.rows[row] = one;
   for (const [where, rate] of Object.entries(theirs.best)) out.best[where] = Math.max(out.best[where] ?? 0, rate);
   const same = (/** @type {SavedLoop} */ a, /** @type {SavedLoop} */ b) => a.name === b.name && a.from === b.from && a.to === b.to;
@@ -163,9 +163,10 @@ const count = (value) => Number.isInteger(value) && within(value, 0, 1e9);
 
 /** What may be kept of anything at all: each value that is as it must be. @param {unknown} value @returns {PracticeRecord} */
 export function validRecord(value) {
-  const { days, rows, loops, best } = table(value);
+  const { days, rows, loops, best, top } = table(value);
   const list = (/** @type {unknown} */ some, /** @type {number} */ most) => (Array.isArray(some) ? some.slice(-most) : []);
   const out = emptyRecord();
+  if (within(top, 0, 100)) out.top = top;
   out.days = list(days, MOST.days).map(table).flatMap((one) => {
     const { day, feet } = one;
     if (typeof day !== "string" || !/^\d{4}-\d\d-\d\d$/.test(day) || !Number.isFinite(Date.parse(day))) return [];

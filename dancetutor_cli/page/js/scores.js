@@ -43,6 +43,7 @@ export function resultCard(app) {
   const { t, practice } = app;
   const share = el("strong", {}, "");
   const mean = el("p", { class: "hint" }, "");
+  const best = el("p", { class: "best" }, "");
   const { row, show } = countsRow(app);
   const missed = () => missedOf(app.record, app.chart.rows)[0];
   const again = el("button", { type: "button", class: "main", onclick: () => void app.begin() }, t("again-play"));
@@ -52,13 +53,15 @@ export function resultCard(app) {
     void app.loopBeats(one.from, one.to, one.rate);
   } }, t("again-missed"));
   const close = el("button", { type: "button", class: "sign shut", "aria-label": t("close"), title: t("close"), onclick: () => { practice.over = null; app.tell("hits"); } }, "✕");
-  const card = el("section", { class: "result", "aria-label": t("tab-results"), hidden: true }, el("h2", {}, t("tab-results")), share, row, mean, el("p", { class: "group" }, again, slow), close);
+  const card = el("section", { class: "result", "aria-label": t("tab-results"), hidden: true }, el("h2", {}, t("tab-results")), share, best, row, mean, el("p", { class: "group" }, again, slow), close);
   app.listeners.add((what) => {
     if (what === "frame") return;
     card.hidden = practice.over === null;
     if (!practice.over) return;
     share.textContent = percentOf(practice.over);
     mean.textContent = [meanText(app, practice.over).replace(/^\((.*)\)$/, "$1"), t("longestRun", { notes: practice.longest })].filter(Boolean).join(" · ");
+    const { top } = app.record;
+    best.textContent = top > practice.topBefore ? t("bestNew") : top ? t("bestPlay", { percent: top }) : "";
     slow.hidden = !missed();
     show(practice.over);
   });

@@ -67,8 +67,11 @@ test("a file comes back as it was, and taken in twice changes nothing", () => {
   const mine = emptyRecord();
   addOutcomes(mine, "2026-11-22", [outcome(5, "hit", 0)], 0, 1);
   addClean(mine, "4-8.5", 0.9);
+  mine.top = 81;
   const joined = merged(mine, back);
   assert.deepEqual(joined.days.map(({ day }) => day), ["2026-11-22", "2026-11-23", "2026-11-24"]);
+  assert.equal(joined.top, 81);
+  assert.deepEqual([80, -1, 101, "80", NaN].map((top) => validRecord({ top }).top), [80, 0, 0, 0, 0]);
   assert.equal(joined.best["4-8.5"], 90);
   assert.equal(joined.rows[5].tries, 1);
 });
@@ -91,7 +94,7 @@ test("of a stranger's file only what may be is kept", () => {
   assert.deepEqual(kept.rows, { 3: good });
   assert.deepEqual(kept.loops.map(({ name }) => name.length), [60]);
   assert.deepEqual(kept.best, { "0-4": 90 });
-  assert.deepEqual(Object.keys(kept), ["days", "rows", "loops", "best"]);
+  assert.deepEqual(Object.keys(kept), ["days", "rows", "loops", "best", "top"]);
   for (const value of [null, 3, "x", [], { days: {}, rows: [], loops: 3, best: "x" }]) assert.deepEqual(validRecord(value), emptyRecord());
 });
 
