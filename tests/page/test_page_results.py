@@ -96,7 +96,9 @@ def test_a_pass_is_kept_by_foot_row_and_day_and_stays(opened: Browser, page_file
     assert [one["missed"] for one in record["rows"].values()] == [False] * 3 + [True] * 5
     shown = results(opened)
     assert "Today: 8 notes, 0 % hit." in shown and "Days in a row: 1" in shown
-    assert "measure 1100 %5 rows missed; begins at the speed you last passed it at" in shown  # and the speed at which it was passed
+    assert (
+        "measure 1100 %5 rows missed; begins at the speed you last passed it at" in shown
+    )  # and the speed at which it was passed
     assert opened.run("[...document.querySelectorAll('.rows tbody td:nth-child(3)')].map(e => e.textContent)") == (
         ["1 of 1"] * 5
     )

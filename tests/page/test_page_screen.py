@@ -86,8 +86,15 @@ def test_axe_finds_nothing_serious(browser: Browser) -> None:
     if not source.exists():
         pytest.skip("no axe here; `make page-tools` puts it into tests/page/node_modules")
     browser.run(source.read_text("utf-8") + "; 1")
-    for tab in ("passages", "along", "results", "findings", "author", "settings"):
+    states = [("", tab) for tab in ("passages", "along", "results", "findings", "author", "settings")]
+    for key, tab in [*states, ("p", "passages"), (" ", "results")]:  # while somebody plays along, and with the result
         browser.click(f"#tab-{tab}")
+        if key:
+            browser.key(key)
+        if key == " ":
+            for _ in range(4):
+                browser.turn(30)
+            assert browser.run("!document.querySelector('.result').hidden")
         found = browser.run(
             "axe.run(document, {resultTypes: ['violations']}).then(r => r.violations"
             ".filter(v => ['serious', 'critical'].includes(v.impact)).map(v => v.id + ' ' + v.nodes[0].html))"

@@ -8,7 +8,7 @@ import { findingsPanel, passagesPanel, settingsPanel } from "./panels.js";
 import { resultsPanel } from "./results.js";
 import { CAMERAS, FIRST_VIEW } from "./settings.js";
 import { resultCard, standing } from "./scores.js";
-import { besideCaption, besideText, countOf, musicText, quiet, saidOf } from "./said.js";
+import { besideCaption, besideText, countOf, musicText, onlyScore, quiet, saidOf } from "./said.js";
 
 /**
  * @typedef {object} Canvases what is drawn on; it stays when the words change
@@ -70,6 +70,7 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
     if (what !== "frame") return;
     said.textContent = said.title = saidOf(app);
     said.classList.toggle("quiet", quiet(app));
+    said.classList.toggle("doubled", onlyScore(app));
     count.textContent = countOf(app);
     pick.hidden = app.sound.music !== null;
     pick.title = musicText(app);

@@ -19,6 +19,9 @@ export function saidOf(app) {
 /** Whether nothing happens that is worth a look: only that there is no music. @param {import("./app.js").App} app */
 export const quiet = (app) => !app.notice && !app.practice.along && !app.transport.loop;
 
+/** Whether only the counts are said, which stand over the picture too. @param {import("./app.js").App} app */
+export const onlyScore = ({ notice, practice, transport }) => practice.along && !notice && !practice.over && !practice.coach.on && practice.stray !== "now" && !transport.waiting && !transport.loop;
+
 /** Whether there is music, and whose; told in the same words wherever it is asked. @param {import("./app.js").App} app */
 export function musicText(app) {
   const { t, sound, musicName, musicBad } = app;
