@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.dance.changes import mixed_bodies, mixed_feet, mixed_poses
 from dancetutor_cli.dance.context import Context, bar_of, context_of, holding, panels_on_ground
+from dancetutor_cli.dance.face import add_face, mood_at, peeks_at
 from dancetutor_cli.dance.foot_path import Feet, both_feet
 from dancetutor_cli.dance.footwork.planner import plan_footwork
 from dancetutor_cli.dance.grips import grips_of
@@ -63,6 +64,7 @@ class Manner(TypedDict, total=False):
     settings : numbers of the motion, those of `configs/motion.yaml` unless given; or what they are over the song
     bar : whether she holds the bar behind the pad; gait : how she walks on and off, a name or file as for `load_gait`
     sides : from which she comes and to which she goes, 0 left or 1 right, where another one dances beside her
+    person : as in `Context`
     let_go : why notes that no limb has in the play are let go, where the caller has decided that
     """
 
@@ -70,6 +72,7 @@ class Manner(TypedDict, total=False):
     bar: bool
     gait: str
     sides: tuple[int, int] | None
+    person: int
     let_go: tuple[DroppedNote, ...]
 
 
@@ -118,7 +121,8 @@ def planned(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> t
     if bar:
         course = replace(course, states=tuple(map(holding, course.states)))
     context = context_of(pad, course.states[0], _beats(timing, play), rail)
-    context = replace(context, sides=manner.get("sides"), course=course if course.changes else None)
+    changes = course if course.changes else None
+    context = replace(context, sides=manner.get("sides"), person=manner.get("person", 0), course=changes)
 
     def second(tick: int) -> float:
         return float(timing.seconds(np.array([tick], dtype=np.int64))[0])
@@ -234,10 +238,12 @@ def posed(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Co
     goal = np.column_stack((ground[:, 0], body.mass_height.at(at), ground[:, 1]))
     waiting = waiting_at(plan, at, context)
     hands = hand_use(plan, body, at, waiting, context)
-    glances = glances_at(plan, body, at, context)
     free = (1.0 - hands.floor.max(axis=1)) * (1.0 - hands.bar.max(axis=1))
+    mood, peeks = mood_at(plan, body, at, context), peeks_at(plan, free, at, context)
+    glances = glances_at(plan, body, at, context)
+    glances = replace(glances, pitch=glances.pitch - np.radians(settings.face.nod) * peeks.share)
     doing = Activity(
-        stepping(feet, context.settings), free, plan.lead, plan.last, sample_path(body.beat, body.times, at), waiting,
+        stepping(feet, context.settings), free, plan.lead, mood.relief, sample_path(body.beat, body.times, at), waiting,
         glances,
     )  # fmt: skip
     dressed = Poses(poses.rotations.copy(), poses.root)
@@ -255,7 +261,8 @@ def posed(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Co
     ease_ankles(skeleton, poses, feet)
     look(poses, body, at, context)
     add_layers(poses, at, doing, context)
-    add_fingers(skeleton, poses, curls(at, hands, context.settings.fingers))
+    add_face(skeleton, poses, at, (mood, peeks, plan), context)
+    add_fingers(skeleton, poses, curls(at + context.phase, hands, context.settings.fingers))
     return poses
 
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 PANEL = 0.28  # metres, width of one panel
 HALF_PANEL = PANEL / 2
+PHASE = 1.9  # seconds; no whole part of any of the times that waves have
 HOLD_GRACE = 0.25  # seconds that a held note may be let go: StepMania's TimingWindowSecondsHold
 
 
@@ -94,6 +95,7 @@ class Context:
     ground : the pad as a rectangle, and the floor around it
     beats : seconds of the song's beats, in order; bar : what she holds on to, None for no bar
     stays : she does not walk off after the last step; course : settings that change over the song, None: they do not
+    person : 0 for who dances alone, else which of those beside each other: each has a chance and a phase of her own
     sides : from which she comes and to which she goes, 0 left or 1 right, None: as the notes say
     """
 
@@ -107,6 +109,7 @@ class Context:
     sides: tuple[int, int] | None = None
     stays: bool = False
     course: SettingsCourse | None = None
+    person: int = 0
 
     def at(self, second: float) -> Context:
         """The context with the settings of a second."""
@@ -118,6 +121,16 @@ class Context:
             return (self,), ()
         part = self.course.within(start, end)
         return tuple(replace(self, settings=settings, course=None) for settings in part.states), part.changes
+
+    @property
+    def own(self) -> tuple[int, ...]:
+        """What is added to a seed of chance, so that two who dance the same notes are two people; () alone."""
+        return (self.person,) if self.person else ()
+
+    @property
+    def phase(self) -> float:
+        """Seconds that her breath, her blinks and what wanders slowly are ahead of those of who dances alone."""
+        return PHASE * self.person
 
 
 def context_of(pad: Pad, settings: MotionSettings, beats: tuple[float, ...] = (), bar: Bar | None = None) -> Context:

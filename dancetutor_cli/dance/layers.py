@@ -1,4 +1,4 @@
-"""What comes on top of the solved body: gaze and glances, breath, blinks, wrists, fingers."""
+"""What comes on top of the solved body: gaze and glances, breath, wrists, fingers; the face is in `face`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from dancetutor_cli.dance.plan import Plan, Swing, Walk
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import SIDES, hand_direction, palm_normal, world_transforms
 from dancetutor_cli.dance.rig.quaternion import UP, leaning
-from dancetutor_cli.dance.rig.skeleton import EYELID_CLOSING, FINGERS, JAW_LAUGH, KNUCKLES, Skeleton
+from dancetutor_cli.dance.rig.skeleton import FINGERS, KNUCKLES, Skeleton
 from dancetutor_cli.dance.settings_arms import FingerSettings
 from dancetutor_cli.dance.settings_body import GlanceSettings
 from dancetutor_cli.dance.smoothing import sample_path, smooth
@@ -92,7 +92,7 @@ def glances_at(plan: Plan, body: Trajectory, times: Array, context: Context) -> 
     busy += [(press.start - press.lead, press.end + numbers.hand) for press in plan.presses]
     busy += [(start - numbers.jump, end + numbers.jump) for start, end in plan.flights]
     first, last = (int(np.floor(t / numbers.every)) for t in (times.min(), times.max()))
-    song = [round(1000 * t) & 0xFFFFFFFF for t in (plan.first, plan.last)]
+    song = [*(round(1000 * t) & 0xFFFFFFFF for t in (plan.first, plan.last)), *context.own]
     for cell in range(first - 1, last + 1):
         chance = np.random.default_rng([GLANCE_SEED, *song, cell & 0xFFFFFFFF])
         start = numbers.every * (cell + chance.uniform(0.0, 0.5))
@@ -143,13 +143,12 @@ def _there(times: Array, start: float, end: float, turn: float) -> Array:
     return np.asarray(smooth((times - start) / turn) * smooth((end - times) / turn))
 
 
-# Small movements on top of all others, multiplied in each joint's own space: breath, blinks, a laugh at the end.
+# Small movements on top of all others, multiplied in each joint's own space: breath, wrists, glances.
 #
 # Additive layers as in the blog of the project's sources: the main rotation first, then the layer. They touch no joint
 # between the root and a foot, so no contact moves; while a palm is on the floor they are off.
 
 ACROSS, FRONT = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
-SEED = 20140513
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,14 +156,14 @@ class Activity:
     """What she does at f times, as far as layers go by it.
 
     stepping : (f,) -1 to 1, the left foot (positive) or the right one is in the air
-    free : (f,) 0 where a palm is on the floor or the bar, else 1; lead, last : as in `Plan`
-    beat : (f,) as in `Trajectory`; waiting, glances : at the same times
+    free : (f,) 0 where a palm is on the floor or the bar, else 1; lead : as in `Plan`
+    relief : (f,) as in `face.Mood`: a deep breath; beat : (f,) as in `Trajectory`; waiting, glances : at the same times
     """
 
     stepping: Array
     free: Array
     lead: int
-    last: float
+    relief: Array
     beat: Array
     waiting: WaitMotion
     glances: Glances
@@ -175,7 +174,8 @@ def add_layers(poses: Poses, times: Array, doing: Activity, context: Context) ->
     skeleton, settings, rotations = context.skeleton, context.settings.layers, poses.rotations
     groove, beat = context.settings.groove, doing.beat
     stepping, free, lead = doing.stepping, doing.free, doing.lead
-    breath = np.sin(2 * np.pi * times / settings.breath_time)
+    times = times + context.phase
+    breath = np.sin(2 * np.pi * times / settings.breath_time) * (1.0 + settings.breath_deep * doing.relief)
     raised = (np.radians(settings.breath_shoulders) * breath - np.radians(groove.shrug) * beat) * free
     for k, (side, sign) in enumerate((("l", 1.0), ("r", -1.0))):
         shrug = doing.waiting.shrug[:, k] * free
@@ -203,11 +203,6 @@ def add_layers(poses: Poses, times: Array, doing: Activity, context: Context) ->
         _turn(skeleton, rotations, joint, ACROSS, -share * glance.pitch)
     for side in "lr":
         _turn(skeleton, rotations, f"{side}_eyeball_joint", UP, glance.eyes)
-    closed = np.radians(EYELID_CLOSING) * eyelids(times, settings.blink_time, settings.blink)
-    for side in "lr":
-        _turn(skeleton, rotations, f"{side}_eyelid_joint", ACROSS, closed)
-    laugh = smooth(np.clip((times - doing.last - settings.laugh_after) / settings.laugh_rise, 0.0, 1.0))
-    _turn(skeleton, rotations, "temporomandibular", ACROSS, np.radians(JAW_LAUGH) * laugh)
 
 
 def _shrug(skeleton: Skeleton, rotations: Array, side: str, angle: Array) -> None:
@@ -222,18 +217,6 @@ def _turn(skeleton: Skeleton, rotations: Array, joint: str, axis: Array, angle: 
     if joint in skeleton.names:
         j = skeleton.index(joint)
         rotations[:, j] = quat.multiply(rotations[:, j], quat.from_axis_angle(axis, angle))
-
-
-def eyelids(times: Array, every: float, blink: float) -> Array:
-    """How far the lids are closed (f,), 0 to 1: blinks of `blink` seconds, always at the same times."""
-    cell = np.floor(times / every).astype(np.int64)
-    out = np.zeros_like(times)
-    for c in np.unique(cell):
-        start = (c + np.random.default_rng([SEED, int(c) & 0xFFFFFFFF]).uniform(0.1, 0.8)) * every
-        s = (times - start) / blink
-        near = (s > 0) & (s < 1)
-        out[near] = np.where(s < 0.4, smooth(s / 0.4), 1.0 - smooth((s - 0.4) / 0.6))[near]
-    return out
 
 
 # Hands: curled at rest, a loose fist in effort, flat on the floor, around the bar.

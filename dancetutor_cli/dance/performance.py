@@ -23,7 +23,7 @@ from dancetutor_cli.dance.pieces import BakedPiece, Each, Piece, RagdollStyle, i
 from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_request, no_pad, read_chart
 from dancetutor_cli.dance.settings import load_settings
 from dancetutor_cli.dance.store import with_store
-from dancetutor_cli.dance.two import merge_plays, pad_of_both, place_on, sides_of
+from dancetutor_cli.dance.two import merge_plays, pad_of_both, persons_of, place_on, sides_of
 from dancetutor_cli.feet.play import without_unplayable
 from dancetutor_cli.feet.play_json import read_play
 from dancetutor_cli.feet.solved import Solved, solve_song
@@ -146,7 +146,8 @@ def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) 
     sides = sides_of(parts) if len(parts) > 1 else (None,)
     blend = None if request.style is None else load_choice(request.style).blend(timing)
     dancers = []
-    for one, side in zip(solved, sides, strict=True):
+    people = persons_of([(one.play, one.pad) for one in solved if one.play is not None and one.pad is not None])
+    for one, side, person in zip(solved, sides, people, strict=True):
         play, own = one.play, one.pad
         assert play is not None and own is not None
         if not (play.limb >= 0).any():
@@ -158,7 +159,15 @@ def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) 
         numbers = request.motion, request.form
         settings = load_settings(*numbers) if blend is None else blend.settings(*numbers)
         plan, context = planned(
-            timing, play, own, settings=settings, bar=request.bar, gait=request.gait, sides=side, let_go=gone
+            timing,
+            play,
+            own,
+            settings=settings,
+            bar=request.bar,
+            gait=request.gait,
+            sides=side,
+            person=person,
+            let_go=gone,
         )
         place = place_on(pad, one.chart, own) if len(parts) > 1 else (0.0, 0.0)
         dancers.append(Performer(one, own, play, plan, context, place))

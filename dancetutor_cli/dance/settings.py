@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.dance.settings_arms import AcrossSettings, ArmSettings, BarSettings, FingerSettings, HandSettings
 from dancetutor_cli.dance.settings_body import (
     BodySettings,
+    FaceSettings,
     GlanceSettings,
     GrooveSettings,
     HairSettings,
@@ -59,6 +60,7 @@ class MotionSettings:
     glance: GlanceSettings
     inertia: InertiaSettings
     layers: LayerSettings
+    face: FaceSettings
     groove: GrooveSettings
     hair: HairSettings
     bar: BarSettings

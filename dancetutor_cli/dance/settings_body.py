@@ -138,6 +138,7 @@ class LayerSettings:
     breath_time: Seconds
     breath_shoulders: Degrees
     breath_nod: Degrees
+    breath_deep: Ratio
     head_bob: Degrees
     sway: Metres
     sway_time: Seconds
@@ -161,6 +162,34 @@ class LayerSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class FaceSettings:
+    """What her face shows, and when her eyes go to where the next foot steps."""
+
+    around: Seconds
+    fades: Seconds
+    hard_from: Ratio
+    hard_full: Ratio
+    relief_from: Ratio
+    narrow: Ratio
+    pressed: Degrees
+    relief: Ratio
+    panting: Degrees
+    squint: Ratio
+    easy: Ratio
+    smile_time: Seconds
+    least: Seconds
+    long: Seconds
+    often: Ratio
+    after: Seconds
+    early: Seconds
+    ease: Seconds
+    aside: Degrees
+    down: Degrees
+    lids_follow: Ratio
+    nod: Degrees
+
+
+@dataclass(frozen=True, slots=True)
 class GrooveSettings:
     """How her trunk and head take part in jacks and slow steps."""
 
@@ -177,6 +206,11 @@ class GrooveSettings:
     shrug: Degrees
     hands: Metres
     deeper: Ratio
+    leisure: Ratio
+    leisure_from: Seconds
+    leisure_full: Seconds
+    stance: Metres
+    stance_time: Seconds
 
 
 @dataclass(frozen=True, slots=True)

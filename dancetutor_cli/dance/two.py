@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.chart.note_data import ONE_PAD, OWN_PADS
-from dancetutor_cli.dance.context import PANEL
+from dancetutor_cli.dance.context import PANEL, panels_on_ground
+from dancetutor_cli.dance.footwork.turning import leading_foot
 from dancetutor_cli.feet import load_pad
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, prepare
@@ -65,6 +66,32 @@ def sides_of(parts: Sequence[Chart]) -> tuple[tuple[int, int], ...]:
     return tuple(
         zip(*(_on_the_right(parts, whole, ends) for ends in (slice(SIDE_NOTES), slice(-SIDE_NOTES, None))), strict=True)
     )
+
+
+def persons_of(plays: Sequence[tuple[Play, Pad]]) -> tuple[int, ...]:
+    """Who each of those is who dance together, as `Context.person`: 0 alone, else 0 and 1.
+
+    In the mirror image of a chart each stays who she was: who is who goes by side and leading foot, both of which
+    change, else by when and how far ahead notes are, which do not. Only of two plays that are each other's mirror
+    image the left one comes first, so that they are not twins.
+    plays : of each, from the left, with her own pad
+    """
+    if len(plays) < 2:
+        return (0,)
+    leads = [leading_foot(play, panels_on_ground(pad)) for play, pad in plays]
+    if leads[0] == leads[1]:
+        return leads[0], 1 - leads[0]
+    return (1, 0) if _ahead(*plays) > 0 else (0, 1)
+
+
+def _ahead(one: tuple[Play, Pad], other: tuple[Play, Pad]) -> int:
+    """Which of two plays comes first, -1 or 1, by what is the same for mirror images; 0 for mirror images."""
+    keys = []
+    for play, pad in (one, other):
+        row, column = np.nonzero(play.limb >= 0)
+        order = np.lexsort((pad.panels[column, 1], row))
+        keys.append((play.rows.tick[row][order].tolist(), pad.panels[column, 1][order].tolist()))
+    return int(keys[0] > keys[1]) - int(keys[0] < keys[1])
 
 
 def _on_the_right(parts: Sequence[Chart], whole: Pad, ends: slice) -> list[int]:

@@ -65,8 +65,8 @@ def waiting_at(plan: Plan, times: Array, context: Context) -> WaitMotion:
         return out
     first, last = float(times[busy[0]]), float(times[busy[-1]])
     out.shift[:] = plan.hand * out.share * _shift(times, context)
-    song = _song(plan)
-    slow = [_slowly(song, times, numbers.turn_time, salt) for salt in range(3)]
+    song = song_of(plan, context)
+    slow = [slowly(song, times, numbers.turn_time, salt) for salt in range(3)]
     out.turn[:] = plan.hand * out.share * np.radians(numbers.turn) * slow[0]
     for hand in (0, 1):  # now and then one is held before her for a while
         up = out.share * smooth((slow[1 + (hand ^ plan.lead)] - numbers.held_from) / (1.0 - numbers.held_from))
@@ -84,12 +84,15 @@ def waiting_at(plan: Plan, times: Array, context: Context) -> WaitMotion:
     return out
 
 
-def _song(plan: Plan) -> tuple[int, int]:
-    """What chance knows a song by; the same for its mirror image, and for a piece of it."""
-    return round(1000 * plan.first), round(1000 * plan.last)
+Song = tuple[int, ...]
 
 
-def _chance(song: tuple[int, int], *numbers: int) -> np.random.Generator:
+def song_of(plan: Plan, context: Context) -> Song:
+    """What chance knows a song, and who dances it, by; the same for its mirror image, and for a piece of it."""
+    return round(1000 * plan.first), round(1000 * plan.last), *context.own
+
+
+def _chance(song: Song, *numbers: int) -> np.random.Generator:
     """What chance says of something in this song."""
     return np.random.default_rng([SEED, *(number & 0xFFFFFFFF for number in (*song, *numbers))])
 
@@ -104,7 +107,7 @@ class _Draw(NamedTuple):
 
 
 @lru_cache(maxsize=1024)
-def _draw(song: tuple[int, int], number: int) -> _Draw:
+def _draw(song: Song, number: int) -> _Draw:
     """The thing of this number, for which each round of a bake asks; all kinds come by turns, in ever other orders."""
     chance = _chance(song, number)
     turn, place = divmod(number, len(_KINDS))
@@ -139,7 +142,7 @@ def _shift(times: Array, context: Context) -> Array:
     for beat in (*before, *beats, *after):
         if not heard or beat - heard[-1] >= numbers.shift_time - 1e-6:
             heard.append(float(beat))
-    at, chance = np.array(heard), np.random.default_rng(SEED)
+    at, chance = np.array(heard), np.random.default_rng([SEED, *context.own])
     far, stays = chance.uniform(0.7, 1.3, len(at)), chance.random(len(at)) < numbers.stays
     stays[1:] &= ~stays[:-1]
     place = numbers.shift * far * np.cumprod(np.where(stays, 1.0, -1.0))
@@ -148,7 +151,7 @@ def _shift(times: Array, context: Context) -> Array:
     return np.asarray(place[k] + share * (place[k + 1] - place[k]))
 
 
-def _slowly(song: tuple[int, int], times: Array, every: float, salt: int) -> Array:
+def slowly(song: Song, times: Array, every: float, salt: int) -> Array:
     """Something (n,) from -1 to 1 that stays for a while and then is otherwise; salt : another number, another thing"""
     cell = times / every + salt / 3
     knots = np.arange(np.floor(cell.min()), np.floor(cell.max()) + 2)
@@ -159,8 +162,8 @@ def _slowly(song: tuple[int, int], times: Array, every: float, salt: int) -> Arr
 
 
 @lru_cache(maxsize=1024)
-def _knot(song: tuple[int, int], number: int, salt: int) -> float:
-    """Where `_slowly` is then; each round of a bake asks again."""
+def _knot(song: Song, number: int, salt: int) -> float:
+    """Where `slowly` is then; each round of a bake asks again."""
     return float(_chance(song, number, 2 + salt).uniform(-1.0, 1.0))
 
 

@@ -204,7 +204,8 @@ def leg_shakes(plan: Plan, mines: Array, context: Context) -> list[tuple[int, Sh
     """
     loose, found = context.settings.loose, []
     for number, (free, lift) in enumerate(waits(plan, mines, loose.least)):
-        chance = np.random.default_rng([SEED, round(1000 * plan.first), round(1000 * plan.last) & 0xFFFFFFFF, number])
+        song = round(1000 * plan.first), round(1000 * plan.last) & 0xFFFFFFFF
+        chance = np.random.default_rng([SEED, *song, number, *context.own])
         time, side = free + loose.pause * chance.uniform(1.0, 2.0), int(chance.integers(2))
         while True:
             legs = 2 if chance.random() < loose.both else 1

@@ -62,6 +62,7 @@ LOOSE_SOFT = 0.015  # metres over which a forearm that is held up comes to sink
 SUNK = 1.8  # so much farther a hand sinks, for its elbow comes down with it
 ELBOWS_IN = 0.62  # part of their way by which elbows turn to the body for another dancer: wholly, they would be in it
 GIVEN_WAY = 0.145  # metres that a hand gives way to another dancer with which its elbow turns to the body
+PARTNER = np.array([0.01, 0.03, 0.04])  # metres that the second of two carries her hands farther out, up and ahead
 ASKEWED = 1.6  # about how far `_wandering` goes up and down
 
 
@@ -141,7 +142,7 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
     settings, skeleton, arms = context.settings, context.skeleton, context.settings.arms
     rate = 1.0 / float(body.times[1] - body.times[0])
     effort = lately(tempo_factor(plan, body.times, settings), rate, arms.effort)[:, None]
-    wander, askew = _wandering(body.times, arms), ASKEW
+    wander, askew = _wandering(body.times + context.phase, arms), ASKEW
     if plan.lead == 1:  # what one hand does if the left foot leads, the other one does if the right one leads
         wander, askew = (ways[..., ::-1, :] * [-1.0, 1.0, 1.0] for ways in (wander, askew))
     # none is ever quite as high, or swings quite as far, as the other one
@@ -151,6 +152,7 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
     hang[..., 0] = np.array([1.0, -1.0]) * (arms.out + arms.stream_out * effort)
     hang[..., 1] = -arms.down + arms.swing_up * _upward(swing) + arms.stream_up * effort * unlike
     hang[..., 2] = arms.forward + swing - arms.stream_back * effort
+    hang += context.person * PARTNER * np.array([[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]])
     raised = _upward(np.outer(body.arms[:, 1], (1.0, -1.0)))
     hang[..., 0] += raised * [1.0, -1.0]
     hang[..., 1] += 0.5 * raised

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context
-from dancetutor_cli.dance.plan import Plan, Step, Swing
+from dancetutor_cli.dance.plan import Move, Plan, Sidestep, Step, Swing
 from dancetutor_cli.dance.settings import MotionSettings
-from dancetutor_cli.dance.settings_body import LayerSettings
+from dancetutor_cli.dance.settings_body import GrooveSettings, LayerSettings
 from dancetutor_cli.dance.smoothing import smooth, smooth_path
 
 # She hears the music: between slow steps and while she waits, knees and chest give a little on every beat.
@@ -100,11 +100,44 @@ def groove_of(plan: Plan, times: Array, engaged: Occupation, context: Context) -
     share = dancing(calmer, engaged.busy, settings.layers) * (1.0 - engaged.waits)
     grounded = _grounded(plan, times, settings)
     share *= (numbers.steps + (1.0 - numbers.steps) * jacks) * grounded
+    easy = leisure(plan, times, numbers)
+    share *= 1.0 + numbers.leisure * easy
     late = np.interp(times - settings.layers.beat_late, times, beat)
-    sink = (1.0 + numbers.deeper * jacks) * settings.layers.bounce * late
+    deeper = np.maximum(numbers.deeper * jacks, numbers.leisure * np.maximum(easy, engaged.waits))
+    sink = (1.0 + deeper) * settings.layers.bounce * late
     to_side = sway(plan, times, context)
     free = np.clip(1.0 - share - engaged.busy - engaged.waits, 0.0, 1.0)
     return Groove(beat, sink, share * to_side, free * grounded * to_side, grounded)
+
+
+def leisure(plan: Plan, times: Array, numbers: GrooveSettings) -> Array:
+    """How much time (n,) there is between the steps around even times, 0 to 1."""
+    lands = np.sort([m.land for track in plan.feet for m in track.moves if isinstance(m, Swing)])
+    k = np.searchsorted(lands, times)
+    gap = np.append(lands, np.inf)[k] - np.append(-np.inf, lands)[k]
+    much = smooth((gap - numbers.leisure_from) / (numbers.leisure_full - numbers.leisure_from))
+    rate = 1.0 / float(times[1] - times[0])
+    return np.asarray(smooth_path(much[:, None], np.ones(len(times)), rate, numbers.ease)[:, 0])
+
+
+def stance(plan: Plan, times: Array, context: Context) -> Array:
+    """How far (n,) her weight shall be towards the left foot, metres, at even times: at leisure it goes onto the foot
+    that has landed and stays there until the next one has; not near jumps, nor at the bar."""
+    numbers = context.settings.groove
+    if context.bar is not None:
+        return np.zeros(len(times))
+    steps = sorted((m.land, 1.0 - 2.0 * side) for side, track in enumerate(plan.feet) for m in track.moves if _to(m))
+    if not steps:
+        return np.zeros(len(times))
+    lands, sides = np.array(steps).T
+    bears = np.append(0.0, sides)[np.searchsorted(lands, times)]
+    rate = 1.0 / float(times[1] - times[0])
+    over = smooth_path(bears[:, None], np.ones(len(times)), rate, numbers.stance_time)[:, 0]
+    return numbers.stance * over * leisure(plan, times, numbers) * _grounded(plan, times, context.settings)
+
+
+def _to(move: Move) -> bool:
+    return isinstance(move, Step | Sidestep)
 
 
 def _grounded(plan: Plan, times: Array, settings: MotionSettings) -> Array:
@@ -147,7 +180,7 @@ def sway(plan: Plan, times: Array, context: Context) -> Array:
     at = heard_beats(context.beats, max(numbers.shortest, 0.1))
     if len(at) < 2:
         return np.zeros(len(times))
-    chance = np.random.default_rng([SEED, round(1000 * plan.first), round(1000 * plan.last) & 0xFFFFFFFF])
+    chance = np.random.default_rng([SEED, round(1000 * plan.first), round(1000 * plan.last) & 0xFFFFFFFF, *context.own])
     far, stays = chance.uniform(0.55, 1.1, len(at)), chance.random(len(at)) < numbers.stays
     stays[1:] &= ~stays[:-1]
     place = far * np.cumprod(np.where(stays, 1.0, -1.0))

@@ -28,7 +28,7 @@ from dancetutor_cli.dance.trajectory.facing import (
     pelvis_yaw,
     reaching,
 )
-from dancetutor_cli.dance.trajectory.groove import Occupation, groove_of
+from dancetutor_cli.dance.trajectory.groove import Occupation, groove_of, stance
 from dancetutor_cli.dance.trajectory.height import (
     Height,
     HeightWish,
@@ -198,7 +198,8 @@ def _course(
     gait = walking(plan.walks, times, settings.walk)
     if gait is not None:  # who walks has legs that swing slowly, and her weight on the edges of her soles
         pendulum = replace(pendulum, turning=(1.0 - gait.own)[:, None] * pendulum.turning)
-    shift = waiting_at(plan, times, context).shift
+    waiting = waiting_at(plan, times, context)
+    shift = waiting.shift + (1.0 - waiting.share) * stance(plan, times, context)
     if known is not None:  # heels that rise for their ankles' sake carry nothing; palms do, on their way already
         up = known.trajectory.heels * (1.0 - reaching(plan.presses, times, settings.hands).max(axis=1, keepdims=True))
         feet = raised(feet, up)

@@ -11,7 +11,7 @@ from dance_requests import baked
 
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.bake import bake
-from dancetutor_cli.dance.layers import eyelids
+from dancetutor_cli.dance.face import eyelids
 from dancetutor_cli.dance.motion import Motion, sample
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.request import DanceRequest

@@ -1,0 +1,150 @@
+"""Her face goes with what happens: lids narrow in hard passages, a breath and a smile after them, smiles at easy ones,
+and eyes that go to where the next foot will step.
+
+Hard is what has quick steps around it (`height.tempo_factor`, on the mean over some seconds). What is left of a hard
+passage dies away at an even rate, so relief is the largest of what has been, less what is now. The mesh has lids, a jaw
+and eyes that turn; brows are painted.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.ik.full_body import Poses
+from dancetutor_cli.dance.ik.targets import lately
+from dancetutor_cli.dance.plan import Plan, Step
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.dance.rig.quaternion import UP
+from dancetutor_cli.dance.rig.skeleton import EYELID_CLOSING, JAW_LAUGH, Skeleton
+from dancetutor_cli.dance.settings_body import FaceSettings, LayerSettings
+from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.trajectory.height import tempo_factor
+from dancetutor_cli.dance.trajectory.posture import Trajectory
+from dancetutor_cli.dance.waits import Song, slowly, song_of
+
+Array = NDArray[np.float64]
+ACROSS = np.array([1.0, 0.0, 0.0])
+BLINK_SEED, PEEK_SEED, SMILE_SALT = 20140513, 20260611, 3
+
+
+@dataclass(frozen=True, slots=True)
+class Mood:
+    """What her face shows at f times, (f,) 0 to 1 each.
+
+    hard : she concentrates; relief : how much harder it was a moment ago; easy : it has been easy for a while
+    """
+
+    hard: Array
+    relief: Array
+    easy: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Peeks:
+    """Looks at where the next foot goes, at f times. share : (f,) 0 to 1; places : (f, 3) metres in the world"""
+
+    share: Array
+    places: Array
+
+
+def mood_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Mood:
+    """Her mood at times `at` (f,), seconds, from the steps around the body's even times."""
+    numbers, times = context.settings.face, body.times
+    effort = lately(tempo_factor(plan, times, context.settings), 1.0 / float(times[1] - times[0]), numbers.around)
+    effort = np.maximum(effort, body.reaching.max(axis=1))
+    faded = (times - times[0]) / numbers.fades
+    before = np.maximum.accumulate(effort + faded) - faded
+    hard = smooth((effort - numbers.hard_from) / (numbers.hard_full - numbers.hard_from))
+    relief = smooth((before - effort - numbers.relief_from) / (1.0 - numbers.relief_from))
+    easy = 1.0 - smooth(before / numbers.hard_from)
+    return Mood(*(np.interp(at, times, one) for one in (hard, relief, easy)))
+
+
+def peeks_at(plan: Plan, free: Array, at: Array, context: Context) -> Peeks:
+    """Peeks at times `at` (f,): before steps for which there is time, some of them, and all that end a wait.
+
+    free : (f,) 0 where hands are busy. Chance goes by the time of a step, so mirror images peek as mirror images.
+    """
+    numbers, song = context.settings.face, song_of(plan, context)
+    out = Peeks(np.zeros(len(at)), np.zeros((len(at), 3)))
+    steps = [move for track in plan.feet for move in track.moves if isinstance(move, Step)]
+    before = -np.inf
+    for step in sorted(steps, key=lambda one: one.land):
+        gap, before = step.land - before, step.land
+        seed = [PEEK_SEED, *(number & 0xFFFFFFFF for number in (*song, round(1000 * step.land)))]
+        wanted = gap > numbers.long or np.random.default_rng(seed).random() < numbers.often
+        if gap < numbers.least or not wanted:
+            continue
+        start = max(step.land - gap + numbers.after, step.lift - numbers.early)
+        near = slice(*np.searchsorted(at, (start, step.land + numbers.ease)).tolist())
+        there = smooth((at[near] - start) / numbers.ease) * smooth((step.land + numbers.ease - at[near]) / numbers.ease)
+        out.share[near] = np.maximum(out.share[near], there * free[near])
+        out.places[near] = step.target[0], 0.0, step.target[1]
+    return out
+
+
+def add_face(skeleton: Skeleton, poses: Poses, at: Array, shown: tuple[Mood, Peeks, Plan], context: Context) -> None:
+    """Turn lids, jaw and eyes at times `at` (f,), in place. shown : what she does, too"""
+    (mood, peeks, plan), rotations = shown, poses.rotations
+    numbers, layers = context.settings.face, context.settings.layers
+    down = np.zeros(len(at))
+    looking = np.flatnonzero(peeks.share > 0.0)
+    if len(looking):
+        down[looking] = peeks.share[looking] * _look_at(skeleton, poses, looking, peeks, numbers)
+    smile = np.maximum(numbers.relief * mood.relief, mood.easy * _phrases(song_of(plan, context), at, numbers))
+    lids = numbers.narrow * mood.hard + numbers.squint * smile + down * numbers.lids_follow
+    open_eye = (1.0 - eyelids(at + context.phase, layers.blink_time, layers.blink)) * (1.0 - np.clip(lids, 0.0, 1.0))
+    jaw = np.radians(JAW_LAUGH) * np.maximum(smile, _laugh(at, plan.last, layers))
+    breath = (1.0 + np.sin(2 * np.pi * (at + context.phase) / layers.breath_time)) / 2
+    jaw += np.radians(numbers.panting) * mood.relief * breath - np.radians(numbers.pressed) * mood.hard
+    for side in "lr":
+        _set(skeleton, rotations, f"{side}_eyelid_joint", np.radians(EYELID_CLOSING) * (1.0 - open_eye))
+    _set(skeleton, rotations, "temporomandibular", jaw)
+
+
+def _phrases(song: Song, at: Array, numbers: FaceSettings) -> Array:
+    """How far (f,) she would smile where it is easy, 0 to 1: for a while, then not, never twice alike."""
+    return numbers.easy * smooth(slowly(song, at, numbers.smile_time, SMILE_SALT) / 0.6)
+
+
+def _laugh(at: Array, last: float, layers: LayerSettings) -> Array:
+    """She laughs (f,), 0 to 1, after the last note."""
+    return smooth((at - last - layers.laugh_after) / layers.laugh_rise)
+
+
+def _look_at(skeleton: Skeleton, poses: Poses, which: NDArray[np.int64], peeks: Peeks, numbers: FaceSettings) -> Array:
+    """Turn the eyes of these frames to their places, as far as eyes go; how far down (k,) they go, radians."""
+    places, world = world_transforms(skeleton, poses.rotations[which], poses.root[which])
+    head = quat.conjugate(world[:, skeleton.index("skullbase")])
+    lowest, most = np.zeros(len(which)), float(np.radians(numbers.aside))
+    for side in "lr":
+        j = skeleton.index(f"{side}_eyeball_joint")
+        way = quat.rotate(head, peeks.places[which] - places[:, j])
+        aside = np.clip(np.arctan2(way[:, 0], np.maximum(way[:, 2], 0.05)), -most, most)
+        down = np.clip(np.arctan2(-way[:, 1], np.hypot(way[:, 0], way[:, 2])), 0.0, np.radians(numbers.down))
+        goal = quat.multiply(quat.from_axis_angle(UP, aside), quat.from_axis_angle(ACROSS, down))
+        poses.rotations[which, j] = quat.slerp(poses.rotations[which, j], goal, peeks.share[which])
+        lowest = np.maximum(lowest, down)
+    return lowest
+
+
+def _set(skeleton: Skeleton, rotations: Array, joint: str, angle: Array) -> None:
+    if joint in skeleton.names:
+        rotations[:, skeleton.index(joint)] = quat.from_axis_angle(ACROSS, angle)
+
+
+def eyelids(times: Array, every: float, blink: float) -> Array:
+    """How far the lids are closed (f,), 0 to 1: blinks of `blink` seconds, always at the same times."""
+    cell = np.floor(times / every).astype(np.int64)
+    out = np.zeros_like(times)
+    for c in np.unique(cell):
+        start = (c + np.random.default_rng([BLINK_SEED, int(c) & 0xFFFFFFFF]).uniform(0.1, 0.8)) * every
+        s = (times - start) / blink
+        near = (s > 0) & (s < 1)
+        out[near] = np.where(s < 0.4, smooth(s / 0.4), 1.0 - smooth((s - 0.4) / 0.6))[near]
+    return out
