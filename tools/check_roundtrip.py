@@ -15,7 +15,7 @@ from pathlib import Path
 
 from dancetutor_cli.chart import find_files
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.markers.annotate import AnnotateOutcome, Item, Order, annotate_song
+from dancetutor_cli.markers.annotate import AnnotateOutcome, AnnotateRequest, Item, annotate_song
 from dancetutor_cli.markers.comments import STYLES
 from dancetutor_cli.run.errors import FileError
 
@@ -69,8 +69,8 @@ def check(path: Path, styles: tuple[str, ...], into_file: bool = False) -> Count
 
 
 def run(path: Path, styles: tuple[str, ...], strip: bool = False, into_file: bool = False) -> AnnotateOutcome:
-    order = Order(styles, None, Selection(), strip=strip, into_file=into_file)
-    (outcome,) = annotate_song([Item(path, path)], order)
+    request = AnnotateRequest(styles, None, Selection(), strip=strip, into_file=into_file)
+    (outcome,) = annotate_song([Item(path, path)], request)
     if outcome.error and "no chart" not in outcome.error and "--into-file" not in outcome.error:
         print(FileError(path, outcome.error), file=sys.stderr)
     return outcome

@@ -44,7 +44,7 @@ def _chart(path: Path) -> object:
     from dancetutor_cli.chart.selection import Selection
     from dancetutor_cli.lint.analysis import analyze_file
     from dancetutor_cli.lint.run import LintRequest, LintRun
-    from dancetutor_cli.markers.annotate import Item, Order, annotate_song
+    from dancetutor_cli.markers.annotate import AnnotateRequest, Item, annotate_song
 
     before = path.read_bytes()
     result = analyze_file(LintRun(LintRequest()).task(path))
@@ -53,8 +53,8 @@ def _chart(path: Path) -> object:
             raise AssertionError("an error of several lines")
         return result
     for strip in (False, True):
-        order = Order(("measure",), None, Selection(), strip=strip)
-        (outcome,) = annotate_song([Item(path, path)], order)
+        request = AnnotateRequest(("measure",), None, Selection(), strip=strip)
+        (outcome,) = annotate_song([Item(path, path)], request)
         if outcome.error:
             break
     if path.read_bytes() != before and b"{dt1" not in before:
@@ -119,7 +119,7 @@ def _editor(path: Path) -> object:
     from dancetutor_cli import chart as charts
     from dancetutor_cli.chart.selection import Selection
     from dancetutor_cli.feet import overrides_for
-    from dancetutor_cli.markers.annotate import Item, Order, annotate_song
+    from dancetutor_cli.markers.annotate import AnnotateRequest, Item, annotate_song
 
     folder = path.with_suffix(".d")
     folder.mkdir(exist_ok=True)
@@ -128,7 +128,7 @@ def _editor(path: Path) -> object:
     song.write_bytes(b"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n1000\n0100\n0010\n0001\n;\n")
     read = charts.load(song)
     overrides_for(read, read.charts[0])
-    return annotate_song([Item(song, song)], Order(("smeditor",), None, Selection()))
+    return annotate_song([Item(song, song)], AnnotateRequest(("smeditor",), None, Selection()))
 
 
 def _character(path: Path) -> object:

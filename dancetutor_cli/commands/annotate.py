@@ -27,7 +27,7 @@ from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.files import check_folder
 
 if TYPE_CHECKING:
-    from dancetutor_cli.markers.annotate import AnnotateOutcome, Item, Order
+    from dancetutor_cli.markers.annotate import AnnotateOutcome, AnnotateRequest, Item
 
 STYLES = ("measure", "rows", "sidecar", "smeditor", "edit", "theme")
 STRIPPED = (*STYLES, "background")  # and what `render --background --into-file` has entered
@@ -48,7 +48,7 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
 
 @dataclass(frozen=True, slots=True)
 class AnnotateOptions:
-    """What the options ask for; the others are called like the fields of `markers.annotate.Order`."""
+    """What the options ask for; the others are called like the fields of `markers.annotate.AnnotateRequest`."""
 
     styles: tuple[str, ...] | None
     check: bool
@@ -94,7 +94,7 @@ def command(paths: tuple[Path, ...], selection: Selection, options: AnnotateOpti
     Exit status: 0 done, 1 --check found something, 2 something could not be read or written.
     """
     from dancetutor_cli.lint.configuration import choice_of
-    from dancetutor_cli.markers.annotate import Order
+    from dancetutor_cli.markers.annotate import AnnotateRequest
 
     if not given["strip"] and "background" in (options.styles or ()):
         raise UsageError("the style 'background' is a film: `render --background --into-file` writes it; add --strip")
@@ -104,20 +104,20 @@ def command(paths: tuple[Path, ...], selection: Selection, options: AnnotateOpti
     if given["into_file"] and "edit" not in wanted:
         raise UsageError("--into-file belongs to the markers 'edit'; add --markers edit")
     writes = not (options.check or given["diff"] or options.dry_run)
-    order = Order(wanted, selection=selection, named=options.styles is not None, write=writes, **given)
+    request = AnnotateRequest(wanted, selection=selection, named=options.styles is not None, write=writes, **given)
     files = find_files(paths, options.exclude)
     files = files if options.output is not None else within_folders(paths, files)
     songs = _songs(_items(paths, options.output, files))
-    talk = _Talk(order, options.check, options.quiet, JoinedWarnings(every=options.verbose))
+    talk = _Talk(request, options.check, options.quiet, JoinedWarnings(every=options.verbose))
     talk.begin()
-    if not order.strip:
+    if not request.strip:
         announce_compiling(
-            choice_of(order.preset),
+            choice_of(request.preset),
             lambda: sum(note_bytes(item.source, Selection()) for song in songs for item in song),
             quiet=options.quiet,
         )
     try:
-        for outcome in _outcomes(songs, order, options.jobs):
+        for outcome in _outcomes(songs, request, options.jobs):
             talk.tell(outcome)
     finally:
         talk.warn()
@@ -150,14 +150,16 @@ def _songs(items: Sequence[Item]) -> list[tuple[Item, ...]]:
     return [tuple(song) for song in songs.values()]
 
 
-def _outcomes(songs: Sequence[tuple[Item, ...]], order: Order, jobs: int | None) -> Iterator[AnnotateOutcome]:
+def _outcomes(
+    songs: Sequence[tuple[Item, ...]], request: AnnotateRequest, jobs: int | None
+) -> Iterator[AnnotateOutcome]:
     """What became of each file, in the order of the files as far as they are done."""
     from dancetutor_cli.markers.annotate import annotate_song
 
     wanted = jobs or _fitting_jobs(len(songs))
     if min(wanted, len(songs)) <= 1:
         for song in songs:
-            yield from annotate_song(song, order)
+            yield from annotate_song(song, request)
         return
     from dancetutor_cli.markers.annotate import annotate_task
     from dancetutor_cli.run.pool import Task, open_workers
@@ -165,7 +167,7 @@ def _outcomes(songs: Sequence[tuple[Item, ...]], order: Order, jobs: int | None)
     workers = open_workers(min(wanted, len(songs)), lambda key, n: None)
     try:
         for number, song in enumerate(songs):
-            workers.submit(Task(number, annotate_task, (song, order)))
+            workers.submit(Task(number, annotate_task, (song, request)))
         waiting: dict[int, list[AnnotateOutcome]] = {}
         turn = 0
         for done in workers.results():
@@ -191,7 +193,7 @@ def _fitting_jobs(songs: int) -> int:
 class _Talk:
     """Says what happened, and knows how it ends."""
 
-    order: Order
+    request: AnnotateRequest
     check: bool
     quiet: bool
     warnings: JoinedWarnings
@@ -200,7 +202,7 @@ class _Talk:
     unselected: list[str] = field(default_factory=list)
 
     def begin(self) -> None:
-        if "rows" in self.order.styles and not self.order.strip and not self.quiet:
+        if "rows" in self.request.styles and not self.request.strip and not self.quiet:
             from dancetutor_cli.markers.comments import WARNING
 
             click.echo(f"warning: {WARNING}", err=True)
@@ -219,11 +221,11 @@ class _Talk:
         if self.check:
             for line in (*outcome.problems, *outcome.lacks):
                 click.echo(safe(line))
-        if self.order.diff:
+        if self.request.diff:
             for line in coloured(outcome.diff):
                 click.echo(line)
         elif not self.check and not self.quiet:
-            details = _leftover_message(outcome) if self.order.strip else _details(outcome)
+            details = _leftover_message(outcome) if self.request.strip else _details(outcome)
             click.echo(f"{self._verb(outcome)} {safe(str(outcome.source))}{details}")
             for path in outcome.companions:
                 click.echo(f"  {safe(path.name)}")
@@ -231,8 +233,8 @@ class _Talk:
     def _verb(self, outcome: AnnotateOutcome) -> str:
         if not outcome.changed:
             return "unchanged"
-        past = "stripped" if self.order.strip else "annotated"
-        return past if self.order.write else f"would be {past}:"
+        past = "stripped" if self.request.strip else "annotated"
+        return past if self.request.write else f"would be {past}:"
 
     def warn(self) -> None:
         for line in self.warnings.lines() if not self.quiet else ():
@@ -243,10 +245,10 @@ class _Talk:
         if self.unselected and len(self.unselected) == total - self.files["failed"]:
             has = safe("; ".join(self.unselected[:20]))
             raise UsageError(f"no chart is of the steps type, difficulty and index asked for; there are {has}")
-        words = {} if self.order.write else {"changed": "would change"}
+        words = {} if self.request.write else {"changed": "would change"}
         parts = ", ".join(f"{n} {words.get(name, name)}" for name, n in sorted(self.files.items()) if n)
         if not self.quiet:
-            click.echo(f"{total} file{'s' if total > 1 else ''}: {parts}", err=self.order.diff)
+            click.echo(f"{total} file{'s' if total > 1 else ''}: {parts}", err=self.request.diff)
         if self.files["failed"]:
             return 2
         return 1 if self.check and self.lacking else 0

@@ -13,7 +13,7 @@ import click
 from dancetutor_cli.chart.selection import twin
 from dancetutor_cli.commands.arguments import within_folders
 from dancetutor_cli.lint.analysis import analyze_file
-from dancetutor_cli.lint.fix import FIXABLE, FixOrder, FixOutcome, fix_file, pick
+from dancetutor_cli.lint.fix import FIXABLE, FixOutcome, FixTask, fix_file, pick
 from dancetutor_cli.lint.rule import rule_named
 from dancetutor_cli.reports.terminal import coloured, safe
 from dancetutor_cli.run.errors import UsageError
@@ -84,7 +84,7 @@ def _fix(run: LintRun, task: AnalyzeTask, wanted: Sequence[FixRequest], options:
         return FixOutcome(error=result.error)
     findings = tuple(finding for one in wanted if one.rule != SAFE for finding in _of_file(result, one))
     safe = any(one.rule == SAFE for one in wanted)
-    return fix_file(FixOrder(task, findings, safe, write=not options["diff"], backup=options["backup"]))
+    return fix_file(FixTask(task, findings, safe, write=not options["diff"], backup=options["backup"]))
 
 
 def _of_file(result: FileResult, asked_for: FixRequest) -> tuple[tuple[Finding, int], ...]:

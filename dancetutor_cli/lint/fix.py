@@ -61,7 +61,7 @@ class SkippedFinding:
 
 
 @dataclass(frozen=True, slots=True)
-class FixOrder:
+class FixTask:
     """What is to be fixed in one file.
 
     task : the file, with its configuration; safe : the safe fixes are wanted
@@ -91,46 +91,46 @@ class FixOutcome:
     notes: tuple[str, ...] = ()
 
 
-def fix_file(order: FixOrder) -> FixOutcome:
+def fix_file(job: FixTask) -> FixOutcome:
     """Mend one file, proved before it is written. Never raises for what is wrong with the file."""
     try:
-        return _fix(order)
+        return _fix(job)
     except NoChartsError as error:  # music of a menu: nothing to fix
         return FixOutcome(notes=(str(error),))
     except FileError as error:
         return FixOutcome(error=str(error))
     except OSError as error:
-        return FixOutcome(error=str(FileError(order.task.path, error.strerror or str(error))))
+        return FixOutcome(error=str(FileError(job.task.path, error.strerror or str(error))))
 
 
-def _fix(order: FixOrder) -> FixOutcome:
-    task = order.task
+def _fix(job: FixTask) -> FixOutcome:
+    task = job.task
     song = load_song(task)
     if song.format == "ucs":
         label = song.charts[0].label
-        return FixOutcome(unfixed=tuple(SkippedFinding(label, finding, NEVER_WRITTEN) for finding, _ in order.findings))
-    if order.write:
+        return FixOutcome(unfixed=tuple(SkippedFinding(label, finding, NEVER_WRITTEN) for finding, _ in job.findings))
+    if job.write:
         remove_leftovers(task.path.parent)
 
     def preset_of(chart: Chart) -> Preset:
         return preset_for(chart, task.path, task.presets)
 
     session = FixSession(song, task.settings, preset_of)
-    if order.safe:
+    if job.safe:
         for chart in task.selection.charts(song):
             session.safe(chart.index)
-    for finding, player in order.findings:
+    for finding, player in job.findings:
         session.finding(finding.chart or 0, finding, player)
     new = session.song.data
-    if order.write and new != song.data:
-        _write(order, song.data, new)
+    if job.write and new != song.data:
+        _write(job, song.data, new)
     diff = tuple(unified(str(task.path), song.data, new))
-    return FixOutcome(tuple(session.fixed), tuple(session.unfixed), None, diff, tuple(_notes(order, session)))
+    return FixOutcome(tuple(session.fixed), tuple(session.unfixed), None, diff, tuple(_notes(job, session)))
 
 
-def _write(order: FixOrder, old: bytes, new: bytes) -> None:
-    path = order.task.path
-    if order.backup:
+def _write(job: FixTask, old: bytes, new: bytes) -> None:
+    path = job.task.path
+    if job.backup:
         back_up(path)
     try:
         write_atomic(path, new, expect=old)
@@ -139,11 +139,11 @@ def _write(order: FixOrder, old: bytes, new: bytes) -> None:
             raise
 
 
-def _notes(order: FixOrder, session: FixSession) -> Iterator[str]:
+def _notes(job: FixTask, session: FixSession) -> Iterator[str]:
     """What else the author has to do, as far as something was changed that is played."""
     if all(one.fix.is_silent for one in session.fixed):
         return
-    path = order.task.path
+    path = job.task.path
     if b"{dt1 " in session.song.data:
         yield f"{path}: the feet in its measures are from before this edit; run `dancetutor annotate` to update them"
 

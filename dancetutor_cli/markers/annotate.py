@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class AnnotateRequest:
     """What shall be done with every file. Pickles.
 
     named : whether somebody asked for these styles; else files beside the song that are not ours are no error
@@ -87,22 +87,22 @@ class AnnotateOutcome:
     diff: tuple[str, ...] = ()
 
 
-def annotate_song(items: Sequence[Item], order: Order) -> list[AnnotateOutcome]:
+def annotate_song(items: Sequence[Item], request: AnnotateRequest) -> list[AnnotateOutcome]:
     """Annotate the files of one song, or take the markers out. Never raises for what is wrong with a file.
 
     Of a .sm and a .ssc only the .ssc speaks for the song in `data.sme` and in .edit files.
     `UsageError` (no such preset) is raised: it is not about a file.
     """
-    if order.write:
+    if request.write:
         for folder in sorted({item.target.parent for item in items}):
             remove_leftovers(folder)
     ssc = any(item.source.suffix.lower() == ".ssc" for item in items)
-    return [_attempt(item, order, ssc and item.source.suffix.lower() != ".ssc") for item in items]
+    return [_attempt(item, request, ssc and item.source.suffix.lower() != ".ssc") for item in items]
 
 
-def _attempt(item: Item, order: Order, second: bool) -> AnnotateOutcome:
+def _attempt(item: Item, request: AnnotateRequest, second: bool) -> AnnotateOutcome:
     try:
-        return _annotate(item, order, second)
+        return _annotate(item, request, second)
     except NoChartsError as error:  # music of a menu: nothing to write
         return AnnotateOutcome(item.source, notes=(str(error),))
     except FileError as error:
@@ -111,38 +111,38 @@ def _attempt(item: Item, order: Order, second: bool) -> AnnotateOutcome:
         return AnnotateOutcome(item.source, error=str(FileError(item.source, error.strerror or str(error))))
 
 
-def _annotate(item: Item, order: Order, second: bool) -> AnnotateOutcome:
+def _annotate(item: Item, request: AnnotateRequest, second: bool) -> AnnotateOutcome:
     song = reader.load(item.source)
     if song.format == "ucs":
-        order, beside = _order_of_ucs(item.source, order)
+        request, beside = _request_for_ucs(item.source, request)
         second = False
     else:
-        beside = [style for style in order.styles if style in FILE_STYLES and (style == SIDECAR or not second)]
-    if order.into_file and not order.strip and EDIT in beside:
+        beside = [style for style in request.styles if style in FILE_STYLES and (style == SIDECAR or not second)]
+    if request.into_file and not request.strip and EDIT in beside:
         beside.remove(EDIT)
-    work = _Work(item, order, song, tuple(beside))
-    if order.strip:
+    work = _Work(item, request, song, tuple(beside))
+    if request.strip:
         work.strip()
     else:
         work.write()
     return work.outcome()
 
 
-def _order_of_ucs(path: Path, order: Order) -> tuple[Order, list[str]]:
-    """What of an order can be done for a .ucs, into which nothing is written; FileError if nothing of it."""
-    wanted = [TEXT if style in (MEASURE, ROWS) else style for style in order.styles]
+def _request_for_ucs(path: Path, request: AnnotateRequest) -> tuple[AnnotateRequest, list[str]]:
+    """What of a request can be done for a .ucs, into which nothing is written; FileError if nothing of it."""
+    wanted = [TEXT if style in (MEASURE, ROWS) else style for style in request.styles]
     beside = [style for style in UCS_STYLES if style in wanted]
-    if not beside and not order.strip:
+    if not beside and not request.strip:
         there = "measure (a text beside it) and sidecar"
         raise FileError(path, f"a .ucs file has no place for the markers {', '.join(wanted)}; choose {there}")
-    return replace(order, styles=(), into_file=False), beside
+    return replace(request, styles=(), into_file=False), beside
 
 
 class _Work:
     """One file on its way: what would change, then the changes themselves."""
 
-    def __init__(self, item: Item, order: Order, song: Song, beside: tuple[str, ...]) -> None:
-        self.item, self.order, self.song, self.beside = item, order, song, beside
+    def __init__(self, item: Item, request: AnnotateRequest, song: Song, beside: tuple[str, ...]) -> None:
+        self.item, self.request, self.song, self.beside = item, request, song, beside
         self.changes: list[FileChange] = []
         self.lacks: list[Lack] = []
         self.problems: list[Lack] = []
@@ -154,8 +154,8 @@ class _Work:
         """Plan all styles that are asked for."""
         from dancetutor_cli.markers import planning
 
-        choice = _configured(self.order.preset).presets(self.item.source)
-        added = EDIT in self.order.styles and self.order.into_file
+        choice = _configured(self.request.preset).presets(self.item.source)
+        added = EDIT in self.request.styles and self.request.into_file
         base = self._without_added() if added else self.song
 
         def preset_of(chart: Chart) -> Preset:
@@ -165,7 +165,7 @@ class _Work:
         for chart in (one.chart for one in feet):
             if unfit := mismatch(preset_of(chart), chart.steps_type):
                 self.notes.append(f"{base.path}: {chart.label}: {unfit}")
-        plan = planning.mark(base, feet, self.order.styles, self.order.force)
+        plan = planning.mark(base, feet, self.request.styles, self.request.force)
         if added:
             planning.add_charts(base, self.song, plan, feet)
         planning.checked(base, plan)
@@ -184,12 +184,12 @@ class _Work:
         """Plan the removal of all styles that are asked for."""
         from dancetutor_cli.markers import planning
 
-        base = self._without_added() if EDIT in self.order.styles else self.song
+        base = self._without_added() if EDIT in self.request.styles else self.song
         added = base
-        if BACKGROUND in self.order.styles:
+        if BACKGROUND in self.request.styles:
             base = self._without_background(base)
         charts = self._charts(base)
-        plan = planning.unmark(base, charts, self.order.styles, self.order.force)
+        plan = planning.unmark(base, charts, self.request.styles, self.request.force)
         planning.checked(base, plan)
         self._take(plan)
         if base is not added:
@@ -201,14 +201,14 @@ class _Work:
                 for planned in planning.strip(style, self.song, charts):
                     self._add(planned)
             except FileError as error:
-                if self.order.named:
+                if self.request.named:
                     raise
                 self.notes.append(str(error))
 
     def outcome(self) -> AnnotateOutcome:
         """Bring the changes to the disk if that is wanted, and say what became of the file."""
-        selection = self.order.selection
-        if self.order.write:
+        selection = self.request.selection
+        if self.request.write:
             for change in self.changes:
                 self._bring(change)
         return AnnotateOutcome(
@@ -221,7 +221,7 @@ class _Work:
             counts=tuple(sorted(self.counts.items())),
             changed=any(change.needed for change in self.changes),
             companions=tuple(change.path for change in self.changes[1:] if change.needed),
-            diff=tuple(self._diff()) if self.order.diff else (),
+            diff=tuple(self._diff()) if self.request.diff else (),
         )
 
     def _diff(self) -> Iterator[str]:
@@ -234,7 +234,7 @@ class _Work:
 
     def _charts(self, song: Song) -> list[Chart]:
         """The charts that are meant; those that we added ourselves have no feet to write."""
-        return [chart for chart in self.order.selection.charts(song) if not edit.is_ours(chart)]
+        return [chart for chart in self.request.selection.charts(song) if not edit.is_ours(chart)]
 
     def _without_added(self) -> Song:
         """The song without the charts that an earlier run has added for the charts that are meant."""
@@ -266,7 +266,7 @@ class _Work:
             return
         if not change.path.parent.is_dir():
             make_folder(change.path.parent)
-        if self.order.backup and change.path.exists():
+        if self.request.backup and change.path.exists():
             back_up(change.path)
         if change.new is None:
             change.path.unlink(missing_ok=True)
@@ -286,6 +286,8 @@ def _configured(preset: str | None) -> LintRun:
     return LintRun(LintRequest(preset=preset))
 
 
-def annotate_task(report: Callable[[int], None], items: Sequence[Item], order: Order) -> list[AnnotateOutcome]:
+def annotate_task(
+    report: Callable[[int], None], items: Sequence[Item], request: AnnotateRequest
+) -> list[AnnotateOutcome]:
     """`annotate_song` as worker processes call it."""
-    return annotate_song(items, order)
+    return annotate_song(items, request)

@@ -29,7 +29,7 @@ from dancetutor_cli.lint.analysis import solved
 from dancetutor_cli.lint.cache import ResultCache
 from dancetutor_cli.lint.configuration import PresetChoice, choice_for, choice_of, mismatch, preset_for
 from dancetutor_cli.lint.run import LintRequest, LintRun
-from dancetutor_cli.markers.annotate import Item, Order, _configured, annotate_song
+from dancetutor_cli.markers.annotate import AnnotateRequest, Item, _configured, annotate_song
 from dancetutor_cli.run.errors import DancetutorError
 
 CHART = "#NOTES:\n {}:\n :\n {}:\n {}:\n :\n{}\n;\n"
@@ -62,7 +62,7 @@ def analyzed(song: Path, given: str | None = None) -> list[str]:
 
 def annotated(song: Path, given: str | None = None) -> list[str]:
     _configured.cache_clear()  # it lives as long as a command
-    outcomes = annotate_song([Item(song, song)], Order(("sidecar",), given, Selection()))
+    outcomes = annotate_song([Item(song, song)], AnnotateRequest(("sidecar",), given, Selection()))
     assert [one.error for one in outcomes] == [None]
     data = json.loads(song.with_name("song.dancetutor.json").read_text())
     return [chart["preset"] for chart in data["files"]["song.sm"]["charts"]]
@@ -192,7 +192,7 @@ def test_a_preset_for_other_pads_works_and_says_so(song: Path) -> None:
     assert look_up(request).warnings == (
         "pump-single Easy 3: preset 'ddr' was made for dance pads, not for pump-single",
     )
-    outcomes = annotate_song([Item(song, song)], Order(("measure",), "pump", Selection(), write=False))
+    outcomes = annotate_song([Item(song, song)], AnnotateRequest(("measure",), "pump", Selection(), write=False))
     assert len(outcomes[0].notes) == 2 and "dance-single Hard 9: preset 'pump' was made" in outcomes[0].notes[1]
 
 
