@@ -60,7 +60,7 @@ def mood_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Mood:
     faded = (times - times[0]) / numbers.fades
     before = np.maximum.accumulate(effort + faded) - faded
     hard = smooth((effort - numbers.hard_from) / (numbers.hard_full - numbers.hard_from))
-    relief = smooth((before - effort - numbers.relief_from) / (1.0 - numbers.relief_from))
+    relief = smooth((before - effort - numbers.relief_from) / (numbers.relief_full - numbers.relief_from))
     easy = 1.0 - smooth(before / numbers.hard_from)
     return Mood(*(np.interp(at, times, one) for one in (hard, relief, easy)))
 
@@ -86,6 +86,11 @@ def peeks_at(plan: Plan, free: Array, at: Array, context: Context) -> Peeks:
         out.share[near] = np.maximum(out.share[near], there * free[near])
         out.places[near] = step.target[0], 0.0, step.target[1]
     return out
+
+
+def bowed(mood: Mood, peeks: Peeks, free: Array, numbers: FaceSettings) -> Array:
+    """How much lower (f,) the head is carried, radians: for a look down, and where it is hard; free : as in `peeks_at`"""
+    return np.asarray(np.radians(np.maximum(numbers.nod * peeks.share, numbers.bow * mood.hard * free)))
 
 
 def add_face(skeleton: Skeleton, poses: Poses, at: Array, shown: tuple[Mood, Peeks, Plan], context: Context) -> None:

@@ -170,6 +170,7 @@ class FaceSettings:
     hard_from: Ratio
     hard_full: Ratio
     relief_from: Ratio
+    relief_full: Ratio
     narrow: Ratio
     pressed: Degrees
     relief: Ratio
@@ -187,6 +188,7 @@ class FaceSettings:
     down: Degrees
     lids_follow: Ratio
     nod: Degrees
+    bow: Degrees
 
 
 @dataclass(frozen=True, slots=True)
