@@ -20,14 +20,14 @@ from dancetutor_cli.run.errors import did_you_mean
 # name -> (module, short help); the short help stands here so that `--help` imports no subcommand.
 COMMANDS = {
     "analyze": ("analyze", "Find the feet of charts and lint them."),
-    "annotate": ("annotate", "Write L/R foot markers into chart files, or take them out."),
+    "annotate": ("annotate", "Write L/R foot markers into chart files, or remove them."),
     "animate": ("animate", "Bake a 3D dancer who plays a chart."),
-    "retarget": ("retarget", "Put captured motion on a character, through a ragdoll."),
+    "retarget": ("retarget", "Put captured motion on a character."),
     "render": ("render", "Make a tutorial video, picture sequence or GIF of a chart."),
-    "page": ("page", "Make a page to practise a chart with: loops, speeds, a pad."),
+    "page": ("page", "Make a web page to practise a chart with: loops, speeds, a pad."),
     "doctor": ("doctor", "Check renderers, encoders, caches, fonts and disk."),
-    "warmup": ("warmup", "Compile everything once, so that later runs start at once."),
-    "completion": ("completion", "Let the Tab key complete commands, options and names."),
+    "warmup": ("warmup", "Compile everything once, so that later runs start quickly."),
+    "completion": ("completion", "Make the Tab key complete commands, options and names."),
 }
 
 
@@ -57,7 +57,7 @@ def _colour_option() -> click.Option:
         expose_value=False,
         is_eager=True,
         callback=_set_colours,
-        help="Colours; auto: at a terminal, unless NO_COLOR is set.",
+        help="Print colours; auto: at a terminal, unless NO_COLOR is set.",
     )
 
 
@@ -98,9 +98,9 @@ class _LazyGroup(click.Group):
 @click.version_option(dancetutor_cli.__version__, prog_name="dancetutor")
 @click.pass_context
 def cli(context: click.Context) -> None:
-    """Find the feet of a stepchart, lint it, annotate it, and make a dancer play it.
+    """Find which foot steps each arrow of a stepchart, check the chart, and show a 3D dancer who plays it.
 
-    Charts are .sm and .ssc files of StepMania, ITGmania and their kin, and .ucs files of Pump.
+    Charts are .sm and .ssc files (StepMania, ITGmania and others) and .ucs files (Pump It Up).
     """
     if context.invoked_subcommand is None:
         from dancetutor_cli.commands.first_run import first_steps

@@ -67,21 +67,27 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     type=click.Choice(tuple(FORMATS)),
     default="text",
     show_default=True,
-    help="How to print the result.",
+    help="Format of the result.",
 )
-@click.option("-o", "--output-file", type=GivenPath(dir_okay=False), metavar="FILE", help="Write the result there.")
+@click.option(
+    "-o",
+    "--output-file",
+    type=GivenPath(dir_okay=False),
+    metavar="FILE",
+    help="Where to write: a file.  [default: standard output]",
+)
 @click.option(
     "--fail-on",
     type=click.Choice(["error", "warning", "never"]),
-    help="The least severity of a finding that makes the exit status 1.  [default: warning]",
+    help="Exit with 1 for findings of this severity or worse.  [default: warning]",
 )
-@click.option("--exit-zero", is_flag=True, help="Findings do not fail the run; unreadable files still do.")
+@click.option("--exit-zero", is_flag=True, help="Exit with 0 despite findings; unreadable files still exit with 2.")
 @click.option(
     "--select",
     shell_complete=named(rules, files=False),
     multiple=True,
     metavar="RULES",
-    help="Run only these rules: codes, names (those that are off, too), families (DT2).",
+    help="Run only these rules, even if they are off: codes (DT201), names (spin) or families (DT2).",
 )
 @click.option(
     "--ignore",
@@ -94,30 +100,32 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     "--config",
     shell_complete=named(folder("lint")),
     metavar="FILE|NAME",
-    help="Configuration, in place of the dancetutor.yaml up the tree.",
+    help="Use this configuration, not the dancetutor.yaml beside or above PATH.",
 )
 @click.option(
     "--set",
     "assignments",
     multiple=True,
     metavar="KEY=VALUE",
-    help="Change one value of the configuration, for example DT205.max_rows=4.",
+    help="Change one value of the configuration, such as DT205.max_rows=4.",
 )
-@click.option("--show-settings", is_flag=True, help="Print what holds for PATH as a dancetutor.yaml, and end.")
-@click.option("--baseline", type=GivenPath(dir_okay=False), help="Known findings, not to be reported.")
+@click.option("--show-settings", is_flag=True, help="Print the settings for PATH as a dancetutor.yaml, and exit.")
+@click.option(
+    "--baseline", type=GivenPath(dir_okay=False), metavar="FILE", help="Do not report the findings in this file."
+)
 @click.option("--update-baseline", is_flag=True, help="Write the findings of this run into the baseline.")
 @quiet_option
 @exclude_option
 @click.option(
     "--full/--brief",
     default=None,
-    help="Every chart with its table and every finding with its rows, or at most a screen for a song and a page for "
-    "a pack.  [default: brief at a terminal, else a line for each finding]",
+    help="Full: a table for each chart and rows for each finding. Brief: at most a screen for a song and a page for a "
+    "pack.  [default: brief at a terminal, otherwise one line per finding]",
 )
 @click.option(
     "--statistics",
     is_flag=True,
-    help="Print only how often each rule was found; with --full above the summary, beside other formats than text on "
+    help="Print only how many findings each rule has; with --full above the summary, with other formats than text to "
     "standard error.",
 )
 @click.option(
@@ -126,49 +134,50 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     metavar="FILE.html|.svg",
     help="Draw the charts of one file as a sheet of measures.",
 )
-@language_option("With --sheet: the language of the sheet [default: en].")
+@language_option("Language of the words.  [default: en; needs --sheet]")
 @click.option(
     "--sync",
     is_flag=True,
-    help="Hear the music: how far its attacks lie from the beats, and the rules about that (DT6).",
+    help="Measure the sync: how far the music is from the beats. Runs the rules about it (DT6).",
 )
 @click.option(
     "--plot",
     type=GivenPath(dir_okay=False),
     metavar="FILE.svg",
-    help="With --sync: draw the bias of one file over the song.",
+    help="Draw a diagram over time: the sync of one file. Needs --sync.",
 )
 @click.option(
     "--suggest",
     is_flag=True,
-    help="Tell what makes a doublestep, and which small edit, as of a note, would remove a finding.",
+    help="Print what causes a doublestep, and a small edit of the notes that would remove a finding.",
 )
 @click.option(
     "--alternatives",
     type=click.IntRange(min=0, max=100),
     default=0,
     metavar="N",
-    help="Tell of the N next cheapest plays: whose limbs differ, and what decides.  [formats text and json]",
+    help="Print the N next best ways to play a chart: which feet differ, and which costs decide.  [formats text and "
+    "json]",
 )
 @click.option(
     "--fix",
     shell_complete=named(fixes, files=False),
     multiple=True,
     metavar="RULE[:N]|safe",
-    help="Write the edit that --suggest tells into the file: for each finding of a rule, or its N-th; safe: what none "
-    "hears.",
+    help="Write the edits of --suggest into the file: for all findings of a rule, or for its N-th; safe: only edits "
+    "that no player notices.",
 )
-@click.option("--diff", is_flag=True, help="With --fix: write nothing; print what would change.")
-@click.option("--backup", is_flag=True, help="With --fix: keep the old file as NAME.bak.")
+@click.option("--diff", is_flag=True, help="Write nothing; print what would change. Needs --fix.")
+@click.option("--backup", is_flag=True, help="Keep the old file as NAME.bak. Needs --fix.")
 @pack_options
-@click.option("--watch", is_flag=True, help="Lint again whenever a file is saved, until Ctrl-C.")
-@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes.  [default: one per core]")
-@click.option("--no-cache", is_flag=True, help="Neither use nor keep the results of earlier runs.")
+@click.option("--watch", is_flag=True, help="Run again whenever a file is saved, until Ctrl-C.")
+@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Number of processes.  [default: one per core]")
+@click.option("--no-cache", is_flag=True, help="Do not use or store results of earlier runs.")
 @click.option(
     "--stdin-filename",
     type=GivenPath(),
     metavar="FILE",
-    help="What the chart on standard input (PATH -) is called.",
+    help="File name of the chart on standard input (PATH -).",
 )
 @click.option(
     "--explain",
@@ -177,14 +186,14 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     expose_value=False,
     is_eager=True,
     metavar="RULE|all",
-    help="Print the documentation of a rule and end.",
+    help="Print the documentation of a rule and exit.",
 )
 def command(**options: Any) -> int:  # fmt: skip
     """Find the feet of charts and lint them.
 
-    PATH is a .sm, .ssc or .ucs file, a folder that is searched for them, or - for standard input.
+    PATH is a .sm, .ssc or .ucs file, a folder with such files, or - for standard input.
 
-    Exit status: 0 no findings, 1 findings, 2 something could not be read or run.
+    Exit status: 0 no findings, 1 findings (see --fail-on), 2 a file cannot be read or an option is wrong.
     """
     from dancetutor_cli.lint.run import LintRequest, LintRun
 

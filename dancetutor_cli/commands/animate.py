@@ -60,13 +60,20 @@ class AnimateOptions:
 
 @click.command(cls=GroupedCommand)
 @click.argument("file", type=GivenPath(holds_charts=True))
-@click.option("-o", "--output", type=_FILE, help=f"A {one_of(FORMATS)} file; default: SONG-difficulty.glb.")
+@click.option(
+    "-o",
+    "--output",
+    type=_FILE,
+    metavar="FILE",
+    help=f"Where to write: a {one_of(FORMATS)} file.  [default: SONG-difficulty.glb]",
+)
 @click.option(
     "--fps",
     type=click.FloatRange(1, 1000),
     callback=number,
     default=60.0,
     show_default=True,
+    metavar="N",
     help="Frames per second.",
 )
 @section_option
@@ -76,22 +83,38 @@ class AnimateOptions:
     callback=number,
     default=1.0,
     show_default=True,
-    help="Speed of the music she dances to.",
+    metavar="RATE",
+    help="Speed of the music, 1 is normal.",
 )
-@click.option("--play", type=_FILE, help="Feet from this JSON of analyze instead of the solver's.")
-@report_option("Measure the motion (the dancer's, whoever dances).")
-@click.option("--plot", type=_FILE, help="Draw errors, height and jerk over the song: a .svg or .png file.")
-@click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad, as players of hard charts do.")
+@click.option(
+    "--play",
+    type=_FILE,
+    metavar="FILE.json",
+    help="Take the feet from this JSON file of analyze, not from the solver.",
+)
+@report_option("Measure the motion, and print a table or write JSON.")
+@click.option(
+    "--plot",
+    type=_FILE,
+    metavar="FILE.svg|.png",
+    help="Draw a diagram over time: errors, height and jerk of the motion.",
+)
+@click.option("--bar", is_flag=True, help="Let the dancer hold the bar behind the pad, as players of hard charts do.")
 @gait_option
 @form_option
 @motion_option
 @style_option
 @push_options
-@click.option("--physics", is_flag=True, help="A ragdoll follows her as closely as it can: --style neutral.")
+@click.option("--physics", is_flag=True, help="The same as --style neutral.")
 @click.option(
-    "--jobs", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes, for songs over two minutes."
+    "--jobs",
+    type=click.IntRange(1, 256),
+    default=1,
+    show_default=True,
+    metavar="N",
+    help="Number of processes. More than one help with songs over two minutes.",
 )
-@click.option("--yes", is_flag=True, help="Bake even a very long motion without asking.")
+@click.option("--yes", is_flag=True, help="Do not ask, even if the song is very long.")
 @character_option
 @selection_options
 @preset_option
@@ -100,9 +123,9 @@ class AnimateOptions:
 def command(file: Path, selection: Selection, options: AnimateOptions, **dance: Any) -> None:
     """Bake a 3D dancer who plays one chart of FILE.
 
-    The name of the output says what it is: .glb, which any glTF viewer plays; .npz, numpy arrays; .bvh, motion
-    capture; .json, only the moves: what moves when, from where to where. A chart for two gives two files, NAME-p1 and
-    NAME-p2, of one clock, each dancer on her place; with --player one.
+    The ending of the output name sets the format: .glb for any glTF viewer, .npz with numpy arrays, .bvh for motion
+    capture tools, or .json with only the steps of each foot. A chart for two players gives two files, NAME-p1 and
+    NAME-p2; --player writes only one.
     """
     from dancetutor_cli.character import DANCER, dressed, load_character
     from dancetutor_cli.character.mesh import partner_of

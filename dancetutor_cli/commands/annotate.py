@@ -64,20 +64,20 @@ class AnnotateOptions:
 @click.argument("paths", nargs=-1, required=True, type=GivenPath(holds_charts=True), metavar="PATH...")
 @click.option(
     "--markers", "styles", callback=_styles, metavar="STYLE[,STYLE]",
-    help=f"Where to write the feet (theme: what comes next): {', '.join(STYLES)} [default: measure; with --strip all "
-    "and background, a film that render has entered].",
+    help=f"How to write the feet: {', '.join(STYLES)} (theme shows them during play).  [default: measure; with --strip "
+    "all, and background for a film that render has added]",
 )  # fmt: skip
-@click.option("--strip", is_flag=True, help="Take the markers out again: of every style, or only of --markers.")
+@click.option("--strip", is_flag=True, help="Remove the markers: all, or only those of --markers.")
 @click.option("--check", is_flag=True, help="Write nothing; exit status 1 if feet are missing or stale.")
 @click.option("--diff", is_flag=True, help="Write nothing; print what would change.")
-@click.option("--dry-run", is_flag=True, help="Write nothing; say which files would change.")
-@click.option("-o", "--output", type=GivenPath(), metavar="DIR", help="Write into this folder, not in place.")
+@click.option("--dry-run", is_flag=True, help="Write nothing; print which files would change.")
 @click.option(
-    "--into-file", is_flag=True, help="Markers edit: add the charts to the file instead of writing .edit files."
+    "-o", "--output", type=GivenPath(), metavar="DIR", help="Where to write: a folder.  [default: into the files]"
 )
-@click.option("--force", is_flag=True, help="Overwrite or take out pinned measures, {dt1! ...}, too.")
+@click.option("--into-file", is_flag=True, help="Write into the chart file: with --markers edit, not into .edit files.")
+@click.option("--force", is_flag=True, help="Also overwrite or remove pinned measures, {dt1! ...}.")
 @click.option("--backup", is_flag=True, help="Keep the old file as NAME.bak.")
-@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Worker processes; default: as many as fit.")
+@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Number of processes.  [default: as many as fit]")
 @quiet_option
 @verbose_option
 @exclude_option
@@ -86,12 +86,12 @@ class AnnotateOptions:
 @into("selection", Selection)
 @into("options", AnnotateOptions)
 def command(paths: tuple[Path, ...], selection: Selection, options: AnnotateOptions, **given: Any) -> int:
-    """Write L/R foot markers into chart files, or take them out.
+    """Write L/R foot markers into chart files, or remove them.
 
-    PATH is a .sm, .ssc or .ucs file, or a folder that is searched for them. Only comments are added, byte by
-    byte; --strip gives back the file as it was. A .ucs takes none: its feet go into NAME.feet.txt beside it.
+    PATH is a .sm, .ssc or .ucs file, or a folder with such files. Only comments are added; --strip restores the file
+    byte for byte. A .ucs file cannot hold them, so its feet go into NAME.feet.txt beside it.
 
-    Exit status: 0 done, 1 --check found something, 2 something could not be read or written.
+    Exit status: 0 done, 1 feet are missing or stale (--check), 2 a file cannot be read or written.
     """
     from dancetutor_cli.lint.configuration import choice_of
     from dancetutor_cli.markers.annotate import AnnotateRequest

@@ -41,17 +41,22 @@ selection_options = combined(
         "--steps-type",
         metavar="TYPE",
         shell_complete=named(steps_types, files=False),
-        help="Only charts of this steps type, for example dance-single.",
+        help="Only charts of this steps type, such as dance-single.",
     ),
     click.option(
         "--difficulty",
         metavar="NAME",
         shell_complete=named(difficulties, files=False),
-        help="Only charts of this difficulty, for example hard.",
+        help="Only charts of this difficulty, such as hard.",
     ),
-    click.option("--index", type=click.IntRange(min=0), metavar="N", help="Only the chart at this place, from 0."),
     click.option(
-        "--player", type=click.IntRange(min=1), metavar="N", help="Of charts for several: only this player, from 1."
+        "--index", type=click.IntRange(min=0), metavar="N", help="Only the chart with this number in the file, from 0."
+    ),
+    click.option(
+        "--player",
+        type=click.IntRange(min=1),
+        metavar="N",
+        help="In charts for several players: only this player, from 1.",
     ),
 )
 
@@ -59,28 +64,28 @@ preset_option = click.option(
     "--preset",
     shell_complete=named(folder("presets")),
     metavar="NAME|FILE",
-    help="Cost preset of the solver.  [default: as dancetutor.yaml says, else pump for pump-*, smx for smx-*, itg "
-    "for others]",
+    help="Costs that the solver uses.  [default: as dancetutor.yaml says, or pump for pump-*, smx for smx-*, itg for "
+    "other steps types]",
 )
 
 verbose_option = click.option(
-    "-v", "--verbose", is_flag=True, help="Tell each warning; else what is the same of many files is one line."
+    "-v", "--verbose", is_flag=True, help="Print every warning, not one line for the same warning in many files."
 )
 
-quiet_option = click.option("-q", "--quiet", is_flag=True, help="Say nothing but what fails the run.")
+quiet_option = click.option("-q", "--quiet", is_flag=True, help="Print only errors.")
 
 exclude_option = click.option(
     "--exclude",
     multiple=True,
     metavar="PATTERN",
-    help="Of a folder: leave out what has this name or path below it, such as Old, '*.sm' or 'Old/*'.",
+    help="For a folder: skip files and folders with this name or path, such as Old, '*.sm' or 'Old/*'.",
 )
 
 section_option = click.option(
     "--section",
     metavar="START:END",
-    help="Only this part: seconds (10:25), beats (b16:b48), measures (m4:m12), what is around the third "
-    "finding of a rule (DT201:3), or the third hardest passage (hardest:3).",
+    help="Only this part: seconds (10:25), beats (b16:b48), measures (m4:m12), around the third finding of a rule "
+    "(DT201:3), or the third hardest passage (hardest:3).",
 )
 
 character_option = click.option(
@@ -89,7 +94,7 @@ character_option = click.option(
     default="dancer",
     show_default=True,
     metavar="NAME|FILE",
-    help="Who dances: dancer, mannequin, or a humanoid from a .glb or .vrm file.",
+    help="Who moves: dancer, mannequin, or a humanoid from a .glb or .vrm file.",
 )
 
 gait_option = click.option(
@@ -98,7 +103,7 @@ gait_option = click.option(
     default="flat",
     show_default=True,
     metavar="NAME|FILE",
-    help="How she walks on and off: flat, heels, or a file as those in configs/gaits.",
+    help="How the dancer walks on and off the pad: flat, heels, or a file like those in configs/gaits.",
 )
 
 form_option = click.option(
@@ -107,23 +112,23 @@ form_option = click.option(
     default="usual",
     show_default=True,
     metavar="NAME|FILE",
-    help="How she stands and turns: usual, middle, edge, heels-in, heels-out, screen, turning, or a file as those "
-    "in configs/forms.",
+    help="Where the feet land and how the body turns: usual, middle, edge, heels-in, heels-out, screen, turning, or "
+    "a file like those in configs/forms.",
 )
 
 style_option = click.option(
     "--style",
     shell_complete=named(folder("styles")),
     metavar="NAME|FILE",
-    help="A ragdoll follows her in this style: neutral, lazy, fierce, heavy, feminine, or a file as those in "
-    "configs/styles.",
+    help="Add physics: a ragdoll follows the motion in a style: neutral, lazy, fierce, heavy, feminine, or a file "
+    "like those in configs/styles.",
 )
 
 motion_option = click.option(
     "--motion",
     type=GivenPath(),
     metavar="FILE",
-    help="How she moves: a YAML file that names the numbers of configs/motion.yaml that it changes.",
+    help="How the dancer moves: a YAML file with the numbers of configs/motion.yaml that you change.",
 )
 
 push_options = combined(
@@ -131,14 +136,14 @@ push_options = combined(
         "--push",
         multiple=True,
         metavar="TIME:FORCE:DIRECTION",
-        help="Somebody pushes her: second of the song, newtons, and ahead, left, back, right or degrees to her left.",
+        help="Push the dancer: second of the song, newtons, and ahead, left, back, right or degrees to the left.",
     ),
     click.option(
         "--trip",
         type=float,
         multiple=True,
         metavar="TIME",
-        help="Something catches the foot that swings at this second of the song.",
+        help="Catch the foot that is in the air at this second of the song.",
     ),
 )
 

@@ -52,11 +52,11 @@ Register-ArgumentCompleter -Native -CommandName %(prog_name)s -ScriptBlock {
 @click.command(cls=GroupedCommand)
 @click.argument("shell", required=False, type=click.Choice(SHELLS))
 @click.option("--print", "only_print", is_flag=True, help="Print the script instead of installing it.")
-@click.option("--remove", is_flag=True, help="Take the installed script out again.")
+@click.option("--remove", is_flag=True, help="Remove the installed script.")
 def command(shell: str | None, only_print: bool, remove: bool) -> None:
-    """Let the Tab key complete commands, options and names.
+    """Make the Tab key complete commands, options and names.
 
-    SHELL is bash, zsh, fish or powershell; without it the one that runs. It holds from the next window on.
+    SHELL is bash, zsh, fish or powershell; without it, the shell that runs. It works from the next window on.
     """
     name = shell or running_shell()
     script = script_for(name)
@@ -69,7 +69,7 @@ def command(shell: str | None, only_print: bool, remove: bool) -> None:
     if not remove:
         new = script if alone else _with(new, script)
     if new == old:
-        click.echo(f"{place}: {'nothing to take out' if remove else 'is up to date'}")
+        click.echo(f"{place}: {'nothing to remove' if remove else 'is up to date'}")
         return
     _write(place, new)
     click.echo(f"{place}: {'taken out' if remove else 'written'}; it holds from the next window of {name} on")

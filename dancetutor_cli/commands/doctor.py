@@ -183,9 +183,9 @@ WIDTH = 80  # columns
 @click.command(cls=GroupedCommand)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def command(as_json: bool) -> None:
-    """Check renderers, encoders, caches, fonts and disk; says how to mend what is missing.
+    """Check renderers, encoders, caches, fonts and disk, and print how to repair what is missing.
 
-    Exit status 0 if videos can be made, 2 if not.
+    Exit status: 0 videos can be made, 2 they cannot.
     """
     checks = examine()
     if as_json:

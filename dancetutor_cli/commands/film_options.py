@@ -43,7 +43,7 @@ class _Size(click.ParamType):  # type: ignore[type-arg,unused-ignore]
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[int, int]:
         match = re.fullmatch(r"(\d{2,5})[x×](\d{2,5})", str(value).strip().lower())
         if not match:
-            self.fail(f"'{value}' is no size; write it as 1280x720", param, ctx)
+            self.fail(f"'{value}' is not a size; write it as 1280x720", param, ctx)
         width, height = int(match[1]), int(match[2])
         if not (LEAST_SIDE <= width <= MOST_SIDE and LEAST_SIDE <= height <= MOST_SIDE):
             self.fail(f"{width}x{height} is not possible; {LEAST_SIDE} to {MOST_SIDE} pixels each way", param, ctx)
@@ -52,83 +52,101 @@ class _Size(click.ParamType):  # type: ignore[type-arg,unused-ignore]
 
 # The decorator of the options of a film; `film_request` makes a request of their values.
 film_options = combined(
-    click.option("--size", type=_Size(), help="Default: the layout's, 1280x720; a GIF's is smaller."),
-    click.option("--fps", type=click.IntRange(1, 120), help="Frames per second [default: 30; GIF 25]."),
+    click.option("--size", type=_Size(), help="Size in pixels.  [default: the layout's, 1280x720; smaller for GIF]"),
+    click.option("--fps", type=click.IntRange(1, 120), metavar="N", help="Frames per second.  [default: 30; GIF 25]"),
     section_option,
     click.option(
         "--layout",
         shell_complete=named(folder("layouts")),
         metavar="NAME|FILE",
-        help="A file of configs/layouts [default: side-by-side; with --background background].",
+        help="Where dancer and notes are: a name or a file like those in configs/layouts.  [default: side-by-side; "
+        "background with --background]",
     ),
     character_option,
-    click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad."),
+    click.option(
+        "--bar", is_flag=True, help="Let the dancer hold the bar behind the pad, as players of hard charts do."
+    ),
     gait_option,
     form_option,
     motion_option,
     style_option,
     push_options,
     click.option(
-        "--camera", metavar="NAME|POS/TARGET", help="back, front, side, three-quarter, top, or x,y,z/x,y,z in metres."
+        "--camera",
+        metavar="NAME|POS/TARGET",
+        help="Where the camera is: back, front, side, three-quarter, top, or x,y,z/x,y,z in metres.",
     ),
-    click.option("--scroll", metavar="C600|X2|M600", help="Speed of the notes [default: the layout's]."),
-    click.option("--down", is_flag=True, help="The notes fall instead of rise."),
+    click.option(
+        "--scroll", metavar="C600|X2|M600", help="Scroll speed of the notes, as in the games.  [default: the layout's]"
+    ),
+    click.option("--down", is_flag=True, help="Let the notes scroll down instead of up."),
     click.option(
         "--quality",
         type=click.Choice(QUALITIES),
         default="good",
         show_default=True,
-        help="draft is quick, best is smooth.",
+        help="How carefully to draw: draft is quick, best is smooth.",
     ),
     click.option(
         "--renderer",
         type=click.Choice(RENDERERS),
         default="auto",
         show_default=True,
-        help="What draws: gl needs OpenGL.",
+        help="Which renderer draws; gl needs OpenGL.",
     ),
     click.option(
         "--encoder",
         type=click.Choice(("auto", "x264", "nvenc", "vaapi")),
         default="auto",
         show_default=True,
-        help="What encodes H.264: auto takes NVENC where it works, else x264.",
+        help="Which H.264 encoder to use; auto: NVENC where it works, otherwise x264.",
     ),
     click.option(
         "--play",
         type=GivenPath(),
         metavar="FILE.json",
-        help="Feet from this JSON of analyze instead of the solver's.",
+        help="Take the feet from this JSON file of analyze, not from the solver.",
     ),
-    click.option("--rate", metavar="R[,R...]", help="Speeds of the runs, 0.25 to 2, as 0.5,0.75,1; the pitch stays."),
-    click.option("--loop", type=click.IntRange(1, 99), help="How many runs [default: one for each rate]."),
-    click.option("--count-in", type=click.IntRange(0, 16), metavar="BEATS", help="Count before each run."),
-    click.option("--assist-tick", is_flag=True, help="A clap on each step."),
-    click.option("--metronome", is_flag=True, help="A tick on each beat."),
+    click.option(
+        "--rate",
+        metavar="R[,R...]",
+        help="Speed of the music, 1 is normal. A list such as 0.5,0.75,1 plays the song once at each speed.",
+    ),
+    click.option(
+        "--loop",
+        type=click.IntRange(1, 99),
+        metavar="N",
+        help="Play the song this many times.  [default: once at each rate]",
+    ),
+    click.option(
+        "--count-in", type=click.IntRange(0, 16), metavar="BEATS", help="Count this many beats before each run."
+    ),
+    click.option("--assist-tick", is_flag=True, help="Clap on each step."),
+    click.option("--metronome", is_flag=True, help="Tick on each beat."),
     click.option(
         "--sync-offset",
         type=click.FloatRange(-MOST_LATE, MOST_LATE),
         callback=number,
         default=0.0,
         metavar="MS",
-        help="Play the music this much later (ITG charts: 9).",
+        help="Play the music this many ms later (9 for ITG charts).",
     ),
     click.option(
         "--call-ahead",
         metavar="TIME",
-        help="How long before a move it is called out: seconds, or beats as b2 [default: 0.9].",
+        help="Show the words for a move this long before it: seconds, or beats such as b2.  [default: 0.9]",
     ),
     click.option(
         "--dance",
         type=GivenPath(),
         multiple=True,
         metavar="FILE.npz",
-        help="Draw this motion, which `animate` has baked; of a chart for two give both.",
+        help="Draw this motion, baked by `animate`. For a chart for two give both.",
     ),
-    click.option("--show-findings", is_flag=True, help="Call out what the linter found, too: for authors."),
-    language_option("Language of the words in the film.", ENGLISH),
-    click.option("--font", type=GivenPath(), help="A font file, for titles in other scripts."),
-    click.option("--mute", is_flag=True, help="Leave the sound out."),
+    click.option("--show-findings", is_flag=True, help="Show the findings of the linter, too (for authors)."),
+    language_option("Language of the words.", ENGLISH),
+    click.option("--font", type=GivenPath(), metavar="FILE", help="A font file, for titles in other scripts."),
+    click.option("--mute", is_flag=True, help="Make a film without sound."),
 )
 
 

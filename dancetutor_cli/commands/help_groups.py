@@ -7,34 +7,34 @@ import click
 # Group -> the first names of its options, in the order in which help prints them.
 GROUPS = {
     "Charts": (
-        "--steps-type", "--difficulty", "--index", "--meter", "--player", "--section", "--exclude", "--stdin-filename",
-        "--play", "--dance", "--preset", "--animation",
+        "--difficulty", "--steps-type", "--index", "--section", "--meter", "--player", "--exclude", "--stdin-filename",
+        "--preset", "--play", "--dance", "--animation",
     ),
     "Output": (
-        "--output", "--output-file", "--format", "--frames", "--poses", "--poster", "--srt", "--music", "--size",
-        "--fps", "--quality", "--background", "--into-file", "--name", "--report", "--plot", "--report-html", "--sheet",
-        "--json", "--print", "--remove", "--with-input",
-    ),
-    "Rules and exit status": (
-        "--select", "--ignore", "--config", "--set", "--show-settings", "--baseline", "--update-baseline", "--fail-on",
-        "--exit-zero", "--explain",
+        "--output", "--output-file", "--format", "--frames", "--poses", "--poster", "--srt", "--music", "--background",
+        "--into-file", "--name", "--report", "--plot", "--report-html", "--sheet", "--json", "--print", "--remove",
+        "--with-input",
     ),
     "What is printed": (
-        "--full", "--statistics", "--suggest", "--alternatives", "--compare", "--tech-counts", "--meter-scale",
-        "--sync",
+        "--full", "--statistics", "--suggest", "--compare", "--sync", "--alternatives", "--tech-counts",
+        "--meter-scale",
     ),
-    "Changes to files": ("--fix", "--markers", "--strip", "--check", "--diff", "--dry-run", "--force", "--backup"),
+    "Rules and exit status": (
+        "--explain", "--select", "--ignore", "--fail-on", "--config", "--set", "--show-settings", "--baseline",
+        "--update-baseline", "--exit-zero",
+    ),
+    "Changes to files": ("--markers", "--strip", "--fix", "--diff", "--check", "--dry-run", "--backup", "--force"),
     "Picture": (
-        "--layout", "--camera", "--scroll", "--down", "--second", "--show-findings", "--call-ahead", "--language",
-        "--font", "--renderer", "--encoder",
+        "--size", "--quality", "--fps", "--layout", "--camera", "--scroll", "--down", "--second", "--show-findings",
+        "--call-ahead", "--language", "--font", "--renderer", "--encoder",
     ),
     "Dancer": (
-        "--character", "--style", "--form", "--gait", "--bar", "--motion", "--physics", "--push", "--trip", "--correct",
+        "--character", "--style", "--form", "--gait", "--bar", "--motion", "--push", "--trip", "--physics", "--correct",
     ),
     "Music and speed": (
-        "--rate", "--loop", "--count-in", "--assist-tick", "--metronome", "--sync-offset", "--mute",
+        "--rate", "--loop", "--count-in", "--metronome", "--assist-tick", "--sync-offset", "--mute",
     ),
-    "Batch": ("--jobs", "--watch", "--no-cache", "--shard", "--scheduler", "--results", "--yes"),
+    "Batch": ("--jobs", "--watch", "--no-cache", "--results", "--shard", "--scheduler", "--yes"),
     "General": ("--quiet", "--verbose", "--color", "--help"),
 }  # fmt: skip
 
@@ -44,7 +44,7 @@ RENAMED = (("--style", "--markers"), ("--beside", "--tech-counts"), ("--beside",
 
 
 class GroupedCommand(click.Command):
-    """A command whose help prints its options by `GROUPS`; one that is in no group stands under "Other options"."""
+    """A command whose help prints its options by `GROUPS`; one that is in no group comes under "Other options"."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Called by click with what the user typed."""

@@ -32,27 +32,27 @@ pack_options = combined(
         "--report-html",
         type=GivenPath(dir_okay=False),
         metavar="FILE.html",
-        help="Write the page of a pack: charts by meter and technique, pictures, outliers, what is missing.",
+        help="Write a web page about a pack: its charts by meter and technique, outliers, and what is missing.",
     ),
     click.option(
         "--compare",
         metavar="OTHER|REVISION|last",
         help="Print only what changed, by chart and row, since another version of PATH: a file or folder, a revision "
-        "of git such as HEAD~1, or as the last analyze has read it.",
+        "of git such as HEAD~1, or the last run of analyze.",
     ),
     click.option(
         "--tech-counts",
         type=GivenPath(exists=True),
         metavar="CACHE|FILE.csv",
-        help="Print only a table: our technique counts beside those that ITGmania wrote into its Cache/Songs, or a "
-        "table's. With --full every chart that differs.",
+        help="Print only a table: our technique counts beside those of ITGmania (its folder Cache/Songs) or of a CSV. "
+        "With --full every chart that differs.",
     ),
     click.option(
         "--meter-scale",
         type=click.Choice(SCALES),
         default=AUTO,
         show_default=True,
-        help="The scale that the estimated meters of dance charts are on; auto: that of the song's other charts.",
+        help="Scale of the estimated meters of dance charts; auto: that of the song's other charts.",
     ),
     click.option(
         "--rate",
@@ -60,7 +60,8 @@ pack_options = combined(
         default=1.0,
         show_default=True,
         callback=number,
-        help="Estimate meters for music that plays at this rate; the feet stay those of rate 1.",
+        metavar="RATE",
+        help="Speed of the music, 1 is normal. It changes the estimated meters; the feet stay those of rate 1.",
     ),
 )
 

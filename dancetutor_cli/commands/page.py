@@ -58,26 +58,34 @@ class PageOptions:
     "-o",
     "--output",
     type=_FILE,
-    help="An .html file [default: SONG-difficulty.html]; of a folder of charts a folder [default: pages].",
+    metavar="FILE|DIR",
+    help="Where to write: an .html file, or a folder for a folder of charts.  [default: SONG-difficulty.html, pages]",
 )
-@click.option("--music", is_flag=True, help="Put the song's music into the page; otherwise it asks for the file.")
-@click.option("--play", type=_FILE, help="Feet from this JSON of analyze instead of the solver's.")
-@click.option("--bar", is_flag=True, help="She holds on to the bar behind the pad, as players of hard charts do.")
+@click.option("--music", is_flag=True, help="Put the music into the page; without it the page asks for the file.")
+@click.option(
+    "--play",
+    type=_FILE,
+    metavar="FILE.json",
+    help="Take the feet from this JSON file of analyze, not from the solver.",
+)
+@click.option("--bar", is_flag=True, help="Let the dancer hold the bar behind the pad, as players of hard charts do.")
 @click.option(
     "--second",
     metavar="next|PRESET|FILE",
-    help="A second dancer: the next best play, another preset's, one of a JSON file, or the motion of an .npz.",
+    help="Add a second dancer: next for the next best feet, or the feet of another preset or of a JSON file, or the "
+    "motion of an .npz file.",
 )
 @gait_option
 @form_option
 @motion_option
-@language_option("The page's language [default: the browser's].")
+@language_option("Language of the words.  [default: the browser's]")
 @click.option(
     "--jobs",
     type=click.IntRange(1, 256),
     default=1,
     show_default=True,
-    help="Processes: for a folder, and for songs over two minutes.",
+    metavar="N",
+    help="Number of processes. More than one help with a folder and with songs over two minutes.",
 )
 @quiet_option
 @exclude_option
@@ -88,11 +96,10 @@ class PageOptions:
 @into("selection", Selection)
 @into("options", PageOptions)
 def command(path: Path, selection: Selection, options: PageOptions, **dance: Any) -> None:
-    """Make a page to practise one chart of PATH with, in any browser, without a network.
+    """Make a web page to practise one chart of PATH with. It needs a browser and no network.
 
-    The dancer plays the chart beside its notes: slower or quicker, in loops, row by row, and she waits for whoever
-    learns it. Its hardest passages are listed. If PATH is a folder, every chart below it that matches gets a page, and
-    an index leads to them.
+    A dancer plays the chart beside its notes: slower or faster, in loops, row by row, or waiting for your steps. The
+    page lists the hardest passages. If PATH is a folder, make a page of every chart in it, and an index page.
     """
     from dancetutor_cli.dance.request import DanceRequest
     from dancetutor_cli.lint.configuration import choice_for

@@ -43,49 +43,53 @@ _NO_BACKGROUND = ("poses", "section", "rate", "loop", "count_in", "metronome", "
     "-o",
     "--output",
     type=GivenPath(),
-    help=f"A {one_of(FILES)} [default: SONG-difficulty.mp4]; for a folder of charts a folder [default: videos].",
+    metavar="FILE|DIR",
+    help=f"Where to write: a {one_of(FILES)} file, or a folder for a folder of charts.  "
+    "[default: SONG-difficulty.mp4, videos]",
 )
-@click.option("--frames", type=GivenPath(), metavar="DIR", help="Write PNG pictures into this folder.")
-@click.option("--poses", type=GivenPath(), metavar="DIR", help="Write one PNG per row into this folder.")
-@click.option("--poster", type=GivenPath(), metavar="FILE.png", help="Also write a picture for a title page.")
-@click.option("--srt", is_flag=True, help="Also write subtitles that name the moves, beside the film.")
+@click.option("--frames", type=GivenPath(), metavar="DIR", help="Write one PNG per frame into this folder, not a film.")
+@click.option("--poses", type=GivenPath(), metavar="DIR", help="Write one PNG per row into this folder, not a film.")
+@click.option("--poster", type=GivenPath(), metavar="FILE.png", help="Also write a title picture.")
+@click.option("--srt", is_flag=True, help="Also write a file with subtitles that name the moves.")
 @click.option(
     "--background",
     is_flag=True,
-    help="Film the dancer alone, as long as the music, for a game to play behind the notes.",
+    help="Film only the dancer, as long as the music: a video that a game plays behind the notes.",
 )
 @click.option(
-    "--into-file", is_flag=True, help="With --background: enter the film into the chart file's #BGCHANGES, too."
+    "--into-file", is_flag=True, help="Write into the chart file: with --background, add the film to #BGCHANGES."
 )
-@click.option("--jobs", type=click.IntRange(1, 256), help="Processes that draw [default: one per core].")
-@click.option("--yes", is_flag=True, help="Render even a very long film without asking.")
+@click.option("--jobs", type=click.IntRange(1, 256), metavar="N", help="Number of processes.  [default: one per core]")
+@click.option("--yes", is_flag=True, help="Do not ask, even if the song is very long.")
 @quiet_option
 @exclude_option
 @verbose_option
 @film_options
 @selection_options
 @preset_option
-@click.option("--meter", metavar="N|N-M", help="Of a folder: only charts of these meters.")
+@click.option("--meter", metavar="N|N-M", help="For a folder: only charts of these meters.")
 @click.option(
     "--name",
     metavar="TEMPLATE",
-    help="Of a folder: names of the films, made of {title}, {artist}, {folder}, {pack}, {file}, {steps_type}, "
+    help="For a folder: the name of each film, with {title}, {artist}, {folder}, {pack}, {file}, {steps_type}, "
     "{difficulty}, {meter} and {index}.",
 )
-@click.option("--shard", metavar="I/N", help="Of a folder: only the I-th of N parts, for several machines.")
-@click.option("--scheduler", metavar="ADDRESS", help="Of a folder: work on a Dask cluster that shares the folders.")
+@click.option("--shard", metavar="I/N", help="For a folder: make only part I of N, to share the work between machines.")
+@click.option(
+    "--scheduler", metavar="ADDRESS", help="For a folder: use a Dask cluster that can read and write the same folders."
+)
 @click.option(
     "--results",
     type=GivenPath(allow_dash=True),
     metavar="FILE.jsonl",
-    help="Of a folder: a line of JSON per chart; - is standard output.",
+    help="For a folder: write one line of JSON per chart; - is standard output.",
 )
 def command(path: Path, output: Path | None, frames: Path | None, yes: bool, quiet: bool, **options: Any) -> None:
-    """Make a video of a dancer who plays one chart of PATH, beside her the notes with L and R markers.
+    """Make a video of a dancer who plays one chart of PATH, beside the notes with L and R on them.
 
-    The name of the output says what it is: .mp4 (H.264 with the song's music), .gif or .webp; --frames writes pictures.
-    If PATH is a folder, every chart below it that matches becomes a film; films that are done are not made again, and
-    an interrupted run goes on where it was.
+    The ending of the output name sets the format: .mp4 (H.264 with the music of the song), .gif or .webp.
+    If PATH is a folder, make a film of every chart in it. Finished films are not made again, so an interrupted run
+    continues.
     """
     _end_on_term()
     poses = options["poses"]

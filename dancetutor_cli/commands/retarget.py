@@ -41,15 +41,22 @@ class RetargetOptions:
 
 @click.command(cls=GroupedCommand)
 @click.argument("file", type=GivenPath(holds_charts=True))
-@click.option("-o", "--output", type=_FILE, required=True, help=f"A {one_of(SUFFIXES)} file.")
+@click.option(
+    "-o",
+    "--output",
+    type=_FILE,
+    required=True,
+    metavar="FILE",
+    help=f"Where to write: a {one_of(SUFFIXES)} file.",
+)
 @click.option(
     "--character",
     default="dancer",
     show_default=True,
     metavar="NAME|FILE",
-    help="Who shall move: dancer, mannequin, or a humanoid from a .glb or .vrm file.",
+    help="Who moves: dancer, mannequin, or a humanoid from a .glb or .vrm file.",
 )
-@click.option("--animation", metavar="NAME", help="The animation of a .glb that is meant; default: its first.")
+@click.option("--animation", metavar="NAME", help="Use this animation of a .glb.  [default: its first]")
 @style_option
 @push_options
 @click.option(
@@ -57,21 +64,26 @@ class RetargetOptions:
     default=",".join(_CORRECTIONS),
     show_default=True,
     metavar="LIST",
-    help="Faults to correct: knees that pop, feet that skate, joints past their limits; or none.",
+    help="Correct these faults: knees that pop, feet that skate, joints past their limits; or none.",
 )
-@report_option("Measure the motion, its faults before and after, and how far the ragdoll was from it.")
-@click.option("--plot", type=_FILE, help="Draw what is measured over time: a .svg or .png file.")
+@report_option("Measure the motion, and print a table or write JSON.")
+@click.option(
+    "--plot",
+    type=_FILE,
+    metavar="FILE.svg|.png",
+    help="Draw a diagram over time: the faults of the motion and its distance from the ragdoll.",
+)
 @click.option(
     "--with-input",
     is_flag=True,
-    help="In a film the input is to the left; on the output each point's distance from it is drawn.",
+    help="In a film, show the input on the left and, on the output, the distance of each point from it.",
 )
 @into("options", RetargetOptions)
 def command(file: Path, options: RetargetOptions) -> None:
-    """Put the motion of FILE (.bvh, .glb, .vrm or .npz) on a character, through a ragdoll.
+    """Put the motion of FILE (.bvh, .glb, .vrm or .npz) on a character. A ragdoll follows it.
 
-    Joints are found by their names: those of H-Anim, CMU, Mixamo, Unreal, Rigify and others. The world's turns
-    are kept, and legs end where the captured feet stood, all in proportion to the character's legs.
+    Joints are recognised by their names, as H-Anim, CMU, Mixamo, Unreal, Rigify and others write them. The body keeps
+    its directions, and the feet stand where the captured feet stood, in proportion to the character's legs.
     """
     from dancetutor_cli.dance.physics.pipeline import wishes_of
     from dancetutor_cli.formats.retarget import Retargeting, RetargetTask

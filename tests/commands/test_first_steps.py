@@ -77,7 +77,7 @@ def test_the_tab_key_knows_commands_options_and_names(words: str, number: int, w
 def test_powershell_is_told_what_the_words_are() -> None:
     done = run(_DANCETUTOR_COMPLETE="powershell_complete", COMP_WORDS="dancetutor\nannotate\n--str", COMP_CWORD="--str")
     kind, value, text = done.stdout.decode().rstrip("\r\n").split("\t")
-    assert (kind, value) == ("plain", "--strip") and text.startswith("Take the markers out")
+    assert (kind, value) == ("plain", "--strip") and text.startswith("Remove the markers")
     done = run(_DANCETUTOR_COMPLETE="powershell_complete", COMP_WORDS="dancetutor", COMP_CWORD="")
     assert [line.split("\t")[1] for line in done.stdout.decode().splitlines()] == list(COMMANDS)
 

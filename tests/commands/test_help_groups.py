@@ -44,6 +44,47 @@ def test_no_name_of_an_option_has_two_meanings() -> None:
     assert not {old for old, _ in RENAMED} & {new for _, new in RENAMED}
 
 
+def options_by_name() -> dict[str, list[click.Option]]:
+    """Long name -> the option of that name in each command that has one."""
+    found: dict[str, list[click.Option]] = {}
+    for name in COMMANDS:
+        for option in command_named(name).params:
+            if isinstance(option, click.Option):
+                found.setdefault(max(option.opts, key=len), []).append(option)
+    return found
+
+
+def meaning(option: click.Option) -> str:
+    """The first sentence of an option's help, up to a full stop, a colon or its default."""
+    return re.split(r"[.:](?:\s|$)|\s\s\[", option.help or "")[0].rstrip(".")
+
+
+def test_an_option_that_several_commands_have_means_the_same_in_each() -> None:
+    shared = {
+        name: {meaning(one) for one in options} for name, options in options_by_name().items() if len(options) > 1
+    }
+    assert len(shared) >= 25
+    assert {name: said for name, said in shared.items() if len(said) > 1} == {}
+
+
+def test_a_letter_stands_for_one_option() -> None:
+    letters: dict[str, set[str]] = {}
+    for options in options_by_name().values():
+        for option in options:
+            for letter in (one for one in option.opts if not one.startswith("--")):
+                letters.setdefault(letter, set()).add(meaning(option))
+    assert {letter: said for letter, said in letters.items() if len(said) > 1} == {}
+
+
+def test_help_is_an_imperative_or_a_name_and_ends_in_a_full_stop_or_its_default() -> None:
+    for name, options in options_by_name().items():
+        for option in options:
+            said = option.help or ""
+            assert re.search(r"(\.|\]|\.\))$", said), (name, said)
+            assert said[:1].isupper(), (name, said)
+            assert not re.search(r"\bs?he\b|\bher\b", said, re.I), (name, said)
+
+
 def test_the_names_of_before_work(tmp_path: Path) -> None:
     song = next((Path(__file__).parents[2] / "charts").rglob("*.ssc"))
     for call in (["annotate", "--style", "rows"], ["annotate", "--style=rows"], ["annotate", "--markers", "rows"]):

@@ -174,7 +174,7 @@ def test_a_file_takes_results_to_another_browser(opened: Browser, page_file: Pat
     opened.open(page_file)
     assert "Nothing played yet" in results(opened)
     for _ in range(2):  # twice is once
-        assert load_file(opened, json.dumps(content)) == "Taken in, this chart among 1."
+        assert load_file(opened, json.dumps(content)) == "Loaded 1 charts, this one among them."
         assert opened.run(RECORD) == before
     assert "Today: 8 notes, 100 % hit." in text(opened, "#panel-results")
     assert opened.requests[1:] == [] and opened.problems == []
@@ -186,14 +186,16 @@ def test_a_file_that_is_none_is_refused_and_nothing_is_lost(opened: Browser) -> 
     opened.key(" ", "Space")
     before = opened.run(RECORD)
     opened.click("#tab-results")
-    assert load_file(opened, "'not json'", f"{HOSTILE}.json") == f"{HOSTILE}.json is no file of results from this page."
+    assert (
+        load_file(opened, "'not json'", f"{HOSTILE}.json") == f"{HOSTILE}.json is not a file of results from this page."
+    )
     assert "larger than 4 MB" in load_file(opened, "'x'.repeat(4000001)")
     hostile = {
         "format": "dancetutor-practice",
         "version": 1,
         "charts": {"other": {"days": [7], "loops": [{"name": 1}]}},
     }
-    assert load_file(opened, f"JSON.stringify({json.dumps(hostile)})") == "Taken in: 1 charts, but not this one."
+    assert load_file(opened, f"JSON.stringify({json.dumps(hostile)})") == "Loaded 1 charts, but not this one."
     assert opened.run(RECORD) == before and opened.run("window.hacked") is None
     assert opened.problems == []
 
