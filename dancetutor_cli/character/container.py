@@ -73,7 +73,7 @@ class Container:
     def integer(self, value: object, low: int, high: int, what: str) -> int:
         """`value` if it is an int in low..high, else FileError."""
         if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-            raise self.fail(f"{what} {str(value)[:40]} is not in {low}..{high}; the file is broken")
+            raise self.fail(f"{what} {str(value)[:40]} is not from {low} to {high}; the file is broken")
         return value
 
     def numbers(self, value: object, count: int, what: str) -> NDArray[np.float64]:
@@ -211,7 +211,7 @@ def read_container(path: Path) -> Container:
 
 def _chunks(path: Path, data: memoryview) -> tuple[memoryview, memoryview]:
     if len(data) < 20 or bytes(data[:4]) != b"glTF":
-        raise FileError(path, "is not a binary glTF file; give a .glb or .vrm")
+        raise FileError(path, "is not a binary glTF file; name a .glb or .vrm file")
     version, total = struct.unpack_from("<II", data, 4)
     if version != 2:
         raise FileError(path, f"is glTF version {version}; export it as glTF 2.0")

@@ -112,7 +112,7 @@ def _upright(character: Character, path: Path) -> Character:
     left = at["l_hip"] - at["r_hip"] + at["l_shoulder"] - at["r_shoulder"]
     up = at["skullbase"] - (at["l_talocrural"] + at["r_talocrural"]) / 2
     if min(np.linalg.norm(left), np.linalg.norm(up)) < 1e-6:
-        raise FileError(path, "its bones lie in one point; export the character in its rest pose")
+        raise FileError(path, "its bones are all at one point; export the character in its rest pose")
     axis = np.eye(3)[np.abs(up).argmax()] * np.sign(up[np.abs(up).argmax()])
     left = left - (left @ axis) * axis
     if np.linalg.norm(left) < 1e-6:

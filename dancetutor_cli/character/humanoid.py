@@ -142,7 +142,7 @@ def _checked(path: Path, nodes: Nodes, bones: dict[str, int], advice: str) -> Hu
         parts = [f"no {', '.join(missing)}"] if missing else []
         raise FileError(
             path,
-            f"is no usable humanoid ({found} of {len(REQUIRED)} bones found): {'; '.join([*parts, *wrong])}; {advice}",
+            f"is not a usable humanoid ({found} of {len(REQUIRED)} bones): {'; '.join([*parts, *wrong])}; {advice}",
         )
     return Humanoid(bones, trunk)
 

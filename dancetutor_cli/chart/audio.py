@@ -56,7 +56,7 @@ def read_head(path: Path) -> AudioHead:
     except (struct.error, IndexError):
         found = None
     if found is None or found.rate <= 0 or found.channels <= 0:
-        raise FileError(path, "is no music that can be read: neither Ogg, MP3, WAV nor FLAC, or it is damaged")
+        raise FileError(path, "cannot be read: it is not Ogg, MP3, WAV or FLAC, or it is damaged")
     return found
 
 

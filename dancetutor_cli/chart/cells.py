@@ -21,7 +21,7 @@ from dancetutor_cli.chart.model import Kind, ReadWarning
 
 PLAYERS = b"XYZxyz"
 TEXTS = {
-    "{": "notes in {...} are StepF2's: here each is one note, the other games read them letter by letter",
+    "{": "notes in {...} are StepF2 notation: here each is one note; other games read them letter by letter",
     "D": "DL and DM are StepManiaX's: the end of a hold from which the foot is lifted, and a row of mines up to a 3; "
     "other games read them letter by letter",
     "X": "X, Y and Z are steps of several players in StepF2, of whom the first or the second has none here: no notes",

@@ -269,4 +269,4 @@ def _unknown(text: bytes, at: int) -> tuple[str, str]:
     if b"{" in text[: at + 1]:
         return "compound-note", "notes in {...} are not supported; the row is read letter by letter"
     shown = f"'{chr(text[at])}'" if 32 < text[at] < 127 else f"byte {text[at]:#04x}"
-    return "unknown-note", f"{shown} is no note; the column is read as empty"
+    return "unknown-note", f"{shown} is not a note; the column is read as empty"

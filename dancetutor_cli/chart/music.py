@@ -108,7 +108,9 @@ def _names(folder: Path) -> list[str]:
 def _inside(song: Song, path: Path, folder: Path) -> Path:
     real = path.resolve()
     if not real.is_relative_to(folder):
-        raise FileError(song.path, f"music '{quote(path.name)}' is refused: it is a link that leaves the song's folder")
+        raise FileError(
+            song.path, f"music '{quote(path.name)}' is refused: it is a link to a file outside the song's folder"
+        )
     if real.suffix.lower() not in SUFFIXES:
-        raise FileError(song.path, f"music '{quote(path.name)}' is no audio file ({', '.join(SUFFIXES)})")
+        raise FileError(song.path, f"music '{quote(path.name)}' is not an audio file ({', '.join(SUFFIXES)})")
     return real

@@ -154,9 +154,9 @@ def _parts(text: NoteText, value: Value) -> list[NotePart]:
 def _tell_players(parts: list[bytes], line: int, warnings: list[ReadWarning]) -> None:
     """Of a routine: that it is for two, and whose notes are read if it has more parts."""
     written = 1 + max((n for n, part in enumerate(parts) if part.strip(BLANKS + b",0")), default=0)
-    text = "the chart is for two players ('&' parts their notes); each has feet of their own"
+    text = "the chart is for two players ('&' separates their notes); each has feet of their own"
     if written > _PLAYERS:
-        text = f"'&' parts the notes of {written} players; those of the first two are read, as in the games"
+        text = f"'&' separates the notes of {written} players; those of the first two are read, as in the games"
     if len(parts) > 1:
         warnings.append(ReadWarning("several-players", text, line))
 

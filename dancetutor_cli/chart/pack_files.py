@@ -30,7 +30,7 @@ def check_not_a_link_out(path: Path) -> None:
     """Raise FileError if a dancetutor.yaml that lay there is a link that leads out of its folder: what is said of its
     mistakes would tell of a file that is none of its author's business."""
     if path.is_symlink() and is_outside(path, path.parent):
-        raise FileError(path, "is a link that leads out of its folder; put a copy there, or name it with --config")
+        raise FileError(path, "is a link to a file outside its folder; put a copy there, or name it with --config")
 
 
 def _places(start: Path) -> Iterator[str]:
@@ -89,7 +89,7 @@ def _steps_type(text: Any) -> str:
     if not any(fnmatchcase(known, pattern) for known in names.COLUMNS):
         near = did_you_mean(pattern, names.COLUMNS)
         there = ", ".join(sorted({f"{known.partition('-')[0]}-*" for known in names.COLUMNS}))
-        raise ValueError(f"'{shown_key(text)}' is no steps type{near}; there are {there}")
+        raise ValueError(f"'{shown_key(text)}' is not a steps type{near}; there are {there}")
     return pattern
 
 
@@ -98,7 +98,7 @@ def _difficulty(text: Any) -> str:
     name, known = names.difficulty(str(text), "", 0, old=True)
     if not known:
         near, there = did_you_mean(str(text), names.DIFFICULTIES), ", ".join(names.DIFFICULTIES)
-        raise ValueError(f"'{shown_key(text)}' is no difficulty{near}; there are {there}")
+        raise ValueError(f"'{shown_key(text)}' is not a difficulty{near}; there are {there}")
     return name.lower()
 
 
@@ -108,7 +108,7 @@ def _meters(value: Any) -> tuple[int, int]:
     try:
         return int(low or 0), int(high or 1_000_000) if dash else int(low)
     except ValueError:
-        raise ValueError(f'"{shown_key(value)}" is no range of meters; write 8, "1-7", "8-" or "-7"') from None
+        raise ValueError(f'"{shown_key(value)}" is not a range of meters; write 8, "1-7", "8-" or "-7"') from None
 
 
 @dataclass(eq=False, repr=False)
@@ -227,7 +227,7 @@ def read_pack_ini(folder: Path) -> PackIni | None:
             if equals and key.strip().lower() == "syncoffset":
                 sync = value.strip()
     if sync is None:
-        return PackIni(path, problem="says no SyncOffset: the game takes the machine's own")
+        return PackIni(path, problem="has no SyncOffset: the game uses that of the machine")
     if sync.upper() not in SYNCS:
-        return PackIni(path, sync, f"SyncOffset is '{sync[:40]}', and the game knows {' and '.join(SYNCS)}")
+        return PackIni(path, sync, f"SyncOffset is '{sync[:40]}', but the game knows only {' and '.join(SYNCS)}")
     return PackIni(path, sync)

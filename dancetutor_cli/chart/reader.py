@@ -198,7 +198,7 @@ def _meter(value: str, line: int, warnings: list[ReadWarning]) -> int:
     meter, clean = number(value)
     if not clean or not 0 <= meter <= _LARGEST_METER:
         read = int(meter) if 0 < meter <= _LARGEST_METER else 1
-        message = f"meter '{msd.quote(value)}' is no usable number; read as {read}"
+        message = f"meter '{msd.quote(value)}' is not a usable number; read as {read}"
         warnings.append(ReadWarning("odd-meter", message, line))
         return read
     return int(meter)
@@ -349,7 +349,7 @@ class _Ssc(SongReader):
                 current, opened = current if current is not None else [], tag.start
             elif tag.name == "NOTES":
                 if current is None:
-                    self.skip("NOTES stands outside NOTEDATA", tag.start)
+                    self.skip("NOTES is outside NOTEDATA", tag.start)
                 else:
                     groups.append((current, tag))
                 current = None

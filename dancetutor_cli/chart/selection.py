@@ -214,7 +214,7 @@ def _difficulty(text: str) -> str:
 
     name, known = names.difficulty(text, "", 0, old=True)
     if not known:
-        raise UsageError(f"difficulty '{text}' is none; there are {', '.join(names.DIFFICULTIES)}")
+        raise UsageError(f"there is no difficulty '{text}'; there are {', '.join(names.DIFFICULTIES)}")
     return name
 
 

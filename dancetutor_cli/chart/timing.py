@@ -50,7 +50,7 @@ class Timing:
 
     def __post_init__(self) -> None:
         if not self.bpms or any(value.numerator <= 0 for _, value in self.bpms):
-            raise ValueError("BPMs must be there and positive")
+            raise ValueError("there must be BPMs, all above 0")
 
     def seconds(self, ticks: NDArray[np.int64]) -> NDArray[np.float64]:
         """Second of a note on each tick, from the start of the music: after a delay, before a stop on it."""

@@ -103,7 +103,7 @@ def pairs(text: str, tag: str, negative: bool, warn: Warn) -> Pairs:
         (at, clean), (value, clean_value) = beat(parts[0]), number(parts[1])
         below = value.numerator < 0  # ten times as quick as to compare fractions
         if abs(at.numerator) > MAX_BEAT * at.denominator:
-            warn("odd-timing", f"{tag} entry '{quote(entry)}' is beyond every song and is ignored")
+            warn("odd-timing", f"{tag} entry '{quote(entry)}' is too large for any song and is ignored")
         elif (below or (at.numerator < 0 and tag in ("BPMS", "STOPS"))) and not negative:
             warn("odd-timing", f"{tag} entry '{quote(entry)}' is negative and is ignored")
         elif not value.numerator:
@@ -112,7 +112,7 @@ def pairs(text: str, tag: str, negative: bool, warn: Warn) -> Pairs:
         else:
             if not clean or not clean_value:
                 read = f"{float(at):g}={float(value):g}"
-                warn("odd-timing", f"{tag} entry '{quote(entry)}' is no pair of numbers; read as {read}")
+                warn("odd-timing", f"{tag} entry '{quote(entry)}' is not a pair of numbers; read as {read}")
             out.append((at, value))
     return out
 
@@ -353,7 +353,7 @@ def is_own(tags: Mapping[str, Text], source: Source) -> bool:
 def _offset(tag: Text, warnings: list[ReadWarning]) -> Fraction:
     value, clean = number(tag.value)
     if not clean and tag.value.strip():
-        text = f"OFFSET '{quote(tag.value)}' is no decimal number; read as {float(value):g}"
+        text = f"OFFSET '{quote(tag.value)}' is not a decimal number; read as {float(value):g}"
         warnings.append(ReadWarning("odd-offset", text, tag.line))
     return value
 
@@ -367,10 +367,10 @@ def _built(raw: Raw, warnings: list[ReadWarning], line: int) -> Timing:
             warn("odd-timing", f"stop of {float(value):g} s at beat {float(beat):g} is more than an hour")
     if has_tricks(raw):
         if any(value < 0 for _, value in raw.stops) or not all(0 < v <= FAST_BPM for _, v in raw.bpms):
-            warn("negative-timing", "negative or endless BPMs or stops: read as warps")
+            warn("negative-timing", "negative or infinite BPMs or stops are read as warps")
         raw = to_warps(raw)
     if not raw.bpms:
-        warn("no-bpm", "no usable BPM: 60 is taken")
+        warn("no-bpm", "there is no usable BPM: 60 BPM is used")
         raw.bpms.append((Fraction(0), Fraction(60)))
     bpms = at_ticks(raw.bpms)
     return Timing(

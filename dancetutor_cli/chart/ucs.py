@@ -117,7 +117,7 @@ class _Text:
         given, equals, value = msd.decode(text[1:], msd.encoding_of(text)).partition("=")
         name, value = _NAMES.get(given.strip().lower(), ""), value.strip()
         if not equals or not given.strip():
-            raise ChartError(self.path, f"':{msd.quote(given)}' is no line like :BPM=150", line)
+            raise ChartError(self.path, f"':{msd.quote(given)}' is not a line like :BPM=150", line)
         if not name:
             self.unknown.append(line)
         elif name == "Format":
@@ -142,24 +142,28 @@ class _Text:
             raise ChartError(self.path, f"BPM {float(bpm):g} is not above 0", head["BPM"][1])
         for name, value, most in (("Beat", beat, _FINEST), ("Split", split, _FINEST)):
             if value.denominator != 1 or not 1 <= value <= most:
-                raise ChartError(self.path, f":{name}={head[name][0]} is no whole number of 1 to {most}", head[name][1])
+                raise ChartError(
+                    self.path, f":{name}={head[name][0]} is not a whole number from 1 to {most}", head[name][1]
+                )
         return _Block(line, bpm, delay / 1000, int(split), len(self.spans))
 
     def _number(self, name: str, value: str, line: int) -> Fraction:
         """A decimal; some editors write a comma for its point."""
         found, clean = number(value.replace(",", "."))
         if not clean:
-            raise ChartError(self.path, f":{name}='{msd.quote(value)}' is no number", line)
+            raise ChartError(self.path, f":{name}='{msd.quote(value)}' is not a number", line)
         return found
 
     def _row(self, line: int, start: int, text: bytes) -> None:
         if not (self.format and self.mode and self.blocks):
             lacks = ":Format=1" if not self.format else ":Mode=" if not self.mode else ":BPM=, :Delay=, :Beat=, :Split="
-            raise ChartError(self.path, f"'{_shown(text)}' stands here, where no {lacks} has come yet", line)
+            raise ChartError(self.path, f"'{_shown(text)}' is here, but no {lacks} has come yet", line)
         columns = _MODES[self.mode.lower()][1]
         if wrong := text.strip(_LETTERS):
             column = text.index(wrong[:1])
-            raise ChartError(self.path, f"'{_shown(wrong[:1])}' is no step: a row is of . X M H W", line, column + 1)
+            raise ChartError(
+                self.path, f"'{_shown(wrong[:1])}' is not a step: a row has only . X M H W", line, column + 1
+            )
         if len(text) != columns:
             raise ChartError(self.path, f"a row of {len(text)} letters; mode {self.mode} has {columns}", line)
         if len(self.spans) == _MOST_ROWS:
@@ -314,7 +318,7 @@ def read_ucs(data: bytes, path: Path) -> Song:
     line_of = np.array([line for line, _, _ in text.spans], dtype=np.int64)
     warnings: list[ReadWarning] = []
     for code, found, message in (
-        ("odd-directive", text.unknown, "this is no line that the game knows; it is not used"),
+        ("odd-directive", text.unknown, "the game does not know this line; it is ignored"),
         ("odd-timing", text.rowless, "a block ends here without rows; of its tags the delay alone counts"),
         ("odd-timing", clock.overtaken, "this block begins before the notes above it; it is read as 1 ms behind them"),
         ("unmatched-head", line_of[sorted(steps.endless)], "a hold has no end, W; it is read up to its last H"),

@@ -207,7 +207,7 @@ def command(**options: Any) -> int:  # fmt: skip
                                             "rate", "sync")},
     )  # fmt: skip
     if options["language"] is not None and options["sheet"] is None:
-        raise UsageError("--language is the language of the sheet; add --sheet")
+        raise UsageError("--language belongs to --sheet; add --sheet")
     if options["plot"] is not None and not options["sync"]:
         raise UsageError("--plot draws what --sync finds; add --sync")
     if not options["fix"] and (options["diff"] or options["backup"]):
@@ -295,7 +295,7 @@ def _lint(run: LintRun, files: list[Source], options: dict[str, Any], output: IO
     folder = None if options["no_cache"] else default_folder()
     cache = None if folder is None else ResultCache(folder)
     if not options["no_cache"] and not options["quiet"] and (fault := results_folder()[1]):
-        click.echo(f"note: {fault}: results are not kept", err=True)
+        click.echo(f"note: {fault}: results are not stored", err=True)
     for raw in run.with_packs(analyze_all(tasks, options["jobs"], cache, _before_work)):
         result = run.without_baseline(raw)
         tally.add(result)
@@ -377,4 +377,4 @@ def _finish(run: LintRun, tally: Tally, options: dict[str, Any]) -> None:
         click.echo(line, err=True)
     if not tally.charts and not tally.unreadable and tally.unselected:
         has = "; ".join(tally.unselected[:20])
-        raise UsageError(f"no chart is of the steps type, difficulty and index asked for; there are {has}")
+        raise UsageError(f"no chart matches --steps-type, --difficulty and --index; there are {has}")

@@ -97,7 +97,9 @@ def command(paths: tuple[Path, ...], selection: Selection, options: AnnotateOpti
     from dancetutor_cli.markers.annotate import AnnotateRequest
 
     if not given["strip"] and "background" in (options.styles or ()):
-        raise UsageError("the style 'background' is a film: `render --background --into-file` writes it; add --strip")
+        raise UsageError(
+            "the marker style 'background' is a film: `render --background --into-file` writes it; --strip removes it"
+        )
     if selection.player is not None:
         raise UsageError("--player is for analyze, animate, render and page; annotate writes both players' feet")
     wanted = options.styles or (STRIPPED if given["strip"] else STYLES[:1])
@@ -244,7 +246,7 @@ class _Talk:
         total = sum(self.files.values())
         if self.unselected and len(self.unselected) == total - self.files["failed"]:
             has = safe("; ".join(self.unselected[:20]))
-            raise UsageError(f"no chart is of the steps type, difficulty and index asked for; there are {has}")
+            raise UsageError(f"no chart matches --steps-type, --difficulty and --index; there are {has}")
         words = {} if self.request.write else {"changed": "would change"}
         parts = ", ".join(f"{n} {words.get(name, name)}" for name, n in sorted(self.files.items()) if n)
         if not self.quiet:

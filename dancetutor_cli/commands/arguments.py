@@ -111,7 +111,7 @@ class GivenPath(click.Path):
 def within_folders(paths: Sequence[Path], files: Sequence[Path]) -> list[Path]:
     """The files that may be written of those that a search has found; each link out of its folders is one line."""
     kept, links = without_links_out(paths, files)
-    where = "outside the folder that is searched; it is left alone, name it to write it"
+    where = "outside the folder that is searched; it is not changed. Name it to change it"
     warn(f"{link}: is a link to {os.path.realpath(link)}, {where}" for link in links)
     return kept
 
@@ -132,14 +132,14 @@ def sources(paths: tuple[Path, ...], stdin_filename: Path | None, exclude: Seque
     """The chart files that the paths mean, without those left out; standard input with its bytes."""
     if any(str(path) == "-" for path in paths):
         if len(paths) > 1:
-            raise UsageError("standard input (-) goes alone, without other paths")
+            raise UsageError("standard input (-) cannot be combined with other paths")
         if sys.stdin is None:
             raise UsageError("standard input (-) is closed; send a chart to it, or name a file")
         data = sys.stdin.buffer.read()
         name = f"stdin{_suffix_of(data)}"
         return [(stdin_filename or Path(name), data)]
     if stdin_filename is not None:
-        raise UsageError("--stdin-filename names the chart on standard input: give - as PATH")
+        raise UsageError("--stdin-filename belongs to standard input: give - as PATH")
     return [(path, None) for path in find_files(paths, exclude)]
 
 
@@ -206,4 +206,4 @@ def confirm_long(what: str, verb: str) -> None:
     if sys.stdin is not None and sys.stdin.isatty() and sys.stderr.isatty():
         click.confirm(f"{what}. {verb} it?", abort=True, err=True)
     else:
-        raise UsageError(f"{what}; choose a part with --section, or say --yes")
+        raise UsageError(f"{what}; choose a part with --section, or add --yes")

@@ -46,8 +46,8 @@ def examine() -> list[Check]:
 ENCODERS = {"x264": "libx264", "nvenc": "h264_nvenc", "vaapi": "h264_vaapi", "aac": "aac"}
 _NEEDED = ("x264", "aac")
 _OPTIONAL = {
-    "nvenc": "an NVIDIA GPU and its driver; x264 does without",
-    "vaapi": "a GPU with a VA driver; x264 does without",
+    "nvenc": "an NVIDIA GPU and its driver; x264 needs neither",
+    "vaapi": "a GPU with a VA driver; x264 needs neither",
 }
 # Scripts in which titles come, with letters that tell whether a font has them.
 SCRIPTS = {"Western": "éßø", "Cyrillic": "Жя", "Japanese": "あ日", "Korean": "한", "Chinese": "们"}
@@ -86,7 +86,7 @@ def _physics() -> Check:
     from dancetutor_cli.dance.physics.style import engine, is_installed
 
     if not is_installed():
-        return Check("physics", "without", "no engine for styles and retarget", install_command("physics"))
+        return Check("physics", "without", "no engine for --style and retarget", install_command("physics"))
     return Check("physics", "ok", f"MuJoCo {engine().__version__}")
 
 
@@ -139,7 +139,7 @@ def _cache() -> Check:
     usable = {place: fitting for place, (fitting, _) in counts.items() if fitting}
     lines = [f"{_kernels(count)} in {place}" for place, count in usable.items()] or [_NOTHING]
     if not folder.is_writable:
-        lines.append("and none can be kept")
+        lines.append("and none can be stored")
     elif target not in usable:
         lines.append(f"new ones go into {target}")
     if other := sum(others for _, others in counts.values()):
@@ -163,7 +163,7 @@ def _font() -> Check:
         others = [Path(path).stem for path in system_fonts()]
         return Check("font", "ok", "Pillow's" + (f", for other letters {', '.join(others[:3])}" if others else ""))
     lost = ", ".join(name for name, letters in SCRIPTS.items() if set(letters) & set(missing))
-    mend = "install Noto Sans CJK and DejaVu Sans, or --font FILE"
+    mend = "install Noto Sans CJK and DejaVu Sans, or use --font FILE"
     return Check("font", "without", f"no letters for {lost}", mend)
 
 
@@ -171,7 +171,7 @@ def _disk() -> Check:
     free = shutil.disk_usage(Path.cwd()).free
     message = f"{free / GIGABYTE:.1f} GB free in {Path.cwd()}"
     if free < _ROOM:
-        return Check("disk", "without", message, "make room, or write to another disk with -o")
+        return Check("disk", "without", message, "free some space, or write to another disk with -o")
     return Check("disk", "ok", message)
 
 
@@ -199,7 +199,7 @@ def command(as_json: bool) -> None:
         for check in checks:
             _print_entry(f"{check.state:<7} {check.name:<{width}}  ", check.message.rstrip("."))
             if check.mend:
-                _print_entry(" " * (width + 10), f"mend: {check.mend}")
+                _print_entry(" " * (width + 10), f"to repair: {check.mend}")
     if any(check.state == "broken" for check in checks):
         sys.exit(2)
 

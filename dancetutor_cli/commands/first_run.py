@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 # A word before work: where kernels are kept if not in the usual place, and that a first run compiles for a minute.
 
 _NO_STORE_MESSAGE = (
-    "nothing compiled is kept, each run compiles again; set NUMBA_CACHE_DIR to a folder that only you can write"
+    "compiled code is not stored, so each run compiles again; set NUMBA_CACHE_DIR to a folder that only you can write"
 )
 
 
@@ -46,7 +46,7 @@ def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = No
     folder, is_ready = kernel_folder(), all(is_compiled(preset) for preset in presets)
     if folder.fault and not quiet and (VARIABLE in os.environ or not is_ready):
         where = (
-            f"compiled kernels are kept in {folder.root or 'the installation'}"
+            f"compiled code is stored in {folder.root or 'the installation'}"
             if folder.is_writable
             else _NO_STORE_MESSAGE
         )
@@ -54,7 +54,9 @@ def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = No
     if quiet or not sys.stderr.isatty():
         return
     if not is_ready:
-        click.echo("compiling the solver's kernels (once; `dancetutor warmup` does it ahead) ...", err=True)
+        click.echo(
+            "compiling the solver's kernels (only once; `dancetutor warmup` does it ahead of time) ...", err=True
+        )
 
 
 # What `dancetutor` alone prints: what it is, and what to try next, with a song that is at hand.
@@ -68,21 +70,21 @@ def first_steps(folder: Path) -> str:
     whose = "your song" if song is not None else "the demo song"
     name = _quoted(song or str(next(charts_path().rglob("*.ssc"))))
     lines = [
-        f"dancetutor {dancetutor_cli.__version__}: finds the feet of stepcharts and lets a dancer play them.",
+        f"dancetutor {dancetutor_cli.__version__}: finds the feet of stepcharts and shows a dancer who plays them.",
         "",
         f"Try next, with {whose}:",
         f"  dancetutor analyze {name}",
-        "      how it is danced: crossovers, doublesteps, spins, and what is odd in it",
+        "      how it is stepped: crossovers, doublesteps, spins; and what looks wrong in it",
         f"  dancetutor page {name} --index 0 -o dance.html",
         "      a page to practise it with: open dance.html in a browser",
         f"  dancetutor annotate {name} --diff",
-        "      what L and R in the file would look like; without --diff they are written, --strip takes them out",
+        "      what L and R in the file would look like; without --diff they are written, --strip removes them",
         f"  dancetutor render {name} --index 0 --section m1:m8 -o dance.mp4",
         "      a film of the first measures; the first one takes a minute or two longer",
         "",
         "  dancetutor analyze Songs/MyPack    a pack of your own",
-        "  dancetutor doctor                  what works on this machine, and what mends the rest",
-        "  dancetutor completion              let the Tab key complete all this",
+        "  dancetutor doctor                  what works on this machine, and how to repair the rest",
+        "  dancetutor completion              make the Tab key complete all this",
         "  dancetutor --help                  every command; dancetutor COMMAND --help: its options",
     ]
     return "\n".join(lines)

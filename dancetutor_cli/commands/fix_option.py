@@ -63,19 +63,21 @@ def fix_all(run: LintRun, tasks: Sequence[AnalyzeTask], options: dict[str, Any])
         talk.tell(task.path, outcome)
         other = twin(task.path)
         if outcome.fixed and other is not None and other.absolute() not in meant:
-            talk.warn(f"{other}: the same song, but it was not named, so its notes are as before; mend it likewise")
+            talk.warn(
+                f"{other}: the same song in another file, which was not named and is unchanged; correct it as well"
+            )
     return talk.end()
 
 
 def _check(tasks: Sequence[AnalyzeTask], options: dict[str, Any]) -> None:
     """UsageError for options that do not go with --fix."""
     if options["format_name"] != "text":
-        raise UsageError("--fix tells what it did in text alone; leave --format out")
+        raise UsageError("--fix prints only text; leave --format out")
     for name in _OF_REPORTS:
         if options[name]:
-            raise UsageError(f"--{name.replace('_', '-')} does not go with --fix; call analyze again for it")
+            raise UsageError(f"--{name.replace('_', '-')} cannot be used with --fix; run analyze again for it")
     if any(task.data is not None for task in tasks):
-        raise UsageError("--fix mends files; standard input is none")
+        raise UsageError("--fix writes into files, not into standard input")
 
 
 def _fix(run: LintRun, task: AnalyzeTask, wanted: Sequence[FixRequest], options: dict[str, Any]) -> FixOutcome:

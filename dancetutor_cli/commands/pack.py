@@ -122,7 +122,7 @@ def check_comparison(options: Mapping[str, Any]) -> None:
     if len(options["paths"]) != 1 or str(options["paths"][0]) == "-":
         raise UsageError("--compare takes one file or folder as PATH, to compare with OTHER")
     if options["format_name"] != "text":
-        raise UsageError("--compare tells in --format text")
+        raise UsageError("--compare prints only text; leave --format out")
 
 
 def report_changes(options: Mapping[str, Any], output: IO[str]) -> int:
@@ -162,7 +162,7 @@ def report_tech_counts(tasks: Sequence[AnalyzeTask], options: Mapping[str, Any],
     from dancetutor_cli.reports.pack import chart_lines, table_lines
 
     if options["format_name"] != "text":
-        raise UsageError("--tech-counts prints a table of Markdown, in --format text")
+        raise UsageError("--tech-counts prints only a Markdown table; leave --format out")
     found = compare_techniques(tasks, read_theirs(options["tech_counts"]))
     if not found.charts:
         raise UsageError(
@@ -228,10 +228,10 @@ def write_plot(path: Path, task: AnalyzeTask) -> str:
     song = load_song(task)
     found = song_sync(song)
     if found.judgement is None:
-        return f"{path}: nothing is drawn, for the sync cannot be judged: {found.sync.reason}"
+        return f"{path}: nothing is drawn, because the sync cannot be judged: {found.sync.reason}"
     name = safe(song.title) or path.stem
     write_atomic(path, sync_plot(name, found.judgement).encode("utf-8", "replace"))
-    return f"{path}: the bias over the song"
+    return f"{path}: a diagram of the sync over the song"
 
 
 def _facts(chart: Drawable, sheet: Sheet) -> list[str]:

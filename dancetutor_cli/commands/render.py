@@ -107,7 +107,7 @@ def command(path: Path, output: Path | None, frames: Path | None, yes: bool, qui
         return
     for name in ("meter", "name", "shard", "results", "scheduler", "exclude"):
         if options[name]:
-            raise UsageError(f"--{name} is for folders of charts, and {path} is none")
+            raise UsageError(f"--{name} is for folders of charts, and {path} is not a folder")
     if files:
         output = output or path.with_name(into_file_name(path, options))
         from dancetutor_cli.markers.background import check_place
@@ -127,7 +127,7 @@ def _background(path: Path, frames: Path | None, options: dict[str, Any]) -> lis
     given = [name for name in _NO_BACKGROUND if options[name]] + (["frames"] if frames is not None else [])
     if given:
         raise UsageError(
-            f"--{given[0].replace('_', '-')} does not go with --background: the game plays it from the start"
+            f"--{given[0].replace('_', '-')} cannot be used with --background: the game plays the whole film"
         )
     if not options["into_file"]:
         return []
@@ -160,7 +160,7 @@ def _one_film(path: Path, output: Path | None, options: dict[str, Any]) -> Path:
         return path
     file = one_song(path)
     if film and file == path:
-        raise UsageError(f"{output} is one film, and {path} holds not just one song; name one of its files")
+        raise UsageError(f"{output} is one film, but {path} has several songs; name one of its files")
     return file
 
 

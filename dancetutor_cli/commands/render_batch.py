@@ -49,7 +49,7 @@ def render_batch(
         make_folder(batch.folder)
     records, fault = find_records((path, batch.folder))
     if fault and not quiet:
-        click.echo(f"note: nothing is kept for a second run, which makes all films again: {safe(fault)}", err=True)
+        click.echo(f"note: a second run will make all films again: {safe(fault)}", err=True)
     outcomes: list[FilmOutcome] = []
     warnings = JoinedWarnings(every=options["verbose"])
     jobs = options["jobs"] or default_jobs()
@@ -128,7 +128,7 @@ def _write(results: TextIO | None, line: dict[str, Any]) -> None:
 
 def _tell(outcome: FilmOutcome, progress: FilmProgress, quiet: bool, number: int, count: int) -> None:
     name = outcome.job.output.name
-    text = {"done": "done", "skipped": "is there already", "failed": f"FAILED: {outcome.error}"}[outcome.status]
+    text = {"done": "done", "skipped": "already exists", "failed": f"FAILED: {outcome.error}"}[outcome.status]
     if not quiet or outcome.status == "failed":
         progress.say(safe(f"[{number}/{count}] {name} {text}"))
 

@@ -90,7 +90,7 @@ def command(file: Path, options: RetargetOptions) -> None:
 
     check_file(options.output, SUFFIXES)
     if options.with_input and options.output.suffix.lower() != ".mp4":
-        raise UsageError(f"--with-input shows two people in a film: {options.output} must end in .mp4")
+        raise UsageError(f"--with-input shows two dancers in a film: {options.output} must end in .mp4")
     if options.plot is not None:
         check_file(options.plot, (".svg", ".png"))
     if options.report_to is not None and options.report_to != TABLE:

@@ -37,7 +37,7 @@ def steps() -> Iterator[tuple[str, Callable[[], None]]]:
     prepared: dict[str, PreparedFilm] = {}
     for steps_type in _TYPES:
         yield f"solve and bake {steps_type}", lambda kind=steps_type: _prepare(prepared, kind)  # type: ignore[misc]
-    yield "solve with the other model of moves", _solve
+    yield "solve with the other cost model", _solve
     for quality in QUALITIES:
         yield f"draw at quality {quality}", lambda value=quality: _draw(prepared[_TYPES[0]], value)  # type: ignore[misc]
 

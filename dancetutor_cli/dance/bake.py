@@ -184,7 +184,7 @@ def bake_piece(piece: Piece) -> BakedPiece:
             keys = refined(skeleton, keys, between, plan.grips)
     first, last = piece.baked
     notes = tuple(
-        f"from {first:.1f} s to {last:.1f} s no path of {what} keeps within the limits of legs and soles; they gave way"
+        f"from {first:.1f} s to {last:.1f} s no path of {what} keeps the limits of legs and soles; they were exceeded"
         for what in body.softened
     )
     motion = _motion(piece, keys, notes)

@@ -32,7 +32,7 @@ def check_alone(request: DanceRequest, chart: Chart) -> None:
     """
     count = len(chart.players)
     if count > 2:
-        choice = f"at most two dance in one picture: choose with --player 1 to {count}"
+        choice = f"at most two dancers fit in one picture: choose with --player 1 to {count}"
         raise UsageError(f"{chart.label} is for {count} players, and {choice}")
     alone = {"--bar": request.bar, "--play": request.play, "--push": request.push, "--trip": request.trip}
     option = next((name for name, given in alone.items() if given), None)

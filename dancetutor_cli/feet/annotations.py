@@ -173,7 +173,8 @@ def _check_shape(tokens: list[Token], columns: list[list[int]]) -> None:
         raise NotationError(f"{len(tokens)} tokens for {len(columns)} rows with steps", at)
     for number, (token, cells) in enumerate(zip(tokens, columns, strict=True), 1):
         if len(token.letters) != len(cells):
-            text = f"row {number} of its rows with steps has {len(cells)} of them, and {len(token.letters)} letters"
+            many = f"{len(cells)} step{'' if len(cells) == 1 else 's'}"
+            text = f"row {number} of its rows with steps has {many} but {len(token.letters)} letters"
             raise NotationError(text, token.at)
 
 

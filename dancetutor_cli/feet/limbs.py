@@ -117,7 +117,7 @@ def _tokens(text: str) -> Iterator[Token]:
             if character in LETTERS:
                 places.append(place)
             elif character not in " \t":
-                raise NotationError(f"'{_printable(character)}' is no foot; use {' '.join('LRlr<>.')}", place)
+                raise NotationError(f"'{_printable(character)}' is not a foot; use {' '.join('LRlr<>.')}", place)
         if not places:
             raise NotationError("brackets without letters", match.start(name))
         yield Token("".join(text[place] for place in places), tuple(places))

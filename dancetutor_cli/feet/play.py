@@ -233,8 +233,8 @@ _NOT_WITHOUT = ("hand", "jump", "bracket")  # moves that a row has no more if wh
 
 WORDS = {
     DropReason.LIMBS: "more panels at once than limbs",
-    DropReason.LEAP: "a foot would have to leap at once",
-    DropReason.HAND: "a hand would have to be down again at once",
+    DropReason.LEAP: "a foot would have to leap",
+    DropReason.HAND: "a hand would have to come down again at once",
 }
 
 
@@ -289,7 +289,7 @@ def dropped_notes_message(gone: Sequence[DroppedNote]) -> str:
         return ""
     counts = Counter(one.reason for one in gone)
     reasons = ", ".join(f"{counts[why]} {WORDS[why]}" for why in DropReason if counts[why])
-    return f"{len(gone)} note{'s' if len(gone) > 1 else ''} let go, for nobody plays them: {reasons}"
+    return f"{len(gone)} note{'s' if len(gone) > 1 else ''} not played: {reasons}"
 
 
 def _leaps(play: Play, pad: Pad) -> Iterator[tuple[int, int, DropReason]]:

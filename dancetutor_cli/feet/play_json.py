@@ -225,7 +225,7 @@ def _rows_by_tick(path: Path, rows: list[Any]) -> dict[int, dict[str, Any]]:
     out = {}
     for row in rows:
         if not isinstance(row, dict):
-            raise FileError(path, "a row is no object")
+            raise FileError(path, "a row is not an object")
         out[round(_number(path, row, "beat") * TICKS_PER_BEAT)] = row
     return out
 
@@ -235,7 +235,7 @@ def _steps(path: Path, row: dict[str, Any], tick: int, steps: Any, limb: Any, pa
     where = f"beat {tick / TICKS_PER_BEAT:g}"
     for step in _listed(path, row, "steps"):
         if not isinstance(step, dict):
-            raise FileError(path, f"{where}: a step is no object")
+            raise FileError(path, f"{where}: a step is not an object")
         column, name = step.get("column"), step.get("limb")
         if not isinstance(column, int) or isinstance(column, bool) or not 0 <= column < len(steps) or not steps[column]:
             raise FileError(path, f"{where}: the chart has no step in column {column}")
@@ -259,7 +259,7 @@ def _leave_mines(feet: Any, mines: Any, held: Any) -> None:
 def _listed(path: Path, row: dict[str, Any], name: str) -> list[Any]:
     value = row.get(name, [])
     if not isinstance(value, list):
-        raise FileError(path, f"a row's {name} is no list")
+        raise FileError(path, f"a row's {name} is not a list")
     return value
 
 
@@ -269,12 +269,14 @@ def _panel(path: Path, row: dict[str, Any], side: str, columns: int) -> int:
     if value is None:
         return -1
     if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value < columns:
-        raise FileError(path, f"beat {row['beat']:g}: the {side} foot stands on {shown_key(value)}, which is no panel")
+        raise FileError(
+            path, f"beat {row['beat']:g}: the {side} foot stands on {shown_key(value)}, which is not a panel"
+        )
     return value
 
 
 def _number(path: Path, row: dict[str, Any], name: str) -> float:
     value = row.get(name)
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e15:
-        raise FileError(path, f"a row's {name} is {shown_key(repr(value))}, which is no number")
+        raise FileError(path, f"a row's {name} is {shown_key(repr(value))}, which is not a number")
     return float(value)

@@ -108,21 +108,21 @@ def _pad(name: Any) -> str:
     """A steps type, or the first word of some."""
     if name not in _WORDS and name not in COLUMNS:
         near = did_you_mean(str(name), (*_WORDS, *COLUMNS))
-        raise ValueError(f"'{shown_key(name)}' is no steps type{near}; their first words are: {', '.join(_WORDS)}")
+        raise ValueError(f"'{shown_key(name)}' is not a steps type{near}; their first words are: {', '.join(_WORDS)}")
     return str(name)
 
 
-_PADS = "a list of steps types or their first words, as [dance]"
+_PADS = "a list of steps types or their first words, such as [dance]"
 _Weight = Annotated[int, Bounds(0, MAX_WEIGHT)]
 _Knots = Annotated[
     dict[Annotated[int, Bounds(0, MOST_MS, "milliseconds")], _Weight],
     Entries(1),
-    Meaning("a mapping of milliseconds to costs, as {100: 500, 300: 0}"),
+    Meaning("a mapping of milliseconds to costs, such as {100: 500, 300: 0}"),
 ]
 _Confidence = Annotated[
     dict[_Weight, Annotated[int, Bounds(0, 1000, "tenths of a per cent")]],
     Entries(1),
-    Meaning("a mapping of margins to tenths of a per cent, as {100: 500, 300: 900}"),
+    Meaning("a mapping of margins to tenths of a per cent, such as {100: 500, 300: 900}"),
 ]
 
 
@@ -188,7 +188,7 @@ def _base(source: MarkedYaml, name: str, seen: tuple[Path, ...], confined: bool)
     if path.absolute() in seen:
         raise source.error(("extends",), f"'{name}' extends itself")
     if confined and path == beside and is_outside(path, source.path.parent):
-        raise source.error(("extends",), "'extends' leads out of the folder of this file; put it beside it")
+        raise source.error(("extends",), "'extends' names a file outside this file's folder; put it beside this file")
     if not is_regular(path):
         there = ", ".join(preset_names())
         raise source.error(("extends",), f"there is no preset '{name}'; there are: {there}, or name a file")

@@ -39,7 +39,7 @@ _TOES = {Limb.LEFT_FOOT: "l", Limb.RIGHT_FOOT: "r"}
 
 def _tick(beat: Any) -> int:
     if isinstance(beat, bool) or not isinstance(beat, int | float) or not 0 <= beat < 1e6:
-        raise ValueError(f"'{shown_key(beat)}' is no beat; write a number such as 16 or 16.5")
+        raise ValueError(f"'{shown_key(beat)}' is not a beat; write a number such as 16 or 16.5")
     return round(beat * TICKS_PER_BEAT)
 
 
@@ -48,7 +48,7 @@ def _letters(value: Any) -> str:
     wrong = [letter for letter in letters if letter not in LETTERS]
     if wrong or not letters:
         known = f"{', '.join(MEANING)}, or {UNKNOWN} for any"
-        raise ValueError(f"'{shown_key(wrong[0] if wrong else '')}' is no limb; there are {known}")
+        raise ValueError(f"'{shown_key(wrong[0] if wrong else '')}' is not a limb; there are {known}")
     return letters
 
 

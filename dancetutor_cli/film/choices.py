@@ -36,5 +36,5 @@ def parse_ahead(text: str) -> Ahead:
     """ "0.9" seconds, or "b2" beats; UsageError says how it is written."""
     match = re.fullmatch(r"(b?)(\d{1,4}(?:\.\d{1,6})?)", text.strip().lower())
     if match is None or not 0 < float(match[2]) <= MOST_AHEAD:
-        raise UsageError(f"'{text}': write how long before a move it is called out as 0.9 (seconds) or b2 (beats)")
+        raise UsageError(f"'{text}': write the time before a move as 0.9 (seconds) or b2 (beats)")
     return Ahead(float(match[2]), bool(match[1]))

@@ -198,9 +198,9 @@ def load_layout(name: str) -> Layout:
     if layout.dancer is None and layout.highway is None:
         raise FileError(path, "a layout needs a dancer, a highway or both")
     if layout.screen is not None and (layout.dancer is None or layout.highway is None):
-        raise FileError(path, "a screen stands in the dancer's room and shows the highway: it needs both")
+        raise FileError(path, "a layout with a screen needs a dancer and a highway")
     if layout.feet is not None and layout.dancer is None:
-        raise FileError(path, "feet need a dancer, whose feet they are")
+        raise FileError(path, "a layout with feet needs a dancer")
     if layout.highway is not None:
         parse_scroll(layout.highway.scroll)
     return layout

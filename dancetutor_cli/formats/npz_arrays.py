@@ -101,7 +101,7 @@ def _headers(path: Path, archive: zipfile.ZipFile, fields: Mapping[str, Field]) 
     for entry in archive.infolist():
         name = entry.filename.removesuffix(".npy")
         if name in entries:
-            raise FileError(path, f"has the array '{shown_key(name)}' twice; only one of them can be meant")
+            raise FileError(path, f"has the array '{shown_key(name)}' twice; remove one")
         entries[name] = entry
     found = {}
     for name, field in fields.items():
@@ -115,10 +115,10 @@ def _headers(path: Path, archive: zipfile.ZipFile, fields: Mapping[str, Field]) 
 
 def _header(path: Path, name: str, archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> _Header:
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        raise FileError(path, f"array '{name}' is packed in a way that numpy does not use; save it anew")
+        raise FileError(path, f"array '{name}' is packed in a way that numpy does not use; save it again")
     with archive.open(entry) as file:
         if np.lib.format.read_magic(file) != (1, 0):  # the only version with a header of bounded length
-            raise FileError(path, f"array '{name}' is of no plain type; save numbers")
+            raise FileError(path, f"array '{name}' has no plain type; save numbers")
         shape, fortran, dtype = np.lib.format.read_array_header_1_0(file)
         return _Header(entry, dtype, shape, fortran, file.tell())
 

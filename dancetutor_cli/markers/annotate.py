@@ -172,7 +172,9 @@ class _Work:
         self._take(plan)
         alone = [one for one in feet if not (one.chart.players or one.chart.player)]
         if self.beside and len(alone) < len(feet):
-            self.notes.append(f"{base.path}: charts for two get their feet only in the styles measure and rows")
+            self.notes.append(
+                f"{base.path}: charts for two players can have markers only in the styles measure and rows"
+            )
         for style in self.beside if alone or not feet else ():
             try:
                 for planned in planning.write(style, self.song, self.item.target.parent, alone):

@@ -45,8 +45,8 @@ def check_name(name: str) -> None:
     """UsageError for a film's file name that the games would not read, or that `annotate --strip` would not know."""
     if not _NAME.fullmatch(name):
         raise UsageError(
-            f"{name}: with --into-file the film's name ends in {OURS}.mp4, so that `annotate --strip` knows it, and "
-            "has none of , ; : = # \\ in it"
+            f"{name}: with --into-file the film's name must end in {OURS}.mp4, so that `annotate --strip` knows it, "
+            "and must not contain , ; : = # \\"
         )
 
 
@@ -124,7 +124,7 @@ def _new_tag(song: Song, text: bytes) -> Splice:
     """The tag on lines of its own before the first chart."""
     first = next((tag for tag in scan(song.data) if tag.name in _SONG_ENDS), None)
     if first is None:
-        raise FileError(song.path, "has no chart before which the tag of its backgrounds could stand")
+        raise FileError(song.path, "has no chart, so #BGCHANGES cannot be put before one")
     at = song.data.rfind(b"\n", 0, first.start) + 1
     if song.data[at : first.start].strip():
         raise FileError(song.path, "its first chart begins in the middle of a line; put #BGCHANGES:; before it")
@@ -156,9 +156,9 @@ def check_place(film: Path, files: Sequence[Path]) -> None:
     check_name(film.name)
     for file in files:
         if file.suffix.lower() == UCS_SUFFIX:
-            raise UsageError(f"{file}: a .ucs file names no film; leave --into-file out")
+            raise UsageError(f"{file}: a .ucs file cannot name a film; leave --into-file out")
         if film.resolve().parent != file.resolve().parent:
-            raise UsageError(f"{film}: with --into-file the film lies in the song's folder, beside {file.name}")
+            raise UsageError(f"{film}: with --into-file the film must be in the song's folder, beside {file.name}")
 
 
 def enter(film: Path, files: Sequence[Path], backup: bool = False) -> list[str]:
@@ -177,12 +177,12 @@ def _enter(film: Path, file: Path, backup: bool) -> list[str]:
     new = apply(without.data, added.splices)
     after = unchanged(song, new, free=(TAG,))
     if reader.parse(apply(new, remove(after)), file).data != without.data:
-        raise FileError(file, "refused, nothing was written: the entry could not be taken out again")
+        raise FileError(file, "refused, nothing was written: the entry could not be removed again")
     if new != song.data:
         if backup:
             back_up(file)
         write_atomic(file, new, expect=song.data)
-    told = [f"{file}: plays {film.name} behind the notes; `dancetutor annotate --strip` takes it out"]
+    told = [f"{file}: plays {film.name} behind the notes; `dancetutor annotate --strip` removes it"]
     if added.later:
-        told.append(f"warning: {file}: a background change at beat {min(added.later):g} takes the film away")
+        told.append(f"warning: {file}: a background change at beat {min(added.later):g} ends the film")
     return told

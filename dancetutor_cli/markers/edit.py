@@ -136,7 +136,9 @@ def _path(song: Song, name: str) -> Path:
 def _edit_file(song: Song, one: ChartFeet, name: str) -> bytes | EditError:
     chart = one.chart
     if chart.timing != song.timing:
-        return EditError(song.path, f"{chart.label}: has timing of its own, which .edit cannot; use --into-file")
+        return EditError(
+            song.path, f"{chart.label}: has its own timing, which an .edit file cannot have; use --into-file"
+        )
     folder = song.path.resolve().parent
     head = f"#SONG:{_value(folder.parent.name)}/{_value(folder.name)};\n".encode("utf-8", "surrogateescape")
     data = head + _sm_chart(chart, name, note_data(chart, one.play, b"\n"), b"\n")
@@ -169,9 +171,9 @@ def added_charts(song: Song, feet: Sequence[ChartFeet]) -> bytes:
     eol = b"\r\n" if b"\r\n" in song.data else b"\n"
     names = _names(song)
     if any(song.data[c.notes_span[1] : c.notes_span[1] + 1] != b";" for c in song.charts[-1:]):
-        raise EditError(song.path, "the last chart has no ';' at its end, so no chart can be added behind it")
+        raise EditError(song.path, "the last chart has no ';' at its end, so no chart can be added after it")
     if song.data.endswith(b"\\"):
-        raise EditError(song.path, "ends with a lone '\\', behind which no chart can be added")
+        raise EditError(song.path, "ends with a lone '\\', so no chart can be added after it")
     blocks = []
     for one in feet:
         if one.chart.steps_type != SOURCE:

@@ -64,7 +64,7 @@ def write(style: str, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> It
         _one_song(song, path)
         old = _present(path, song)
         merged = sidecar.write_editor_data(path, old, song, feet)
-        lacks = [] if merged == old else [Lack(f"{path.name} has not the feet that the solver finds")]
+        lacks = [] if merged == old else [Lack(f"{path.name} does not have the feet that the solver finds")]
         yield FileChange(path, old, merged), lacks
     elif style == EDIT:
         for where, data in edit.edit_files(song, feet):
@@ -114,13 +114,13 @@ def strip(style: str, song: Song, charts: Sequence[Chart]) -> Iterator[FilePlan]
 
 
 def _removed(path: Path, old: bytes | None, new: bytes | None) -> FilePlan:
-    return FileChange(path, old, new), [] if old == new else [Lack(f"{path.name} has feet to take out")]
+    return FileChange(path, old, new), [] if old == new else [Lack(f"{path.name} has feet to remove")]
 
 
 def _one_song(song: Song, path: Path) -> None:
     """`data.sme` knows charts only by their place, so it can only serve one song."""
     if len(stems := song_stems(song.path.parent)) > 1:
-        raise FileError(path, f"its folder has {len(stems)} songs, and data.sme can only tell one; it is not written")
+        raise FileError(path, f"its folder has {len(stems)} songs, but data.sme can hold only one; it is not written")
 
 
 def _present(path: Path, song: Song) -> bytes | None:
@@ -208,11 +208,11 @@ def mark(song: Song, feet: Sequence[ChartFeet], styles: Sequence[str], force: bo
             new, lacking = comments.write_rows(song.data, one.chart, one.rows, one.letters)
             splices += new
             if lacking:
-                plan.lacks.append(Lack(f"{one.chart.label}: {lacking} rows lack their letters", one.chart.line))
+                plan.lacks.append(Lack(f"{one.chart.label}: {lacking} rows have no letters", one.chart.line))
             plan.counts["rows"] += len(one.rows)
     plan.data = apply(song.data, splices)
     if any(warning.code == "cr-only" for warning in song.warnings):
-        plan.notes.append(f"{song.path}: lines end at CR alone; a comment would swallow the rest, so none is written")
+        plan.notes.append(f"{song.path}: lines end at CR alone; a comment would hide the rest, so none is written")
     return plan
 
 
@@ -247,7 +247,7 @@ def unmark(song: Song, charts: Sequence[Chart], styles: Sequence[str], force: bo
             if ROWS in styles:
                 found += comments.strip_rows(song.data, part)
         if found:
-            plan.lacks.append(Lack(f"{chart.label}: {len(found)} markers to take out", chart.line))
+            plan.lacks.append(Lack(f"{chart.label}: {len(found)} markers to remove", chart.line))
         splices += found
     plan.data = apply(song.data, splices)
     return plan
@@ -268,8 +268,8 @@ def _count_measures(plan: MarkerPlan, song: Song, chart: Chart, states: Sequence
         plan.counts[one.state.value] += 1
     words = {
         State.MISSING: "have no feet yet",
-        State.STALE: "have feet that do not fit their rows any more",
-        State.DIFFERENT: "have feet other than the solver finds",
+        State.STALE: "have feet that no longer fit their rows",
+        State.DIFFERENT: "have other feet than the solver finds",
     }
     for state, text in words.items():
         if found := by_state.get(state):

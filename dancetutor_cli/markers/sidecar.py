@@ -56,10 +56,10 @@ def lack(path: Path, old: bytes | None, song: Song, chart: Chart, new: bytes) ->
     if entry == wanted:
         return None
     if entry is None:
-        return f"{chart.label}: {path.name} has no feet of it"
+        return f"{chart.label}: {path.name} has no feet for it"
     if entry.get("notes_sha256") != notes_hash(chart):
         return f"{chart.label}: its notes have changed since {path.name} was written"
-    return f"{chart.label}: {path.name} has feet other than the solver finds"
+    return f"{chart.label}: {path.name} has other feet than the solver finds"
 
 
 def notes_hash(chart: Chart) -> str:
@@ -112,7 +112,7 @@ def _files(path: Path, old: bytes | None) -> dict[str, Any]:
             return dict(files)
     except (FileError, KeyError, TypeError, AttributeError):
         pass
-    raise FileError(path, "is not a sidecar of dancetutor's; move it away or choose another style")
+    raise FileError(path, "is not a sidecar file of dancetutor; move it away or choose another style")
 
 
 def _find(files: dict[str, Any], song: Song, chart: Chart) -> Any:
@@ -162,7 +162,7 @@ def write_feet_text(path: Path, old: bytes | None, song: Song, feet: Sequence[Ch
 def check_text(path: Path, old: bytes | None) -> None:
     """FileError if a file that lies where the text goes is not ours."""
     if old is not None and not old.rstrip().rpartition(b"\n")[2].startswith(_OURS):
-        raise FileError(path, "is not of dancetutor's; move it away or choose --markers sidecar")
+        raise FileError(path, "was not written by dancetutor; move it away or choose --markers sidecar")
 
 
 # The style `smeditor`: feet as overrides in `data.sme`, which SMEditor reads and shows.

@@ -162,13 +162,13 @@ def charts_in(path: Path, old: bytes | None) -> list[Any]:
             return list(data["charts"])
     except (FileError, KeyError, TypeError):
         pass
-    raise FileError(path, "is no table of dancetutor's cues; move it away or choose another style")
+    raise FileError(path, "is not a table of cues by dancetutor; move it away or choose another style")
 
 
 def check_lua(path: Path, old: bytes | None) -> None:
     """FileError if the Lua file that is there is not ours."""
     if old is not None and not old.startswith(_HEAD):
-        raise FileError(path, "is no table of dancetutor's cues; move it away or choose another style")
+        raise FileError(path, "is not a table of cues by dancetutor; move it away or choose another style")
 
 
 def as_json(said: dict[str, Any]) -> bytes:

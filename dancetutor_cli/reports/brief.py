@@ -179,7 +179,7 @@ class BriefReport:
         return line if plain <= self._width else line[: self._width - 1 + len(line) - plain] + "…"
 
 
-_HINT = "--full tells every finding with its rows, --format json all there is, --statistics only counts"
+_HINT = "--full prints every finding with its rows, --statistics only counts, --format json everything"
 
 
 def _counts(chart: ChartResult) -> str:

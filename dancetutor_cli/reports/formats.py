@@ -70,8 +70,8 @@ class Tally:
     def suggestions(self) -> str:
         """What --suggest has found, also when that is nothing."""
         if not self.suggested:
-            return "no finding would go away with a good edit"
-        return f"{_plural(self.suggested, 'finding')} would go away with a small edit; --fix writes it"
+            return "no small edit would remove a finding"
+        return f"{_plural(self.suggested, 'finding')} would be removed by a small edit; --fix writes it"
 
     def closing_lines(self) -> list[str]:
         """What stands below all findings: the page and the summary."""

@@ -182,7 +182,7 @@ class Pack:
             if ini.problem is not None:
                 yield f"{safe_path(os.fspath(ini.path.parent.name))}/{safe(ini.path.name)}: {safe(ini.problem)}"
         if not found:
-            yield "no Pack.ini, which tells ITGmania whether the sync is NULL or ITG"
+            yield "no Pack.ini; it sets in ITGmania whether the sync is NULL or ITG"
 
     def outliers(self) -> Iterator[str]:
         """Charts that stand out, a line each, the farthest first."""

@@ -120,7 +120,7 @@ def dots(found: Sequence[Dot], title: str, y_name: str, *, diagonal: bool = Fals
 def facing(shares: Mapping[int, Sequence[int]]) -> str:
     """By meter, how many of the rows she faces where: the screen at the bottom, back to it at the top."""
     meters = sorted(shares)
-    out = _begin("where she faces", "meter", "rows, per cent") + _grid(100)
+    out = _begin("where the dancer faces", "meter", "% of rows") + _grid(100)
     wide = (WIDTH - _LEFT - _RIGHT) / max(len(meters), 1)
     for n, meter in enumerate(meters):
         rows, below = shares[meter], 0.0
@@ -200,20 +200,20 @@ def _figures(charts: Sequence[PackChart]) -> Iterable[str]:
         yield _figure("How they play against their meters", dots(estimated, "plays like", "plays like", diagonal=True))
     measured = [(one, one.result.figures) for one in charts if one.result.figures is not None]
     dense = [_dot(one, figures.nps_mean) for one, figures in measured]
-    yield _figure("Density: rows a second", dots(dense, "density", "rows a second"))
+    yield _figure("Density, rows per second", dots(dense, "density", "rows per second"))
     crossing = [
         _dot(one, _MINUTE * figures.tech.get("Crossovers", 0) / figures.seconds)
         for one, figures in measured
         if figures.seconds > 1
     ]
-    yield _figure("Crossovers a minute", dots(crossing, "crossovers a minute", "crossovers a minute"))
+    yield _figure("Crossovers per minute", dots(crossing, "crossovers per minute", "crossovers per minute"))
     faces: dict[int, list[int]] = defaultdict(lambda: [0] * len(FACES))
     for one, figures in measured:
         for n, count in enumerate(figures.facing):
             faces[min(one.result.meter, 30)][n] += count
     if faces:
         names = ("to the screen", "45°", "sideways", "135°", "back to it")
-        yield _figure("Where she faces", facing(faces) + _key(dict(zip(names, FACES, strict=True))))
+        yield _figure("Where the dancer faces", facing(faces) + _key(dict(zip(names, FACES, strict=True))))
 
 
 def _dot(one: PackChart, y: float) -> Dot:

@@ -75,7 +75,7 @@ def _grid(found: Judgement, low: float, high: float) -> list[str]:
         second = found.first + share * (found.last - found.first)
         said = clock(second).rpartition(".")[0]
         out.append(text(said, float(_x(float(share))), _HEIGHT - 26, "axis", text_anchor="middle"))
-    note = "dark: where attacks sound around the notes of a part; dots: each part's own best; line: the song's"
+    note = "dark: attacks of the music around the notes of a part; dots: best value of each part; line: of the song"
     out.append(text(note, _LEFT, _HEIGHT - 8, "note"))
     return out
 

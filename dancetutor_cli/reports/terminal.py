@@ -162,11 +162,11 @@ class JoinedWarnings:
                 named = others if len(others) <= _NAMED else others[: _NAMED - 1]
                 names = ", ".join(safe_path(str(other)) for other in named)
                 rest = f" and {len(others) - len(named)} others" if len(named) < len(others) else ""
-                more = f"; the same of {len(others)} more: {names}{rest}"
+                more = f"; the same for {len(others)} more: {names}{rest}"
             elif len(found) > 1:
                 times = "once" if len(found) == 2 else f"{len(found) - 1} times"
                 more = f"; the same {times} more in this file"
-            yield f"warning: {safe(warning)}{more}" + (" (-v tells each)" if more and not self._every else "")
+            yield f"warning: {safe(warning)}{more}" + (" (-v prints each)" if more and not self._every else "")
 
 
 # How far a film is: a bar with speed and time left on a terminal, a line now and then elsewhere.

@@ -221,7 +221,7 @@ class TextReport(LineReport):
         """Other plays: what they cost more and why, and their letters against those of the play above."""
         if chart.alternatives is None:
             return
-        self._line("other plays:" if chart.alternatives else "there is no other play")
+        self._line("other ways to play it:" if chart.alternatives else "there is no other way to play it")
         for other in chart.alternatives:
             why = ", ".join(f"{name} {cost:+}" for name, cost in other.terms)
             self._line("  ", self._paint(f"{other.extra:+}" if other.extra else "tie", "bold"), f"  {why}".rstrip())
@@ -245,7 +245,7 @@ class TextReport(LineReport):
             since = "" if cause.at_beat is None else f" of beat {round(cause.at_beat, 3):g}"
             self._line(f"forced doublestep on beat {round(cause.beat, 3):g}, by the {cause.cause}{since}{panel}")
         if len(forced) > _MOST_FORCED:
-            self._line(f"... and {len(forced) - _MOST_FORCED} more; --format json tells all")
+            self._line(f"... and {len(forced) - _MOST_FORCED} more; --format json has all")
 
     def _drawn(self, result: FileResult, chart: ChartResult | None, finding: Finding) -> None:
         """A finding, the edit that would remove it, and its rows."""
@@ -298,7 +298,7 @@ def explain(rule: type[Rule]) -> str:
         share = settings["share"]
         lines += [
             "",
-            f"How quick it is in at most {share:g} % of the charts of a meter, and is reported:",
+            f"Reported up to these times, at which at most {share:g} % of the charts of a meter have it:",
         ]
         lines += [f"  {line}" for line in described(rule.times, share)]
     return "\n".join(lines) + "\n"
@@ -315,5 +315,5 @@ def explain_all() -> str:
         summary = (inspect.getdoc(rule) or "").splitlines()[0]
         severity, more, _ = default_severity(code).partition(";")
         lines.append(f"  {code} {rule.name:22} {severity + '*' * len(more):8} {summary}")
-    lines += ["", "* otherwise for some charts; --explain RULE tells which"]
+    lines += ["", "* different for some charts; --explain RULE says for which"]
     return "\n".join(lines) + "\n"

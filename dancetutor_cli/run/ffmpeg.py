@@ -146,7 +146,7 @@ def _last_words(log: IO[bytes]) -> str:
     lines = [re.sub(r"\[[^\]]*\]\s*", "", line) for line in lines]
     telling = [line for line in lines if "No space left" in line or "Permission denied" in line]
     if telling or not lines:
-        return telling[0] if telling else "it gave no message"
+        return telling[0] if telling else "it printed no message"
     return lines[0] if lines[0] == lines[-1] else f"{lines[0]}; {lines[-1]}"  # the cause, and what came of it
 
 

@@ -76,7 +76,9 @@ def write_atomic(path: Path, data: bytes | Callable[[BinaryIO], object], *, expe
         file.flush()
         os.fsync(file.fileno())
         if expect is not None and _content(target) != expect:
-            raise ChangedError(path, "was changed by somebody else in the meantime; nothing was written, run it again")
+            raise ChangedError(
+                path, "was changed by another program in the meantime; nothing was written, run it again"
+            )
         if fcntl is None:
             file.close()  # Windows renames no open file
         temporary.replace(target)
@@ -158,7 +160,7 @@ def _status(path: Path, target: Path) -> os.stat_result | None:
     except OSError as error:
         raise FileError(path, f"cannot be written: {error.strerror}") from error
     if not stat.S_ISREG(status.st_mode):
-        raise FileError(path, "is a folder" if stat.S_ISDIR(status.st_mode) else "is no ordinary file")
+        raise FileError(path, "is a folder" if stat.S_ISDIR(status.st_mode) else "is not a regular file")
     # A rename asks only the folder; the mark "read-only" of the file is the author's word, for root too.
     if not status.st_mode & 0o222 or not os.access(target, os.W_OK):
         raise FileError(path, "is read-only; nothing was written")
@@ -268,7 +270,7 @@ def _keep_owner_and_mode(path: Path, target: Path, descriptor: int, old: os.stat
         try:
             os.chown(descriptor, old.st_uid, old.st_gid)
         except PermissionError:
-            raise FileError(path, "belongs to somebody else; writing it would change its owner") from None
+            raise FileError(path, "belongs to another user; writing it would change its owner") from None
     os.chmod(descriptor, stat.S_IMODE(old.st_mode))
     for name in _attributes(target):
         with contextlib.suppress(OSError):
@@ -315,7 +317,7 @@ def check_file(path: Path, suffixes: Sequence[str] = (), *, or_device: bool = Fa
     """
     suffix = path.suffix.lower()
     if suffix in (*CHART_SUFFIXES, EDIT_SUFFIX):
-        raise FileError(path, "is a chart's name, and this would take its place; give another")
+        raise FileError(path, "is the name of a chart, which would be overwritten; give another name")
     device = or_device and path.exists() and not path.is_file() and not path.is_dir()
     if suffixes and suffix not in suffixes and not device:
         raise UsageError(f"{path}: the name must end in {one_of(suffixes)}")

@@ -70,4 +70,4 @@ def _check(source: MarkedYaml, section: str, words: dict[str, str], english: dic
         wanted, there = (sorted(set(_PLACE.findall(one))) for one in (english[label], text))
         if wanted != there:
             must = " ".join(f"{{{place}}}" for place in wanted) or "no {places}"
-            raise source.error((section, label), f"{section}.{label} must have {must}, as the English words do")
+            raise source.error((section, label), f"{section}.{label} must have {must}, like the English text")

@@ -97,7 +97,7 @@ def _sendable(error: Exception) -> DancetutorError:
     if isinstance(error, OSError):
         return UnavailableError(os_error_message(error))
     said = (str(error).strip().splitlines() or [""])[-1][:300]
-    return WorkFailedError(f"a fault of the program: {type(error).__name__}: {said}")
+    return WorkFailedError(f"an internal error: {type(error).__name__}: {said}")
 
 
 class SerialWorkers:
@@ -180,9 +180,7 @@ class ClusterWorkers:
         try:
             result = future.result()
         except Exception as error:  # whatever the cluster itself ran into
-            return FinishedWork(
-                task.key, error=WorkFailedError(f"the cluster gave a piece of work up: {type(error).__name__}")
-            )
+            return FinishedWork(task.key, error=WorkFailedError(f"the cluster gave up a task: {type(error).__name__}"))
         assert isinstance(result, FinishedWork)
         return result
 

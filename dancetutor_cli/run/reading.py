@@ -29,10 +29,10 @@ MAX_DEPTH = 48  # mappings and lists inside of each other
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 _KINDS = (
     (stat.S_ISDIR, "is a folder; it cannot be read as a file"),
-    (stat.S_ISFIFO, "is a named pipe, no file; it is not read"),
-    (stat.S_ISSOCK, "is a socket, no file; it is not read"),
-    (stat.S_ISCHR, "is a device, no file; it is not read"),
-    (stat.S_ISBLK, "is a device, no file; it is not read"),
+    (stat.S_ISFIFO, "is a named pipe, not a file; it is not read"),
+    (stat.S_ISSOCK, "is a socket, not a file; it is not read"),
+    (stat.S_ISCHR, "is a device, not a file; it is not read"),
+    (stat.S_ISBLK, "is a device, not a file; it is not read"),
 )
 
 
@@ -140,14 +140,14 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(found) < len(pairs):
         seen: set[str] = set()
         twice = next(name for name, _ in pairs if name in seen or seen.add(name))  # type: ignore[func-returns-value]
-        raise _BadValueError(f"has the name '{shown_key(twice)}' twice in one object; only one of them can be meant")
+        raise _BadValueError(f"has the name '{shown_key(twice)}' twice in one object; remove one")
     return found
 
 
 def _finite(text: str) -> float:
     number = float(text)
     if not isfinite(number):
-        raise _BadValueError("has a number that is infinite or none; write an ordinary one")
+        raise _BadValueError("has a number that is infinite or not a number; write a finite one")
     return number
 
 

@@ -41,14 +41,14 @@ def fault_of(folder: Path) -> str:
         return "is not an absolute path"
     real = Path(os.path.realpath(folder))
     if not real.is_relative_to(PACKAGE) and any(real.is_relative_to(tree) for tree in _trees()):
-        return "lies in a folder whose charts are read"
+        return "is in a folder whose charts are read"
     for place in (real, *real.parents):
         try:
             status = place.lstat()
         except (FileNotFoundError, NotADirectoryError):
             continue
         except OSError as error:
-            return f"cannot be looked at: {error.strerror}"
+            return f"cannot be checked: {error.strerror}"
         if not stat.S_ISDIR(status.st_mode):
             return "cannot be written"
         if fault := _fault(status, may_be_shared=place != real):
@@ -79,7 +79,7 @@ def read_file(path: Path) -> bytes:
     with open(descriptor, "rb") as file:  # noqa: PTH123
         status = os.fstat(descriptor)
         if not stat.S_ISREG(status.st_mode) or _fault(status):
-            raise PermissionError(f"{path} is no file of this user alone")
+            raise PermissionError(f"{path} can be changed by other users")
         return file.read()
 
 
@@ -164,7 +164,7 @@ def _fault(status: os.stat_result, *, may_be_shared: bool = False) -> str:
     if not hasattr(os, "geteuid"):
         return ""
     if status.st_uid not in (0, os.geteuid()):
-        return "belongs to somebody else"
+        return "belongs to another user"
     if not status.st_mode & _OTHERS or (may_be_shared and status.st_mode & stat.S_ISVTX):
         return ""
     if not status.st_mode & stat.S_IWOTH and _is_private_group(status.st_gid):

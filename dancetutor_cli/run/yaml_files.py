@@ -93,7 +93,7 @@ class _Loader(_Base):  # type: ignore[misc]
             for key_node, _ in node.value:
                 key = self.construct_object(key_node)
                 if key in seen:
-                    problem = f"the key '{shown_key(key)}' stands here twice; only one of them can be meant"
+                    problem = f"the key '{shown_key(key)}' is here twice; remove one"
                     raise yaml.MarkedYAMLError(problem=problem, problem_mark=key_node.start_mark)
                 seen.add(key)
         return mapping
@@ -101,9 +101,7 @@ class _Loader(_Base):  # type: ignore[misc]
     def construct_yaml_float(self, node: Any) -> float:
         number = float(super().construct_yaml_float(node))
         if not isfinite(number):
-            raise yaml.MarkedYAMLError(
-                problem="a number must be finite; write an ordinary one", problem_mark=node.start_mark
-            )
+            raise yaml.MarkedYAMLError(problem="a number must be finite", problem_mark=node.start_mark)
         return number
 
     def construct_yaml_int(self, node: Any) -> int:
@@ -120,7 +118,7 @@ _Loader.add_constructor("tag:yaml.org,2002:int", _Loader.construct_yaml_int)
 def _without_tag(problem: str) -> str:
     """What libyaml says, without the name of a tag: that may be anything."""
     head, found, _ = problem.partition("could not determine a constructor for the tag")
-    return f"{head}has a tag (!...), which nothing here has a use for" if found else problem
+    return f"{head}has a tag (!...), which is not supported" if found else problem
 
 
 def _mark(node: Any, keys: Keys, lines: dict[Keys, int], met: set[int]) -> None:

@@ -228,7 +228,9 @@ def test_three_in_the_same_rows_have_feet_and_markers_each(tmp_path: Path) -> No
 def test_no_picture_has_three_but_each_dances_alone(tmp_path: Path, command: str, suffix: str) -> None:
     path, out = tmp_path / "three.sm", tmp_path / f"out.{suffix}"
     path.write_text(HEAD + block("pump-double", THREE))
-    with pytest.raises(UsageError, match=r"is for 3 players, and at most two dance in one picture: .* --player 1 to 3"):
+    with pytest.raises(
+        UsageError, match=r"is for 3 players, and at most two dancers fit in one picture: .* --player 1 to 3"
+    ):
         run(command, path, "-o", out)
     assert not out.exists()
 

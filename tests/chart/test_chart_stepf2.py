@@ -35,7 +35,7 @@ def cells(chart: Chart) -> list[tuple[int, int, str]]:
 def test_a_note_in_braces_is_one_note() -> None:
     found, said = notes("{1|v|0|0}0000", "0{1|h|0|0}001", "00{2|n|0|0}00", "00{3|n|0|0}00")
     assert found == [(0, 0, "TAP"), (1, 1, "TAP"), (1, 4, "TAP"), (2, 2, "HOLD")]
-    assert len(said) == 1 and "notes in {...} are StepF2's" in said[0] and said[0].endswith("4 rows")
+    assert len(said) == 1 and "notes in {...} are StepF2 notation" in said[0] and said[0].endswith("4 rows")
 
 
 def test_a_fake_in_braces_does_not_count() -> None:
@@ -144,14 +144,14 @@ def test_a_third_part_of_a_routine_is_told_and_not_read() -> None:
     chart = read(*rows, steps_type="pump-routine")
     assert [cells(part) for part in chart.players] == [[(0, 0, "TAP")], [(0, 1, "TAP")]]
     assert [one.message for one in chart.warnings if one.code == "several-players"] == [
-        "'&' parts the notes of 3 players; those of the first two are read, as in the games"
+        "'&' separates the notes of 3 players; those of the first two are read, as in the games"
     ]
 
 
 @pytest.mark.parametrize("row", ["X000", "x000"])
 def test_elsewhere_they_are_letters_nobody_knows(row: str) -> None:
     _, said = notes(row, "0100", "0010", "0001", steps_type="dance-single")
-    assert said == [f"unknown-note: '{row[0]}' is no note; the column is read as empty"]
+    assert said == [f"unknown-note: '{row[0]}' is not a note; the column is read as empty"]
 
 
 @pytest.mark.parametrize("row", ["{1|n|1", "{9|n|0|0}0000", "{1|n|0|0", "{}{}{}", "{{1|n|0|0}}000"])

@@ -131,7 +131,7 @@ def test_what_cannot_be_mended_is_told_and_left(tmp_path: Path) -> None:
         (["--fix", "DT202:1"], "has 6 charts, so choose one"),
         ([*HARD, "--fix", "DT202:9"], "has 1 finding of DT202"),
         (["--fix", "safe", "--format", "json"], "leave --format out"),
-        (["--fix", "safe", "--watch"], "--watch does not go with --fix"),
+        (["--fix", "safe", "--watch"], "--watch cannot be used with --fix"),
         (["--diff"], "belong to --fix"),
     ],
 )
@@ -165,7 +165,7 @@ def test_a_file_that_changes_meanwhile_is_left_alone(ssc: Path, monkeypatch: pyt
 
     monkeypatch.setattr(fix, "write_atomic", meanwhile)
     said = Said(ssc, "--fix", "DT202")
-    assert said.status == 2 and "changed by somebody else" in said.err
+    assert said.status == 2 and "changed by another program" in said.err
     assert ssc.read_bytes() == edited and not temporary_name(ssc).exists()
 
 

@@ -60,7 +60,7 @@ def test_a_file_that_changes_while_it_is_worked_on_is_left_alone(ssc: Path, monk
     monkeypatch.setattr(annotate, "write_atomic", meanwhile)
     said = Said([ssc])
     assert said.status == 2
-    assert "changed by somebody else" in said.err
+    assert "changed by another program" in said.err
     assert ssc.read_bytes() == edited
 
 
@@ -124,6 +124,6 @@ def test_stubs_in_a_folder_are_one_warning(tmp_path: Path) -> None:
         (tmp_path / f"s{n}.sm").write_text("#TITLE:M;\n#MUSIC:a.ogg;\n#BPMS:0=120;\n")
     said = Said([tmp_path])
     (line,) = said.err.splitlines()
-    assert line.startswith(f"warning: {tmp_path / 's0.sm'}:1: no charts: the file has no NOTES; the same of 6 more: ")
+    assert line.startswith(f"warning: {tmp_path / 's0.sm'}:1: no charts: the file has no NOTES; the same for 6 more: ")
     assert said.out.splitlines()[-1] == "7 files: 7 unchanged"
     assert len(Said([tmp_path, "-v"]).err.splitlines()) == 7

@@ -30,7 +30,7 @@ def test_check_says_where_and_why(song: Path, ssc: Path) -> None:
     ssc.write_bytes(text[:at] + text[at:].replace(b"{dt1 LR}", b"{dt1 RL}", 1).replace(b"{dt1 LRL", b"{dt1 LR", 1))
     said = Said([ssc, "--check"])
     assert said.status == 1
-    assert "has feet other than the solver finds" in said.out
+    assert "has other feet than the solver finds" in said.out
     assert "has feet that do not fit their rows any more" in said.out
 
 

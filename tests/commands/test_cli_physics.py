@@ -48,7 +48,7 @@ def test_what_is_wrong_is_said_in_one_line_and_nothing_is_written(tmp_path: Path
 def test_a_push_is_told_and_a_wrong_one_refused_before_the_work(tmp_path: Path) -> None:
     out = tmp_path / "a.npz"
     result = animate(*PART, "-o", out, "--push", "9:300:left", "--trip", "9.4")
-    assert "warning: pushed at 9.000 s with 300 N: her hips give way by " in result.stderr
+    assert "warning: pushed at 9.000 s with 300 N: the hips move by " in result.stderr
     assert "foot is caught" in result.stderr and out.exists()
     assert "there is no direction 'up'" in said(*PART, "-o", tmp_path / "b.npz", "--push", "9:300:up")
     assert "the motion lasts from 8.000 s" in said(*PART, "-o", tmp_path / "b.npz", "--push", "99:300:left")

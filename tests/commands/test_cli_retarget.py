@@ -108,7 +108,7 @@ def test_an_animation_of_a_character_is_a_motion_too(shared_data: Path, tmp_path
     assert np.ptp(feet) > 0.1, "she jumps"
     assert "there is no animation 'Jmp'; there are: " in said(rogue, "-o", out, "--animation", "Jmp")
     robot = shared_data / "characters" / "raylib_robot.glb"
-    assert "is no usable humanoid (14 of 15 bones found): no spine; " in said(robot, "-o", out)
+    assert "is not a usable humanoid (14 of 15 bones): no spine; " in said(robot, "-o", out)
 
 
 def test_what_is_wrong_is_said_in_one_line_and_nothing_is_written(bvh: Path, tmp_path: Path) -> None:

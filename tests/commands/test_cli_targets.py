@@ -82,7 +82,7 @@ def test_a_film_is_written_through_a_link_and_takes_no_devices_place(
     Path("gone.mp4").symlink_to("nothing.mp4")
     Path("films/old.mp4").chmod(0o444)
     capsys.readouterr()
-    whys = {"null": "is no ordinary file", "gone": "is a link to a file that is not there", "film": "is read-only"}
+    whys = {"null": "is not a regular file", "gone": "is a link to a file that is not there", "film": "is read-only"}
     for name, why in whys.items():
         assert run("render", demo, *ONE, *FILM, "-o", f"{name}.mp4") == 2
         assert f"dancetutor: {name}.mp4: {why}" in capsys.readouterr().err.splitlines()[-1]
@@ -118,7 +118,7 @@ def test_nothing_is_written_over_a_chart(
     said = capsys.readouterr()
     assert (
         said.err.splitlines()[-1]
-        == f"dancetutor: {demo}: is a chart's name, and this would take its place; give another"
+        == f"dancetutor: {demo}: is the name of a chart, which would be overwritten; give another name"
     )
     assert demo.read_bytes() == before
 
@@ -126,9 +126,9 @@ def test_nothing_is_written_over_a_chart(
 @pytest.mark.parametrize(
     ("command", "option", "name", "why"),
     [
-        ("render", "--poster", "own.edit", "is a chart's name, and this would take its place; give another"),
-        ("animate", "--report", "own.edit", "is a chart's name, and this would take its place; give another"),
-        ("render", "--results", "own.edit", "is a chart's name, and this would take its place; give another"),
+        ("render", "--poster", "own.edit", "is the name of a chart, which would be overwritten; give another name"),
+        ("animate", "--report", "own.edit", "is the name of a chart, which would be overwritten; give another name"),
+        ("render", "--results", "own.edit", "is the name of a chart, which would be overwritten; give another name"),
         ("render", "--poster", "m.ogg", "the name must end in .png"),
         ("animate", "--report", "m.ogg", "the name must end in .json"),
         ("render", "--results", "m.ogg", "the name must end in .jsonl or .json"),

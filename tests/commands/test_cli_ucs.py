@@ -124,7 +124,7 @@ def test_a_text_of_somebody_else_is_left_alone(ucs: Path) -> None:
     text.write_text("my own notes\n")
     for words in (("annotate", ucs), ("annotate", ucs, "--strip", "--markers", "measure")):
         result = run(*words)
-        assert result.exit_code == 2 and "is not of dancetutor's" in result.output
+        assert result.exit_code == 2 and "was not written by dancetutor" in result.output
     assert run("annotate", ucs, "--strip").exit_code == 0
     assert text.read_text() == "my own notes\n"
 
@@ -133,7 +133,7 @@ def test_fix_and_films_leave_it_alone(ucs: Path) -> None:
     before = ucs.read_bytes()
     assert run("analyze", ucs, "--fix", "safe", "--no-cache").exit_code == 0
     result = run("render", ucs, "--background", "--into-file")
-    assert result.exit_code == 2 and "a .ucs file names no film" in result.output
+    assert result.exit_code == 2 and "a .ucs file cannot name a film" in result.output
     assert run("animate", ucs, "-o", ucs).exit_code == 2
     assert ucs.read_bytes() == before
 
@@ -162,5 +162,5 @@ def test_a_broken_file_stops_no_other(ucs: Path, ssc: Path) -> None:
     for words in (("analyze", ucs.parent, "--no-cache"), ("annotate", ucs.parent)):
         result = run(*words)
         assert result.exit_code == 2 and "Traceback" not in result.output
-        assert "broken.ucs:3: 'X....' stands here, where no :BPM=" in result.output or "DT101" in result.output
+        assert "broken.ucs:3: 'X....' is here, but no :BPM=" in result.output or "DT101" in result.output
     assert ucs.with_name("Song S17.feet.txt").exists() and b"{dt1" in (ucs.parent / ssc.name).read_bytes()

@@ -61,7 +61,7 @@ def test_a_bake_says_what_gave_way_and_is_still_a_motion(monkeypatch: pytest.Mon
     plan, context = planned(chart().timing, play(MEDLEY), pad())
     motion = bake_plan(plan, context, 60.0, (3.0, 6.0))
     assert [note.split(" no path of ")[1].split(" keeps")[0] for note in motion.notes] == [
-        "her balance", "the height of her body"
+        "the balance", "the height of the body"
     ]  # fmt: skip
     start, end = whole_span(plan, context)  # a section is cut out of the piece that it is in, here all of the dance
     assert all(note.startswith(f"from {start:.1f} s to {end:.1f} s") for note in motion.notes)

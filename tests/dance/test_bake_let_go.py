@@ -33,7 +33,7 @@ def test_only_what_she_plays_is_a_contact(motion: Motion) -> None:
         (2, 1, DropReason.LEAP),
         (4, 1, DropReason.LEAP),
     ]
-    assert motion.notes[0].startswith("2 notes let go")
+    assert motion.notes[0].startswith("2 notes not played")
     figures = {f.name: f for f in report(motion).figures}
     assert figures["notes let go"].value == 2 and figures["notes let go"].goal is None
     assert figures["contacts"].value == 5 and figures["contacts missed"].value == 0

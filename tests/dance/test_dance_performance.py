@@ -110,7 +110,7 @@ def test_of_two_it_draws_both_where_their_files_have_them(tmp_path: Path) -> Non
     dance = danced(film(song, *paths))
     for motion, path in zip(dance.motions[1.0], paths, strict=True):
         assert_equal(motion, read_npz(path))
-    with pytest.raises(UsageError, match="danced by 2, so give --dance 2 times"):
+    with pytest.raises(UsageError, match="for 2 dancers, so give --dance 2 times"):
         danced(film(song, paths[0]))
 
 

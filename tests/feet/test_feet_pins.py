@@ -74,8 +74,8 @@ def test_measures_without_the_mark_are_no_overrides() -> None:
     [
         (b"L", b"1000\n0100\n", "pin-unreadable", "1 tokens for 2 rows", 10),
         (b"LRL", b"1000\n0100\n", "pin-unreadable", "3 tokens for 2 rows", 12),
-        (b"L(LR)", b"1000\n0100\n", "pin-unreadable", "row 2 of its rows with steps has 1 of them, and 2 letters", 12),
-        (b"Lx", b"1000\n0100\n", "pin-unreadable", "'x' is no foot", 11),
+        (b"L(LR)", b"1000\n0100\n", "pin-unreadable", "row 2 of its rows with steps has 1 step but 2 letters", 12),
+        (b"Lx", b"1000\n0100\n", "pin-unreadable", "'x' is not a foot", 11),
         (b"L(R", b"1000\n0100\n", "pin-unreadable", "'(' without its other bracket", 11),
         (b"L()", b"1000\n0100\n", "pin-unreadable", "brackets without letters", 12),
         (b"(Ll)", b"1001\n", "feet-far", "the left foot cannot be on columns 0 and 3 at once", 12),

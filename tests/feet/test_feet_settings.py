@@ -70,8 +70,12 @@ def test_letters_that_do_not_fit_are_a_finding(song: Song) -> None:
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
-        ("feet:\n- when: {path: x.sm}\n  steps:\n    4: Q\n", 4, ("'Q' is no limb", "L, l, R, r, <, >, or . for any")),
-        ("feet:\n- when: {path: x.sm}\n  steps:\n    beat four: L\n", 4, ("'beat four' is no beat",)),
+        (
+            "feet:\n- when: {path: x.sm}\n  steps:\n    4: Q\n",
+            4,
+            ("'Q' is not a limb", "L, l, R, r, <, >, or . for any"),
+        ),
+        ("feet:\n- when: {path: x.sm}\n  steps:\n    beat four: L\n", 4, ("'beat four' is not a beat",)),
         ("feet:\n- steps: {4: L}\n", 2, ("path, steps-type, difficulty, meter",)),
         ("feet:\n- when: {path: x.sm}\n  step: {4: L}\n", 3, ("unknown key 'step'", "when, steps, ignore")),
         ("feet: {4: L}\n", 1, ("feet must be a list", "when, steps, ignore")),

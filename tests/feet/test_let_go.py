@@ -94,6 +94,6 @@ def test_it_is_told_in_one_line() -> None:
         DroppedNote(2.0, 5, 2, DropReason.LIMBS),
     ]
     assert dropped_notes_message(found) == (
-        "3 notes let go, for nobody plays them: 1 more panels at once than limbs, 2 a foot would have to leap at once"
+        "3 notes not played: 1 more panels at once than limbs, 2 a foot would have to leap"
     )
-    assert dropped_notes_message(()) == "" and dropped_notes_message(found[:1]).startswith("1 note let go")
+    assert dropped_notes_message(()) == "" and dropped_notes_message(found[:1]).startswith("1 note not played")

@@ -100,7 +100,7 @@ def test_a_preset_of_ones_own_extends_another(tmp_path: Path) -> None:
         ("roll-window: 0.35\n", None, "model is missing: one of thesis, itg"),
         ("extends: thesis\nweights: 7\n", 2, "mapping"),
         ("extends: itg\npads: dance\n", 2, "list of steps types"),
-        ("extends: itg\npads:\n - dance\n - danse\n", 4, "'danse' is no steps type (did you mean dance?); their firs"),
+        ("extends: itg\npads:\n - dance\n - danse\n", 4, "'danse' is not a steps type (did you mean dance?); their f"),
     ],
 )
 def test_what_is_wrong_is_named_with_file_and_line(tmp_path: Path, text: str, line: int | None, words: str) -> None:
@@ -136,10 +136,10 @@ def test_a_strangers_preset_extends_nothing_outside_its_folder(tmp_path: Path) -
     (tmp_path / "inside").mkdir()
     path = written(tmp_path / "inside", "extends: ../base.yaml\n")
     assert feet.load_preset(path).weight("spin") == 7
-    with pytest.raises(FileError, match="leads out of the folder"):
+    with pytest.raises(FileError, match="outside this file's folder"):
         feet.load_preset(path, confined=True)
     (tmp_path / "inside" / "link.yaml").symlink_to(tmp_path / "base.yaml")
-    with pytest.raises(FileError, match="leads out of the folder"):
+    with pytest.raises(FileError, match="outside this file's folder"):
         feet.load_preset(written(tmp_path / "inside", "extends: link.yaml\n"), confined=True)
 
 

@@ -91,7 +91,7 @@ def test_quietly_an_entry_is_made_without_a_word(
     ("options", "said"),
     [
         (("--into-file",), "belongs to --background"),
-        (("--background", "--section", "0:2"), "--section does not go with --background"),
+        (("--background", "--section", "0:2"), "--section cannot be used with --background"),
         (("--background", "--layout", "highway"), "without a highway"),
         (("--background", "--into-file", "-o", "FOLDER/film.mp4"), ".dancetutor.mp4"),
         (("--background", "--into-file", "-o", "ELSEWHERE/a.dancetutor.mp4"), "in the song's folder, beside s.sm"),

@@ -44,7 +44,7 @@ def test_a_hardware_encoder_is_tried_and_not_believed(monkeypatch: pytest.Monkey
         "encoder nvenc",
         "without",
         "no such device",
-        "an NVIDIA GPU and its driver; x264 does without",
+        "an NVIDIA GPU and its driver; x264 needs neither",
     )
     monkeypatch.setattr(probe, "_has_cuda", lambda: True)
     assert probe.choose("auto") == "x264"
@@ -74,7 +74,7 @@ def test_lines_are_short_and_the_mend_stands_below(
     lines = capsys.readouterr().out.splitlines()
     assert max(map(len, lines)) <= 80
     at = lines.index("without encoder nvenc  no device")
-    assert lines[at + 1].startswith(" " * 23 + "mend: an NVIDIA GPU")
+    assert lines[at + 1].startswith(" " * 23 + "to repair: an NVIDIA GPU")
     assert sum(line[0] != " " for line in lines) == len(examine())
 
 

@@ -44,7 +44,7 @@ def test_the_notes_are_marked_and_light_nothing(film: PreparedFilm) -> None:
     for second in film.plan.notes.second[left]:
         assert lights.at(1, float(second)) == (0.0, -1)
     assert lights.at(0, float(film.plan.notes.second[0]))[0] > 0.5
-    assert film.warnings[0].startswith("2 notes let go")
+    assert film.warnings[0].startswith("2 notes not played")
 
 
 def test_words_say_it_and_what_the_linter_finds_there(film: PreparedFilm) -> None:

@@ -214,7 +214,7 @@ def test_a_shared_module_that_raises_leaves_no_traceback(tmp_path: Path) -> None
         timeout=120,
     )
     assert run.stderr == ""
-    said = "a fault of the program: RuntimeError: x.yaml: no such colour"
+    said = "an internal error: RuntimeError: x.yaml: no such colour"
     assert run.stdout.splitlines() == ["2 None", f"None {said}"]
 
 

@@ -135,7 +135,7 @@ def test_split_timing_goes_along_into_the_file_but_not_into_an_edit() -> None:
     song = song_of(SPLIT, "song.ssc")
     ((_, error),) = edit.edit_files(song, feet_of(song))
     assert isinstance(error, edit.EditError)
-    assert "timing of its own" in str(error)
+    assert "its own timing" in str(error)
     _, (chart,), data = added(song)
     assert chart.timing == song.charts[0].timing
     assert b"\n" not in data.replace(b"\r\n", b"")

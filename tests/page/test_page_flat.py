@@ -67,7 +67,7 @@ def test_arrows_are_panels_while_somebody_plays_along(flat: Browser, page_file: 
     flat.key("ArrowUp")
     assert text(flat, ".rate-text") == "100 %" and "1 hit" in text(flat, ".score") and "1 wrong" in text(flat, ".score")
     flat.key("q", "KeyQ")
-    assert text(flat, ".said") == "That key is no panel. The panels are D F J K, or ← ↓ ↑ →."
+    assert text(flat, ".said") == "That key is not a panel. The panels are D F J K, or ← ↓ ↑ →."
     flat.key("ArrowRight")
     assert text(flat, ".said").startswith("1 hit")
     flat.turn(60)  # and at the end how it went

@@ -235,7 +235,7 @@ def test_the_ramp_says_why_it_does_nothing(opened: Browser, page_file: Path) -> 
 def test_the_keys_are_said_for_a_while(opened: Browser) -> None:
     opened.key("p", "KeyP")
     opened.key("q", "KeyQ")
-    assert said(opened).startswith("That key is no panel.")
+    assert said(opened).startswith("That key is not a panel.")
     opened.turn(6)
     assert said(opened).startswith("0 hit")
 

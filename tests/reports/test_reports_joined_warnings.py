@@ -24,17 +24,17 @@ def test_many_are_one_with_the_first_names() -> None:
     stubs = [(f"{name}.sm", f"{name}.sm:{line}: {EMPTY}") for line, name in enumerate("abcdefg", 1)]
     other = [("x.ssc", "x.ssc: there is no pad for smx-single")]
     assert told([*stubs[:3], *other, *stubs[3:]]) == [
-        f"warning: a.sm:1: {EMPTY}; the same of 6 more: b.sm, c.sm, d.sm and 3 others (-v tells each)",
+        f"warning: a.sm:1: {EMPTY}; the same for 6 more: b.sm, c.sm, d.sm and 3 others (-v prints each)",
         "warning: x.ssc: there is no pad for smx-single",
     ]
-    assert told(stubs[:2]) == [f"warning: a.sm:1: {EMPTY}; the same of 1 more: b.sm (-v tells each)"]
+    assert told(stubs[:2]) == [f"warning: a.sm:1: {EMPTY}; the same for 1 more: b.sm (-v prints each)"]
 
 
 def test_charts_and_numbers_make_no_other_kind() -> None:
     said = "measures begin on the line of their comma"
     charts = [("x.sm", f"x.sm:1: dance-single {name}: {n} {said}") for name, n in (("Easy 5", 60), ("Hard 7", 62))]
     assert told(charts) == [
-        f"warning: x.sm:1: dance-single Easy 5: 60 {said}; the same once more in this file (-v tells each)"
+        f"warning: x.sm:1: dance-single Easy 5: 60 {said}; the same once more in this file (-v prints each)"
     ]
 
 
@@ -47,13 +47,13 @@ def test_what_does_not_name_its_file_is_given_its_name() -> None:
     said = "at rate 1.1 she lets 3 notes go"
     both = [("a.sm", said), ("b.sm", said)]
     assert told(both[:1]) == [f"warning: a.sm: {said}"]
-    assert told(both) == [f"warning: a.sm: {said}; the same of 1 more: b.sm (-v tells each)"]
+    assert told(both) == [f"warning: a.sm: {said}; the same for 1 more: b.sm (-v prints each)"]
     assert told(both, every=True) == [f"warning: a.sm: {said}", f"warning: b.sm: {said}"]
 
 
 def test_the_same_words_twice_in_one_file() -> None:
     twice = [("a.sm", f"a.sm:1: {EMPTY}")] * 2
-    assert told(twice) == [f"warning: a.sm:1: {EMPTY}; the same once more in this file (-v tells each)"]
+    assert told(twice) == [f"warning: a.sm:1: {EMPTY}; the same once more in this file (-v prints each)"]
     assert told(twice, every=True) == [f"warning: a.sm:1: {EMPTY}; the same once more in this file"]
 
 

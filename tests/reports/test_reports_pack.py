@@ -84,9 +84,9 @@ def test_a_song_or_a_quiet_run_has_no_page(pack: Path) -> None:
     [
         ("[Group]\nSyncOffset=ITG\n", None),
         ("\ufeff[group]\r\nsyncoffset = null\r\n", None),
-        ("[Other]\nSyncOffset=ITG\n", "says no SyncOffset"),
-        ("[Group]\n;SyncOffset=ITG\n", "says no SyncOffset"),
-        ("[Group]\nSyncOffset=0.009\n", "the game knows NULL and ITG"),
+        ("[Other]\nSyncOffset=ITG\n", "has no SyncOffset"),
+        ("[Group]\n;SyncOffset=ITG\n", "has no SyncOffset"),
+        ("[Group]\nSyncOffset=0.009\n", "the game knows only NULL and ITG"),
     ],
 )
 def test_the_sync_of_a_pack(tmp_path: Path, text: str, problem: str | None) -> None:

@@ -113,7 +113,7 @@ def _check(given: _Upright, body: Skeleton, poses: tuple[Array, Array]) -> None:
     if not mean <= OFF:
         raise FileError(
             given.captured.path,
-            f"its poses cannot be carried over: segments point {mean:.0f} degrees elsewhere on average, "
+            f"its poses cannot be transferred: segments are {mean:.0f} degrees off on average, "
             f"{worst} {angles[worst]:.0f}; are its left and right, and its joints' names, right?",
         )
 
@@ -148,7 +148,7 @@ class _Upright:
     def __init__(self, captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton) -> None:
         self.captured, self.joints = captured, joints
         if any(float(np.ptp(captured.places[:, [joints[a], joints[b]]], axis=1).max()) < 1e-6 for a, b in _EXTENT):
-            raise FileError(captured.path, "its joints lie in one point; export it with its bones' lengths")
+            raise FileError(captured.path, "its joints are all at one point; export it with the lengths of its bones")
         pose = standing_pose(_paths(captured, joints), body)
         self.turn, self.rest, self.turns = pose.turn, pose.places, pose.turns
         self.scale = _leg({n: body.rest[body.index(n)] for n in joints}) / _leg(self.rest)

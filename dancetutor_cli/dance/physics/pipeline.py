@@ -348,7 +348,7 @@ def tuned(body: Skeleton, neutral: Style) -> Tuning:
                 best = score, tuning
     assert best is not None
     if not np.isfinite(best[0]):
-        raise DancetutorError("no springs were found with which a ragdoll of this body follows; use another character")
+        raise DancetutorError("no ragdoll of this body can follow the motion; use another character")
     return best[1]
 
 

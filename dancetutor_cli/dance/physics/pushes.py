@@ -165,7 +165,7 @@ def parse_push(text: str) -> Push:
     """A push as on the command line, TIME:FORCE:DIRECTION. UsageError, one line, for what is none."""
     parts = text.split(":")
     if len(parts) != 3:
-        raise UsageError(f"--push {text}: give TIME:FORCE:DIRECTION, for example 12.5:300:left")
+        raise UsageError(f"--push {text}: write TIME:FORCE:DIRECTION, for example 12.5:300:left")
     second, newtons = (_number(text, word, what) for word, what in zip(parts[:2], ("time", "force"), strict=True))
     if not 0 < newtons <= STRONGEST:
         raise UsageError(f"--push {text}: the force must be more than 0 and at most {STRONGEST:g} newtons")
@@ -245,13 +245,13 @@ def force_of(push: Push, motion: Motion) -> Array:
 def catch_foot(motion: Motion, feet: AnkleTracks, trip: Stumble) -> tuple[AnkleTracks, Array, float, int]:
     """Feet of which one is caught; the force (3,) that throws her, second and which foot it is.
 
-    The toes of the motion's rotations are late, too, in place. Raises UsageError if no foot is in the air from then on.
+    The toes of the motion's rotations are late, too, in place. Raises UsageError if no foot is in the air after that.
     """
     down = float(feet.places[..., 1].min())
     high = feet.places[..., 1] > down + 0.02
     late = np.flatnonzero(high.any(axis=1) & (motion.times >= trip.second))
     if not len(late):
-        raise UsageError(f"--trip {trip.second:g}: no foot is in the air from then on")
+        raise UsageError(f"--trip {trip.second:g}: no foot is in the air after that")
     first = int(late[0])
     side = int(np.argmax(feet.places[first, :, 1]))
     start = float(motion.times[first])
@@ -356,7 +356,7 @@ def disturbed(motion: Motion, pushes: Sequence[Push], trips: Sequence[Stumble]) 
         missed = missed_by_trip(motion, at, side)
         rotations, root = repinned(motion.skeleton, (motion.rotations, motion.root), feet)
         name = ("left", "right")[side]
-        note = f"tripped at {at:.3f} s: her {name} foot is caught"
+        note = f"tripped at {at:.3f} s: the {name} foot is caught"
         motion = without(replace(motion, rotations=rotations, root=root), missed, note, at)
     return motion, blows
 
@@ -394,6 +394,6 @@ def with_push_notes(motion: Motion, root: Array, pushes: Sequence[Push], missed:
     for push, gone in zip(pushes, missed, strict=True):
         apart = motion.root - root
         gave = 100 * float(np.hypot(*apart[_farthest(motion, apart, push), [0, 2]]))
-        note = f"pushed at {push.second:.3f} s with {push.newtons:g} N: her hips give way by {gave:.0f} cm"
+        note = f"pushed at {push.second:.3f} s with {push.newtons:g} N: the hips move by {gave:.0f} cm"
         motion = without(motion, gone, note, push.second)
     return motion

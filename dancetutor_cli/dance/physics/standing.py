@@ -121,7 +121,7 @@ def _up_axis(given: JointPaths, zero: tuple[Array, Array] | None) -> Array:
     if zero is not None:
         return zero[1]
     raise FileError(
-        given.path, "neither its zero pose nor its motion says which way is up; add a few seconds of standing"
+        given.path, "neither its zero pose nor its motion shows which way is up; add a few seconds of standing"
     )
 
 
@@ -133,7 +133,7 @@ def _mean_axes(given: JointPaths, axis: Array) -> tuple[Array, Array]:
     if float(np.linalg.norm(mean)) < TOWARDS:
         mean = left[: max(1, round(given.fps))].mean(axis=0)
     if float(np.linalg.norm(mean)) < 1e-6:
-        raise FileError(given.path, "its hips and shoulders lie in one line; nothing says where it faces")
+        raise FileError(given.path, "its hips and shoulders are in one line, so its direction is unknown")
     return _unit(mean), axis
 
 

@@ -226,7 +226,7 @@ def balanced_path(
     near = np.where(alone & ~_brief(alone, body.commit_time * rate), body.commit, NEAR)
     near[[0, -1]] = END
     want = _PathGoals(replace(support, middle=middle), weight, near, offset, *room)
-    what = f"the path of her balance {span(times)}"
+    what = f"the path of the balance {span(times)}"
     found = _solved(want, flight, slowness, rate, body, what)
     softened = found.softened
     for _ in range(tightened):

@@ -244,7 +244,7 @@ def height_path(wish: HeightWish, flights: Array, body: BodySettings) -> HeightP
     )  # fmt: skip
     every, top = np.arange(len(nodes)), np.interp(nodes, times, wish.highest)
     room = Limits(every, np.full((len(nodes), 1), 1 / UNIT), np.full(len(nodes), -np.inf), top / UNIT, GIVE_ROOM)
-    solution = solve_surely(problem, [force, room], f"the height of her body {span(times)}")
+    solution = solve_surely(problem, [force, room], f"the height of the body {span(times)}")
     return HeightPath(nodes, solution.x, _slopes(nodes, solution.x, flying), solution.softened)
 
 

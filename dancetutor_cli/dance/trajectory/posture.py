@@ -44,7 +44,7 @@ from dancetutor_cli.dance.trajectory.momentum import counter_motion
 from dancetutor_cli.dance.waits import waiting_at
 
 Array = NDArray[np.float64]
-BALANCE, HEIGHT = "her balance", "the height of her body"  # what `softened` may name
+BALANCE, HEIGHT = "the balance", "the height of the body"  # what `softened` may name
 STANDING_HEIGHT = 0.93  # metres, of the centre of mass
 LEAST_FALL, LEAST_SEEN = 0.4, 0.3  # parts of g that the ground carries at least, as omega goes by it
 

@@ -202,7 +202,7 @@ def check_state(scene: Scene, state: FrameState) -> None:
         raise UsageError(f"frame: lit and lit_by need one entry for each of the pad's {scene.panels} panels")
     # NaN fails the comparison too.
     if state.joints is not None and not np.abs(state.joints).max() < FAR_AWAY:
-        raise UsageError("frame: the joints have places that are no place on Earth; bake the motion again")
+        raise UsageError("frame: the positions of joints are out of range; bake the motion again")
 
 
 def foot_marks(scene: Scene, joints: Array, whose: str = "") -> tuple[FootMark | None, FootMark | None]:

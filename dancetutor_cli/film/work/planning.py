@@ -108,9 +108,9 @@ def _file_motions(request: FilmRequest, performance: Performance) -> tuple[Motio
     """The motions of files in place of the performance's own."""
     count = len(performance.dancers)
     if performance.rate != 1.0:
-        raise UsageError("--dance is of music at its own speed; leave --rate out, or bake the file again")
+        raise UsageError("the motion of --dance is for music at normal speed; leave --rate out, or bake it again")
     if len(request.motions) != count:
-        raise UsageError(f"the chart is danced by {count}, so give --dance {count} time{'s' if count > 1 else ''}")
+        raise UsageError(f"the chart is for {count} dancers, so give --dance {count} time{'s' if count > 1 else ''}")
     from dancetutor_cli.formats.npz import read_npz
 
     return tuple(read_npz(path) for path in request.motions)

@@ -82,7 +82,7 @@ def _film(plan: PlanFile) -> Film:
 
     data = plan.path.read_bytes()
     if hashlib.sha256(data).hexdigest() != plan.digest:
-        raise FileError(plan.path, "was changed by somebody else while the film was made")
+        raise FileError(plan.path, "was changed by another program while the film was made")
     return Film(pickle.loads(data))
 
 
@@ -313,7 +313,7 @@ def close_film(report: Report, job: FilmJob, opened: OpenedFilm, digests: dict[i
     if job.encoding.target != PICTURES:
         for part in opened.parts:
             if digest_of(part.path) != digests[part.number]:
-                raise FileError(part.path, "was changed by somebody else while the film was made; run it again")
+                raise FileError(part.path, "was changed by another program while the film was made; run it again")
     finish(list(opened.parts), job.encoding, opened.sound, opened.folder, job.output)
     remove_work(opened.folder)
     return size_of(job.output)
