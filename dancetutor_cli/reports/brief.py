@@ -128,7 +128,7 @@ class BriefReport:
             rule = self._paint(f"{first.first.rule} {first.first.name}", STYLES[first.first.severity])
             charts = len({(one.path, one.chart and one.chart.index) for one in found})
             what = "file" if first.chart is None else "chart"
-            lines.append(f"{rule}: {_sum(found)} in {charts} {what}{'' if charts == 1 else 's'}, for example")
+            lines.append(f"{rule}: {_sum(found)} findings in {charts} {what}{'' if charts == 1 else 's'}, for example")
             lines += [
                 self._cut(f"  {self._entry_line(one, False)}") for one in sorted(found, key=lambda x: x.order)[:each]
             ]
@@ -182,14 +182,22 @@ class BriefReport:
 _HINT = "--full prints every finding with its rows, --statistics only counts, --format json everything"
 
 
+_MOVES = {  # those that the line of a chart counts, by name
+    "doublestep": "doublestep",
+    "crossover-full": "180° crossover",
+    "spin": "spin",
+    "bracket": "bracket",
+    "hand": "hand",
+}
+
+
 def _counts(chart: ChartResult) -> str:
     found = [sum(f.severity == severity for f in chart.findings) for severity in ("error", "warning")]
     words = [f"{n} {name}{'' if n == 1 else 's'}" for n, name in zip(found, ("error", "warning"), strict=True) if n]
-    moves = ("doublestep", "crossover-full", "spin", "bracket", "hand")
-    counted = [f"{chart.counts[move]} {move}" for move in moves if chart.counts.get(move)]
+    counted = [f"{n} {name}{'' if n == 1 else 's'}" for move, name in _MOVES.items() if (n := chart.counts.get(move))]
     rows = f"{chart.row_count} rows" if chart.playable else "no pad"
-    likes = [f"plays like {chart.estimate.meter:.1f}"] if chart.estimate else []
-    likes += [f"scores like {chart.score.meter:.2f}"] if chart.score else []
+    likes = [f"plays like meter {chart.estimate.meter:.1f}"] if chart.estimate else []
+    likes += [f"scores like meter {chart.score.meter:.2f}"] if chart.score else []
     return f"{safe(chart.label)}: {', '.join([*likes, rows, *counted])}" + (f"; {' and '.join(words)}" if words else "")
 
 

@@ -194,7 +194,7 @@ class Pack:
         ]
         for how_far, one, meter in sorted(off, key=lambda x: -x[0]):
             if how_far >= _FEW:
-                yield f"{one.name} plays like {meter:.1f}"
+                yield f"{one.name} plays like meter {meter:.1f}"
         yield from (said for _, said in sorted(_much_of(charts), reverse=True))
 
 
@@ -211,8 +211,8 @@ def _much_of(charts: list[PackChart]) -> Iterator[tuple[float, str]]:
             share = one.rows_of(technique) / one.result.row_count
             enough = one.rows_of(technique) >= _LEAST_ROWS and len(others) >= _FEWEST_SONGS
             if enough and share >= _TIMES * usual:
-                rows = f"{one.rows_of(technique)} rows with {technique}, {share:.0%} of all"
-                said = f"{one.name}: {rows} (others {usual:.0%})"
+                rows = f"{one.rows_of(technique)} rows with {technique}, {100 * share:.0f} % of its rows"
+                said = f"{one.name}: {rows} (usual at this meter: {100 * usual:.0f} %)"
                 yield share / usual, said
 
 
@@ -224,9 +224,8 @@ def _some(names: list[str]) -> str:
 
 # A pack in a few lines of text, at the end of a run over many songs.
 
-LINES = 18  # at most
-_TYPES, _OUTLIERS, _MISSING = 2, 4, 5
-_LAST = 20  # it and all meters above stand together, below a +
+LINES = 11  # at most: what one pastes into a chat
+_TYPES, _OUTLIERS, _MISSING = 2, 3, 3
 
 
 def pack_lines(pack: Pack, width: int) -> list[str]:
@@ -235,32 +234,35 @@ def pack_lines(pack: Pack, width: int) -> list[str]:
     if not charts:
         return []
     lines = [f"pack {safe_path(pack.folder.rsplit('/', 1)[-1])}: {pack.songs} songs, {len(charts)} charts"]
-    lines += _listed("missing", pack.missing(), _MISSING)
-    lines += _listed("stands out", pack.outliers(), _OUTLIERS)
     types = Counter(one.result.steps_type for one in charts)
     for steps_type, _ in types.most_common(_TYPES):
-        lines += _by_meter(steps_type, [one for one in charts if one.result.steps_type == steps_type])
+        lines.append(_meters_line(steps_type, [one for one in charts if one.result.steps_type == steps_type]))
     lines.append(_by_technique(charts))
+    lines += _listed("missing", pack.missing(), _MISSING)
+    lines += _listed("stands out", pack.outliers(), _OUTLIERS)
     return [line if len(line) <= width else line[: width - 1] + "…" for line in lines[:LINES]]
 
 
-def _by_meter(steps_type: str, charts: list[PackChart]) -> Iterator[str]:
-    """Three rows: meters, charts labelled so, charts that play so."""
-    labels = Counter(min(one.result.meter, _LAST) for one in charts)
-    plays = Counter(min(round(one.result.estimate.meter), _LAST) for one in charts if one.result.estimate)
-    shown = range(min([*labels, *plays]), max([*labels, *plays]) + 1)
-    heads = {meter: "+" if meter == _LAST else str(meter) for meter in shown}
-    wide = 1 + max(len(str(one)) for one in (*labels.values(), *plays.values(), *heads.values()))
-    yield f"  {steps_type:14}" + "".join(f"{heads[meter]:>{wide}}" for meter in shown)
-    yield f"  {'  labelled':14}" + "".join(f"{labels[meter] or '·':>{wide}}" for meter in shown)
-    if plays:
-        yield f"  {'  plays like':14}" + "".join(f"{plays[meter] or '·':>{wide}}" for meter in shown)
+def _meters_line(steps_type: str, charts: list[PackChart]) -> str:
+    """How many charts, and the middle half of their meters and of the meters that they play like."""
+    count = f"{len(charts)} chart{'' if len(charts) == 1 else 's'}"
+    plays = [round(one.result.estimate.meter) for one in charts if one.result.estimate]
+    like = f"; they play like meter {_middle(plays)}" if plays else ""
+    half = "half of them have " if len(charts) > 1 else ""
+    return f"  {safe(steps_type)}: {count}, {half}meter {_middle([one.result.meter for one in charts])}{like}"
+
+
+def _middle(meters: list[int]) -> str:
+    """The quartiles, "4 to 10", or one number where they are the same."""
+    ordered = sorted(meters)
+    low, high = ordered[len(ordered) // 4], ordered[-1 - len(ordered) // 4]
+    return f"{low} to {high}" if low != high else f"{low}"
 
 
 def _by_technique(charts: list[PackChart]) -> str:
     """How many charts have each technique."""
-    told = [f"{technique} {sum(one.rows_of(technique) > 0 for one in charts)}" for technique in TECHNIQUES]
-    return f"  charts with {', '.join(told)}"
+    counts = {technique: sum(one.rows_of(technique) > 0 for one in charts) for technique in TECHNIQUES}
+    return f"  charts with {', '.join(f'{technique}: {count}' for technique, count in counts.items())}"
 
 
 def _listed(what: str, said: Iterable[str], most: int) -> Iterator[str]:

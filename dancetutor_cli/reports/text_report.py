@@ -80,25 +80,38 @@ MOVE_COLUMNS = (
     Column("gallops", 7, ("gallop",)),
     Column("hands", 5, ("hand",)),
 )
-_ROWS, _COST = Column("rows", 5, ()), Column("cost", 6, ())
+_ROWS, _COST = Column("rows", 5, ()), Column("cost\nunits", 6, ())
 
 
-def chart_table(chart: ChartResult, terminal: Terminal) -> str:
-    """The table as text for this terminal, with a final newline."""
-    counts = {column: sum(chart.counts.get(move, 0) for move in column.moves) for column in MOVE_COLUMNS}
-    shown = tuple(column for column in MOVE_COLUMNS if column.always or counts[column])
+def chart_table(chart: ChartResult, terminal: Terminal, charts: Sequence[ChartResult] = ()) -> str:
+    """The table as text for this terminal, with a final newline.
+
+    charts : those of its file; all their tables have the same columns, as wide
+    """
+    every = [_column_counts(one) for one in charts or (chart,)]
+    shown = tuple(column for column in MOVE_COLUMNS if column.always or any(counts[column] for counts in every))
     columns = (_ROWS, _COST, *shown)
     if sum(column.width + 1 for column in columns) > terminal.width:
-        return _listed(chart, counts, shown)
-    cells = [str(chart.row_count), str(chart.cost), *(str(counts[column] or "·") for column in shown)]
-    widths = tuple(max(column.width, len(cell)) for column, cell in zip(columns, cells, strict=True))
+        return _listed(chart, _column_counts(chart), shown)
+    cells = _cells(chart, shown)
+    lines = zip(*(_cells(one, shown) for one in charts or (chart,)), strict=True)
+    widths = tuple(max(column.width, *map(len, line)) for column, line in zip(columns, lines, strict=True))
     numbers = " ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True))
     return f"{_header(terminal, columns, widths)}{numbers}\n"
 
 
+def _column_counts(chart: ChartResult) -> dict[Column, int]:
+    return {column: sum(chart.counts.get(move, 0) for move in column.moves) for column in MOVE_COLUMNS}
+
+
+def _cells(chart: ChartResult, shown: Sequence[Column]) -> list[str]:
+    counts = _column_counts(chart)
+    return [str(chart.row_count), str(chart.cost), *(str(counts[column] or "·") for column in shown)]
+
+
 def _listed(chart: ChartResult, counts: dict[Column, int], shown: Sequence[Column]) -> str:
     """The same numbers one below the other, for a terminal that is too narrow for the table."""
-    numbers = {"rows": chart.row_count, "cost": chart.cost}
+    numbers = {"rows": chart.row_count, "cost units": chart.cost}
     numbers.update({" ".join(column.header.split("\n")): counts[column] for column in shown})
     width = max(len(str(number)) for number in numbers.values())
     return "".join(f"{number!s:>{width}} {name}\n" for name, number in numbers.items())
@@ -205,11 +218,11 @@ class TextReport(LineReport):
         known_by = f"  hash {chart.hash}" if chart.hash else ""
         self._line("\n", self._paint(safe(chart.label), "bold"), name, self._paint(preset + known_by, "dim"))
         if chart.playable:
-            self._stream.write(chart_table(chart, self._terminal))
+            self._stream.write(chart_table(chart, self._terminal, [one for one in result.charts if one.playable]))
             if chart.estimate is not None:
-                self._line(f"plays like {chart.estimate.bill}", self._paint(f"  ({chart.estimate.span})", "dim"))
+                self._line(f"plays like meter {chart.estimate.bill}", self._paint(f"  ({chart.estimate.span})", "dim"))
             if chart.score is not None:
-                self._line(f"scores like {chart.score.bill}", self._paint(f"  ({chart.score.span})", "dim"))
+                self._line(f"scores like meter {chart.score.bill}", self._paint(f"  ({chart.score.span})", "dim"))
             self._alternatives(chart)
             self._forced(chart)
         for finding in chart.findings:
@@ -223,8 +236,8 @@ class TextReport(LineReport):
             return
         self._line("other ways to play it:" if chart.alternatives else "there is no other way to play it")
         for other in chart.alternatives:
-            why = ", ".join(f"{name} {cost:+}" for name, cost in other.terms)
-            self._line("  ", self._paint(f"{other.extra:+}" if other.extra else "tie", "bold"), f"  {why}".rstrip())
+            why = "".join(f", {name} {cost:+}" for name, cost in other.terms).replace(",", ":", 1)
+            self._line("  ", self._paint(f"{other.extra:+} cost units" if other.extra else "tie", "bold"), why)
             for run in other.runs:
                 beats = f"{round(run.first_beat, 3):g}"
                 if run.last_beat > run.first_beat:

@@ -66,11 +66,8 @@ def test_a_run_over_a_pack_ends_with_its_page(pack: Path) -> None:
 
 
 def test_labels_are_counted_by_meter(pack: Path) -> None:
-    lines = printed(pack, "--full").splitlines()
-    at = next(n for n, line in enumerate(lines) if line.split()[:1] == ["labelled"])
-    heads, counts = lines[at - 1].split()[1:], lines[at].split()[1:]
-    labelled = dict(zip(heads, counts, strict=True))
-    assert labelled["3"] == "6" and labelled["6"] == "5"
+    (line,) = [line for line in printed(pack, "--full").splitlines() if line.startswith("  dance-single: ")]
+    assert line.startswith("  dance-single: 11 charts, half of them have meter 3 to 6; they play like meter ")
 
 
 def test_a_song_or_a_quiet_run_has_no_page(pack: Path) -> None:

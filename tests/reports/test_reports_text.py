@@ -85,6 +85,14 @@ def test_the_table_is_as_rich_draws_it() -> None:
         assert chart_table(CHART, Terminal(100, colours)) == drawing.getvalue()
 
 
+def test_the_tables_of_a_file_have_the_same_columns() -> None:
+    other = replace(CHART, row_count=1_234_567, counts={"sideswitch-left": 3, "doublestep": 1})
+    tables = [chart_table(one, Terminal(120), [CHART, other]).splitlines() for one in (CHART, other)]
+    assert tables[0][:-1] == tables[1][:-1] and "side" in "".join(tables[0][:-1])
+    assert {len(line) for table in tables for line in table[-2:]} == {len(tables[0][-1])}
+    assert chart_table(CHART, Terminal(120)).splitlines()[0] != tables[0][0]
+
+
 def test_without_a_terminal_nobody_asks_rich() -> None:
     code = (
         "import io, sys; from dancetutor_cli.reports.terminal import terminal_of\n"
