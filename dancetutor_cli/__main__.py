@@ -93,7 +93,7 @@ def _report_end(error: BaseException) -> int:
 
 
 def _reader_gone() -> int:
-    """The reader of a pipe has gone (`| head`); nobody is left to be told. A shell makes this of SIGPIPE."""
+    """The reader of a pipe has gone (`| head`); nobody is left to report to. A shell makes this of SIGPIPE."""
     from dancetutor_cli.run.process import drop_output
 
     drop_output()

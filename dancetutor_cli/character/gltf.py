@@ -321,7 +321,7 @@ def load_character(name_or_path: str) -> Character:
 def check_character(name_or_path: str) -> str:
     """The name, or the file's absolute path, after making sure that `load_character` takes it.
 
-    Raises what `load_character` raises. It is for refusing a character before the dear work begins.
+    Raises what `load_character` raises. It is for refusing a character before the slow work begins.
     """
     if name_or_path in BUILT_IN:
         return name_or_path

@@ -5,7 +5,7 @@
       |   timing_tags, timing       when a beat is
       |   grid, cells, note_data    measures and rows; what stands in their cells; notes
       |   ucs                       a UCS file of Pump, which has none of these
-    model.Song, model.Chart       what every other room works with
+    model.Song, model.Chart       what every other package works with
 
     selection, pack_files         which charts a path means; settings files that lie beside them
     music, audio                  which file is the song's music; its samples

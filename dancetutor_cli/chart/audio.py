@@ -35,7 +35,7 @@ _LEAST_FRAMES = 3  # one after the other, so that it is MP3 and no accident
 class AudioHead:
     """What a music file is. kind : "vorbis", "opus", "mp3", "wav", "flac" or another codec's name
 
-    rate : samples a second; seconds : length as the games play it; None: the file does not tell
+    rate : samples a second; seconds : length as the games play it; None: the file does not say
     lead : seconds of silence that the games play before the first sample that is decoded
     """
 
@@ -230,7 +230,7 @@ class Sound:
 def decode(path: Path, head: AudioHead, seconds: float = LONGEST) -> Sound:
     """The first so many seconds of a music file; EncoderError where ffmpeg cannot. Memory is bounded by `LONGEST`.
 
-    ffmpeg takes off the samples by which encoders of MP3 delay their music; no game does, so it is told not to
+    ffmpeg takes off the samples by which encoders of MP3 delay their music; no game does, so it is set not to
     (`skip_manual`). A first frame that says Info is silence in the games and nothing in ffmpeg: the start is later.
     """
     rate, channels = head.rate if head.rate in _NATIVE else _NATIVE[0], min(head.channels, 2)

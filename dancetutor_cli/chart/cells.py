@@ -16,7 +16,7 @@ from dancetutor_cli.chart.model import Kind, ReadWarning
 # `{note|look|fake|0}` is one note of one column, however it looks; a 1 in the third place makes it a fake. X, Y and Z
 # are steps, and x, y and z heads of holds, of the first, second and third player of a chart for several; the game shows
 # each player's in a colour of their own. A chart with steps of the first and the second player and none of a third one
-# is read as one for two. What else stands in it (the third one's holds, plain notes) is for whoever has that half of
+# is read as one for two. What else stands in it (the third one's holds, plain notes) is for anyone who has that half of
 # the pad. One with steps of all three is for them and more, see `chart.cells`.
 
 PLAYERS = b"XYZxyz"
@@ -175,9 +175,9 @@ def parts_of(cells: Cells, marks: Mapping[tuple[int, int], int], columns: int, l
     """What each player has, in the order of their letters, left before right; every mine is everybody's.
 
     Of two players each has the notes with one's letter, and what nothing marks on one's half of the pads. With a third
-    one plain notes are a fourth player's, as StepF2 colours them, if there are enough of them, else of whoever mostly
-    steps that panel. A colour that mostly stands on both pads at once is that of two players, one on either. Whoever
-    has fakes alone does not dance.
+    one plain notes are a fourth player's, as StepF2 colours them, if there are enough of them, else of anyone who
+    mostly steps that panel. A colour that mostly stands on both pads at once is that of two players, one on either.
+    Anyone who has fakes alone does not dance.
 
     marks : (tick, column) -> player whose letter stands there
     """

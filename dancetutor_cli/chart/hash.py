@@ -33,7 +33,7 @@ class HashError(DancetutorError):
 
 
 def chart_hash(song: Song, chart: Chart) -> str | None:
-    """The hash of a chart of a song, in lower case; None for lights, and where its file tells no BPM.
+    """The hash of a chart of a song, in lower case; None for lights, and where its file says no BPM.
 
     Of a chart for several, each player's part has the hash of the whole.
     """

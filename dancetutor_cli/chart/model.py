@@ -1,4 +1,4 @@
-"""What a chart file says: plain frozen data, made by the reader, used by every other room.
+"""What a chart file says: plain frozen data, made by the reader, used by every other package.
 
 Positions are kept for every row, so that findings can point and markers can be spliced in. Beats are counted in
 ticks of 1/48 beat (`TICKS_PER_BEAT`), the grid of the games.
@@ -115,7 +115,7 @@ class Chart:
     players : of a chart for several what each of them steps, see `chart.note_data`; else empty
     player : of such a part whose it is, from 1, else 0; written : the chart that it is a part of, without `players`;
         first_column : its first column there
-    marked : letters of rows do not tell steps alone: they mark whose a note is (StepF2; of such a chart and of its
+    marked : letters of rows are more than steps: they mark whose a note is (StepF2; of such a chart and of its
         parts), or are those of a .ucs
     """
 

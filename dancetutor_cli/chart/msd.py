@@ -80,7 +80,7 @@ def plain(value: bytes) -> bytes:
 def blanked(value: bytes) -> tuple[bytes, frozenset[int]]:
     """The value at its length: comments and escaping `\\` as blanks; and the offsets of those `\\`.
 
-    A `\\` is no character of its row: whoever looks at single characters must leave out these offsets.
+    A `\\` is no character of its row: anyone who looks at single characters must leave out these offsets.
     """
     if b"//" not in value and b"\\" not in value:
         return value, frozenset()

@@ -110,7 +110,7 @@ class _PartCells:
         return NoteData(notes, *self._tables(at), tuple(self._parts[at].warnings))
 
     def of_players(self, parts: range, value: Value) -> NoteData:
-        """That of a chart for several, whose players have a part each, or whose letters tell whose a note is."""
+        """That of a chart for several, whose players have a part each, or whose letters say whose a note is."""
         (start, end), form, timing = value
         players = [self._cells[self._bounds[at] : self._bounds[at + 1]] for at in parts]
         own = [
@@ -227,7 +227,7 @@ def with_players(chart: Chart, read: NoteData, data: bytes) -> Chart:
             notes=notes,
             rows=rows,
             measures=read.players[n].measures if on_one_pad else chart.measures,
-            warnings=chart.warnings if n == 0 else (),  # told once
+            warnings=chart.warnings if n == 0 else (),  # reported once
             player=n + 1,
             written=chart,
             first_column=0 if on_one_pad else n * columns,

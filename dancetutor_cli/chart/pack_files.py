@@ -22,13 +22,13 @@ FILE_NAME = "dancetutor.yaml"
 
 
 def find_settings_file(start: Path) -> Path | None:
-    """The nearest dancetutor.yaml in the folder of `start` or above it; whoever reads it says so if it is no file."""
+    """The nearest dancetutor.yaml in the folder of `start` or above it; the reader says so if it is no file."""
     return next((Path(place) for place in _places(start) if os.path.exists(place)), None)  # noqa: PTH110 (quicker)
 
 
 def check_not_a_link_out(path: Path) -> None:
     """Raise FileError if a dancetutor.yaml that lay there is a link that leads out of its folder: what is said of its
-    mistakes would tell of a file that is none of its author's business."""
+    mistakes would be about a file that is none of its author's business."""
     if path.is_symlink() and is_outside(path, path.parent):
         raise FileError(path, "is a link to a file outside its folder; put a copy there, or name it with --config")
 
@@ -132,7 +132,7 @@ def condition_of(when: When, folder: Path) -> Condition:
 
 # The one list of files in which people say whose foot it is: for the solver, for caches and for films.
 #
-# Imports neither numpy nor the reader of charts: a cached result is told without them.
+# Imports neither numpy nor the reader of charts: a cached result is reported without them.
 
 EDITOR_FILE = "data.sme"  # SMEditor's, in the song's folder
 

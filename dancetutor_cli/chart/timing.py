@@ -101,7 +101,7 @@ class Timing:
 
         The time is that of the exact decimals in the file: where floats could round the wrong way, fractions decide.
         seconds : what `seconds` says of these ticks, where it has been asked
-        first : where ticks begin anew, and ascend from there; None: they do not
+        first : where ticks begin again, and ascend from there; None: they do not
         """
         ticks = np.asarray(ticks, dtype=np.int64)
         out = np.zeros(ticks.shape, dtype=np.int64)
@@ -253,7 +253,7 @@ _SECTION_HELP = "write START:END in seconds (10:25), beats (b16:b48) or measures
 
 
 def check_section(text: str) -> None:
-    """Raise `UsageError` for what is no section, whatever the song: so that a slip is told before a chart is read."""
+    """Raise `UsageError` for what is no section, whatever the song, before a chart is read."""
     _ends(text)
 
 

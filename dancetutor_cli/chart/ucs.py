@@ -247,7 +247,7 @@ class _Steps:
         self.notes.append((hold.first, column, Kind.HOLD if long else Kind.TAP, hold.last if long else -1))
 
 
-# Blocks -> ticks and timing. Seconds are exact; beats are those of the file wherever 1/48 beat can tell them.
+# Blocks -> ticks and timing. Seconds are exact; beats are those of the file wherever 1/48 beat can express them.
 
 
 @dataclass(slots=True)

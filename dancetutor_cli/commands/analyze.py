@@ -241,7 +241,7 @@ def _watch(request: LintRequest, options: dict[str, Any]) -> int:
 
 
 def _report_errors(work: Callable[[], object]) -> None:
-    """A wrong configuration is told and waited out: the next save may mend it."""
+    """A wrong configuration is reported and waited out: the next save may correct it."""
     try:
         work()
     except DancetutorError as error:

@@ -122,7 +122,7 @@ Source = tuple[Path, bytes | None]  # a chart file, and what standard input had 
 
 
 def _suffix_of(data: bytes) -> str:
-    """By what a chart's format is told where no name tells it."""
+    """How a chart's format is recognised where no name says it."""
     if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b":":
         return UCS_SUFFIX
     return ".ssc" if b"#NOTEDATA" in data.upper() else ".sm"

@@ -1,4 +1,4 @@
-"""`dancetutor doctor`: what this machine can render with, a line each, and below it the mend of what is missing."""
+"""`dancetutor doctor`: what this machine can render with, a line each, and below it how to repair what is missing."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _OPTIONAL = {
     "nvenc": "an NVIDIA GPU and its driver; x264 needs neither",
     "vaapi": "a GPU with a VA driver; x264 needs neither",
 }
-# Scripts in which titles come, with letters that tell whether a font has them.
+# Scripts in which titles come, with letters that say whether a font has them.
 SCRIPTS = {"Western": "éßø", "Cyrillic": "Жя", "Japanese": "あ日", "Korean": "한", "Chinese": "们"}
 
 
@@ -175,7 +175,7 @@ def _disk() -> Check:
     return Check("disk", "ok", message)
 
 
-# `dancetutor doctor`: what this machine can render with, a line each, and below it the mend of what is missing.
+# `dancetutor doctor`: what this machine can render with, a line each, and below it how to repair what is missing.
 
 WIDTH = 80  # columns
 

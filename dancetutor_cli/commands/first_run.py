@@ -31,7 +31,7 @@ _NO_STORE_MESSAGE = (
 def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = None, *, quiet: bool = False) -> None:
     """Say that kernels of these presets are compiled, if they are; only to a terminal, where somebody wonders.
 
-    size : tells the bytes of the note data to be solved; little is solved without compiling. None: compile in any case
+    size : gives the bytes of the note data to be solved; little is solved without compiling. None: compile in any case
 
     That they cannot be kept in the usual place is said everywhere: each run may take a minute longer for it.
     """

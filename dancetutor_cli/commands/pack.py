@@ -75,9 +75,9 @@ _BRIEF_ROWS = 4  # of a chart in it
 
 
 class PackReport:
-    """Takes the results of a run as they come, and tells of all of them at the end.
+    """Takes the results of a run as they come, and reports all of them at the end.
 
-    options : of the command line; known : whether only what is new against a baseline is told
+    options : of the command line; known : whether only what is new against a baseline is reported
     files : how many there are: one song is no pack; view : how findings are shown
     """
 

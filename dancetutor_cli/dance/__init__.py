@@ -7,7 +7,7 @@
       |   foot_path.both_feet         where a foot is at any time
       |   trajectory.posture          balance, height, facing, reach, counter-rotation, beat bounce
     trajectory.posture.Trajectory   the body over the feet at even times
-      |   ik.targets.ik_targets       where pelvis, shoulders, hands and feet shall be
+      |   ik.targets.ik_targets       where pelvis, shoulders, hands and feet must be
     ik.full_body.Targets
       |   ik.full_body.solve          all joints at once
     ik.full_body.Poses              local rotations and root

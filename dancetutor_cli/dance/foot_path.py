@@ -147,7 +147,7 @@ def foot_path(track: FootTrack, times: Array, settings: MotionSettings) -> FootP
 
 
 def shoe_path(track: FootTrack, times: Array, settings: MotionSettings) -> tuple[Array, Array]:
-    """Ball (f, 2) over the ground and yaw (f,) of a foot at `times` (f,), as of `foot_path`, which is dearer."""
+    """Ball (f, 2) over the ground and yaw (f,) of a foot at `times` (f,), as of `foot_path`, which is costlier."""
     moves = track.moves
     if not moves or any(isinstance(move, Shake) or min(move.pitches) < 0.0 for move in moves):
         path = foot_path(track, times, settings)

@@ -236,7 +236,7 @@ def around_crossings(
         holds[_between(times, grip.start - away, grip.end + away), far] = False
         gone = CROSSING_SHARE * way_time(grip, reach)
         holds[_between(times, grip.start - gone, grip.end + gone), near] = False
-        if _chance(plan, grip.start)[1] < numbers.both:  # it takes the rail anew
+        if _chance(plan, grip.start)[1] < numbers.both:  # it takes the rail again
             holds[_between(times, grip.start, grip.end), near] = True
             apart[_between(times, grip.start, grip.end), near] = -numbers.near
     return holds, apart
@@ -265,7 +265,7 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
 
     She holds it with both hands or with one, by turns as `bar.grip_phrases` says. A hand lets go before the body goes
     or turns so far that its arm would not reach, would bend beyond its joints' limits or go through the trunk, and
-    whenever a hand goes to a panel; it takes the rail anew, farther on, when the body has travelled along. In turns
+    whenever a hand goes to a panel; it takes the rail again, farther on, when the body has travelled along. In turns
     that are long enough the far hand may cross over before her.
     """
     times = np.arange(span[0], span[1], 1.0 / RATE)

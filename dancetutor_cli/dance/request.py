@@ -1,4 +1,4 @@
-"""What dance is wanted, and the chart that it is about: read and checked, before anything dear is done."""
+"""What dance is wanted, and the chart that it is about: read and checked, before anything slow is done."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def with_style(request: DanceRequest) -> DanceRequest:
 def read_chart(request: DanceRequest, section: str | None = None) -> ChartChoice:
     """Read the file and choose the chart. A DancetutorError of one line for all that is wrong with the request.
 
-    section : looked at here, so that a slip is told before a chart is read
+    section : looked at here, so that a slip is reported before a chart is read
     """
     from dancetutor_cli.dance.two import check_alone
     from dancetutor_cli.lint.configuration import choice_for, mismatch, preset_for

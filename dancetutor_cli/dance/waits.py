@@ -26,7 +26,7 @@ ENDS = 30.0  # seconds of beats that she still has in mind before the first and 
 class WaitMotion:
     """What a wait adds at n times; nothing where she does not wait.
 
-    share : (n,) 0 to 1, how much she waits; shift : (n,) metres that her hips shall be on the left of the middle
+    share : (n,) 0 to 1, how much she waits; shift : (n,) metres that her hips must be on the left of the middle
     between the feet
     turn : (n,) radians that her chest is turned to the left
     hands : (n, 2, 3) metres that the left and the right hand are elsewhere, in the chest's upright axes

@@ -13,7 +13,7 @@ from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.schema import RGB, Share
 from dancetutor_cli.run.yaml_files import load
 
-# The limbs of a dancer, as every room names them.
+# The limbs of a dancer, as every package names them.
 
 
 class Limb(IntEnum):

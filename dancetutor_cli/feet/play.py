@@ -132,7 +132,7 @@ def prepare(chart: Chart, pad: Pad, roll_window: float = 0.35) -> Rows:
     Parameters
     ----------
     chart : its unjudged notes, fakes and keysounds are left out, and columns that the pad does not have
-    pad : tells the number of columns, c
+    pad : gives the number of columns, c
     roll_window : seconds that a roll may go unpressed; it becomes taps at most so far apart
     """
     return prepare_all([chart], pad, roll_window)[0]
@@ -224,7 +224,7 @@ def roll_gap(bpm: float, window: float) -> int:
     return _ROLL_GAPS[-1]
 
 
-# Notes that no person plays: which ones, and why. The dancer lets them go, and the linter tells of them.
+# Notes that no person plays: which ones, and why. The dancer does not play them, and the linter reports them.
 
 MOVE = "unplayable"  # what a row with such a note is called, as where the solver has no limb left
 SAME_TIME = 1e-6  # seconds
@@ -284,7 +284,7 @@ def too_quick(play: Play, pad: Pad) -> Iterator[tuple[int, int, DropReason]]:
 
 
 def dropped_notes_message(gone: Sequence[DroppedNote]) -> str:
-    """How many notes are let go and why, in one line for people; nothing if none is."""
+    """How many notes are not played and why, in one line for people; nothing if none is."""
     if not gone:
         return ""
     counts = Counter(one.reason for one in gone)

@@ -107,7 +107,7 @@ def _costs(play: Play, shown: NDArray[np.intp]) -> list[str]:
 
 
 def _cached_texts(keys: list[bytes], known: dict[bytes, str], say: Callable[[int], str]) -> list[str]:
-    """What is known of each key; of a new one what `say` tells of its place."""
+    """What is known of each key; of a new one what `say` reports its place."""
     if len(known) > _MAX_CACHED:
         known.clear()
     said = [*map(known.get, keys)]

@@ -23,7 +23,7 @@ HAND = 0.40  # and a hand that came down so shortly before does not come down ag
 
 
 class DropReason(IntEnum):
-    """Why a note is let go."""
+    """Why a note is not played."""
 
     LIMBS = 0  # more panels at once than limbs
     LEAP = 1  # a foot that has just stepped on a panel apart from it

@@ -164,7 +164,7 @@ class SongFeet:
             (s.tick, s.column): s for s in (told if chart.written is None else _of_player(chart, told))
         }  # later win
         good, contradictory = contradictions(chart, said.values())
-        if chart.player > 1:  # what is wrong beside the notes is told with the first player's
+        if chart.player > 1:  # what is wrong beside the notes is reported with the first player's
             editor, settings = replace(editor, problems=()), replace(settings, problems=())
             problems = [] if shares_rows(chart) else problems
         cells = {(s.tick, s.column): (s.limb, s.part) for s in good}

@@ -70,7 +70,7 @@ class AnimatedDancer:
 
     @property
     def baked(self) -> BakedPiece:
-        """The motion of the project's own dancer, whoever dances, on her own pad."""
+        """The motion of the project's own dancer on her own pad, whichever character dances."""
         return self.animation.baked[self.number]
 
     @property

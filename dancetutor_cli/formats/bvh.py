@@ -27,7 +27,7 @@ MAX_FILE = 100_000_000  # bytes
 MAX_JOINTS = 1024
 PIECE = 4000  # frames written at once
 UNITS = (1.0, 0.01, 0.0254, 0.001, 0.0254 / 0.45)  # metres: metre, centimetre, inch, millimetre, CMU's unit
-_HUMAN = 1.65  # metres from toe to crown joint, to tell the unit by
+_HUMAN = 1.65  # metres from toe to crown joint, to find the unit by
 _CHANNELS = {f"{axis}{kind}": (kind, "XYZ".index(axis)) for axis in "XYZ" for kind in ("position", "rotation")}
 _LEAF = 0.05  # metres: the length given to a leaf's End Site
 

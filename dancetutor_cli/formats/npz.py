@@ -74,7 +74,7 @@ _LET_GO = {
     "column": Field("integer", ("k",), 0, 1000, required=False),
     "why": Field("integer", ("k",), min(DropReason), max(DropReason), required=False),
 }
-_ATTRIBUTES = {"why": "reason"}  # of a note that is let go, where they are not called as in the file
+_ATTRIBUTES = {"why": "reason"}  # of a note that is not played, where they are not called as in the file
 FIELDS: Mapping[str, Field] = {
     "schema": Field("integer", (), 0, _INDEX),
     "names": Field("string", ("j",)),

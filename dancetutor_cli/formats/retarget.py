@@ -68,7 +68,7 @@ class Retargeting:
 
     @cached_property
     def character(self) -> Character:
-        """Who shall move."""
+        """The character that moves."""
         return load_character(self.task.character)
 
     @cached_property

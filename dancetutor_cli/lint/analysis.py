@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
 
-# What is told of one chart of `analyze`: findings, and what else is wanted.
+# What is reported of one chart of `analyze`: findings, and what else is wanted.
 
 
 def chart_result(subject: ChartSubject, task: AnalyzeTask) -> ChartResult:
@@ -118,15 +118,15 @@ def _ambiguous(subject: ChartSubject) -> Iterator[tuple[float, str]]:
 
 _ROWS = 16_000  # of charts that are looked at together; some more, so that no chart stands alone
 _CHART = 50  # rows that a chart counts for, however short
-_OTHERS = 20  # charts of a file that are solved only because they tell the scale of its meters
+_OTHERS = 20  # charts of a file that are solved only because they give the scale of its meters
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ResultOptions:
-    """What the results of a run shall hold besides findings; all of it but `want_rows` is part of a kept result's key.
+    """What the results of a run must hold besides findings; all of it but `want_rows` is part of a kept result's key.
 
     want_rows : every row, for JSON; want_figures : densities and technical steps, for CSV
-    want_excerpts : the rows around each finding, for text; suggest : the edit that would mend it
+    want_excerpts : the rows around each finding, for text; suggest : the edit that would remove it
     alternatives : how many other plays
     meter_scale, rate : the scale that meters are estimated on, and how fast the music plays for that
     """
@@ -226,7 +226,7 @@ class _Window:
         for file, subject in waiting:
             try:
                 file.add(subject)
-            except Exception:  # only the files before are told: of others some charts are missing
+            except Exception:  # only the files before are reported: of others some charts are missing
                 if file in self._files:
                     del self._files[self._files.index(file) :]
                 raise
@@ -256,12 +256,12 @@ class _File:
         return iter(()) if self._failed else solved(self._song, self._selected, self._task)
 
     def add(self, subject: ChartSubject) -> None:
-        """Take down what is told of one of them."""
+        """Take down what is reported of one of them."""
         self._charts.append(chart_result(subject, self._task))
         self._meters.add(subject, self._task.rate)
 
     def result(self) -> FileResult:
-        """What is told of the file."""
+        """What is reported of the file."""
         if self._failed:
             return self._failed
         from dancetutor_cli.lint.subject import FileSubject
@@ -286,7 +286,7 @@ class _File:
         )
 
     def _with_meters(self) -> tuple[ChartResult, ...]:
-        """The charts with what only all of them together tell: the scale of the meters."""
+        """The charts with what only all of them together say: the scale of the meters."""
         task = self._task
         for subject in _others(self._song, self._selected, task, self._meters):
             self._meters.add(subject, task.rate)
@@ -331,7 +331,7 @@ def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
     for result in charts:
         if is_lights(result.steps_type):  # nobody dances them
             continue
-        if result.player < 2:  # of charts for two told once
+        if result.player < 2:  # of charts for two reported once
             yield from (f"{result.label}: {warning.message}" for warning in song.charts[result.index].warnings)
         if not result.playable:
             yield f"{result.label}: steps type '{result.steps_type}' has no pad, so its feet are not known"

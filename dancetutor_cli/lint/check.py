@@ -80,13 +80,13 @@ _rules_cache: dict[int, tuple[Mapping[str, Options], Rules]] = {}
 
 
 def check_rule(code: str, rules: Rules, subject: ChartSubject, settings: Settings) -> tuple[Finding, ...]:
-    """What one of the rules of a chart adds to `check_chart`; an ambiguity of other rules is told again."""
+    """What one of the rules of a chart adds to `check_chart`; an ambiguity of other rules is reported again."""
     told = _as_sure_as_they_are(_run_rule(rules[code], subject), subject, settings, rules.get(_AMBIGUITY))
     return tuple(finding for finding in told if not _silenced(finding, subject))
 
 
 def _run_rule(rule: ChartRule | ReaderRule, subject: ChartSubject) -> list[Finding]:
-    """What a rule finds; of a chart for two what is true of it as a whole is told with the first player's."""
+    """What a rule finds; of a chart for two what is true of it as a whole is reported with the first player's."""
     if _is_about_others(rule, subject):
         return []
     found = rule.check(subject)
@@ -146,7 +146,7 @@ def _as_sure_as_they_are(
 
 
 # Rules that see one wrong foot from several sides: what it does, where the body turns for it, how unsure it is. Of
-# several about one row, or about neighbours, that of the rule named first is told.
+# several about one row, or about neighbours, that of the rule named first is reported.
 _OF_ONE_FOOT = (
     "DT201", "DT209", "DT202", "DT203", "DT215", "DT205", "DT204", "DT212", "DT208", "DT211", "DT206", "DT214", "DT304",
     "DT207", "DT213",
@@ -156,7 +156,7 @@ _REACH = {"DT201": 1, "DT202": 1, "DT204": 1, "DT207": 1, "DT209": 1, "DT215": 1
 
 
 def merged_by_foot(findings: tuple[Finding, ...], subject: ChartSubject) -> tuple[Finding, ...]:
-    """The findings without those that tell of a foot what another rule tells: the severest and plainest stays."""
+    """The findings without those that say of a foot what another rule says: the severest and plainest stays."""
     if subject.play is None:
         return findings
     ticks, rows = subject.play.rows.tick, subject.step_rows
@@ -166,7 +166,7 @@ def merged_by_foot(findings: tuple[Finding, ...], subject: ChartSubject) -> tupl
         if one.beat is not None and one.rule in _OF_ONE_FOOT
     ]
     of_feet.sort(key=lambda entry: (-RANKS[entry[2].severity], _OF_ONE_FOOT.index(entry[2].rule)))
-    kept: dict[int, list[str]] = {}  # by place of the row: rules that are told there
+    kept: dict[int, list[str]] = {}  # by place of the row: rules that are reported there
     dropped: set[int] = set()
     for place, at, one in of_feet:
         reach = _REACH.get(one.rule, 0)

@@ -224,7 +224,7 @@ def _check_feet(source: MarkedYaml) -> None:
 
 @dataclass(frozen=True, slots=True)
 class PresetChoice:
-    """What was said about presets. Pickles; its `repr` tells all that a play depends on but the program itself.
+    """What was said about presets. Pickles; its `repr` says all that a play depends on but the program itself.
 
     override : what --preset names: it holds for every chart
     ruled : (condition, preset) of the configuration: of those that hold for a chart the last one counts

@@ -1,7 +1,8 @@
 """What of a chart's shape an edit leaves: jacks, figures that return, motifs that repeat, the unison of two dancers.
 
-Whoever mends a chart keeps its rhythm and its figures: no note lands on the panel of the one beside it, no jack is torn
-apart, a phrase that comes three times is mended three times, and of several edits the one that is heard least is best.
+Anyone who corrects a chart keeps its rhythm and its figures: no note lands on the panel of the one beside it, no jack
+is torn apart, a phrase that comes three times is corrected three times, and of several edits the one that is heard
+least is best.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ class PanelMove(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """Taps that move together. cost : how much is heard of it; alike : places that are mended alike, one at least
+    """Taps that move together. cost : how much is heard of it; alike : places that are corrected alike, one at least
 
     mirrored : whether they are a phrase, left for right
     """
@@ -105,7 +106,7 @@ class Shape:
     def mirrored_phrases(self, row: int, most: int, begins: Collection[int]) -> Iterator[Edit]:
         """Phrases that begin or end beside a row, left for right, the least heard first.
 
-        most : notes of a phrase; begins : rows in which a dancer begins anew, which end a phrase before them
+        most : notes of a phrase; begins : rows in which a dancer begins again, which end a phrase before them
         """
         mirror = self._pad.mirrored(left_right=True)
         if mirror is None or float(np.ptp(self._pad.panels[:, 0])) > 2.0 or row not in self._place:

@@ -1,4 +1,4 @@
-"""What is told of a chart besides findings: other ways to play it, causes of doublesteps, tech counts, excerpts."""
+"""What is reported of a chart besides findings: other ways to play it, causes of doublesteps, tech counts, excerpts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is told of a chart, as plain data without numpy: findings, figures, and the bill of its meter."""
+"""What is reported of a chart, as plain data without numpy: findings, figures, and the terms of its meter."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ _EXCERPT = [field.name for field in fields(Finding)].index("excerpt")
 _VALUES = attrgetter(*(field.name for field in fields(Finding)))
 
 
-# What is told of a chart besides its findings: figures, other ways to play it, what makes its doublesteps.
+# What is reported of a chart besides its findings: figures, other ways to play it, what makes its doublesteps.
 #
 # Imports neither numpy nor numba, so that kept results can be read back quickly.
 
@@ -115,7 +115,7 @@ class Cause:
 
 @dataclass(frozen=True, slots=True)
 class Figures:
-    """What `--format csv` tells of a chart.
+    """What `--format csv` reports of a chart.
 
     nps_mean, nps_peak, breakdown, stream_measures : see `chart.density.Density`
     tech : how often each of `TECH_COUNTS` happens
@@ -134,7 +134,7 @@ class Figures:
     hands: int = 0
 
 
-# The estimate of a chart's meter as it is kept and told. Imports no numpy, so that kept results are read quickly.
+# The estimate of a chart's meter as it is kept and shown. Imports no numpy, so that kept results are read quickly.
 
 AUTO = "auto"
 SCALES = (AUTO, "itg", "ddr", "low")
@@ -208,7 +208,7 @@ def _bill(
     return f"{meter:.{digits}f}: {', '.join([*first, *told][:most])}"
 
 
-# Beats against the audio, as it is kept and told.
+# Beats against the audio, as it is kept and shown.
 
 NULL, ITG = 0.0, 9.0  # ms; what packs are synced to
 SYNC_TOLERANCE = 3.0  # ms, to either side
@@ -256,7 +256,7 @@ def sync_of(
     beat_ms: float = 0.0,
     reason: str | None = None,
 ) -> Sync:
-    """A sync of what was measured, rounded as it is told, with its kind."""
+    """A sync of what was measured, rounded as it is reported, with its kind."""
     if bias_ms is None:
         return Sync(None, 0.0, None, False, "unsure", reason)
     bias, sure = round(bias_ms, 1) + 0.0, math.floor(confidence * 100) / 100

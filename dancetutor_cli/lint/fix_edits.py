@@ -1,4 +1,4 @@
-"""Fixes as bytes: characters of notes replaced, what that must come to, and those that no ear hears."""
+"""Fixes as bytes: characters of notes replaced, what that must come to, and those that nobody hears."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def notes_of(table: NoteTable) -> frozenset[Note]:
     return frozenset(zip(*columns, strict=True))
 
 
-# The edit that `--suggest` tells, as a fix: characters of notes and of free panels in their rows change places.
+# The edit that `--suggest` says, as a fix: characters of notes and of free panels in their rows change places.
 
 _TAPS = (b"1", b"L", b"l", b"X", b"Y")
 
@@ -120,7 +120,7 @@ def move_notes(data: bytes, chart: Chart, finding: Finding, edit: Suggestion) ->
     return Fix(finding.rule, line, edit.words, replaced(cells), frozenset(gone), frozenset(come))
 
 
-# The fixes that no ear hears: mines under the head of a hold, halves of holds, notes less than 3 ms off the grid.
+# The fixes that nobody hears: mines under the head of a hold, halves of holds, notes less than 3 ms off the grid.
 #
 # What of a chart these touch is what the games throw away, or what nobody can tell apart; so they need no solver to be
 # found. `fix` proves them by one nevertheless.

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
 
-# Where a dancer may begin anew with either foot: worked out once for all steps of a play, and asked for often.
+# Where a dancer may begin again with either foot: worked out once for all steps of a play, and asked for often.
 
 RESTED = 0.45  # seconds without a step after which nobody alternates: of labelled crossings nine of ten are quicker
 REST = 1.75  # times the pace of the passage: a quarter among eighths, not the longer note of a gallop
@@ -77,7 +77,7 @@ class Beginnings:
         return self._anew[quick]
 
     def segment(self, at: int, quick: float) -> tuple[int, int]:
-        """First and last place around one in which the dancer does not begin anew."""
+        """First and last place around one in which the dancer does not begin again."""
         if quick not in self._starts:
             self._starts[quick] = np.flatnonzero(self.fresh_starts(quick))
         starts = self._starts[quick]
@@ -106,7 +106,7 @@ def goes_on_the_other_foot(subject: ChartSubject, row: int, quick: float, *, jac
 
 
 def segment(subject: ChartSubject, at: int, quick: float, *, forwards_only: bool = False) -> tuple[int, int]:
-    """First and last of the rows with a step around the `at`-th, in which the dancer does not begin anew."""
+    """First and last of the rows with a step around the `at`-th, in which the dancer does not begin again."""
     first, last = subject.beginnings.segment(at, quick)
     return at if forwards_only else first, last
 

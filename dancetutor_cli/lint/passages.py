@@ -209,7 +209,7 @@ _HARDEST = re.compile(r"\s*hardest\s*:\s*(\d+)\s*", re.IGNORECASE)
 
 
 def check_part(text: str) -> None:
-    """UsageError for what is no part of any chart: so that a slip is told before a chart is read."""
+    """UsageError for what is no part of any chart: so that a slip is reported before a chart is read."""
     if not _FINDING.fullmatch(text) and not _HARDEST.fullmatch(text):
         check_section(text)
 

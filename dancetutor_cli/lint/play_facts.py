@@ -212,8 +212,8 @@ class PlayFacts:
         """Row, column, foot and time (s) since its step of every mine under a foot that can hardly step aside.
 
         The other foot holds a panel, or the foot itself holds the panel beside it. A foot that steps elsewhere in the
-        row has left, and before a wall of mines everybody waits between the panels: those are told only of a foot that
-        has hardly stepped.
+        row has left, and before a wall of mines everybody waits between the panels: those are reported only of a foot
+        that has hardly stepped.
         """
         if not (self.has_mines and self.has_holds):
             return

@@ -93,7 +93,7 @@ class FileResult:
     sync: Sync | None = None
 
     def at_least(self, severity: str) -> FileResult:
-        """The same without findings of less severity, and without charts of which nothing is left to tell."""
+        """The same without findings of less severity, and without charts of which nothing is left to say."""
         charts = (replace(c, findings=_at_least(c.findings, severity)) for c in self.charts)
         return replace(self, findings=_at_least(self.findings, severity), charts=tuple(c for c in charts if c.findings))
 
@@ -126,7 +126,7 @@ _EXCERPT = [field.name for field in fields(Finding)].index("excerpt")
 
 
 def to_bytes(result: FileResult, key: str) -> bytes:
-    """The content of the file of a result; `key` tells what the result depends on, and belongs to it."""
+    """The content of the file of a result; `key` says what the result depends on, and belongs to it."""
     text = json.dumps(result, default=lambda one: _VALUES[type(one)](one), separators=(",", ":"))
     data = text.encode("ascii")
     return _HEAD + _digest(data, key) + data

@@ -215,7 +215,7 @@ class TimedRule(ChartRule):
         return False
 
     def passages(self, found: list[Occurrence], subject: ChartSubject) -> Iterable[list[Occurrence]]:
-        """What is told in one finding each."""
+        """What is reported in one finding each."""
         return passages(found, lambda one: subject.beat(one.row), self.passage_beats)
 
     def quick(self, subject: ChartSubject, rows: Iterable[int]) -> list[int]:
@@ -255,7 +255,7 @@ class MoveRule(TimedRule):
     """A rule that reports every row in which a named move, or a kind of it, happens.
 
     With an option `max_seconds` only those rows count that come at most so long after the step before.
-    `description` : what to say about a row; a rule that has more to tell has a `message` of its own
+    `description` : what to say about a row; a rule that has more to say has a `message` of its own
     """
 
     move: ClassVar[str]

@@ -285,7 +285,7 @@ def changes(
 ) -> Iterator[tuple[list[Path], list[Path]]]:
     """Yield (all files, those that are new or saved) at once, then after every change; ends with KeyboardInterrupt.
 
-    files : finds the files anew, so that charts that are added later are seen
+    files : finds the files again, so that charts that are added later are seen
     needs : what else the result for a file depends on, whether it is there or not: a change of these counts as one of
         the file
     wait : how to sleep

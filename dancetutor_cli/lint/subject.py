@@ -185,7 +185,7 @@ class ChartSubject(PlacedChart):
 
     @cached_property
     def beginnings(self) -> Beginnings:
-        """Where the dancer may begin anew; for charts with a play."""
+        """Where the dancer may begin again; for charts with a play."""
         assert self.play is not None
         assert self.feet is not None
         return Beginnings(self.play, self.step_rows, self.feet.pauses[self.step_rows])

@@ -73,7 +73,7 @@ def judge(timing: Timing, charts: Sequence[Chart], onsets: Onsets) -> Judgement 
 
     The strength of onsets is cut around every row with notes and every sixteenth, and each cut is divided by the
     loudness around it. Cuts at notes count for the bias that they show, those without against it (C); together with
-    the plain mean at the notes (N) that tells rhythm from off-beats. A drift over the song is a slope, by phase.
+    the plain mean at the notes (N) that separates rhythm from off-beats. A drift over the song is a slope, by phase.
     """
     reason = _reason(timing, charts)
     if reason is None:

@@ -25,7 +25,7 @@ from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
 # single and dance-double only; what it writes for other steps types are zeros that say nothing.
 #
 # A cache has numbers, no rows: both mean the same at most as often as the lesser number. A CSV that says the beat of
-# each time tells which rows are the same.
+# each time says which rows are the same.
 
 TEN = (
     "Crossovers", "HalfCrossovers", "FullCrossovers", "Footswitches", "UpFootswitches", "DownFootswitches",

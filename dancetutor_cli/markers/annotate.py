@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class AnnotateRequest:
-    """What shall be done with every file. Pickles.
+    """What is to be done with every file. Pickles.
 
     named : whether somebody asked for these styles; else files beside the song that are not ours are no error
     preset : name or file of the cost preset; None: what `lint.configuration` finds for each chart

@@ -19,7 +19,7 @@ from dancetutor_cli.run.files import UCS_SUFFIX, back_up, remove_leftovers, writ
 
 # The entry of a film in `#BGCHANGES`, which the games play behind the notes: put in beside what is there, and out.
 #
-# An entry is ours if its file's name ends in `.dancetutor.` and a suffix; so nothing else has to tell whose it is, and
+# An entry is ours if its file's name ends in `.dancetutor.` and a suffix; so nothing else has to say whose it is, and
 # an editor that saves the file keeps it.
 
 TAG = "BGCHANGES"

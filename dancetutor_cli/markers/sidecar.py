@@ -168,7 +168,7 @@ def check_text(path: Path, old: bytes | None) -> None:
 # The style `smeditor`: feet as overrides in `data.sme`, which SMEditor reads and shows.
 #
 # What a person has set there is never touched. What we add is listed once more under a key of our own, so that it can
-# be told from theirs and taken out again; SMEditor drops that key when it saves, and from then on all feet are theirs.
+# be distinguished from theirs and removed again; SMEditor drops that key when it saves, and then all feet are theirs.
 
 _Key = tuple[str, int]  # steps type, place among the charts of that type
 _VALUES: dict[tuple[int, int], str | int] = {(limb, part): value for value, (limb, part) in FEET.items()}

@@ -20,7 +20,7 @@ from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.files import encoded
 from dancetutor_cli.run.reading import parse_json
 
-# What a theme can tell a player before it comes: crossovers, brackets and turns, from when and for how long.
+# What a theme can show a player before it comes: crossovers, brackets and turns, from when and for how long.
 
 CROSSOVER, BRACKET, TURN = "crossover", "bracket", "turn"
 KINDS = (CROSSOVER, BRACKET, TURN)

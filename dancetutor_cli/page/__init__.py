@@ -1,4 +1,4 @@
-"""The practice page: one HTML file in which the dancer plays a chart and waits for whoever learns it.
+"""The practice page: one HTML file in which the dancer plays a chart and waits for anyone who learns it.
 
     work                          a request in, a page out; a folder of them
     content, facts                chart, feet and dancer as data; what is said of them in words

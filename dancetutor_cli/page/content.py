@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 FAST, MEDIUM, SLOW = 120, 60, 30  # keys a second of legs and root, of arms, and of head and hair
 FINEST, COARSEST, HAIR, GRIPPING = 0.001, 0.002, 0.005, 0.0003  # metres of a joint's step: legs, others, hair, hands
 ROOT = 1e-4  # metres of a step of the root's place
-LEAST_W = 0.3  # of a rotation whose w is told by x, y and z
+LEAST_W = 0.3  # of a rotation whose w follows from x, y and z
 SHORTEST = 0.05  # metres that every joint carries at least
 QUALITY = 86  # of the texture as WebP
 STILL = -2  # "parent" of a joint that no bone carries: the bar's

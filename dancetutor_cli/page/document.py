@@ -83,7 +83,7 @@ _LEFT = re.compile(r"^\s*(?:import\s+[^(\s]|export\s+\S)", re.MULTILINE)
 
 
 def bundle(folder: Path, main: str) -> str:
-    """The script of module `main` and all that it imports, each module once, before whoever needs it.
+    """The script of module `main` and all that it imports, each module once, before anyone who needs it.
 
     Raises ValueError for a form of import or export that is none of those above, and for a circle.
     """
@@ -152,7 +152,7 @@ def listed(title: str, items: str, style: str) -> bytes:
 
 
 def _fill(template: str, values: Mapping[str, str]) -> str:
-    """A template of this room with each {{name}} replaced, once: what is filled in is not looked at again."""
+    """A template of this package with each {{name}} replaced, once: what is filled in is not looked at again."""
     return _PLACE.sub(lambda found: values[found[1]], (HERE / template).read_text("utf-8"))
 
 

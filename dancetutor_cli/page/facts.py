@@ -78,8 +78,8 @@ def flips_of(play: Play, pad: Pad, preset: Preset, overrides: Overrides) -> list
     """For each row that feet step: its number, what exchanging its feet costs more, and the cells that change.
 
     `extra` is exact: the cheapest play of the whole chart with these feet, less the cheapest of all; -1: nobody can
-    step it so. Of charts so long that it would take minutes only the first rows are told. Rows that are laid down by a
-    person (`overrides`) keep what the rest says.
+    step it so. Of charts so long that it would take minutes only the first rows are reported. Rows that are laid down
+    by a person (`overrides`) keep what the rest says.
     """
     most, total = MOST_WORK // max(len(play.rows), 1), play.total
     return [_flip(play, row, total, (pad, preset, overrides)) for row in islice(_rows(play), most)]
@@ -113,11 +113,11 @@ def _flip(play: Play, row: int, total: int, given: tuple[Pad, Preset, Overrides]
 
 # What the feet do in a passage, in a sentence of each of the page's languages.
 
-_TURNED = 90.0  # degrees that are worth telling
+_TURNED = 90.0  # degrees that are worth reporting
 
 
 def sentence(passage: Passage, labels: Mapping[str, str]) -> str:
-    """One sentence, the most telling first."""
+    """One sentence, the most important first."""
     left, right = passage.crossovers
     parts = [_filled(labels, "stream", passage.stream) if passage.stream else _filled(labels, "fast", passage.steps)]
     for name, count in (
@@ -162,8 +162,8 @@ _PLAIN = 3.0  # steps a second below which steps alone make no passage
 def differing(passages: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """Passages as the page lists them, the hardest first.
 
-    `number` is the place among the hardest, as in `render --section hardest:3`. Those that are told in the same words
-    are one, with the measures of the rest in `again`; a few slow steps and nothing else are none.
+    `number` is the place among the hardest, as in `render --section hardest:3`. Those that are reported in the same
+    words are one, with the measures of the rest in `again`; a few slow steps and nothing else are none.
     """
     out: dict[str, dict[str, Any]] = {}
     for number, one in enumerate(passages, 1):

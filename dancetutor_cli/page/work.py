@@ -79,7 +79,7 @@ class Page:
 
     @property
     def sizes(self) -> dict[str, int]:
-        """Compressed bytes by part, for whoever wants to know what weighs."""
+        """Compressed bytes by part, for anyone who wants to know what weighs."""
         out = {"music": self.music} if self.music else {}
         for name, size in self.blob.sizes().items():
             part = name.partition(".")[0]
@@ -183,7 +183,7 @@ def _second_play(page: PageSubject) -> tuple[Solved, ...]:
 
 
 def _second_motion(request: PageRequest) -> Motion | None:
-    """The motion of a file, if a second dancer shall have that: of `animate`, or of a capture from `retarget`."""
+    """The motion of a file, if a second dancer has that: of `animate`, or of a capture from `retarget`."""
     from dancetutor_cli.formats.npz import read_npz
 
     if request.beside is None or not request.beside.lower().endswith(MOTION):
@@ -249,7 +249,7 @@ def _otherwise(motions: Sequence[Motion], play: Play) -> list[int]:
 
 
 def _findings(solved: tuple[Solved, ...]) -> Iterator[Finding]:
-    """What the linter finds; of two parts told with whose it is."""
+    """What the linter finds; of two parts with whose it is."""
     from dancetutor_cli.lint.check import findings_of
     from dancetutor_cli.lint.subject import subject_of
 
@@ -263,7 +263,7 @@ def _findings(solved: tuple[Solved, ...]) -> Iterator[Finding]:
 
 
 def _passages(solved: tuple[Solved, ...]) -> list[dict[str, Any]]:
-    """The hardest passages, the hardest first; of two parts told with whose they are."""
+    """The hardest passages, the hardest first; of two parts with whose they are."""
     from dancetutor_cli.page.facts import differing, passage_object
 
     pairs = [(found, one.chart) for one in solved if one.play for found in hardest(one.play, one.chart.timing)]

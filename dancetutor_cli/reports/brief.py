@@ -1,4 +1,4 @@
-"""What a person at a terminal sees of `analyze`: at most a screen for a song, a page for a pack; `--full` tells all."""
+"""What a person at a terminal sees of `analyze`: at most a screen for a song, a page for a pack; `--full` says all."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class _Entry:
 
 
 class BriefReport:
-    """Collects files and tells of them at the end; files that could not be read go to `errors`.
+    """Collects files and reports them at the end; files that could not be read go to `errors`.
 
     files : how many there will be
     """

@@ -32,7 +32,7 @@ class Entry:
 
     @property
     def message(self) -> str:
-        """The finding's message with the edit that would mend it and the chart it is about."""
+        """The finding's message with the edit that would remove it and the chart it is about."""
         better = self.finding.suggestion
         text = safe(self.finding.message) + (f"; better: {safe(better)}" if better else "")
         return f"{text} [{safe(self.chart.label)}]{self.moment}" if self.chart else text

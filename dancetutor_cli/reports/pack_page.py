@@ -11,7 +11,7 @@ import dancetutor_cli
 from dancetutor_cli.reports.pack import TECHNIQUES, Pack, PackChart
 from dancetutor_cli.reports.terminal import safe, safe_path
 
-# Pictures of a pack as inline SVG: bars of meters, dots over meters, shares of facing. Hover tells which chart.
+# Pictures of a pack as inline SVG: bars of meters, dots over meters, shares of facing. Hover says which chart.
 
 WIDTH, HEIGHT = 560, 240
 _LEFT, _BOTTOM, _TOP, _RIGHT = 44, 34, 14, 12

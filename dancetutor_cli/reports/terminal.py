@@ -136,7 +136,7 @@ _NUMBER = re.compile(r"\d+")
 
 
 class JoinedWarnings:
-    """Takes warnings as they come, and tells them at the end.
+    """Takes warnings as they come, and prints them at the end.
 
     every : each of them is a line of its own
     """
@@ -172,7 +172,7 @@ class JoinedWarnings:
 # How far a film is: a bar with speed and time left on a terminal, a line now and then elsewhere.
 
 EVERY = 30.0  # seconds between lines where there is no terminal
-ENOUGH = 0.03  # share of a film, and at least a second of it, whose drawing tells the speed
+ENOUGH = 0.03  # share of a film, and at least a second of it, whose drawing says the speed
 
 
 class FilmProgress:
@@ -235,7 +235,7 @@ class FilmProgress:
     def advance(self, frames: int) -> None:
         """That many more frames are drawn."""
         now = time.monotonic()
-        if not self.done:  # until now workers have started and compiled, which tells nothing about the rest
+        if not self.done:  # until now workers have started and compiled, which says nothing about the rest
             self.began, self.early = now, frames
         self.done += frames
         speed = self._speed(now)
@@ -250,7 +250,7 @@ class FilmProgress:
             sys.stderr.flush()
 
     def _speed(self, now: float) -> float | None:
-        """Seconds of film per second; None until enough is drawn to tell."""
+        """Seconds of film per second; None until enough is drawn to say."""
         drawn = self.done - self.early
         if not self.fps or drawn < max(self.fps, ENOUGH * self.frames) or now <= self.began:
             return None

@@ -43,7 +43,7 @@ class FileError(DancetutorError):
 
 
 class MissingFileError(FileError):
-    """A file that another one names is not there; whoever can do without it may go on."""
+    """A file that another one names is not there; anyone who can do without it may go on."""
 
 
 class ChartError(FileError):
@@ -55,7 +55,7 @@ class NoChartsError(ChartError):
 
 
 class UnavailableError(DancetutorError):
-    """Something outside the project is missing: OpenGL, an encoder, disk space. Says how to mend it."""
+    """Something outside the project is missing: OpenGL, an encoder, disk space. Says how to repair it."""
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:

@@ -107,7 +107,7 @@ def _listed(program: Path, option: str) -> set[str]:
 
 # Only local files and pipes, whatever a file's content or name asks for.
 INPUT_GUARD = ("-protocol_whitelist", "file,pipe")
-PIPE = 1 << 20  # bytes that a pipe to ffmpeg shall hold
+PIPE = 1 << 20  # bytes that a pipe to ffmpeg must hold
 _START = ("-nostdin", "-hide_banner", "-loglevel", "error")
 
 

@@ -39,7 +39,7 @@ SUFFIX = ".dancetutor.tmp"
 _LONGEST_NAME = 255 - len(SUFFIX) - 1  # bytes; a longer file name is hashed
 _NO_LINK = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 PATIENCE = 10.0  # seconds to wait for another process that writes the same file
-_ABANDONED = 600.0  # seconds after which a leftover is nobody's, on file systems that have no locks to tell
+_ABANDONED = 600.0  # seconds after which a leftover is nobody's, on file systems that have no locks to say
 
 
 class BusyError(FileError):
@@ -189,7 +189,7 @@ def _locked_temporary(path: Path, target: Path) -> Iterator[tuple[Path, BinaryIO
         with open(descriptor, "wb", closefd=True) as file:  # noqa: PTH123
             yield temporary, file
             renamed = True
-            # The lock ends with the file, after the rename: whoever waited for it sees the new content.
+            # The lock ends with the file, after the rename: anyone who waited for it sees the new content.
     finally:
         if not renamed:
             with contextlib.suppress(OSError):

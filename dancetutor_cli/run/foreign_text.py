@@ -32,7 +32,7 @@ def _is_formula(cell: str) -> bool:
 # file that is called "::error::gone" would so make an annotation, or end the masking of secrets.
 
 _OLD = "##["
-_ENDS = "\n\r\v\f\x1c-\x1e\x85\u2028\u2029"  # of lines, for whoever reads a log
+_ENDS = "\n\r\v\f\x1c-\x1e\x85\u2028\u2029"  # of lines, for anyone who reads a log
 _AT_START = re.compile(rf"(^|[{_ENDS}])(\s*):(?=:)")
 _END_CHARACTERS = "\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029"
 

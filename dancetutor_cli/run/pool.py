@@ -24,7 +24,7 @@ class WorkFailedError(DancetutorError):
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """One piece of work, `key`: `function(report, *arguments)`, where `report(n)` tells that n more units are done."""
+    """One piece of work, `key`: `function(report, *arguments)`, where `report(n)` says that n more units are done."""
 
     key: Any
     function: Callable[..., Any]

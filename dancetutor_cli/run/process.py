@@ -65,7 +65,7 @@ class _NamedOutput(io.FileIO):
 
 
 class _Errors(io.FileIO):
-    """Standard error: where nothing can be said (a full disk), the run goes on, and its exit status tells."""
+    """Standard error: where nothing can be said (a full disk), the run goes on, and its exit status says."""
 
     def write(self, data: Any) -> int:
         try:
@@ -153,7 +153,7 @@ class _Hook:
 
 
 def _interrupt() -> None:
-    """As the keyboard does; where only Python is told, who waits for something hears of it when that has come."""
+    """As the keyboard does; where only Python is notified, who waits for something hears of it when that has come."""
     if hasattr(signal, "pthread_kill"):
         signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
     else:  # Windows
@@ -182,7 +182,7 @@ def is_interruption(error: BaseException) -> bool:
 
 
 def _came_of_one(error: BaseException | None) -> bool:
-    """Whether Python tells of a fault that came of an interrupt: a kernel gave a result with an exception set."""
+    """Whether Python reports a fault that came of an interrupt: a kernel gave a result with an exception set."""
     if isinstance(error, SystemError):
         return _came_of_one(error.__cause__) or _came_of_one(error.__context__)
     if isinstance(error, DancetutorError):

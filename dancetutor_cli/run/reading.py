@@ -18,7 +18,7 @@ from dancetutor_cli.run.errors import FileError, MissingFileError, UnavailableEr
 # Reads the files of strangers: only regular files, of a bounded size; JSON of a bounded depth, every name once.
 #
 # A folder of songs may hold anything: named pipes that never end, devices, links in circles, and files that somebody
-# has made to break whoever opens them. What is wrong is one line, which quotes nothing of a file's content.
+# has made to break anyone who opens them. What is wrong is one line, which quotes nothing of a file's content.
 
 MEGABYTE = 1_000_000
 CHART_LIMIT = 64 * MEGABYTE  # the largest charts of real packs have four
@@ -63,7 +63,7 @@ def read_ends(path: Path, first: int, last: int) -> tuple[bytes, bytes, int]:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[tuple[BinaryIO, int]]:
-    """A regular file, open, with its size; what goes wrong in the block is told as `read_bytes` does."""
+    """A regular file, open, with its size; what goes wrong in the block is reported as `read_bytes` does."""
     try:
         descriptor = os.open(path, _FLAGS)
     except FileNotFoundError:

@@ -141,7 +141,7 @@ class MarkedYaml:
         return FileError(self.path, message, self.lines.get(keys))
 
     def check_names(self, keys: Keys, names: Iterable[Any], known: Collection[str]) -> None:
-        """Raise FileError unless each of the names in the mapping at `keys` is known; it tells what there is."""
+        """Raise FileError unless each of the names in the mapping at `keys` is known; it says what there is."""
         for name in names:
             if name not in known:
                 where = f" in '{_path(keys)}'" if keys else ""

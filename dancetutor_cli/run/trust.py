@@ -1,8 +1,9 @@
 """Which folders and files machine code is taken from: those of this user or of root that nobody else can write.
 
-Kept machine code and pickles do as they like once they are loaded, and whoever can write a file can write its checksum.
-So it matters who owns a file and every folder above it (as for ssh's keys), and that none of them came with the songs.
-Windows gives each user folders that others cannot write, and Python no way to look: there only paths are judged.
+Kept machine code and pickles do as they like once they are loaded, and anyone who can write a file can write its
+checksum. So it matters who owns a file and every folder above it (as for ssh's keys), and that none of them came with
+the songs. Windows gives each user folders that others cannot write, and Python no way to look: there only paths are
+judged.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ _SAFE_PATH = "PYTHONSAFEPATH"
 
 
 def _leave(_number: int, _frame: object) -> None:
-    """End; what breaks on the way out, as callbacks do that end in the middle, has nobody to be told."""
+    """End; what breaks on the way out, as callbacks do that end in the middle, has nobody to report to."""
     with contextlib.suppress(OSError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     sys.exit(1)

@@ -14,7 +14,7 @@ from dancetutor_cli.run.schema import Keys, MarkedYaml, T, convert
 
 # A YAML mapping with the line of every key, so that an error can say where in the file it is.
 #
-# The file may be a stranger's, and made to break whoever reads it: its size, its depth and the length of a value are
+# The file may be a stranger's, and made to break anyone who reads it: its size, its depth and the length of a value are
 # bounded before anything is built of it, aliases are refused, every key stands once, and numbers are finite.
 
 _Base: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml where the wheel has it: ten times faster

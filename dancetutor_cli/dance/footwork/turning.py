@@ -182,7 +182,7 @@ def turn_start(move: tuple[float, float], leaves: float, far: float, step: StepS
 
 
 def leading_foot(play: Play, panels: Array) -> int:
-    """The foot that steps first alone, 0 left or 1 right; else the first lopsided jump tells.
+    """The foot that steps first alone, 0 left or 1 right; else the first lopsided jump decides.
 
     It leads: wherever both sides are equal, what it asks for is done, so a mirrored play is danced mirrored.
     panels : (c, 2) on the ground. A play that is its own mirror image is led by the left foot.

@@ -377,7 +377,7 @@ def footfalls(begin: Stand, goal: Stand, spread: float, aside: AsideSettings) ->
 
 
 def _off(begin: Stand, goal: Stand, falls: list[tuple[int, Footfall]], foot: tuple[int, float]) -> bool:
-    """Whether a foot is not yet where it shall be. foot : which, and how near is there, metres"""
+    """Whether a foot is not yet where it must be. foot : which, and how near is there, metres"""
     side, same = foot
     done = [fall.ball for s, fall in falls if s == side]
     return bool(np.linalg.norm((done[-1] if done else begin.balls[side]) - goal.balls[side]) > same)

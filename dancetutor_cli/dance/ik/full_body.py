@@ -93,7 +93,7 @@ class LegTargets(NamedTuple):
 
 
 class ArmGoal(NamedTuple):
-    """Where one arm begins and its pinned hand shall be, in f cases.
+    """Where one arm begins and its pinned hand must be, in f cases.
 
     shoulders, wrists : (f, 3) places; chest, hands : (f, 4) world rotations; elbows : (f, 3) directions
     """
@@ -270,7 +270,7 @@ def _arm(at: tuple[int, int], shoulder: Vec, chest: Quat, rig: Rig, hands: ArmTa
 
 @inner_kernel
 def _turned_share(half_cosine: float, pinned: float) -> float:
-    """How far a hand that is pinned by a part has turned from its forearm to lie as it shall: less where it has to turn
+    """How far a hand that is pinned by a part has turned from its forearm to lie as it must: less where it has to turn
     by more than 106 degrees, for at 180 it would have to change from one way round to the other in a moment."""
     near = min(abs(half_cosine) / 0.6, 1.0)
     return pinned * (1.0 - (1.0 - pinned**4) * (1.0 - near * near * (3.0 - 2.0 * near)))
@@ -310,7 +310,7 @@ def one_arm(rig: Rig, side: int, goal: ArmGoal, out: Array) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Targets:
-    """What the body shall reach in f frames; the second axis of pairs is left, right. World, metres, unit quaternions.
+    """What the body must reach in f frames; the second axis of pairs is left, right. World, metres, unit quaternions.
 
     pelvis : (f, 3) position of the root joint; pelvis_rotation : (f, 4); chest : (f, 4) its rotation
     shoulders : (f, 2, 3); wrists : (f, 2, 3); hand_rotation : (f, 2, 4) of a pinned hand

@@ -173,7 +173,7 @@ def torso_rotations(trunk: TrunkPose, settings: BodySettings) -> tuple[Array, Ar
 
 
 def shoulders_over(skeleton: Skeleton, pelvis: Array, pelvis_rotation: Array, chest: Array, bent: Array) -> Array:
-    """Where shoulders shall be (f, 2, 3) over a pelvis (f, 3): turned about it with the chest.
+    """Where shoulders must be (f, 2, 3) over a pelvis (f, 3): turned about it with the chest.
 
     As far as it is `bent` (f,) they are where a spine that bends evenly brings them; else its lowest joint took it all.
     """

@@ -255,7 +255,7 @@ def _frame(bone: Array, hinge: Array, u: Array, axis: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class _Feet:
-    """Where ankles and feet shall be; lift : metres (f,) by which the file's hips must rise to stand on y = 0."""
+    """Where ankles and feet must be; lift : metres (f,) by which the file's hips must rise to stand on y = 0."""
 
     feet: AnkleTracks
     lift: Array

@@ -94,7 +94,7 @@ def too_high(skeleton: Skeleton, pelvis: tuple[Array, Array], feet: AnkleTracks,
 
 
 def _soft(leg: Leg, distance: Array, times: Array) -> Array:
-    """How far (f,) hip and ankle shall be apart that are `distance` (f,) metres apart.
+    """How far (f,) hip and ankle must be apart that are `distance` (f,) metres apart.
 
     Never so far as a straight leg; and what is left of the stretch comes and goes slowly, so that a pop is none.
     """
@@ -129,7 +129,7 @@ def restore_mass_path(
 ) -> Poses:
     """Poses whose centre of mass is on its path, legs ending in `feet`.
 
-    path : times (f,) and places (f, 3) where the mass was in the input; share : (f,) how far it shall be there, 0 to 1
+    path : times (f,) and places (f, 3) where the mass was in the input; share : (f,) how far it must be there, 0 to 1
     free : (f,) how far she may stand higher or lower
     """
     times, wanted = path

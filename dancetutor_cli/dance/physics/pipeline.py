@@ -68,7 +68,7 @@ class RagdollResult:
 
 @dataclass(frozen=True, slots=True)
 class Wishes:
-    """What shall happen to a motion beside its style.
+    """What is to happen to a motion beside its style.
 
     corrections : of `CORRECTIONS`, for captured motion: knees that pop, feet that skate
     pushes, trips : what befalls her

@@ -205,7 +205,7 @@ class Sole:
         return out, turn
 
     def _raised(self, ankle: Array, heading: Array) -> Array:
-        """Pitch (n,) with which the ankle is nearest to where it shall be, `ankle` (n, 3) from the held ball."""
+        """Pitch (n,) with which the ankle is nearest to where it must be, `ankle` (n, 3) from the held ball."""
         ahead = ankle[:, 0] * np.sin(heading) + ankle[:, 2] * np.cos(heading)
         rest = np.arctan2(-self.ball[1], self.ball[2])
         return np.asarray(np.clip(np.arctan2(ankle[:, 1], -ahead) - rest, 0.0, STEEPEST))

@@ -223,7 +223,7 @@ def _mass(bare: str, radius: float, end: Array) -> float:
 def build(skeleton: Skeleton, bones: tuple[Bone, ...], points: tuple[Point, ...], style: Style, more: str = "") -> Any:
     """The engine's model: bodies, joints, sites, floor, and per point three actuators (x, y, z) of a spring-damper.
 
-    An actuator's control is kp times the place plus kd times the speed that its point shall have.
+    An actuator's control is kp times the place plus kd times the speed that its point must have.
     more : XML of its equality section
     """
     numbers = style.body

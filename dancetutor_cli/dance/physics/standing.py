@@ -57,7 +57,7 @@ class JointPaths:
 
 
 def standing_pose(given: JointPaths, body: Skeleton) -> StandingPose:
-    """The pose that joints turn from. body : named as the rig's, it rests as the pose shall stand.
+    """The pose that joints turn from. body : named as the rig's, it rests as the pose must stand.
 
     Raises FileError if nothing says which way is up.
     """

@@ -132,7 +132,7 @@ def limb(upper: Vec, lower: Vec, hinge: Vec, reach: Vec, pole: Vec, most: float)
     """Closed-form two-bone limb.
 
     upper, lower : rest vectors of the two bones, square to the unit vector hinge (their joint's axis)
-    reach : from the limb's root to where its end shall be; pole : direction in which the middle joint points
+    reach : from the limb's root to where its end must be; pole : direction in which the middle joint points
     most : longest reach; a target beyond it is approached along its line
 
     Returns the world rotation of the upper bone, and the local rotation of the lower one about the hinge.

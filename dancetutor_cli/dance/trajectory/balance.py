@@ -239,9 +239,9 @@ def balanced_path(
 
 @dataclass(frozen=True, slots=True)
 class _PathGoals:
-    """What the path shall do at each of n nodes.
+    """What the path must do at each of n nodes.
 
-    support : where the zero-moment point may be and shall be
+    support : where the zero-moment point may be and must be
     weight : (n,) how much the latter counts; near : (n,) how much the centre of mass itself wants to be there
     offset : (n, 2) from the pelvis to the centre of mass
     nearest, farthest : (n, 2) where the pelvis may be

@@ -200,7 +200,7 @@ def away_from_screen(gap: Array, settings: MotionSettings) -> Array:
 
 
 def leaning_share(grips: tuple[Grip, ...], times: Array, settings: BarSettings) -> Array:
-    """How much the body leans on the bar (n,), 0 to 1: wholly while hands hold it, also while one takes it anew."""
+    """How much the body leans on the bar (n,), 0 to 1: wholly while hands hold it, also while one takes it again."""
     out, rest = np.zeros(len(times)), settings.leave
     spans: list[list[float]] = []
     for grip in grips:

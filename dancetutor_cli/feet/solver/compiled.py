@@ -35,7 +35,7 @@ def is_interpreted() -> bool:
 def interpret(presets: Iterable[Preset], size: Callable[[], int]) -> bool:
     """Decide whether this process and its workers run kernels as Python; to be asked before one is imported.
 
-    size : tells the bytes of the note data to be solved; only asked for where nothing is compiled yet
+    size : gives the bytes of the note data to be solved; only asked for where nothing is compiled yet
     """
     if VARIABLE in os.environ:
         return is_interpreted()

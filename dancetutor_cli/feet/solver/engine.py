@@ -52,7 +52,7 @@ def cost_at(curve: Curve, milliseconds: NDArray[np.int64]) -> NDArray[np.int64]:
 _SOLVERS = {"thesis": solve_thesis, "itg": solve_itg}
 _NODES_KEPT = 1 << 16  # room for the nodes of a usual chart, kept between charts
 _NODES_A_ROW = 5  # and one for each column: so many nodes a long chart is first given room for
-_MOST_MOVES_KEPT = 2_000_000  # then the tables start anew, so that a long run does not fill the memory
+_MOST_MOVES_KEPT = 2_000_000  # then the tables start again, so that a long run does not fill the memory
 _MOST_EDGES_KEPT = 2_000_000  # the same
 _MOST_ENGINES = 8
 
@@ -93,7 +93,7 @@ class Engine:
         ----------
         forced : limb codes of overrides for each row (n,), 3 bits for each column, 0 none
         margins : whether to look for the best way with other limbs, too
-        told : whether to tell what each row costs and what happens in it
+        told : whether to say what each row costs and what happens in it
         """
         arrays, (n, c) = _arrays(rows, forced), rows.steps.shape
         found, at_once = self._empty_path(n, c, margins=margins), told and _nodes_of(n, c) <= _NODES_KEPT

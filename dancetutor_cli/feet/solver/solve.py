@@ -1,4 +1,4 @@
-"""The solver as the other rooms call it: a `Play` of rows and a preset; again where one tap goes to another panel."""
+"""The solver as other packages call it: a `Play` of rows and a preset; again where one tap goes to another panel."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
-# The solver as the other rooms call it: rows and a preset in, a `Play` out.
+# The solver as the other packages call it: rows and a preset in, a `Play` out.
 
 
 def solve(rows: Rows, pad: Pad, preset: Preset, overrides: Overrides | None = None, *, margins: bool = True) -> Play:
@@ -69,7 +69,7 @@ def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] |
 
 
 def play_of(rows: Rows, engine: Engine, found: SolverPath) -> Play:
-    """The play that a way through the rows is, of which the engine has told all."""
+    """The play that a way through the rows is, of which the engine has reported all."""
     return Play(
         rows=rows,
         limb=found.limb,
@@ -107,7 +107,7 @@ def _shares(confidence: Curve) -> NDArray[np.float64]:
 # What the cheapest way through rows would be if one tap went to another panel: only what that touches is solved.
 #
 # Up to the tap's row all costs stay as they are. From there the programme goes on until a row can end in the same
-# states as before, each as much dearer than the cheapest as before: from there on the way is the old one and costs as
+# states as before, each as much costlier than the cheapest as before: from there on the way is the old one and costs as
 # much.
 
 _FIRST_LOOK = 24  # rows solved at first; where that does not lead back to the old way, twice as many, and so on
@@ -204,7 +204,7 @@ class OneTap:
         return low
 
     def _is_same(self, at: int, row: int, new: RowStates) -> bool:
-        """Whether after a row the same states are as much dearer than the cheapest as they were before."""
+        """Whether after a row the same states are as much costlier than the cheapest as they were before."""
         old, place, to_layer = self._nodes, at - row + 1, self._engine.tables.transition
         if to_layer[new.transition[place], store.TO_LAYER] != to_layer[old.transition[at], store.TO_LAYER]:
             return False

@@ -34,7 +34,7 @@ FACTS_MASK = (1 << EDGE_COST_SHIFT - FACTS_SHIFT) - 1
 COST_SHIFT = 32  # in `RowStates.node`: an edge below, the cost from here on; the least is the cheapest, then the first
 EDGE_MASK = (1 << COST_SHIFT) - 1
 FIRST, BASE = range(2)  # columns of `RowStates.row`
-# columns of `Found.edit`: a cell, what shall be in it instead, and the row in which a doublestep is looked for
+# columns of `Found.edit`: a cell, what must be in it instead, and the row in which a doublestep is looked for
 EDIT_ROW, EDIT_COLUMN, EDIT_STEP, EDIT_END, EDIT_MINE, EDIT_OF = range(6)
 START = 0  # number of the layer and the state before the first row
 # what a kernel wants before it can go on
@@ -105,7 +105,8 @@ class RowStates(NamedTuple):
     """The states each row can end in. Row r has nodes row[r + 1, FIRST] to row[r + 2, FIRST]; before it is the start.
 
     row : int64 (n + 2, 2), first node, and cost of the cheapest node before each row
-    node : int64, how much dearer a node is than the cheapest of its row, and the edge that led there; see `COST_SHIFT`
+    node : int64, how much costlier a node is than the cheapest of its row, and the edge that led there; see
+    `COST_SHIFT`
     transition : int32 (n,), number of the transition that each row is, -1 as long as nobody has looked for it
     """
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class EventNames(Sequence[tuple[str, ...]]):
-    """Per row the names of what happens, sorted; told when asked for, for most rows of most charts nobody asks.
+    """Per row the names of what happens, sorted; computed when asked for, for most rows of most charts nobody asks.
 
     events : (n,) bits of `EVENTS`
     """

@@ -37,8 +37,8 @@ def cues_of(play: Play, timing: Timing, words: Mapping[str, str], view: PanelNam
     words : name of a move (`feet.solver.vocabulary.EVENTS`), or "hold" -> what it is called; moves that are not in it
     are not.
     view : names of panels and limbs.
-    Crossed feet are told once, where they cross, until they are back, unless a half turn there is told; a stream or
-    drill once, where it begins.
+    Crossed feet are reported once, where they cross, until they are back, unless a half turn there is reported; a
+    stream or drill once, where it begins.
     """
     found = [
         *_crossovers(play, words, view.language),
@@ -55,7 +55,7 @@ def cues_of(play: Play, timing: Timing, words: Mapping[str, str], view: PanelNam
 
 
 def _crossovers(play: Play, words: Mapping[str, str], language: Language) -> Iterator[Cue]:
-    """Until the row in which the feet are uncrossed; one that turns full on its way is told again."""
+    """Until the row in which the feet are uncrossed; one that turns full on its way is reported again."""
     second, last_row = play.rows.second, len(play.rows) - 1
     turns = moves_and_turns(play)
     for first, last in _stretches(play, _CROSSED):
@@ -118,9 +118,9 @@ _GAP = 0.1  # seconds; the same words again so soon are left standing, without a
 
 @dataclass(frozen=True, slots=True)
 class SubtitleStyle:
-    """configs/subtitles.yaml. before, stays, shortest : seconds of the film; most : moves told together
+    """configs/subtitles.yaml. before, stays, shortest : seconds of the film; most : moves named together
 
-    moves : names of moves, the most telling first
+    moves : names of moves, the most important first
     """
 
     before: float
@@ -132,7 +132,7 @@ class SubtitleStyle:
 
 @dataclass
 class _Line:
-    """Moves told together. first, latest : when the first and the latest come; last : when all are over.
+    """Moves named together. first, latest : when the first and the latest come; last : when all are over.
 
     start, end : on the screen; all of these are seconds of the film
     moves : word -> who, both in the order in which they come; names : word -> the move's name
@@ -153,7 +153,7 @@ class _Line:
         who += (one for one in cue.who if one not in who)
 
     def text(self, style: SubtitleStyle) -> str:
-        """A line for each move; if there are too many, the most telling."""
+        """A line for each move; if there are too many, the most important."""
         kept = sorted(self.moves, key=lambda word: style.moves.index(self.names[word]))[: style.most]
         return "\n".join(", ".join([word, *who]) for word, who in self.moves.items() if word in kept)
 
@@ -178,7 +178,7 @@ def subtitles(cues: Sequence[Cue], clock: Clock, style: SubtitleStyle) -> str:
     """The text of an .srt file; "" if no move is named.
 
     cues : by time. Words stand before their move and until it is over, but give way to the next ones; moves that come
-    faster than words can be read are told together.
+    faster than words can be read are named together.
     """
     shown: list[tuple[float, float, str]] = []
     begin = 0.0

@@ -39,7 +39,7 @@ KINDS, LETTERS = 2, 42  # different moves in one call at most, and letters of th
 _ORDER = ("move", "info", "warning", "error")
 _OF_PASSAGES, _PASSAGE = ("DT305", "DT301"), 8 * TICKS_PER_BEAT  # one finding for so long (lint/rules)
 _OF_MINES = "DT303"  # the rule about such a mine
-_CROSSED = ("crossover-full", "crossover-half")  # go on over several rows; told where they begin
+_CROSSED = ("crossover-full", "crossover-half")  # go on over several rows; named where they begin
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,7 +228,7 @@ def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[in
         return
     ticks = play.rows.tick.tolist()
     crossed: dict[str, tuple[int, Phrase]] = {}  # kind of crossover -> where it began, of one that goes on
-    known: set[str] = set()  # kinds of it that are told, or that its half turn tells; a full one is a half one, too
+    known: set[str] = set()  # kinds of it that are reported, or that its half turn says; a full one is a half one, too
     for row, names in enumerate(moves_and_turns(play)):
         now = next((name for name in _CROSSED if name in names), "")
         if not now:

@@ -92,7 +92,7 @@ def lane_width_for_words(words: float, lane: float, box: tuple[int, int, int, in
 # other, it stands on the strip of its arrow that is seen, and is no higher than that. Where marks would cover each
 # other, they are smaller, those of the left foot stand on the left of the lane and those of the right foot on the
 # right, and of one foot's only as many are drawn as can be read; on diagonals they keep to the tail's side as long as
-# they can. A cross, of a note that is let go, stays in the middle, where it covers neither side's.
+# they can. A cross, of a note that is not played, stays in the middle, where it covers neither side's.
 
 MARK_SHARE, MARK_MOST = 0.04, 0.58  # an L or R is at least so many heights of the box, but at most so many lanes
 READ, READ_MOST = 16, 0.5  # pixels of a mark whose letter is 8 high, on diagonal arrows, too; at most so many lanes
@@ -152,7 +152,7 @@ class Marks:
         return self._places(math.floor(STEPS * math.log2(max(abs(spacing), 1e-3))))
 
     def draw(self, frame: Frame, i: int, y: float, places: Places, gone: bool = False) -> None:
-        """Draw the mark of note `i`, whose arrow's middle is at `y`; gone : a cross, for it has been let go.
+        """Draw the mark of note `i`, whose arrow's middle is at `y`; gone : a cross, for it is not played.
 
         So has a mine that a foot is on as it passes, in its middle.
         """
@@ -290,7 +290,7 @@ class RowTag(NamedTuple):
 def row_tags(callouts: Iterable[Callout]) -> list[RowTag]:
     """Each passage's tag where it begins, and those of its other moves, in order of time.
 
-    Of long ones that follow each other quickly, such as brackets', the first: the calls beside her tell the others.
+    Of long ones that follow each other quickly, such as brackets', the first: the calls beside her say the others.
     """
     found = [
         RowTag(*one, call.severity) for call in callouts for one in ((call.second, call.beat, call.tag), *call.further)

@@ -30,7 +30,7 @@ _WIDTH = 0.94  # of an arrow, in its size, whichever way it points
 
 FLAG_STEP = 1.15  # from one line of a label to the next, in sizes of its letters
 FLAG_EDGE = 0.55  # left and right of a label's words together, in sizes of its letters
-NOBODY = (150, 154, 170)  # colour of the mark of a note that is let go
+NOBODY = (150, 154, 170)  # colour of the mark of a note that is not played
 TAIL_DIM, TAIL_LONG = (
     0.6,
     0.75,

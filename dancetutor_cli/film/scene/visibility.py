@@ -22,7 +22,7 @@ _LOOKED_AT = 160  # places of the feet that are looked at, at most
 
 
 def feet_hidden(character: Character, camera: Camera, size: tuple[int, int]) -> bool:
-    """Does the rest of her cover her feet where she stands at rest? False for who has none."""
+    """Does the rest of her cover her feet where she stands at rest? False without feet."""
     feet = np.concatenate([on_foot(character, m, "l") | on_foot(character, m, "r") for m in character.meshes])
     if not feet.any():
         return False
@@ -170,7 +170,7 @@ def draw_hidden_feet(frame: Frame, scene: Scene, joints: Array, camera: Camera) 
 
 @lru_cache(maxsize=4)
 def _leg_joints(names: tuple[str, ...]) -> NDArray[np.intp] | None:
-    """The joints of each leg, left and right, of the second dancer too, (l, 3); None for who has no such legs."""
+    """The joints of each leg, left and right, of the second dancer too, (l, 3); None without such legs."""
     whose = ("", PREFIX) if any(name.startswith(PREFIX) for name in names) else ("",)
     needed = [f"{one}{side}_{joint}" for one in whose for side in "lr" for joint in _LEG]
     if not set(needed) <= set(names):

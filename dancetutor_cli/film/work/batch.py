@@ -36,7 +36,7 @@ FIELDS = ("title", "artist", "folder", "pack", "file", "steps_type", "difficulty
 
 @dataclass(frozen=True, slots=True)
 class BatchRequest:
-    """What a batch shall make. request : the film wanted of each chart (its path and selection are replaced)
+    """What a batch makes. request : the film wanted of each chart (its path and selection are replaced)
 
     name : template of the films' names; meters : least and greatest meter or None; shard : (number from 1, of how many)
     exclude : patterns of files that are left out
@@ -102,7 +102,7 @@ def check_name(template: str) -> None:
 
 
 def film_list(batch: BatchRequest) -> FilmList:
-    """The films of the batch (of this shard), sorted by path. Of what is no film only the first shard tells."""
+    """The films of the batch (of this shard), sorted by path. Of files without a film only the first shard reports."""
     check_name(batch.name)
     jobs: list[FilmJob] = []
     bad: list[UnreadableFile] = []

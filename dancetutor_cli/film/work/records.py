@@ -2,7 +2,7 @@
 
 Records lie in the user's own cache and never beside the films, because a folder of charts, and what lies in it, may
 come from anybody. Films in work lie beside the output, so that the last step is a rename and a cluster's machines see
-them: in a folder that each run makes anew, under a name that nobody can foresee. A segment of an interrupted run moves
+them: in a folder that each run makes again, under a name that nobody can foresee. A segment of an interrupted run moves
 over from the folder of that run, and counts only with the digest that is kept here.
 """
 
@@ -46,7 +46,7 @@ class FilmRecord:
 
 
 class FilmRecords:
-    """One file per film in a private folder; without a folder nothing is kept, and a second run begins anew."""
+    """One file per film in a private folder; without a folder nothing is kept, and a second run begins again."""
 
     def __init__(self, folder: Path | None) -> None:
         self._folder = folder

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.media.encoder import Encoding
 
 
-# What film is wanted, and whether it can be made: everything that can be refused before the dear work begins.
+# What film is wanted, and whether it can be made: everything that can be refused before the slow work begins.
 
 
 @dataclass(frozen=True, slots=True)

@@ -162,7 +162,7 @@ def frames_of(task: Task) -> int:
 
 
 def _report_frames(frames: Iterator[Frame], report: Callable[[int], None]) -> Iterator[Frame]:
-    """Pass frames on, and tell every few of them."""
+    """Pass frames on, and report every few of them."""
     waiting = 0
     for frame in frames:
         yield frame

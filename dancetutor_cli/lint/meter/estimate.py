@@ -1,4 +1,4 @@
-"""The estimated meter of a chart with its bill, on the scale that its song is numbered on; and its level of DDR."""
+"""The estimated meter of a chart with its terms, on the scale that its song is numbered on; and its level of DDR."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dancetutor_cli.lint.meter.features import Feature
 from dancetutor_cli.lint.meter.model import MeterModel, Scale, model_for
 from dancetutor_cli.lint.meter.score import Level
 
-_WORTH = 0.1  # meters that a term has to add to stand on the bill; less goes into its "rest"
+_WORTH = 0.1  # meters that a term has to add to have a term of its own; less goes into its "rest"
 Ask = Callable[[Sequence[Feature], float], Sequence[float]]  # the features of a play, at a rate
 
 
@@ -34,7 +34,7 @@ class MeteredChart:
 def size(steps_type: str, label: tuple[int, str], ask: Ask, rate: float = 1.0) -> MeteredChart | None:
     """A chart's meters on every scale; None for a pad without a model.
 
-    label : its meter and difficulty; ask : what tells features of its play, at a rate
+    label : its meter and difficulty; ask : what gives features of its play, at a rate
     """
     model = model_for(steps_type)
     if model is None:
@@ -59,7 +59,7 @@ _TAGS = {"ITG": "itg", "DDR X": "ddr"}
 TAGGED = 3.0  # meters that all labels together have to be nearer to another scale than the tag's: some tags are wrong
 _CLEAR = 1.0  # meters by which one scale has to fit them better than any other; else it is a guess
 _MOST = 3.0  # meters that a label is missed by; more counts as this, for it may be a joke
-_FEWEST = 2  # other charts of a song that tell its scale surely
+_FEWEST = 2  # other charts of a song that give its scale surely
 _GUEST = 1 / 3  # what the label of another chart says of the scale of an Edit, which may be a guest's
 
 

@@ -141,7 +141,7 @@ def _steps_of(plays: Sequence[Play]) -> _Steps:
 
 
 def _marks(play: Play) -> NDArray[np.float64]:
-    """(`_COUNTED`, n) which of them each row of a play is, as far as the names of its moves tell."""
+    """(`_COUNTED`, n) which of them each row of a play is, as far as the names of its moves say."""
     if play.events is None:
         marks = np.array([_marked(names) for names in play.moves], dtype=float).reshape(-1, len(_COUNTED)).T
     else:

@@ -124,7 +124,7 @@ class _Pieces(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class MeterModel:
-    """All scales of a pad, the usual one first. alone : the same as below and above where nothing tells the scale.
+    """All scales of a pad, the usual one first. alone : the same as below and above where the scale is not known.
 
     features : every feature that a curve asks for, once
     """

@@ -78,7 +78,7 @@ def played_oddities(plays: Plays) -> NDArray[np.float64]:
 
 _CHANGE = 0.05  # octaves between the tempos of two rows that are felt: 3.5 %
 _SAME_TEMPO = 0.1  # octaves; tempos that are nearer count as one
-_STOP = 0.03  # s; a shorter one mends the sync
+_STOP = 0.03  # s; a shorter one corrects the sync
 
 
 class TimingOddities(NamedTuple):

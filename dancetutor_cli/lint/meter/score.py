@@ -17,7 +17,7 @@ from dancetutor_cli.run.schema import Entries, Names, Text, convert
 from dancetutor_cli.run.yaml_files import read
 
 _CHANGES = "timing changes"  # the term that stops and changes of tempo share
-_WORTH = 0.02  # levels that a term has to add to stand on the bill; less goes into its "rest"
+_WORTH = 0.02  # levels that a term has to add to have a term of its own; less goes into its "rest"
 
 
 class Level(NamedTuple):
@@ -101,7 +101,7 @@ class ScoreModel:
         return after - 1, after, min(max((level - low) / (high - low), 0.0), 1.0)
 
     def estimate(self, steps_type: str, level: Level, oddities: Oddities) -> ScoreEstimate:
-        """The number with its bill. steps_type : one of those in `start`"""
+        """The number with its terms. steps_type : one of those in `start`"""
         added = self.added(steps_type, level.meter, oddities)
         base = level.meter + self.start[steps_type]
         meter = base + sum(added.values())

@@ -19,7 +19,7 @@ from dancetutor_cli.lint.subject import ChartSubject
 
 @dataclass(frozen=True, slots=True)
 class MeterReport:
-    """What is told of one chart: its estimates, and findings of the rules about a song's meters."""
+    """What is reported of one chart: its estimates, and findings of the rules about a song's meters."""
 
     estimate: Estimate
     score: ScoreEstimate | None
@@ -42,7 +42,7 @@ class _SongChart:
 
 
 class Meters:
-    """Takes the charts of a song as they are solved; then tells of all."""
+    """Takes the charts of a song as they are solved; then reports all."""
 
     def __init__(self, song: Song, settings: Settings) -> None:
         self._song, self._settings = song, settings
@@ -59,13 +59,13 @@ class Meters:
             self._sized[chart.steps_type].append(_SongChart(chart.index, found, oddities))
 
     def ask_for_others(self, scale: str = AUTO) -> frozenset[str]:
-        """Steps types of which the song's other charts have to tell the scale, for nothing else does."""
+        """Steps types of which the song's other charts have to give the scale, for nothing else does."""
         if scale != AUTO:
             return frozenset()
         return frozenset(kind for kind, of_pad in self._sized.items() if len(of_pad[0].sized.on) > 1)
 
     def reports(self, scale: str = AUTO) -> dict[int, MeterReport]:
-        """Index of the chart -> what is told of it."""
+        """Index of the chart -> what is reported of it."""
         out: dict[int, MeterReport] = {}
         tag = self._song.tags.get("METERTYPE", "")
         for steps_type, of_pad in self._sized.items():

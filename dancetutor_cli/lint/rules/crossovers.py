@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from dancetutor_cli.lint.subject import ChartSubject
 
-_LEAD = 0.25  # seconds: with twice the time of the next step, and a novice begins anew
+_LEAD = 0.25  # seconds: with twice the time of the next step, and a novice begins again
 _SLOW = 0.3  # seconds in which a beginner steps again with whichever foot she likes
 _WALKED = 4  # panels
 _CAME = 2  # steps from the other pad

@@ -15,7 +15,7 @@ _BEFORE, _AFTER = 3, 1  # steps
 _CROSSED_RATHER = 0.15  # seconds: a 16th at 100 BPM; so quickly a short crossover is nearer than a doublestep
 ONE_PAD = 2.0  # panel widths from the leftmost to the rightmost panel
 _SHORT = 2  # crossed rows of such a crossover
-_LONG, _LONGER = 0.25, 1.45  # seconds, times the step beside it: a dotted note and longer, after which one begins anew
+_LONG, _LONGER = 0.25, 1.45  # seconds, times the step beside it: a dotted note and longer, after which one begins again
 _LED = 3  # the same, between two pads
 
 

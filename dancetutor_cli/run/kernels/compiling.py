@@ -94,7 +94,7 @@ def inner_kernel(function: F) -> F:
 class _KeptOverloads:
     """What a function of numba's asks for what is kept of it, in place of numba's own files."""
 
-    cache_path = None  # which numba's statistics tell
+    cache_path = None  # which numba's statistics show
 
     def __init__(self, function: Any) -> None:
         source = Path(function.__code__.co_filename)
@@ -124,7 +124,7 @@ class _KeptOverloads:
 
 
 def _is_for_target(codegen: Any) -> bool:
-    """Whether numba compiles for the processor that stands in what is kept; whoever imported it first decides that."""
+    """Whether numba compiles for the processor that stands in what is kept; the first import decides that."""
     return tuple(codegen.magic_tuple()[1:]) == processor()
 
 

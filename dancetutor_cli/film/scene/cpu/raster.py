@@ -1,4 +1,4 @@
-"""Vertices and triangles: skinning, projection, and filling depth and triangle numbers; dear kernels."""
+"""Vertices and triangles: skinning, projection, and filling depth and triangle numbers; slow kernels."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.run.kernels.compiling import float32, njit, uint64
 
-# How the dear kernels are compiled: without counting references to arrays, by which `shade.resolve` takes a quarter
+# How the slow kernels are compiled: without counting references to arrays, by which `shade.resolve` takes a quarter
 # less time. A division by 0 is no error in them: looking for that keeps loops from being done several rounds at once.
 
 kernel = njit(cache=True, counted=False, error_model="numpy")
@@ -21,7 +21,7 @@ inner_kernel = njit(counted=False, error_model="numpy", no_cpython_wrapper=True)
 # that share an edge leave no gap, and every machine finds the same samples covered.
 
 SNAP = 16.0
-DEPTH_UNIT = float(1 << 26)  # 1 / depth is at most 20: it fits 31 bits, and tells a micrometre at 5 m
+DEPTH_UNIT = float(1 << 26)  # 1 / depth is at most 20: it fits 31 bits, and says a micrometre at 5 m
 FRONT, BACK = 1, -1
 BAND = 8  # samples: what is drawn is noted for so many rows together; a multiple of the samples across a pixel
 _LANES = np.arange(8.0)  # so many samples of a row are looked at together: one step of a vector unit for each of them

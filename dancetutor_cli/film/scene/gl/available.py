@@ -1,4 +1,4 @@
-"""What OpenGL is here, found with ctypes alone; what must be mended before pyrender is imported; the shaders."""
+"""What OpenGL is here, found with ctypes alone; what must be corrected before pyrender is imported; the shaders."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def _starts(egl: ctypes.CDLL, display: int) -> bool:
     return True
 
 
-# Everything that must be mended before pyrender 0.1.45 and PyOpenGL 3.1.0 (upstream rests since 2022) can be imported.
+# What must be corrected before pyrender 0.1.45 and PyOpenGL 3.1.0 (unchanged since 2022) can be imported.
 #
 # Call `load_pyrender` instead of importing pyrender.
 #
@@ -102,7 +102,7 @@ def _starts(egl: ctypes.CDLL, display: int) -> bool:
 
 
 def load_pyrender() -> Any:
-    """pyrender, mended; UnavailableError with one readable line if there is no OpenGL."""
+    """pyrender, corrected; UnavailableError with one readable line if there is no OpenGL."""
     require_gl()
     chosen = os.environ.get("PYOPENGL_PLATFORM")
     if "OpenGL" in sys.modules and chosen != "egl":
