@@ -75,7 +75,7 @@ HEAD = """\
 # How hard {pad} plays: meters that terms add up to, see docs/meter.md. By research/fit_meter.py from {charts} charts.
 # of: what is counted; seconds, how: in so many seconds before each row, the mean of all rows, or what 98 in 100 rows
 # do not exceed (count: of the whole chart). at, meters: the curve, which only rises. interval: 80 of 100 labels lie
-# between the estimate less `below` and plus `above`, by bands that end at `up_to`. alone: where no scale is told. most:
+# between the estimate less `below` and plus `above`, by bands that end at `up_to`. alone: without a scale. most:
 # where the scale ends.
 """
 HIGH = 30

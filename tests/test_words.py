@@ -1,12 +1,20 @@
-"""The words of the documents: none that docs/style.md forbids, and the dancer is introduced before "she" is."""
+"""The words of documents, help, messages and code: none that docs/style.md forbids; no "she" without a dancer."""
 
 from __future__ import annotations
 
+import ast
+import io
 import re
+import tokenize
+from collections.abc import Iterator
 from pathlib import Path
 
+import click
 import pytest
 import yaml
+
+from dancetutor_cli.commands import COMMANDS, cli
+from dancetutor_cli.lint.rule import all_rules
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = {
@@ -62,6 +70,99 @@ def test_words_of_films_and_sheets_keep_to_the_list(name: str) -> None:
     english = yaml.safe_load((ROOT / "configs" / "languages" / "en.yaml").read_text("utf-8"))
     for label, words in english["film" if name == "films" else name].items():
         assert problems(words) == [], label
+
+
+# What people read while they use the program: help, messages, rules.
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_has_no_such_word(name: str) -> None:
+    command = cli.get_command(click.Context(cli), name)
+    assert command is not None
+    text = command.get_help(click.Context(command, info_name=name))
+    assert problems(text) == [] and not SHE.search(text)
+
+
+def test_rules_have_no_such_word() -> None:
+    found = {code: [*problems(prose(rule.__doc__ or "")), *problems(rule.name)] for code, rule in all_rules().items()}
+    assert {code: words for code, words in found.items() if words} == {}
+
+
+def test_rules_introduce_the_dancer() -> None:
+    for code, rule in all_rules().items():
+        text = prose(rule.__doc__ or "")
+        she = SHE.search(text)
+        assert she is None or "dancer" in text[: she.start()], code
+
+
+CODE = ROOT / "dancetutor_cli"
+MODULES = sorted(path.relative_to(CODE).as_posix() for path in CODE.rglob("*.py"))
+SHE = re.compile(r"\b(she|her|hers|herself)\b", re.I)
+# In code a hold or a hand may let go, a stage is a room, a door is none of ours, and one tells things apart.
+IN_CODE = {words: better for words, better in FORBIDDEN.items() if not words.startswith(("told", "rooms", "(let"))} | {
+    r"(?:told|tells?|telling)(?!(?:[^.;]|\.\d){0,80}\bapart\b)": "report, print, say",
+    r"(?:every|each|other|this) rooms?": "package",
+    r"notes? (?:that )?(?:is|are) let go": "not played",
+    r"dearer|dearest": "costlier, slower",
+}
+# Names of fields and modules that docstrings explain, and data that has been called so since before.
+NAMED = re.compile(r"\b(?:told|mend)(?= : |, fix\b)|^notes let go$", re.M)
+
+
+def code_texts(name: str) -> Iterator[tuple[int, str, bool]]:
+    """Line, text and whether people may see it: texts of several words in a module, and its comments."""
+    source = (CODE / name).read_text("utf-8")
+    tree = ast.parse(source)
+    bodies = (node.body for node in ast.walk(tree) if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef))
+    docs = {body[0].value for body in bodies if body and isinstance(body[0], ast.Expr)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value.strip():
+            yield node.lineno, node.value, node not in docs
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        if token.type == tokenize.COMMENT:
+            yield token.start[0], token.string, False
+
+
+def problems_of_code(text: str) -> list[str]:
+    text = NAMED.sub(" ", re.sub(r"`[^`\n]*`", " ", text))
+    return [
+        f"'{found[0]}': write {better}"
+        for words, better in IN_CODE.items()
+        for found in re.finditer(rf"\b(?:{words})\b", text, re.I)
+    ]
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_no_message_docstring_or_comment_has_such_a_word(name: str) -> None:
+    assert [(line, said) for line, text, _ in code_texts(name) for said in problems_of_code(text)] == []
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_no_message_says_she(name: str) -> None:
+    """Whoever reads one line of a message has not met the dancer."""
+    assert [(line, text) for line, text, is_seen in code_texts(name) if is_seen and SHE.search(text)] == []
+
+
+# Packages whose first docstring says who "she" is.
+ABOUT_HER = ("dance/", "film/")
+
+
+@pytest.mark.parametrize("name", [name for name in MODULES if not name.startswith(ABOUT_HER)])
+def test_code_introduces_the_dancer(name: str) -> None:
+    text = "\n".join(text for _, text, _ in sorted(code_texts(name)))
+    she = SHE.search(text)
+    assert she is None or "dancer" in text[: she.start()].lower()
+
+
+def test_packages_about_her_say_who_she_is() -> None:
+    for name in ABOUT_HER:
+        first = ast.get_docstring(ast.parse((CODE / name / "__init__.py").read_text("utf-8"))) or ""
+        assert re.search(r"\bshe\W+is the dancer", first, re.I), name
+
+
+def test_the_list_for_code_finds_what_it_is_for() -> None:
+    assert len(problems_of_code("It is told in every room; a bill is dearer, notes are let go. Shall it mend?")) == 7
+    assert problems_of_code("cannot be told apart; a hold is let go; told : whether; there is room; `told`") == []
 
 
 def test_the_list_finds_what_it_is_for() -> None:

@@ -95,7 +95,7 @@ def running_shell() -> str:
     name = Path(os.environ.get("SHELL", "")).name
     if name in SHELLS:
         return name
-    raise UsageError(f"cannot tell which shell this is ({name or 'SHELL is not set'}); name one: {', '.join(SHELLS)}")
+    raise UsageError(f"cannot recognise the shell ({name or 'SHELL is not set'}); name one: {', '.join(SHELLS)}")
 
 
 def place_for(shell: str) -> tuple[Path, bool]:

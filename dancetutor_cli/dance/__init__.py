@@ -1,5 +1,7 @@
 """How a play becomes a motion: five stages, one type into each and one out of it. `Context` is what all of them know.
 
+In this package "she" is the dancer, whatever character is drawn.
+
     feet.play.Play                  who steps what, from the solver
       |   feet.play                   without the notes that no person plays
       |   footwork.planner            rules: step, jump, gallop, hold, bracket, mine, sidestep, walk, shake

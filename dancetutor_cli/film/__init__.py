@@ -1,4 +1,6 @@
-"""Films, parted by what is drawn. No part imports another one; `film` puts them into one picture.
+"""Films, in parts by what is drawn. No part imports another one; `film` puts them into one picture.
+
+"She" is the dancer who is in the picture.
 
 overlay   flat, on top: highway, captions, pad diagram, words, and the sprites and letters they are made of
 scene     in space: camera, stage, the dancer's meshes, and the renderers `cpu` and `gl` that draw her

@@ -19,11 +19,11 @@ Schema 1, all metres, seconds and local unit quaternions (w, x, y, z); f frames,
 | contact_part | (c,) int8 | 0 whole foot, 1 heel, 2 toe |
 | contact_panel | (c, 2) | (x, z) of the panel's centre in the world |
 | let_go_second, let_go_row, let_go_column, let_go_why | (k,) | notes nobody plays; 0 limbs, 1 leap, 2 hand |
-| ground | (5,) | if she leaves the pad: its corners x0, z0, x1, z1, and how much lower the floor is |
+| ground | (5,) | if the dancer leaves the pad: its corners x0, z0, x1, z1, and how much lower the floor is |
 | bar | (3,) | with a bar: height, z behind the pad, radius of the rail |
 | bar_spans | (k, 2) | x from and to of its pieces |
 | grip_start, grip_end, grip_side, grip_x | (g,) | seconds; 0 left hand, 1 right; where its palm is on the rail |
-| grip_across | (g,) | 1 where it has crossed over before her |
+| grip_across | (g,) | 1 where it has crossed over before the body |
 
 A reader must survive added arrays. `FIELDS` is the table by which a file is read.
 """

@@ -312,7 +312,7 @@ class Candidates:
 
     @cached_property
     def facing_counts(self) -> list[tuple[int, ...]]:
-        """For each play its rows with a step by how far she faces away from the screen, see `Figures.facing`."""
+        """For each play its rows with a step by how far the dancer faces away from the screen, see `Figures.facing`."""
         rows = self.plays.stepped
         away = np.abs(self.plays.facing[rows]) % 360.0
         bins = np.digitize(np.minimum(away, 360.0 - away), _FACING)

@@ -93,7 +93,7 @@ def with_causes(findings: Sequence[Finding], causes: Sequence[Cause], panels: Se
     return tuple(told)
 
 
-# Technical steps of a chart by the names and rules of ITGmania (see `techniques`), and how far she faces away.
+# Technical steps of a chart by the names and rules of ITGmania (see `techniques`), and how far the dancer faces away.
 
 
 def tech_counts(subject: ChartSubject) -> dict[str, int]:
@@ -117,7 +117,7 @@ def tech_rows(subject: ChartSubject) -> dict[str, NDArray[np.int64]]:
 
 
 def facing_counts(subject: ChartSubject) -> tuple[int, ...]:
-    """Rows with a step by how far she faces away from the screen, see `Figures.facing`; () without a play."""
+    """Rows with a step by how far the dancer faces away from the screen, see `Figures.facing`; () without a play."""
     return () if subject.feet is None else subject.feet.candidates.facing_counts[subject.feet.number]
 
 

@@ -120,7 +120,7 @@ class Figures:
     nps_mean, nps_peak, breakdown, stream_measures : see `chart.density.Density`
     tech : how often each of `TECH_COUNTS` happens
     seconds : from the first to the last row with a step
-    facing : rows by how far she faces away from the screen: up to 22, 67, 112 and 157 degrees, and further
+    facing : rows by how far the dancer faces away from the screen: up to 22, 67, 112 and 157 degrees, and further
     hands : rows with a step in which a hand helps or three panels are down
     """
 

@@ -55,7 +55,7 @@ class Passage:
     """One passage: from measure `first` to where `last` begins, from `start` to `end` seconds.
 
     score : weight of its rows a second; rate : rows a second; steps : rows
-    crossovers : how often the left and the right foot cross over; turn : the farthest she faces away, degrees
+    crossovers : how often the left and the right foot cross over; turn : the farthest the dancer faces away, degrees
     spins, brackets, footswitches, doublesteps, jacks, jumps, hands : rows with such a move
     stream : rows in streams; unsure : rows in which the other foot is nearly as good
     """
@@ -141,7 +141,7 @@ def _begins(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def _turned(play: Play, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """How far she turns into each row, degrees."""
+    """How far the dancer turns into each row, degrees."""
     facing = play.facing[rows]
     change = np.abs(np.diff(facing, prepend=facing[:1]))
     return np.asarray(np.minimum(change, 360.0 - np.minimum(change, 360.0)))

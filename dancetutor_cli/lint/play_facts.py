@@ -149,7 +149,7 @@ class PlayFacts:
         return passages
 
     def half_turns(self) -> list[int]:
-        """Rows to which the body turns by 180 degrees, jumps too. Before the first row she may stand as she likes."""
+        """Rows to which the body turns by 180 degrees, jumps too. Before the first row any stance is allowed."""
         return self.candidates.half_turns[self.number]
 
     def triple_steps(self, min_seconds: float, max_seconds: float) -> Iterator[tuple[int, float]]:

@@ -71,7 +71,7 @@ def _brackets(play: Play) -> Iterator[ThemeCue]:
 
 
 def _turns(play: Play) -> Iterator[ThemeCue]:
-    """Rows to which the body turns far at once, or on past 180 degrees. Before the first row she may stand anyhow."""
+    """Rows to which the body turns far at once, or on past 180 degrees. Before the first row any stance is allowed."""
     if len(play.rows) < 2:
         return
     steps = np.diff(play.facing)

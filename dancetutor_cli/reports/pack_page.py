@@ -118,7 +118,7 @@ def dots(found: Sequence[Dot], title: str, y_name: str, *, diagonal: bool = Fals
 
 
 def facing(shares: Mapping[int, Sequence[int]]) -> str:
-    """By meter, how many of the rows she faces where: the screen at the bottom, back to it at the top."""
+    """By meter, how many of the rows face where: the screen at the bottom, back to it at the top."""
     meters = sorted(shares)
     out = _begin("where the dancer faces", "meter", "% of rows") + _grid(100)
     wide = (WIDTH - _LEFT - _RIGHT) / max(len(meters), 1)

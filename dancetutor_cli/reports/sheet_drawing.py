@@ -233,7 +233,7 @@ def _feet(sheet: Sheet, ticks: range) -> Iterator[str]:
 
 
 def _pose(sheet: Sheet, x: float, y: float, feet: Sequence[int], facing: float) -> str:
-    """The pad from above with the panels around the feet, and two soles that point where she faces."""
+    """The pad from above with the panels around the feet, and two soles that point where the dancer faces."""
     pad, style = sheet.subject.pad, sheet.style
     assert pad is not None
     middle = pad.panels[list(feet)].mean(axis=0)

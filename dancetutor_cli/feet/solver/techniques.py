@@ -113,8 +113,8 @@ def _moves() -> _Moves:
 # Half turns: rows to which the body turns by 180 degrees at once. The linter's rule and the films' words ask here.
 
 AWAY, BACK, ASIDE = "half-turn-away", "half-turn-back", "half-turn"
-HALF_TURNS = (AWAY, BACK, ASIDE)  # her back to the screen after it, before it, or neither
-_SIDEWAYS = 90.0  # degrees; farther than that from the screen, her back is to it
+HALF_TURNS = (AWAY, BACK, ASIDE)  # the dancer's back to the screen after it, before it, or neither
+_SIDEWAYS = 90.0  # degrees; farther than that from the screen, the dancer's back is to it
 
 
 def half_turned(facing: NDArray[np.float64]) -> NDArray[np.bool_]:

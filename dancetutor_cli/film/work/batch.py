@@ -143,7 +143,7 @@ def _job(batch: BatchRequest, song: Song, chart: Chart, taken: set[str]) -> Film
     suffix = "" if batch.encoding.target == PICTURES else f".{batch.encoding.target}"
     stem = file_name(batch.name, song, chart)
     name, number = stem, 2
-    while name.lower() in taken:  # two charts of one name; file systems may not tell upper from lower case
+    while name.lower() in taken:  # two charts of one name; file systems may ignore case
         name, number = f"{stem}-{number}", number + 1
     taken.add(name.lower())
     dance = replace(batch.request.dance, path=song.path, selection=Selection(index=chart.index))

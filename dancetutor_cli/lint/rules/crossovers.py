@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
 _LEAD = 0.25  # seconds: with twice the time of the next step, and a novice begins again
-_SLOW = 0.3  # seconds in which a beginner steps again with whichever foot she likes
+_SLOW = 0.3  # seconds in which a beginner steps again with either foot
 _WALKED = 4  # panels
 _CAME = 2  # steps from the other pad
 _WIDE = 2.5  # panel widths: more than from one side of a pad to the other
@@ -121,7 +121,7 @@ def _onwards(before: list[int], after: list[int], x: NDArray[np.float64]) -> boo
 
 
 class CrossedRun(ChartRule):
-    """The feet stay crossed over many rows, so the dancer plays with her side or her back to the screen.
+    """The feet stay crossed over many rows, so the dancer plays with the side or the back to the screen.
 
     `max_rows`: the longest run of crossed rows that is not reported.
     `max_seconds`: only rows at most this far apart make a run; with more time nobody stays crossed. A rest ends a run

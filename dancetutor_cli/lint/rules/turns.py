@@ -19,7 +19,7 @@ _REST = 0.25  # seconds
 _MANY = 4  # spins that are the idea of a chart: one finding
 _TWISTS = 20  # meter of Pump charts whose players expect to turn
 _ONE_RING = 4  # panels of a pad on which who turns all the way can only go round the same four
-_UNROUND = 1.3  # how much further one of four panels may lie from their middle than another, if she goes round them
+_UNROUND = 1.3  # how much further one of four panels may be from their middle than another, to be gone round
 ONE_PAD = 2.0  # panel widths from the leftmost to the rightmost panel
 
 
@@ -164,7 +164,7 @@ def _between_mines(subject: ChartSubject, row: int) -> bool:
 class JumpSpin(ChartRule):
     """The feet land on a jump only after turning past the dancer's back: a spin in the air.
 
-    Both feet leave the pad, so nothing guides the turn as in a usual spin, and she cannot see the screen as she lands.
+    Both feet leave the pad, so nothing guides the turn as in a usual spin, and the screen is out of sight on landing.
 
     Bad:
 
