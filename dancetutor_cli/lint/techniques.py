@@ -20,8 +20,8 @@ from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
 
 # A file of the cache (`Cache/Songs` in the game's folder) is an .ssc without a suffix and without notes, whose charts
 # say how often the game counts what (`#TECHCOUNTS`: with six decimals, for each of two players, who get the same) and,
-# last, where they are from (`#STEPFILENAME:/Songs/Pack/Song/song.ssc`). A player has ten numbers since ITGmania counts
-# half and full crossovers separately, six before, and five before it counted doublesteps. The game finds feet for dance-
+# last, where they are from (`#STEPFILENAME:/Songs/Pack/Song/song.ssc`). A player has ten numbers since ITGmania parts
+# half and full crossovers, six before, and five before it counted doublesteps. The game finds feet for dance-
 # single and dance-double only; what it writes for other steps types are zeros that say nothing.
 #
 # A cache has numbers, no rows: both mean the same at most as often as the lesser number. A CSV that says the beat of
