@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.run import LintRun
 
 SAFE = "safe"
-# Options of `analyze` that say how its report looks: there is none when files are mended.
+# Options of `analyze` that say how its report looks: there is none when files are corrected.
 _OF_REPORTS = ("sheet", "watch", "suggest", "alternatives", "update_baseline", "statistics", "stdin_filename")
 
 
@@ -51,7 +51,7 @@ def _parse_fix_request(text: str) -> FixRequest:
 
 
 def fix_all(run: LintRun, tasks: Sequence[AnalyzeTask], options: dict[str, Any]) -> int:
-    """Mend every file, tell what was done; the exit status: 1 if a finding that was asked for is left."""
+    """Correct every file, print what was done; the exit status: 1 if a finding that was asked for is left."""
     wanted = [_parse_fix_request(text) for text in options["fix"]]
     _check(tasks, options)
     talk = _Talk(diff=options["diff"])

@@ -65,7 +65,7 @@ class Manner(TypedDict, total=False):
     bar : whether she holds the bar behind the pad; gait : how she walks on and off, a name or file as for `load_gait`
     sides : from which she comes and to which she goes, 0 left or 1 right, where another one dances beside her
     person : as in `Context`
-    let_go : why notes that no limb has in the play are let go, where the caller has decided that
+    let_go : why notes that no limb has in the play are not played, where the caller has decided that
     """
 
     settings: MotionSettings | SettingsCourse | None
@@ -201,7 +201,7 @@ def _motion(piece: Piece, keys: Keys, notes: tuple[str, ...]) -> Motion:
 def _followed(motion: Motion, piece: Piece, ragdoll: RagdollStyle) -> BakedPiece:
     """The motion as a ragdoll follows it, and the braid again, for its head now moves otherwise.
 
-    What befalls her beside the piece's end is told by the piece in which it does: the other one sees less of it.
+    What befalls her beside the piece's end is reported by the piece in which it does: the other one sees less of it.
     """
     from dancetutor_cli.dance.physics.pipeline import through_ragdoll
 
@@ -226,7 +226,7 @@ def _posed_in(plan: Plan, bodies: Sequence[tuple[Trajectory, Context]], at: Arra
 
 
 def posed(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Context) -> Poses:
-    """Solve the body at times (f,), and move it so that its centre of mass, head and all, is where it shall be.
+    """Solve the body at times (f,), and move it so that its centre of mass, head and all, is where it must be.
 
     sampled : the times, and the feet at them
     """

@@ -9,7 +9,7 @@ run.LintRun                   a run of `analyze`: configuration and rule_setting
   |   figures, passages         what else is said of a chart: other ways, counts; hardest parts, sections by name
 findings.Finding              what a rule reports
 
-suggest, edit_shape           small edits that would mend a finding, and what they leave of the chart's shape
+suggest, edit_shape           small edits that would remove a finding, and what they leave of the chart's shape
 fix_edits, fix                fixes as edits of bytes; put into a file and proved, one by one
 sync, song_sync, pack_sync    music against beats: the method, a file, the songs of a pack
 meter                         how hard a chart is

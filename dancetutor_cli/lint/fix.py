@@ -24,7 +24,7 @@ from dancetutor_cli.run.errors import FileError, NoChartsError
 from dancetutor_cli.run.files import ChangedError, back_up, remove_leftovers, write_atomic
 
 FIXABLE = (*FIXED_BY_MOVES, *fix_edits.RULES)  # rules that `--fix` knows a fix for
-_RANKED = "DT213"  # tells the rows that are least sure: the next one takes the place of one that is gone
+_RANKED = "DT213"  # says the rows that are least sure: the next one takes the place of one that is gone
 NO_MOVE = "no edit of a note or a phrase removes it without making a jack, losing a figure or causing another finding"
 NO_FIX = {
     fix_edits.BROKEN_HOLD: "its chart holds more than plain notes, or the edit would cause another finding",
@@ -92,7 +92,7 @@ class FixOutcome:
 
 
 def fix_file(job: FixTask) -> FixOutcome:
-    """Mend one file, proved before it is written. Never raises for what is wrong with the file."""
+    """Correct one file, proved before it is written. Never raises for what is wrong with the file."""
     try:
         return _fix(job)
     except NoChartsError as error:  # music of a menu: nothing to fix
@@ -181,7 +181,7 @@ class FixSession:
                         self._try(self._state(chart, player + 1), [fix])
 
     def finding(self, chart: int, finding: Finding, player: int = 0) -> None:
-        """Mend one finding of a chart with the smallest edit that does it; `left` tells where there is none.
+        """Remove one finding of a chart with the smallest edit that does it; `left` says where there is none.
 
         player : in whose part of a chart for two it was found
         """
@@ -260,7 +260,7 @@ class _State:
     def is_no_worse_than(self, before: _State) -> bool:
         """Whether nothing is found that was not found there before.
 
-        Of what the reader warns of only the first few are told, so there it is the number that counts.
+        Of what the reader warns of only the first few are reported, so there it is the number that counts.
         """
         return not _finding_counts(self.findings) - _finding_counts(before.findings)
 

@@ -1,4 +1,4 @@
-"""Small edits that would mend a finding and keep a chart's shape, proven by solving the edited chart."""
+"""Small edits that would remove a finding and keep a chart's shape, proven by solving the edited chart."""
 
 from __future__ import annotations
 
@@ -171,7 +171,7 @@ class _Trial:
 
 
 class _Edited:
-    """An edited chart, of which the rules are asked one by one, until one tells what was not found before."""
+    """An edited chart, of which the rules are asked one by one, until one says what was not found before."""
 
     def __init__(self, subject: ChartSubject, settings: Settings, before: set[_Place]) -> None:
         self._subject, self._settings, self._before = subject, settings, before

@@ -86,7 +86,7 @@ def turning_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language
     """Half a turn: which foot goes round, whether it comes down in front of the other one or behind it, and why.
 
     move : its name for people, which says where she looks then; at : the play and the row that turns her. In front is
-    towards the screen; of two feet that jump it is told which one is.
+    towards the screen; of two feet that jump it is reported which one is.
     """
     (play, row), calls = at, language.calls
     feet = [foot for foot in (0, 1) if foot in play.limb[row]]

@@ -119,7 +119,7 @@ def _file_motions(request: FilmRequest, performance: Performance) -> tuple[Motio
 def _mines(
     motions: Mapping[float, Sequence[Motion]], plays: Sequence[tuple[Solved, Play]], fastest: float
 ) -> tuple[dict[float, tuple[Motion, ...]], tuple[OnMine, ...]]:
-    """The motions, whose notes tell of mines that a foot is on, and these mines at the fastest rate."""
+    """The motions, whose notes report mines that a foot is on, and these mines at the fastest rate."""
     pad = pad_of([one for one, _ in plays])
     out: dict[float, tuple[Motion, ...]] = {}
     found: list[OnMine] = []
@@ -151,7 +151,7 @@ def _on_mines(one: Solved, play: Play, under: np.ndarray, by_two: bool) -> list[
 # From a request to a film's plan: read the chart, solve the feet, bake the dancer, and lay everything on the clock.
 
 FADE = 0.6  # seconds in which a film's picture goes dark at its end, and that of a GIF before it goes round
-HIGH = "front-high"  # the camera of configs/picture.yaml for who hides her feet from behind
+HIGH = "front-high"  # the camera of configs/picture.yaml for anyone who hides her feet from behind
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +164,7 @@ class PreparedFilm:
 
 
 def prepare(request: FilmRequest, subject: FilmSubject) -> PreparedFilm:
-    """Do everything dear that comes before the first frame. DancetutorError says in one line what is wrong."""
+    """Do everything slow that comes before the first frame. DancetutorError says in one line what is wrong."""
     song, chart, clock = subject.song, subject.chart, subject.clock
     dance = film_dance(request, subject)
     play, pad = dance.play, dance.pad
