@@ -111,7 +111,7 @@ class GivenPath(click.Path):
 def within_folders(paths: Sequence[Path], files: Sequence[Path]) -> list[Path]:
     """The files that may be written of those that a search has found; each link out of its folders is one line."""
     kept, links = without_links_out(paths, files)
-    where = "outside the folder that is searched; it is not changed. Name it to change it"
+    where = "outside the folder that is searched; it is not changed; name it to change it"
     warn(f"{link}: is a link to {os.path.realpath(link)}, {where}" for link in links)
     return kept
 

@@ -91,7 +91,7 @@ def test_seconds(both: list[tuple[Song, object]]) -> None:
 def why_times_differ(song: Song, c: Chart) -> str | None:
     if any(w.code == "negative-timing" for w in (*song.warnings, *c.warnings)):
         return "negative"
-    if any(w.code == "odd-timing" and "no pair of numbers" in w.message for w in song.warnings):
+    if any(w.code == "odd-timing" and "not a pair of numbers" in w.message for w in song.warnings):
         return "junk"
     if c.timing is not song.timing and "OFFSET" not in c.tags and song.timing.offset != 0:
         return "offset"

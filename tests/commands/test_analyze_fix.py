@@ -60,7 +60,7 @@ def test_one_finding_is_mended_by_two_bytes_and_no_other_comes(ssc: Path) -> Non
     assert len(places) == 2 and before.count(b"\n", 0, places[0]) == before.count(b"\n", 0, places[1])
     now = found(ssc)
     assert not now - was
-    assert "two_left_feet.sm: the same song, but it was not named" in said.err
+    assert "two_left_feet.sm: the same song in another file, which was not named" in said.err
     assert [rule for _, rule, _ in was - now].count("DT202") == 1
 
 

@@ -259,7 +259,7 @@ def test_quiet_is_silent_where_nothing_fails_the_run(faulty: Path) -> None:
 
 
 def test_suggest_says_so_when_it_finds_nothing(faulty: Path) -> None:
-    assert "no finding would go away" in run("--suggest", "--select", "DT1", faulty).stderr
+    assert "no small edit would remove a finding" in run("--suggest", "--select", "DT1", faulty).stderr
 
 
 def test_statistics_count_the_rules_above_the_summary(faulty: Path) -> None:

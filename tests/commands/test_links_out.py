@@ -35,7 +35,7 @@ def test_annotate_leaves_a_link_out_of_the_folder_alone(pack: Path, tmp_path: Pa
     assert (pack / "song" / "x.sm").read_text() != SONG
     assert said.err.splitlines() == [
         f"warning: {pack / 'out.sm'}: is a link to {os.path.realpath(tmp_path)}/outside.sm, outside the folder that is "
-        "searched; it is left alone, name it to write it"
+        "searched; it is not changed; name it to change it"
     ]
     assert Said([pack, "--check"]).status == 0
     assert Said([pack / "out.sm"]).status == 0 and (tmp_path / "outside.sm").read_text() != SONG

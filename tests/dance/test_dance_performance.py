@@ -117,7 +117,7 @@ def test_of_two_it_draws_both_where_their_files_have_them(tmp_path: Path) -> Non
 def test_a_file_is_of_music_at_its_own_speed(tmp_path: Path) -> None:
     song = tmp_path / "two.sm"
     song.write_text(COUPLE)
-    with pytest.raises(UsageError, match="at its own speed"):
+    with pytest.raises(UsageError, match="at normal speed"):
         danced(film(song, tmp_path / "x.npz", rates=(0.5,), selection=Selection(player=1)))
 
 

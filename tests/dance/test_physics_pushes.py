@@ -99,7 +99,7 @@ def test_two_runs_give_the_same_bytes(plain: Motion) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("12:300", "give TIME:FORCE:DIRECTION, for example 12.5:300:left"),
+        ("12:300", "write TIME:FORCE:DIRECTION, for example 12.5:300:left"),
         ("x:300:left", "the time 'x' is not a number"),
         ("nan:300:left", "the time 'nan' is not a number"),
         ("12:0:left", "the force must be more than 0 and at most 3000 newtons"),

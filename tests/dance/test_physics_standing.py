@@ -140,5 +140,5 @@ def test_a_tumble_without_a_standing_pose_is_refused(tmp_path: Path) -> None:
     lies = rested(given, zero_pose(given.skeleton, "wild", 5))
     fallen = turned(lies, quat.from_axis_angle(AXIS_X, np.linspace(0.0, 2.0 * np.pi, len(lies.times))))
     write_bvh(path, fallen)
-    with pytest.raises(FileError, match=r"x\.bvh: neither its zero pose nor its motion says which way is up"):
+    with pytest.raises(FileError, match=r"x\.bvh: neither its zero pose nor its motion shows which way is up"):
         read_on_dancer(path)

@@ -131,7 +131,7 @@ ENTRIES = {
     "a negative size": ({"times": declared((-1,))}, "not an .npz file|not as long|has the shape"),
     "no header": ({"fps": b"\x93NUMPY\x01\x00\x10\x00{"}, "not an .npz file of a motion, or a broken one"),
     "a header of depth": ({"fps": entry({}, version=b"\x01\x00").replace(b"{}", b"((")}, "not an .npz file"),
-    "another version": ({"fps": entry({"descr": "<f8"}, version=b"\x02\x00")}, "'fps' is of no plain type"),
+    "another version": ({"fps": entry({"descr": "<f8"}, version=b"\x02\x00")}, "'fps' has no plain type"),
     "not numpy's": ({"fps": b"hello"}, "not an .npz file of a motion, or a broken one"),
     "empty": ({"fps": b""}, "not an .npz file of a motion, or a broken one"),
 }  # fmt: skip

@@ -77,7 +77,7 @@ def test_files_come_and_go_and_may_be_broken(tmp_path: Path) -> None:
     (tmp_path / "old" / "c.sm").write_text(SONG)
     (tmp_path / "new" / "a" / "a.sm").write_bytes(b"\0\1\2")
     lines = list(change_lines(list(compare(of_path(tmp_path / "old"), of_path(tmp_path / "new"))), None))
-    assert lines[0].startswith("a/a.sm: cannot be read any more")
+    assert lines[0].startswith("a/a.sm: can no longer be read")
     assert lines[1:] == ["b.sm: is new", "c.sm: is gone"]
 
 

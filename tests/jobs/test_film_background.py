@@ -76,14 +76,14 @@ def test_the_film_is_made_entered_and_taken_out_again(song: Path, capsys: pytest
 def test_quietly_an_entry_is_made_without_a_word(
     song: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, quiet: bool
 ) -> None:
-    """Nor of what takes the film away again; the film itself is not looked at."""
+    """Nor of what ends the film again; the film itself is not looked at."""
     text = (song / "s.sm").read_text()
     (song / "s.sm").write_text(text.replace("#BPMS", "#BGCHANGES:2=other.mp4=1=0=0=0;\n#BPMS"))
     monkeypatch.setattr(render, "_render_one", lambda *_: None)
     assert run("render", song, "--background", "--into-file", *(["-q"] if quiet else [])) == 0
     assert "s.dancetutor.mp4" in load(song / "s.sm").tags["BGCHANGES"]
     told = capsys.readouterr()
-    assert ("behind the notes" in told.out) is not quiet and ("takes the film away" in told.err) is not quiet
+    assert ("behind the notes" in told.out) is not quiet and ("ends the film" in told.err) is not quiet
     assert not quiet or told.out + told.err == ""
 
 

@@ -174,7 +174,7 @@ def test_a_plot_is_one_picture_of_one_file(tmp_path: Path) -> None:
     path = song(SEEDS[2]).write(tmp_path / "song")
     picture = tmp_path / "bias.svg"
     said = CliRunner().invoke(command, [str(path), "--sync", "--plot", str(picture), "--no-cache", "--exit-zero"])
-    assert said.exit_code == 0 and "the bias over the song" in said.stderr
+    assert said.exit_code == 0 and "a diagram of the sync over the song" in said.stderr
     text = picture.read_text(encoding="utf-8")
     assert text.startswith("<svg") and text.count("<circle") >= 24 and "http:" not in text.replace("http://www.w3", "")
 
