@@ -40,7 +40,9 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
     names = [name.strip() for name in value.split(",") if name.strip()]
     for name in names:
         if name not in STRIPPED:
-            raise UsageError(f"there is no style '{name}'{did_you_mean(name, STYLES)}; there are {', '.join(STYLES)}")
+            raise UsageError(
+                f"there is no marker style '{name}'{did_you_mean(name, STYLES)}; there are {', '.join(STYLES)}"
+            )
     if not names:
         raise UsageError(f"--markers: name one or more of {', '.join(STYLES)}")
     return tuple(name for name in STRIPPED if name in names)
@@ -262,7 +264,7 @@ def _leftover_message(outcome: AnnotateOutcome) -> str:
     if not pinned:
         return ""
     measures, them = ("measures", "them") if pinned > 1 else ("measure", "it")
-    return f": {pinned} pinned {measures} left alone; --force takes {them} out"
+    return f": {pinned} pinned {measures} left alone; --force removes {them}"
 
 
 def _details(outcome: AnnotateOutcome) -> str:

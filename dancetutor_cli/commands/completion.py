@@ -72,7 +72,7 @@ def command(shell: str | None, only_print: bool, remove: bool) -> None:
         click.echo(f"{place}: {'nothing to remove' if remove else 'is up to date'}")
         return
     _write(place, new)
-    click.echo(f"{place}: {'taken out' if remove else 'written'}; it holds from the next window of {name} on")
+    click.echo(f"{place}: {'removed' if remove else 'written'}; this works from the next window of {name} on")
 
 
 def script_for(shell: str) -> str:

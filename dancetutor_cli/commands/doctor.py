@@ -178,6 +178,7 @@ def _disk() -> Check:
 # `dancetutor doctor`: what this machine can render with, a line each, and below it how to repair what is missing.
 
 WIDTH = 80  # columns
+_SHOWN = {"without": "missing"}  # states that the table calls by another word than the JSON
 
 
 @click.command(cls=GroupedCommand)
@@ -197,7 +198,9 @@ def command(as_json: bool) -> None:
     else:
         width = max(len(c.name) for c in checks)
         for check in checks:
-            _print_entry(f"{check.state:<7} {check.name:<{width}}  ", check.message.rstrip("."))
+            _print_entry(
+                f"{_SHOWN.get(check.state, check.state):<7} {check.name:<{width}}  ", check.message.rstrip(".")
+            )
             if check.mend:
                 _print_entry(" " * (width + 10), f"to repair: {check.mend}")
     if any(check.state == "broken" for check in checks):

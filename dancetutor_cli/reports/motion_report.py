@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 # The quality report of a motion: a table for people, plain data for programs.
 
+_NOTHING = 1e-6  # of any unit: shown as 0
 _DISTANCES = ("minimum", "maximum", "mean", "deviation")
 
 
@@ -34,7 +35,7 @@ def print_report(report: MotionReport) -> None:
     for f in report.figures:
         unit = f" {f.unit}" if f.unit else ""
         goal = "" if f.goal is None else f"{'at least' if f.at_least else 'at most'} {f.goal:g}{unit}"
-        value = "nothing to measure" if f.value != f.value else f"{f.value:.4g}{unit}"
+        value = "nothing to measure" if f.value != f.value else f"{0 if abs(f.value) < _NOTHING else f.value:.4g}{unit}"
         table.add_row(f.name, value, goal, {None: "", True: "yes", False: "NO"}[f.met])
     Console().print(table)
     if report.distances:

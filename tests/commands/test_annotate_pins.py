@@ -23,7 +23,7 @@ def test_pinned_feet_stay_and_guide_the_solver(ssc: Path) -> None:
     assert Said([ssc, "--preset", "thesis", "--index", 0, "--check"]).status == 0
     assert "would be stripped:" in (said := Said([ssc, "--strip", "--dry-run"])).out
     assert "1 file: 1 would change" in said.out
-    kept = "two_left_feet.ssc: 1 pinned measure left alone; --force takes it out"
+    kept = "two_left_feet.ssc: 1 pinned measure left alone; --force removes it"
     assert f"stripped {ssc}".removesuffix(ssc.name) + kept in Said([ssc, "--strip"]).out
     assert ssc.read_bytes().count(b"{dt1") == 1
     assert kept in Said([ssc, "--strip"]).out, "the second time nothing changes, and the pin is still there"

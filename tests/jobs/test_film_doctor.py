@@ -73,7 +73,7 @@ def test_lines_are_short_and_the_mend_stands_below(
     assert stop.value.code == 0
     lines = capsys.readouterr().out.splitlines()
     assert max(map(len, lines)) <= 80
-    at = lines.index("without encoder nvenc  no device")
+    at = lines.index("missing encoder nvenc  no device")
     assert lines[at + 1].startswith(" " * 23 + "to repair: an NVIDIA GPU")
     assert sum(line[0] != " " for line in lines) == len(examine())
 

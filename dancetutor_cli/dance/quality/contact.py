@@ -149,7 +149,11 @@ def ground_figures(motion: Motion, body: Body, mines: Array | None) -> tuple[tup
         Figure("penetration", 1000 * deepest(motion), "mm", 1.0),
         Figure("feet on mines", float("nan") if mines is None else float((under >= 0).sum()), "", 0.0),
     )
-    notes = (f"for {pivots} intended pivots on a planted foot only the slide of the ball counts",) if pivots else ()
+    notes = (
+        (f"only the slide of the ball counts in {pivots} intended pivot{'s' * (pivots > 1)} on a planted foot",)
+        if pivots
+        else ()
+    )
     return figures, (*notes, *(() if mines is None else mine_messages(mines[under >= 0, 0])))
 
 
