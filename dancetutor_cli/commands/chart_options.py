@@ -72,7 +72,7 @@ verbose_option = click.option(
     "-v", "--verbose", is_flag=True, help="Print every warning, not one line for the same warning in many files."
 )
 
-quiet_option = click.option("-q", "--quiet", is_flag=True, help="Print only errors.")
+quiet_option = click.option("-q", "--quiet", is_flag=True, help="Print only what makes the run fail.")
 
 exclude_option = click.option(
     "--exclude",
