@@ -9,7 +9,6 @@ from pathlib import Path
 PACKAGE = Path(__file__).resolve().parent.parent / "dancetutor_cli"
 BANNED = {"told", "asked", "known", "found", "danced", "how", "doing", "freely", "beside", "counted_in", "door"}
 WRITTEN_BY_USERS = {  # fields named after an option or a key of a settings file
-    "commands/page.py: PageWish.beside",
     "page/work.py: PageRequest.beside",
     "dance/settings_feet.py: WalkSettings.beside",
     "lint/meter/model.py: Curve.how",

@@ -122,7 +122,7 @@ def style_sources(text: str) -> tuple[tuple[str | Path, float], ...]:
         out.append((Path(name) if is_file else name, weight))
         if is_file:
             for _, other in sorted(load_style(name).measures.items()):
-                own = ((_beside(one, Path(name).parent), share) for one, share in named_weights(other))
+                own = ((_name_or_path(one, Path(name).parent), share) for one, share in named_weights(other))
                 out += ((one if one in config_names("styles") else Path(one), share) for one, share in own)
     return tuple(out)
 
@@ -161,7 +161,7 @@ def _weight(text: str, weight: str) -> float:
     return float(weight)
 
 
-def _beside(name: str, folder: Path | None) -> str:
+def _name_or_path(name: str, folder: Path | None) -> str:
     """A name of `configs/styles`, or the path of a file, which may lie in a folder."""
     beside = None if folder is None or name in config_names("styles") else folder / name
     return str(beside) if beside is not None and beside.is_file() else name
@@ -169,7 +169,7 @@ def _beside(name: str, folder: Path | None) -> str:
 
 def _parts(text: str, folder: Path | None = None) -> list[tuple[Style, float]]:
     """Styles with their shares, which sum to 1: what is missing is neutral. folder : where files may lie"""
-    parts = [(load_style(_beside(name, folder)), weight) for name, weight in named_weights(text)]
+    parts = [(load_style(_name_or_path(name, folder)), weight) for name, weight in named_weights(text)]
     total = sum(weight for _, weight in parts)
     if any(one is other for (one, _), (other, _) in combinations(parts, 2)):
         raise UsageError(f"style '{text}' names one style twice; name each once")

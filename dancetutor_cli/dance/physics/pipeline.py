@@ -110,8 +110,8 @@ def through_ragdoll(motion: Motion, style: Style | Blend, wishes: Wishes = Wishe
     motion, blows = disturbed(motion, wishes.pushes, wishes.trips)
     styles, shares = (Blend.of(style) if isinstance(style, Style) else style).within(motion.times)
     runs = [_followed(motion, one, wishes, blows) for one in styles]
-    held_at, limits = runs[0].steps, any(one.limits for one in styles)
-    rotations, root = _mean([_read(run.steps.at, *run.made, motion.times) for run in runs], shares)
+    first, limits = runs[0], any(one.limits for one in styles)
+    rotations, root = _mean([_read(run.at, *run.made, motion.times) for run in runs], shares)
     distances = _mean_distances([run.distances for run in runs], shares.mean(axis=0))
     share = 1.0 - _pressing(motion)
     rotations = quat.slerp(motion.rotations, rotations, share[:, None])
@@ -123,8 +123,8 @@ def through_ragdoll(motion: Motion, style: Style | Blend, wishes: Wishes = Wishe
         return RagdollResult(done, distances)
     feet, held, plants = feet_of(skeleton, motion.rotations, motion.root), np.ones((len(root), 2)), None
     motion, feet, missed = recovered(motion, feet, root, wishes.pushes)
-    if held_at.soles is not None:
-        plants = let_go(skeleton, feet, _at_keys(held_at.soles.plants(), held_at.at, motion.times))
+    if first.soles is not None:
+        plants = let_go(skeleton, feet, _at_keys(first.soles.plants(), first.at, motion.times))
         feet, _ = planted(skeleton, feet, plants)
         hips = world_transforms(skeleton, rotations, root)[0][:, [skeleton.index(f"{s}_hip") for s in "lr"]]
         feet, plants, held = keep_feet_still(skeleton, feet, plants, motion.times, hips)
@@ -185,20 +185,13 @@ def _possible(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
     return poses
 
 
-@dataclass(frozen=True, slots=True)
-class _Steps:
-    """Seconds of the simulation's steps, (f,), and the soles' joints in them."""
-
-    at: Array
-    soles: BreakableSoles | None
-
-
 class _Run(NamedTuple):
-    """What a ragdoll made of its input at the update rate, and how far from it that is."""
+    """What a ragdoll made of its input, how far from it that is, the seconds (f,) of its steps, and its soles then."""
 
     made: Poses
     distances: Distances
-    steps: _Steps
+    at: Array
+    soles: BreakableSoles | None
 
 
 def _mean(poses: Sequence[Poses], shares: Array) -> Poses:
@@ -241,7 +234,7 @@ def _followed(motion: Motion, style: Style, wishes: Wishes, blows: Sequence[Blow
     shown = tuple(p for p in points if not p.extra)
     apart = place_points(skeleton, bones, shown, *given) - place_points(skeleton, bones, shown, *made)
     distances = Distances(tuple(p.name for p in shown), at[first:], 100.0 * np.linalg.norm(apart[first:], axis=2))
-    return _Run(made, distances, _Steps(at, soles))
+    return _Run(made, distances, at, soles)
 
 
 def _at_keys(plants: Plants, at: Array, times: Array) -> Plants:
