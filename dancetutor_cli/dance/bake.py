@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.dance.changes import mixed_bodies, mixed_feet, mixed_poses
 from dancetutor_cli.dance.context import Context, bar_of, context_of, holding, panels_on_ground
-from dancetutor_cli.dance.face import add_face, bowed, mood_at, peeks_at
+from dancetutor_cli.dance.face import add_face, mood_at, peeks_at, with_peeks
 from dancetutor_cli.dance.foot_path import Feet, both_feet
 from dancetutor_cli.dance.footwork.planner import plan_footwork
 from dancetutor_cli.dance.grips import grips_of
@@ -240,8 +240,7 @@ def posed(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Co
     hands = hand_use(plan, body, at, waiting, context)
     free = (1.0 - hands.floor.max(axis=1)) * (1.0 - hands.bar.max(axis=1))
     mood, peeks = mood_at(plan, body, at, context), peeks_at(plan, free, at, context)
-    glances = glances_at(plan, body, at, context)
-    glances = replace(glances, pitch=glances.pitch - bowed(mood, peeks, free, settings.face))
+    glances = with_peeks(glances_at(plan, body, at, context), mood, peeks, free, settings.face)
     doing = Activity(
         stepping(feet, context.settings), free, plan.lead, mood.relief, sample_path(body.beat, body.times, at), waiting,
         glances,

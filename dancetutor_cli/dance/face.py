@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.ik.full_body import Poses
 from dancetutor_cli.dance.ik.targets import lately
+from dancetutor_cli.dance.layers import Glances
 from dancetutor_cli.dance.plan import Plan, Step
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
@@ -81,16 +82,20 @@ def peeks_at(plan: Plan, free: Array, at: Array, context: Context) -> Peeks:
         if gap < numbers.least or not wanted:
             continue
         start = max(step.land - gap + numbers.after, step.lift - numbers.early)
-        near = slice(*np.searchsorted(at, (start, step.land + numbers.ease)).tolist())
-        there = smooth((at[near] - start) / numbers.ease) * smooth((step.land + numbers.ease - at[near]) / numbers.ease)
+        near = slice(*np.searchsorted(at, (start, step.land)).tolist())
+        there = smooth((at[near] - start) / numbers.ease) * smooth((step.land - at[near]) / numbers.ease)
         out.share[near] = np.maximum(out.share[near], there * free[near])
         out.places[near] = step.target[0], 0.0, step.target[1]
     return out
 
 
-def bowed(mood: Mood, peeks: Peeks, free: Array, numbers: FaceSettings) -> Array:
-    """How much lower (f,) the head is carried, radians: for a look down, and where it is hard; free : as in `peeks_at`"""
-    return np.asarray(np.radians(np.maximum(numbers.nod * peeks.share, numbers.bow * mood.hard * free)))
+def with_peeks(glances: Glances, mood: Mood, peeks: Peeks, free: Array, numbers: FaceSettings) -> Glances:
+    """Glances whose head goes down for a look at a panel, and there leaves out what it would do else; it is carried
+    lower where it is hard, too. free : (f,) as in `peeks_at`"""
+    rest = 1.0 - peeks.share
+    low = np.radians(np.maximum(numbers.nod * peeks.share, numbers.bow * mood.hard * free))
+    yaw, pitch, tilt, eyes = (rest * one for one in (glances.yaw, glances.pitch, glances.tilt, glances.eyes))
+    return Glances(yaw, pitch - low, tilt, eyes)
 
 
 def add_face(skeleton: Skeleton, poses: Poses, at: Array, shown: tuple[Mood, Peeks, Plan], context: Context) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.dance.bake import bake_piece, cut, planned
+from dancetutor_cli.dance.bake import Manner, bake_piece, cut, planned
 from dancetutor_cli.dance.ends import (
     entrance_of,
     entrance_piece,
@@ -158,17 +158,8 @@ def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) 
         play = as_heard(fastest, timing)
         numbers = request.motion, request.form
         settings = load_settings(*numbers) if blend is None else blend.settings(*numbers)
-        plan, context = planned(
-            timing,
-            play,
-            own,
-            settings=settings,
-            bar=request.bar,
-            gait=request.gait,
-            sides=side,
-            person=person,
-            let_go=gone,
-        )
+        manner = Manner(settings=settings, bar=request.bar, gait=request.gait, sides=side, person=person, let_go=gone)
+        plan, context = planned(timing, play, own, **manner)
         place = place_on(pad, one.chart, own) if len(parts) > 1 else (0.0, 0.0)
         dancers.append(Performer(one, own, play, plan, context, place))
     return Performance(request, rate, timing, pad, tuple(dancers), blend)
