@@ -18,6 +18,7 @@ from dancetutor_cli.character import load_dancer
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.motion import Grip, Motion
+from dancetutor_cli.dance.quality.figures import body_of
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.settings import MotionSettings, default_settings
@@ -84,6 +85,18 @@ def test_the_reports_goals_hold(crossed: Motion) -> None:
         assert measured[name].met, name
     assert measured["jerk of the root"].value < plain["jerk of the root"].value + 10.0
     assert measured["balance"].value > plain["balance"].value - 3.0
+
+
+def test_nobody_bends_double_for_a_grip(crossed: Motion) -> None:
+    """By the joints of hips and shoulders: at the rail, crossed over or not, the trunk leans at most 25 degrees."""
+    body, skeleton = body_of(crossed), crossed.skeleton
+    up = sum(body.joints[:, skeleton.index(f"{side}_shoulder")] for side in "lr")
+    up = up - sum(body.joints[:, skeleton.index(f"{side}_hip")] for side in "lr")
+    lean = np.degrees(np.arctan2(np.hypot(up[:, 0], up[:, 2]), up[:, 1]))
+    held = np.zeros(len(body.times), dtype=bool)
+    for grip in crossed.grips:
+        held |= (body.times >= grip.start) & (body.times <= grip.end)
+    assert held.mean() > 0.3 and lean[held].max() < 25.0
 
 
 def test_hands_take_turns(crossed: Motion) -> None:

@@ -130,7 +130,8 @@ def stance(plan: Plan, times: Array, context: Context) -> Array:
     if not steps:
         return np.zeros(len(times))
     lands, sides = np.array(steps).T
-    bears = np.append(0.0, sides)[np.searchsorted(lands, times)]
+    long = np.append(np.diff(lands), np.inf) > context.settings.wait.after + context.settings.wait.ease  # a wait
+    bears = np.append(0.0, np.where(long, 0.0, sides))[np.searchsorted(lands, times)]
     rate = 1.0 / float(times[1] - times[0])
     over = smooth_path(bears[:, None], np.ones(len(times)), rate, numbers.stance_time)[:, 0]
     return numbers.stance * over * leisure(plan, times, numbers) * _grounded(plan, times, context.settings)
