@@ -119,9 +119,9 @@ form_option = click.option(
 style_option = click.option(
     "--style",
     shell_complete=named(folder("styles")),
-    metavar="NAME|FILE",
+    metavar="NAME[:WEIGHT],...",
     help="Add physics: a ragdoll follows the motion in a style: neutral, lazy, fierce, heavy, feminine, or a file "
-    "like those in configs/styles.",
+    "like those in configs/styles; or in a blend: fierce:0.6,heavy:0.4.",
 )
 
 motion_option = click.option(
