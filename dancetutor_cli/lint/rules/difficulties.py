@@ -1,4 +1,4 @@
-"""The charts of a song beside each other: their difficulties, meters and lengths."""
+"""The charts of a song beside each other: difficulties, meters, lengths, and charts that a pack must have."""
 
 from __future__ import annotations
 
@@ -140,3 +140,23 @@ class OrderOfPlay(SongRule):
             here, there = f"{chart.estimate.meter:.1f}", f"{hardest.estimate.meter:.1f}"
             message = f"plays like {here} and is easier than {hardest.label}, which plays like {there}"
             yield self.finding(message, chart.place)
+
+
+class Slots(FileRule):
+    """The song lacks a chart that every song of the pack must have. Off by default.
+
+    `charts`: steps type and difficulty of each, such as "dance-single Hard".
+
+    Bad for a pack with an Easy of every song: a song without. Better: a dance-single Easy.
+    """
+
+    code = "DT512"
+    name = "slots"
+    about_tags = True
+
+    def check(self, subject: FileSubject) -> Iterable[Finding]:
+        """One finding that names all that is missing."""
+        there = {f"{chart.steps_type} {chart.difficulty}".lower() for chart in subject.dance_charts}
+        missing = [str(slot) for slot in self.options["charts"] if str(slot).lower() not in there]
+        if missing:
+            yield self.finding(f"there is no {' and no '.join(missing)}", subject.place())

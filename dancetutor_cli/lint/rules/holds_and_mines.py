@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.rule import EPSILON, ChartRule, Occurrence, ReaderRule, TimedRule
-from dancetutor_cli.lint.rules.odd_notes import OddNotes
+from dancetutor_cli.lint.rules.files import OddNotes
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject

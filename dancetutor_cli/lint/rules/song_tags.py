@@ -1,16 +1,19 @@
-"""What the tags of a song say: its pictures, titles, tempo and folder."""
+"""What the tags of a song say: title and artist, credit, pictures, tempo and folder."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.pictures import PictureRule
 from dancetutor_cli.lint.rule import ChartRule, FileRule
 
 if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject
+
 
 _TAGS = ("MUSIC", "BANNER", "BACKGROUND", "CDTITLE", "JACKET", "LYRICSPATH")
 
@@ -152,3 +155,53 @@ class SongFolder(FileRule):
         elif folder.parent.name.lower() in _ROOTS:
             said = f"the song's folder is directly in {folder.parent.name}, in no folder of a pack"
             yield self.finding(said, subject.place())
+
+
+class Title(FileRule):
+    """Title or artist is missing, or only blanks. The games remove blanks at the ends of other titles.
+
+    Bad: #TITLE:; Better: #TITLE:Two Left Feet;
+    """
+
+    code = "DT501"
+    name = "title"
+    about_tags = True
+
+    def check(self, subject: FileSubject) -> Iterable[Finding]:
+        """One finding for each tag that is empty."""
+        for tag in ("TITLE", "ARTIST"):
+            if not subject.song.tags.get(tag, "").strip():
+                yield self.finding(f"#{tag} is empty", subject.tag_place(tag))
+
+
+class Credit(FileRule):
+    """Neither the song's #CREDIT nor the chart's own credit (in .sm: its description) names the author of a chart.
+
+    Bad: #CREDIT:; Better: #CREDIT:A. Stepartist;
+    """
+
+    code = "DT502"
+    name = "credit"
+    about_tags = True
+
+    def check(self, subject: FileSubject) -> Iterable[Finding]:
+        """At most one finding, of all charts without an author."""
+        if subject.song.tags.get("CREDIT", "").strip():
+            return
+        charts = [chart for chart in subject.song.charts if not is_lights(chart.steps_type)]
+        anonymous = [chart for chart in charts if not (chart.tags.get("CREDIT", "") + chart.description).strip()]
+        if not anonymous:
+            return
+        said, place = "nothing says who made the charts", subject.tag_place("CREDIT")
+        if len(anonymous) < len(charts):
+            said, place = f"nothing says who made {_labels(anonymous)}", subject.place(anonymous[0].line)
+        yield self.finding(f"{said}: #CREDIT is empty", place)
+
+
+_MOST_LABELS = 3  # charts that are named
+
+
+def _labels(charts: list[Chart]) -> str:
+    more = len(charts) - _MOST_LABELS
+    named = ", ".join(chart.label for chart in charts[:_MOST_LABELS])
+    return f"{named} and {more} more" if more > 0 else named
