@@ -1,4 +1,11 @@
-"""The dancer's mesh, skin and colours; a user's character fitted to the rig."""
+"""The dancer's mesh, skin and colours; a user's character fitted to the rig.
+
+gltf.load_character           the way in: a character that comes with the program, or a user's file
+  |   container, surfaces       a .glb with every size checked; its materials, as both renderers draw them
+  |   humanoid, fitting         which node is which bone; bones, rest pose and size fitted to the rig
+mesh.Character                meshes on a skeleton, the colours of its feet, a second dancer's colours
+retarget                      the dancer's motion on another character
+"""
 
 from __future__ import annotations
 

@@ -1,1 +1,7 @@
-"""What stands in space: stage, dancer, bar and screen, the camera that sees them; renderers in `cpu` and `gl`."""
+"""What stands in space: stage, dancer, bar and screen, the camera that sees them; renderers in `cpu` and `gl`.
+
+scene, look                   what stands still and the state of one frame; their numbers, from configs/picture.yaml
+dancer, camera, visibility    her state at a moment; from where she is seen; what of her is hidden
+geometry, props               meshes as flat arrays; bar and screen
+renderer                      the interface of both renderers, the choice, and what they work out alike
+"""

@@ -1,1 +1,8 @@
-"""The work of films: what is wanted, its plan, the segments that other processes draw, batches of films."""
+"""The work of films: what is wanted, its plan, the segments that other processes draw, batches of films.
+
+request, planning             what is wanted, checked; everything laid on the film's clock
+segments, render              pieces of a film drawn and encoded by any process; one film put in its place
+batch, records                films of folders; which of them are done
+motion_film                   a film of a motion without a chart
+worker_imports, worker_imports_gl   what processes that draw load once for all of them
+"""
