@@ -18,7 +18,7 @@ from dancetutor_cli.run.files import check_file, one_of, write_atomic
 if TYPE_CHECKING:
     from dancetutor_cli.formats.retarget import Retargeting
 
-SUFFIXES = (".glb", ".bvh", ".npz", ".mp4")
+SUFFIXES = (".glb", ".bvh", ".npz", ".mp4", ".html")
 _FILE = GivenPath()
 _CORRECTIONS = ("knees", "feet", "limits")  # as physics.pipeline has them; a test holds both together
 
@@ -47,7 +47,7 @@ class RetargetOptions:
     type=_FILE,
     required=True,
     metavar="FILE",
-    help=f"Where to write: a {one_of(SUFFIXES)} file.",
+    help=f"Where to write: a {one_of(SUFFIXES)} file; a .html page shows input and output.",
 )
 @click.option(
     "--character",
@@ -90,7 +90,9 @@ def command(file: Path, options: RetargetOptions) -> None:
 
     check_file(options.output, SUFFIXES)
     if options.with_input and options.output.suffix.lower() != ".mp4":
-        raise UsageError(f"--with-input shows two dancers in a film: {options.output} must end in .mp4")
+        raise UsageError(
+            f"--with-input shows two dancers in a film: {options.output} must end in .mp4; a .html page always shows both"
+        )
     if options.plot is not None:
         check_file(options.plot, (".svg", ".png"))
     if options.report_to is not None and options.report_to != TABLE:
@@ -137,6 +139,11 @@ def _written(work: Retargeting, output: Path, with_input: bool) -> str:
         from dancetutor_cli.formats.npz import write_npz
 
         write_npz(output, motion)
+    elif suffix == ".html":
+        from dancetutor_cli.page.capture import CaptureContent, capture_page
+
+        content = CaptureContent(work.title, work.character, motion, *work.point_paths(), *work.input_figure)
+        write_atomic(output, capture_page(content))
     else:
         from dancetutor_cli.formats.bvh import write_bvh
 

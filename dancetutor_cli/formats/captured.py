@@ -79,9 +79,8 @@ def _of_container(container: Container, wanted: str | None) -> CapturedMotion:
     place = np.argsort(order)
     parents = np.array([-1 if nodes.parents[n] < 0 else place[nodes.parents[n]] for n in order], dtype=np.int32)
     rate = (len(times) - 1) / float(times[-1] - times[0])
-    items = container.items("nodes")
-    skinned = bool(container.items("skins"))  # then a mesh may be called Head, and moves nothing
-    names = tuple("" if skinned and "mesh" in items[n] else nodes.names[n] for n in order)
+    items = container.items("nodes")  # one with a skin may be called Head, but has no place of its own
+    names = tuple("" if "skin" in items[n] else nodes.names[n] for n in order)
     rest = (rest_places[0, order], rest_turns[0, order])
     return CapturedMotion(container.path, names, parents, *rest, rate, times, places[:, order], turns[:, order])
 

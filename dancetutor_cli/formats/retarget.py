@@ -16,12 +16,13 @@ from dancetutor_cli.character import load_character
 from dancetutor_cli.character.humanoid import humanoid_of
 from dancetutor_cli.character.retarget import onto, retarget
 from dancetutor_cli.dance.physics.blend import load_choice
-from dancetutor_cli.dance.physics.captured import on_body
+from dancetutor_cli.dance.physics.captured import on_body, upright
 from dancetutor_cli.dance.physics.hair import add_hair
 from dancetutor_cli.dance.physics.pipeline import Tuning, through_ragdoll, tuned
 from dancetutor_cli.dance.physics.ragdoll import bones_of, place_points, points_of
 from dancetutor_cli.dance.physics.style import NEUTRAL, load_style
 from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.formats.captured import of_motion, read_captured
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.dance.motion import Motion
     from dancetutor_cli.dance.physics.blend import Blend
+    from dancetutor_cli.dance.physics.captured import CapturedMotion
     from dancetutor_cli.dance.physics.pipeline import RagdollResult, Wishes
     from dancetutor_cli.dance.quality.figures import MotionReport
     from dancetutor_cli.dance.rig.skeleton import Skeleton
@@ -79,17 +81,49 @@ class Retargeting:
         return body_of(self.character.skeleton)
 
     @cached_property
+    def rig_motion(self) -> Motion | None:
+        """The file's motion, if it is one of the rig's joints: of `animate` or `retarget`."""
+        path = self.task.source
+        if path.suffix.lower() != ".npz":
+            return None
+        motion = read_npz(path)
+        if not set(dancer_skeleton().names) <= set(motion.skeleton.names):
+            return None
+        of_motion(path, motion)  # says what is wrong with it
+        return motion
+
+    @cached_property
+    def captured(self) -> CapturedMotion:
+        """The file's motion on its own skeleton."""
+        return read_captured(self.task.source, self.task.animation)
+
+    @cached_property
+    def captured_joints(self) -> dict[str, int]:
+        """The captured joint of each of the rig's that the file has."""
+        found = humanoid_of(self.task.source, self.captured.names, self.captured.parents).joints()
+        return {joint: node for node, joint in found.items()}
+
+    @cached_property
     def source_motion(self) -> Motion:
         """The file's motion on the body, before any physics."""
-        path = self.task.source
-        if path.suffix.lower() == ".npz":
-            motion = read_npz(path)
-            if set(dancer_skeleton().names) <= set(motion.skeleton.names):
-                of_motion(path, motion)  # says what is wrong with it
-                return onto(motion, self.body)
-        captured = read_captured(path, self.task.animation)
-        found = humanoid_of(path, captured.names, captured.parents).joints()
-        return on_body(captured, {joint: node for node, joint in found.items()}, self.body)
+        if self.rig_motion is not None:
+            return onto(self.rig_motion, self.body)
+        return on_body(self.captured, self.captured_joints, self.body)
+
+    @cached_property
+    def input_figure(self) -> tuple[NDArray[np.int32], Array]:
+        """Parents (j,) and places (f, j, 3) in metres of the file's own skeleton, hips where `source_motion` has them.
+
+        Over y, looking to +Z, in proportion to the body's legs, at the keys of `source_motion`.
+        """
+        motion = self.source_motion
+        if self.rig_motion is not None:
+            return motion.skeleton.parents, world_transforms(motion.skeleton, motion.rotations, motion.root)[0]
+        joints, places = self.captured_joints, upright(self.captured, self.captured_joints, self.body)
+        hips = world_transforms(motion.skeleton, motion.rotations, motion.root)[0]
+        ours = hips[:, [motion.skeleton.index(f"{s}_hip") for s in "lr"]].mean(axis=1)
+        theirs = places[:, [joints[f"{s}_hip"] for s in "lr"]].mean(axis=1)
+        return self.captured.parents, places + (ours - theirs)[:, None]
 
     @cached_property
     def blend(self) -> Blend:

@@ -229,8 +229,6 @@ def pack_content(content: Content) -> tuple[dict[str, Any], Blob]:
     """The page's data: what is read as JSON, and the arrays it names."""
     blob = Blob()
     scene = Scene(content.character, content.pad)
-    low, high = scene.extent
-    tiles = scene.stage.tiles
     bar = content.motions[0].bar if content.motions else None
     doc: dict[str, Any] = {
         "schema": SCHEMA,
@@ -246,20 +244,7 @@ def pack_content(content: Content) -> tuple[dict[str, Any], Blob]:
         },
         "style": _style(),
         "look": asdict(scene.look),
-        "stage": {
-            "corners": scene.stage.corners.round(5).tolist(),
-            "uv": scene.stage.uv.tolist(),
-            "kinds": scene.stage.kinds.tolist(),
-            "low": low.tolist(),
-            "high": high.tolist(),
-            "corner": list(tiles.corner),
-            "panel": tiles.panel.tolist(),
-            "arrow": tiles.arrow.tolist(),
-            "tall": scene.tall,
-            "sole": SOLE_RADIUS,
-            "shadow_fade": list(SHADOW_FADE),
-            "ring_share": RING_SHARE,
-        },
+        "stage": pack_stage(scene),
         "body": pack_body(blob, content.character, bar, -scene.look.stage.pad_height, content.pair),
         "pair": content.pair,
         "motions": [pack_motion(blob, motion, f"motion{k}") for k, motion in enumerate(content.motions)],
@@ -275,6 +260,26 @@ def pack_content(content: Content) -> tuple[dict[str, Any], Blob]:
         doc["music"] = {"type": content.music[0], "bytes": len(content.music[1])}
     doc["arrays"] = blob.index
     return doc, blob
+
+
+def pack_stage(scene: Scene) -> dict[str, Any]:
+    """The faces of a scene's stage, and the box that is always in the picture."""
+    low, high = scene.extent
+    tiles = scene.stage.tiles
+    return {
+        "corners": scene.stage.corners.round(5).tolist(),
+        "uv": scene.stage.uv.tolist(),
+        "kinds": scene.stage.kinds.tolist(),
+        "low": low.tolist(),
+        "high": high.tolist(),
+        "corner": list(tiles.corner),
+        "panel": tiles.panel.tolist(),
+        "arrow": tiles.arrow.tolist(),
+        "tall": scene.tall,
+        "sole": SOLE_RADIUS,
+        "shadow_fade": list(SHADOW_FADE),
+        "ring_share": RING_SHARE,
+    }
 
 
 def _style() -> dict[str, Any]:

@@ -127,12 +127,17 @@ HERE = Path(__file__).resolve().parent
 _PLACE = re.compile(r"\{\{(\w+)\}\}")
 
 
-def document(doc: Mapping[str, Any], blob: Blob, music: bytes | None = None) -> bytes:
-    """The whole page. `doc` : see `content.pack_content`; music : the song's file, to be put into the page."""
+def document(doc: Mapping[str, Any], blob: Blob, music: bytes | None = None, kind: str = "page") -> bytes:
+    """The whole page.
+
+    doc : see `content.pack_content` and `capture.capture_page`; music : the song's file, to be put into the page
+    kind : "page" of a chart, or "capture": which module begins it, and its style
+    """
     full = {**doc, "languages": languages(), "shaders": shaders()}
     head = json.dumps(full, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode("utf-8")
     data = base64.b64encode(zlib.compress(struct.pack("<I", len(head)) + head + blob.whole(), 9)).decode("ascii")
-    script, style = bundle(HERE / "js", "main"), (HERE / "page.css").read_text("utf-8")
+    script = bundle(HERE / "js", {"page": "main"}.get(kind, kind))
+    style = (HERE / f"{kind}.css").read_text("utf-8")
     title = " - ".join(part for part in (doc["words"]["title"], doc["words"]["badge"], "dancetutor") if part)
     music_text = "" if music is None else base64.b64encode(music).decode("ascii")
     body = _fill("page.html", {"data": data, "music": music_text, "script": script})

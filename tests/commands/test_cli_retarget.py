@@ -108,13 +108,13 @@ def test_an_animation_of_a_character_is_a_motion_too(shared_data: Path, tmp_path
     assert np.ptp(feet) > 0.1, "she jumps"
     assert "there is no animation 'Jmp'; there are: " in said(rogue, "-o", out, "--animation", "Jmp")
     robot = shared_data / "characters" / "raylib_robot.glb"
-    assert "is not a usable humanoid (14 of 15 bones): no spine; " in said(robot, "-o", out)
+    assert "is not a usable humanoid (13 of 15 bones): no leftHand, rightHand; " in said(robot, "-o", out)
 
 
 def test_what_is_wrong_is_said_in_one_line_and_nothing_is_written(bvh: Path, tmp_path: Path) -> None:
     out = tmp_path / "a.npz"
     assert "there is no correction 'knee' (did you mean knees?)" in said(bvh, "-o", out, "--correct", "knee")
-    assert "must end in .glb, .bvh, .npz or .mp4" in said(bvh, "-o", tmp_path / "a.fbx")
+    assert "must end in .glb, .bvh, .npz, .mp4 or .html" in said(bvh, "-o", tmp_path / "a.fbx")
     assert "must end in .bvh, .glb, .vrm or .npz" in said(tmp_path / "a.fbx", "-o", out)
     lame = tmp_path / "lame.bvh"
     lame.write_text(bvh.read_text().replace("l_talocrural", "l_thing").replace("r_radiocarpal", "r_thing"))

@@ -44,6 +44,6 @@ def test_what_cannot_be_bundled_is_said(tmp_path: Path, texts: dict[str, str], m
 
 
 def test_every_module_of_the_page_is_in_it() -> None:
-    text = bundle(HERE / "js", "main")
+    text = bundle(HERE / "js", "main") + bundle(HERE / "js", "capture")
     for path in (HERE / "js").glob("*.js"):
         assert f"const ${path.stem.replace('-', '_')} =" in text, f"{path.name} is imported by nobody"

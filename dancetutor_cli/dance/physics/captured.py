@@ -103,6 +103,26 @@ def on_body(captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton)
     return Motion(body, captured.fps, start, quat.continuous(rotations), root, (), notes=captured.notes)
 
 
+def upright(captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton) -> Array:
+    """The captured skeleton itself, at the keys of what `on_body` makes of it.
+
+    Parameters
+    ----------
+    joints, body : as for `on_body`
+
+    Returns
+    -------
+    places (f, j, 3) of all of the file's joints, over y, looking to +Z, in metres in proportion to the body's legs
+
+    Raises
+    ------
+    FileError as `on_body`.
+    """
+    captured = _without_reference(captured, joints)
+    given = _Upright(captured, joints, body)
+    return given.scale * quat.rotate(given.turn, captured.places)
+
+
 def _check(given: _Upright, body: Skeleton, poses: tuple[Array, Array]) -> None:
     """Raise FileError where the body's segments do not point where the captured ones do."""
     places, _ = world_transforms(body, *poses)

@@ -52,7 +52,7 @@ class Comparison:
 
 
 @dataclass(frozen=True, slots=True)
-class _Floor:
+class BareFloor:
     """A pad of tiles without arrows, as large as her way."""
 
     panels: Array
@@ -80,7 +80,7 @@ def frames(character: Character, motion: Motion, count: int, comparison: Compari
     """The first pictures of the film."""
     times = motion.times[0] + np.arange(count) / FPS
     poses = [sample(one, times) for one in ((motion,) if comparison is None else (comparison.given, motion))]
-    scene = Scene(character, _floor(np.concatenate([root for _, root in poses])))
+    scene = Scene(character, floor_under(np.concatenate([root for _, root in poses])))
     draws = [renderer.create(scene, SIZE, "good", "cpu") for _ in poses]
     slow = low_pass(poses[0][1], FPS, ALONG)
     nobody = np.zeros(scene.panels)
@@ -117,7 +117,8 @@ def _compared(shown: list[Frame], camera: Camera, comparison: Comparison, keys: 
     return np.asarray(image)
 
 
-def _floor(root: Array) -> _Floor:
+def floor_under(root: Array) -> BareFloor:
+    """A floor around the way (f, 3) of one or more roots."""
     low, high = root[:, [0, 2]].min(axis=0) / PANEL, root[:, [0, 2]].max(axis=0) / PANEL
     corners = np.array([[-high[0] - ROOM, low[1] - ROOM], [-low[0] + ROOM, high[1] + ROOM]])
-    return _Floor(np.round(corners), np.zeros((2, 2)), (0.0, 0.0))
+    return BareFloor(np.round(corners), np.zeros((2, 2)), (0.0, 0.0))
