@@ -91,7 +91,7 @@ def command(file: Path, options: RetargetOptions) -> None:
     check_file(options.output, SUFFIXES)
     if options.with_input and options.output.suffix.lower() != ".mp4":
         raise UsageError(
-            f"--with-input shows two dancers in a film: {options.output} must end in .mp4; a .html page always shows both"
+            f"--with-input shows two dancers in a film: {options.output} must end in .mp4; a .html page shows both"
         )
     if options.plot is not None:
         check_file(options.plot, (".svg", ".png"))

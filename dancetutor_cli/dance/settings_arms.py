@@ -47,6 +47,9 @@ class ArmSettings:
     jump: Metres
     jump_up: Metres
     wander: Metres
+    carried_up: Metres
+    carried_out: Metres
+    carried_ahead: Metres
     raised: Ratio
     raised_most: Metres
     cancel: Ratio

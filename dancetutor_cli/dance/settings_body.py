@@ -213,6 +213,9 @@ class GrooveSettings:
     leisure_full: Seconds
     stance: Metres
     stance_time: Seconds
+    phrase: Seconds
+    phrase_ease: Seconds
+    phrase_stays: Ratio
 
 
 @dataclass(frozen=True, slots=True)

@@ -63,6 +63,7 @@ SUNK = 1.8  # so much farther a hand sinks, for its elbow comes down with it
 ELBOWS_IN = 0.62  # part of their way by which elbows turn to the body for another dancer: wholly, they would be in it
 GIVEN_WAY = 0.145  # metres that a hand gives way to another dancer with which its elbow turns to the body
 PARTNER = np.array([0.01, 0.03, 0.04])  # metres that the second of two carries her hands farther out, up and ahead
+SIDEWAYS = np.array([[1.0, 1.0], [-1.0, 1.0]])  # outward and up, of both hands
 ASKEWED = 1.6  # about how far `_wandering` goes up and down
 
 
@@ -153,6 +154,9 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
     hang[..., 1] = -arms.down + arms.swing_up * _upward(swing) + arms.stream_up * effort * unlike
     hang[..., 2] = arms.forward + swing - arms.stream_back * effort
     hang += context.person * PARTNER * np.array([[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]])
+    carried = body.arms[:, 3:]  # aside in one phrase of the music, ahead in another: in an arc about the trunk
+    hang[..., :2] += _upward(carried)[..., None] * [arms.carried_out, arms.carried_up] * SIDEWAYS
+    hang[..., 2] -= arms.carried_ahead * carried
     raised = _upward(np.outer(body.arms[:, 1], (1.0, -1.0)))
     hang[..., 0] += raised * [1.0, -1.0]
     hang[..., 1] += 0.5 * raised
@@ -163,7 +167,7 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
     pumped = context.settings.groove.hands * body.sway[:, None]
     hang[..., 1] += 0.2 * np.abs(pumped)
     hang[..., 2] += [-1.0, 1.0] * pumped  # with the shoulder that turns forward
-    hang[..., 1] += arms.stream_pump * effort * body.arms[:, 2:] * [-1.0, 1.0]  # in streams elbows bend by turns
+    hang[..., 1] += arms.stream_pump * effort * body.arms[:, 2:3] * [-1.0, 1.0]  # in streams elbows bend by turns
     hang += (arms.wander + arms.stream_wander * effort)[..., None] * wander * LEVEL + arms.askew * askew
     hang += waiting_at(plan, body.times, context).hands
     share = crossing_share(plan.grips, body.times, settings.across)

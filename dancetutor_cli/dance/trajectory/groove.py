@@ -69,6 +69,7 @@ class Groove:
     sway : (n,) about -1 to 1, to which side her shoulders lean and turn, positive left
     pump : (n,) the same for hands in streams, where her shoulders keep still
     grounded : (n,) 0 near jumps, where both arms go up and down together, to 1
+    carried : (n, 2) about -1 to 1, how far aside the left and the right hand are carried in this phrase, else ahead
     """
 
     beat: Array
@@ -76,6 +77,7 @@ class Groove:
     sway: Array
     pump: Array
     grounded: Array
+    carried: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +109,10 @@ def groove_of(plan: Plan, times: Array, engaged: Occupation, context: Context) -
     sink = (1.0 + deeper) * settings.layers.bounce * late
     to_side = sway(plan, times, context)
     free = np.clip(1.0 - share - engaged.busy - engaged.waits, 0.0, 1.0)
-    return Groove(beat, sink, share * to_side, free * grounded * to_side, grounded)
+    loose = np.clip(1.0 - engaged.busy - engaged.waits, 0.0, 1.0) * _among_steps(plan, times, numbers)
+    loose *= (1.0 + grounded) / 2.0
+    carried = loose[:, None] * carriage(plan, times, context)
+    return Groove(beat, sink, share * to_side, free * grounded * to_side, grounded, carried)
 
 
 def leisure(plan: Plan, times: Array, numbers: GrooveSettings) -> Array:
@@ -188,3 +193,36 @@ def sway(plan: Plan, times: Array, context: Context) -> Array:
     k = np.clip(np.searchsorted(at, times, side="right") - 1, 0, len(at) - 2)
     share = smooth((times - at[k]) / (at[k + 1] - at[k]))
     return np.asarray(plan.hand * (place[k] + share * (place[k + 1] - place[k])))
+
+
+# Arms are carried otherwise in each phrase of the music: a large way, and a slow one, which no beat shakes.
+
+ARMS = 2  # of the seeds: other draws than those of `sway`
+
+
+def carriage(plan: Plan, times: Array, context: Context) -> Array:
+    """How far aside (n, 2) the left and the right hand are carried, about -1 to 1: from phrase to phrase otherwise.
+
+    A phrase is so many measures of four beats that it lasts `groove.phrase` at least. A hand is aside and ahead by
+    turns, never twice as far; which of them go together is drawn. For the mirror image of a play with hands changed.
+    """
+    numbers, beats = context.settings.groove, np.array(context.beats)
+    at = np.array(heard_beats(tuple(beats[::4].tolist()), numbers.phrase))
+    if len(at) < 2:
+        return np.zeros((len(times), 2))
+    chance = np.random.default_rng([SEED, ARMS, round(1000 * plan.first), round(1000 * plan.last) & 0xFFFFFFFF])
+    far, stays = chance.uniform(0.6, 1.0, (len(at), 2)), chance.random((len(at), 2)) < numbers.phrase_stays
+    stays[1:] &= ~stays[:-1]
+    place = far * np.cumprod(np.where(stays, 1.0, -1.0), axis=0)
+    k = np.clip(np.searchsorted(at, times, side="right") - 1, 0, len(at) - 2)
+    since = (times - at[k]) / np.minimum(at[k + 1] - at[k], numbers.phrase_ease)
+    out = place[k] + smooth(since)[:, None] * (place[k + 1] - place[k])
+    return np.asarray(out if plan.hand > 0.0 else out[:, ::-1])
+
+
+def _among_steps(plan: Plan, times: Array, numbers: GrooveSettings) -> Array:
+    """Whether (n,) there are steps before and after, 0 to 1: where there are none for a phrase, arms hang."""
+    lands = np.array([-np.inf, *sorted(touch.start for touch in plan.touches), np.inf])
+    k = np.searchsorted(lands, times)
+    away = np.minimum(times - lands[k - 1], lands[np.minimum(k, len(lands) - 1)] - times)
+    return smooth((numbers.phrase - away) / numbers.phrase_ease)

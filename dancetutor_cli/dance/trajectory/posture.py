@@ -60,7 +60,7 @@ class Trajectory:
     knees : (n, 2), radians that knees are turned outward for the ankles' sake
     beat : (n,) 0 to 1, how far she has given way to the beat; sway : (n,) as in `groove.Groove`
     listed : (n,) radians that the right hip is lower than the left one
-    arms : (n, 3) `swing` and `raised` as in `momentum.CounterMotion`, `pump` as in `groove.Groove`
+    arms : (n, 5) `swing` and `raised` as in `momentum.CounterMotion`, `pump` and `carried` as in `groove.Groove`
     softened : what had no solution within the limits of legs and soles, so that they gave way; for people
     hands : what `ik.targets.free_hands` says of it, if somebody has asked already
     """
@@ -159,7 +159,7 @@ def body_trajectory(
     tilt = follow(tilt, course.rate, controller)
     height = mass_height.at(times) - course.above[:, 1]
     apart = 1.0 - settings.jump.together * (1.0 - groove.grounded)
-    arms = np.column_stack((apart * answer.swing, apart * answer.raised, groove.pump))
+    arms = np.column_stack((apart * answer.swing, apart * answer.raised, groove.pump, groove.carried))
     return Trajectory(
         times, course.mass, mass_height, course.ground, height, course.yaw, chest, head, tilt, reached,
         np.zeros((len(times), 2)), np.zeros((len(times), 2)), groove.beat, groove.sway,

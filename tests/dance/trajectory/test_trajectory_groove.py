@@ -102,3 +102,28 @@ def test_shoulders_hands_and_head_take_part_in_jacks_within_the_goals(gap: float
     measured = report(lively)
     assert [f.name for f in measured.figures if f.met is False] == []
     assert measured["jerk of the head"].value < 120.0
+
+
+def test_arms_are_carried_otherwise_from_phrase_to_phrase_and_slowly() -> None:
+    """Far, for it is seen; slow, for what is quick is a twitch: a fifth of the 4 m/s that a wrist may go."""
+    events = stream(0.25, 36)
+    arms, carried = context().settings.arms, groove(events).carried
+    inside = (TIMES > 3.0) & (TIMES < 10.0)
+    assert np.ptp(carried[inside], axis=0).min() > 1.0
+    ways = carried * np.linalg.norm([arms.carried_out, arms.carried_up, arms.carried_ahead])
+    assert np.abs(np.gradient(ways, TIMES, axis=0)).max() < 0.8
+    assert np.abs(carried[:, 0] - carried[:, 1])[inside].max() > 0.2, "each in its own way"
+
+
+def test_arms_hang_where_there_are_no_steps_or_hands_are_busy() -> None:
+    carried = groove(stream(0.25, 8)).carried
+    assert np.abs(carried[(TIMES > 2.5) & (TIMES < 3.5)]).max() > 0.3
+    assert not carried[TIMES > 6.0].any()
+    assert not groove(stream(0.25, 8), busy=1.0).carried.any() and not groove(stream(0.25, 8), waits=1.0).carried.any()
+
+
+def test_the_mirror_image_carries_the_other_hand() -> None:
+    events = stream(0.25)
+    image = plan_of(chart().timing, mirrored_play(play(events), SINGLE), pad())
+    other = groove_of(image, TIMES, Occupation(STILL, STILL, STILL), heard())
+    np.testing.assert_allclose(other.carried, groove(events).carried[:, ::-1], atol=1e-12)
