@@ -18,7 +18,22 @@ ORDER = list(LISTED)
 FRONT = "most above"  # of a room that orders the others
 FILM_PARTS = ("overlay", "scene", "media")
 WHOLE = ("film.py", "plan.py")  # that put the parts together, or make something of the whole film
-MAPPED = ("run", "chart", "feet", "feet/solver", "lint", "lint/meter", "markers", "formats", "page", "reports")
+MAPPED = (
+    *(
+        "run",
+        "chart",
+        "feet",
+        "feet/solver",
+        "lint",
+        "lint/meter",
+        "markers",
+        "character",
+        "formats",
+        "page",
+        "reports",
+    ),
+    *("film/overlay", "film/scene", "film/work"),
+)
 
 
 @cache
