@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
-from dancetutor_cli.dance.changes import mixed_bodies, mixed_feet, mixed_poses
+from dancetutor_cli.dance.changes import mean_body, mean_feet, mean_of_states
 from dancetutor_cli.dance.context import Context, bar_of, context_of, holding, panels_on_ground
 from dancetutor_cli.dance.face import add_face, mood_at, peeks_at, with_peeks
 from dancetutor_cli.dance.foot_path import Feet, both_feet
@@ -172,7 +172,7 @@ def bake_piece(piece: Piece) -> BakedPiece:
     grid = np.arange(np.floor(piece.span[0] * rate), np.ceil(piece.span[1] * rate) + 1) / rate
     states, changes = context.states(*piece.span)
     bodies = [settle(plan, grid, both_feet(plan.feet, grid, one.settings), one).trajectory for one in states]
-    body = bodies[0] if len(bodies) == 1 else mixed_bodies(bodies, changes)
+    body = bodies[0] if len(bodies) == 1 else mean_body(bodies, changes)
     # all keys ask for free hands, and each round of more keys
     dressed = tuple((replace(body, hands=free_hands(plan, body, one)), one) for one in states)
     at = key_times(plan, piece.fps, *piece.baked)
@@ -220,9 +220,9 @@ def _posed_in(plan: Plan, bodies: Sequence[tuple[Trajectory, Context]], at: Arra
     if len(bodies) == 1:
         return posed(plan, bodies[0][0], (at, feet[0]), bodies[0][1])
     weights = state_weights(changes, at)
-    mean = mixed_feet(feet, weights)
+    mean = mean_feet(feet, weights)
     poses = [posed(plan, body, (at, mean), context) for body, context in bodies]
-    return mixed_poses(bodies[0][1].skeleton, poses, weights)
+    return mean_of_states(bodies[0][1].skeleton, poses, weights)
 
 
 def posed(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Context) -> Poses:

@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class MixedHeight:
+class MeanHeight:
     """The mean of heights, each with the weight of its state."""
 
     heights: tuple[Height, ...]
@@ -38,7 +38,7 @@ class MixedHeight:
         return np.asarray(sum(weights[:, k] * one.at(times) for k, one in enumerate(self.heights)))
 
 
-def mixed_feet(feet: Sequence[Feet], weights: Array) -> Feet:
+def mean_feet(feet: Sequence[Feet], weights: Array) -> Feet:
     """Both feet as the mean of those of each state; weights (f, k). All have the same plan, so they stand together."""
     sides = []
     for paths in zip(*feet, strict=True):
@@ -49,7 +49,7 @@ def mixed_feet(feet: Sequence[Feet], weights: Array) -> Feet:
     return sides[0], sides[1]
 
 
-def mixed_poses(skeleton: Skeleton, poses: Sequence[Poses], weights: Array) -> Poses:
+def mean_of_states(skeleton: Skeleton, poses: Sequence[Poses], weights: Array) -> Poses:
     """The mean of poses that have the same feet, each with its weight (f, k); legs end in the feet."""
     rotations = quat.mean([p.rotations for p in poses], weights)
     root = np.einsum("fk,kfx->fx", weights, np.array([p.root for p in poses]))
@@ -64,7 +64,7 @@ def mixed_poses(skeleton: Skeleton, poses: Sequence[Poses], weights: Array) -> P
     return mean
 
 
-def mixed_bodies(bodies: Sequence[Trajectory], changes: Sequence[Span]) -> Trajectory:
+def mean_body(bodies: Sequence[Trajectory], changes: Sequence[Span]) -> Trajectory:
     """The mean of the body's paths in all states, each with the weight of its state at the same even times."""
     first = bodies[0]
     weights = state_weights(changes, first.times)
@@ -72,7 +72,7 @@ def mixed_bodies(bodies: Sequence[Trajectory], changes: Sequence[Span]) -> Traje
     for name in _PATHS:
         values = np.array([getattr(body, name) for body in bodies])
         paths[name] = np.einsum("fk,kf...->f...", weights, values)
-    height = MixedHeight(tuple(body.mass_height for body in bodies), tuple(changes))
+    height = MeanHeight(tuple(body.mass_height for body in bodies), tuple(changes))
     softened = tuple(dict.fromkeys(what for body in bodies for what in body.softened))
     return replace(first, mass_height=height, softened=softened, hands=None, **paths)
 

@@ -86,7 +86,7 @@ def load_settings(
     if form != USUAL:
         settings = load(named_file("forms", form), MotionSettings, settings)
     if styles:
-        settings = mixed([(_changed(settings, numbers), share) for numbers, share in styles])
+        settings = mean_settings([(_with_numbers_of(settings, numbers), share) for numbers, share in styles])
     return settings if path is None else load(path, MotionSettings, settings)
 
 
@@ -96,7 +96,7 @@ def default_settings() -> MotionSettings:
     return load(config_path("motion.yaml"), MotionSettings)
 
 
-def mixed(parts: Sequence[tuple[MotionSettings, float]]) -> MotionSettings:
+def mean_settings(parts: Sequence[tuple[MotionSettings, float]]) -> MotionSettings:
     """The mean of settings, each with its share; shares sum to 1."""
     first = parts[0][0]
     sections = {}
@@ -109,7 +109,7 @@ def mixed(parts: Sequence[tuple[MotionSettings, float]]) -> MotionSettings:
     return replace(first, **sections)
 
 
-def _changed(settings: MotionSettings, other: MotionSettings) -> MotionSettings:
+def _with_numbers_of(settings: MotionSettings, other: MotionSettings) -> MotionSettings:
     """The settings with those numbers of another one that are not the program's own."""
     sections = {}
     for section in _SECTIONS:
@@ -162,4 +162,4 @@ class SettingsCourse:
 
 @cache
 def _mean_of(states: tuple[MotionSettings, ...], weights: tuple[float, ...]) -> MotionSettings:
-    return mixed([(state, share) for state, share in zip(states, weights, strict=True) if share > 0.0])
+    return mean_settings([(state, share) for state, share in zip(states, weights, strict=True) if share > 0.0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations
@@ -12,7 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE
+from dancetutor_cli.dance.physics.simulation import Distances
 from dancetutor_cli.dance.physics.style import NEUTRAL, Style, load_style
+from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, Span, load_settings, state_weights
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.reading import config_names, named_file
@@ -22,6 +25,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
 
 Array = NDArray[np.float64]
+Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 TOLERANCE = 1e-6  # by which weights may sum to more than 1: thirds that are written with six digits
 SHORTEST = 0.5  # seconds that a change lasts at least, where a warp leaves nothing of its measure
 
@@ -117,20 +121,20 @@ def load_choice(text: str) -> StyleChoice:
 def style_sources(text: str) -> tuple[tuple[str | Path, float], ...]:
     """What a `--style` is made of, for fingerprints: names of `configs/styles` and files, with their weights."""
     out: list[tuple[str | Path, float]] = []
-    for name, weight in named_weights(text):
+    for name, weight in weights_of(text):
         is_file = name not in config_names("styles")
         out.append((Path(name) if is_file else name, weight))
         if is_file:
             for _, other in sorted(load_style(name).measures.items()):
-                own = ((_name_or_path(one, Path(name).parent), share) for one, share in named_weights(other))
+                own = ((_style_name(one, Path(name).parent), share) for one, share in weights_of(other))
                 out += ((one if one in config_names("styles") else Path(one), share) for one, share in own)
     return tuple(out)
 
 
-def named_weights(text: str) -> list[tuple[str, float]]:
+def weights_of(text: str) -> list[tuple[str, float]]:
     """Names of styles and their weights in a `--style`, one with the weight 1. UsageError for what is no such text."""
     parts = [part.strip() for part in text.split(",")]
-    if len(parts) == 1 or named_whole(text):
+    if len(parts) == 1 or is_one_name(text):
         name, colon, weight = text.rpartition(":")
         return [(name, _weight(text, weight))] if colon and _is_number(weight) else [(text, 1.0)]
     out = []
@@ -142,7 +146,7 @@ def named_weights(text: str) -> list[tuple[str, float]]:
     return out
 
 
-def named_whole(text: str) -> bool:
+def is_one_name(text: str) -> bool:
     """Whether a text is the name of one file, whatever signs it has."""
     return text in config_names("styles") or Path(text).is_file()
 
@@ -161,7 +165,7 @@ def _weight(text: str, weight: str) -> float:
     return float(weight)
 
 
-def _name_or_path(name: str, folder: Path | None) -> str:
+def _style_name(name: str, folder: Path | None) -> str:
     """A name of `configs/styles`, or the path of a file, which may lie in a folder."""
     beside = None if folder is None or name in config_names("styles") else folder / name
     return str(beside) if beside is not None and beside.is_file() else name
@@ -169,7 +173,7 @@ def _name_or_path(name: str, folder: Path | None) -> str:
 
 def _parts(text: str, folder: Path | None = None) -> list[tuple[Style, float]]:
     """Styles with their shares, which sum to 1: what is missing is neutral. folder : where files may lie"""
-    parts = [(load_style(_name_or_path(name, folder)), weight) for name, weight in named_weights(text)]
+    parts = [(load_style(_style_name(name, folder)), weight) for name, weight in weights_of(text)]
     total = sum(weight for _, weight in parts)
     if any(one is other for (one, _), (other, _) in combinations(parts, 2)):
         raise UsageError(f"style '{text}' names one style twice; name each once")
@@ -190,3 +194,27 @@ def _states(blends: list[list[tuple[Style, float]]]) -> tuple[tuple[Style, ...],
             styles.append(style)
     states = tuple(tuple(sum(w for one, w in blend if one is style) for style in styles) for blend in blends)
     return tuple(styles), states
+
+
+# What the ragdolls of several styles make of one motion.
+
+
+def mean_poses(poses: Sequence[Poses], shares: Array) -> Poses:
+    """The mean of poses, local rotations (f, j, 4) and root (f, 3), each with its share (f, s)."""
+    if len(poses) == 1:
+        return poses[0]
+    root = sum(shares[:, k, None] * one for k, (_, one) in enumerate(poses))
+    return quat.mean([rotations for rotations, _ in poses], shares), np.asarray(root)
+
+
+def mean_distances(runs: Sequence[Distances], shares: Array) -> Distances:
+    """The mean of distances, each with its share (s,), of the points that all ragdolls have."""
+    first = runs[0]
+    if len(runs) == 1:
+        return first
+    names = tuple(name for name in first.names if all(name in one.names for one in runs))
+    values = np.zeros((len(first.times), len(names)))
+    for one, share in zip(runs, shares, strict=True):
+        own = [one.values[:, one.names.index(name)] for name in names]
+        values += share * np.column_stack([np.interp(first.times, one.times, value) for value in own])
+    return Distances(names, first.times, values)

@@ -13,7 +13,7 @@ from dancetutor_cli.chart.timing import heard
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.ankles import eased_ankles
 from dancetutor_cli.dance.physics.arms import clear_arms, push_arms_out
-from dancetutor_cli.dance.physics.blend import Blend
+from dancetutor_cli.dance.physics.blend import Blend, mean_distances, mean_poses
 from dancetutor_cli.dance.physics.legs import mass_of, restore_mass_path, risen, soft_legs
 from dancetutor_cli.dance.physics.plants import Plants, flatten_toes, let_go, planted, tidied
 from dancetutor_cli.dance.physics.pushes import (
@@ -111,8 +111,8 @@ def through_ragdoll(motion: Motion, style: Style | Blend, wishes: Wishes = Wishe
     styles, shares = (Blend.of(style) if isinstance(style, Style) else style).within(motion.times)
     runs = [_followed(motion, one, wishes, blows) for one in styles]
     first, limits = runs[0], any(one.limits for one in styles)
-    rotations, root = _mean([_read(run.at, *run.made, motion.times) for run in runs], shares)
-    distances = _mean_distances([run.distances for run in runs], shares.mean(axis=0))
+    rotations, root = mean_poses([_read(run.at, *run.made, motion.times) for run in runs], shares)
+    distances = mean_distances([run.distances for run in runs], shares.mean(axis=0))
     share = 1.0 - _pressing(motion)
     rotations = quat.slerp(motion.rotations, rotations, share[:, None])
     root = motion.root + share[:, None] * (root - motion.root)
@@ -192,27 +192,6 @@ class _Run(NamedTuple):
     distances: Distances
     at: Array
     soles: BreakableSoles | None
-
-
-def _mean(poses: Sequence[Poses], shares: Array) -> Poses:
-    """The mean of poses, each with its share (f, s) at every key."""
-    if len(poses) == 1:
-        return poses[0]
-    root = sum(shares[:, k, None] * one for k, (_, one) in enumerate(poses))
-    return quat.mean([rotations for rotations, _ in poses], shares), np.asarray(root)
-
-
-def _mean_distances(runs: Sequence[Distances], shares: Array) -> Distances:
-    """The mean of distances, each with its share (s,), of the points that all ragdolls have."""
-    first = runs[0]
-    if len(runs) == 1:
-        return first
-    names = tuple(name for name in first.names if all(name in one.names for one in runs))
-    values = np.zeros((len(first.times), len(names)))
-    for one, share in zip(runs, shares, strict=True):
-        own = [one.values[:, one.names.index(name)] for name in names]
-        values += share * np.column_stack([np.interp(first.times, one.times, value) for value in own])
-    return Distances(names, first.times, values)
 
 
 def _followed(motion: Motion, style: Style, wishes: Wishes, blows: Sequence[Blow]) -> _Run:
