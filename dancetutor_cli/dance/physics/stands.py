@@ -22,6 +22,7 @@ from dancetutor_cli.dance.smoothing import smooth
 
 Array = NDArray[np.float64]
 ROUNDS = 4
+MARGIN = 1.15  # times an eye's limits within which feet are held: legs' give moves them across those limits later
 ON_FLOOR = 0.015  # metres over the floor up to which the end of a foot that stands is put on it
 FLAT = np.radians(8.0)  # of pitch up to which a foot that stands lies flat
 TURNS = np.radians(45.0)  # a foot that turns more while it stands pivots on purpose
@@ -178,7 +179,7 @@ def _unshuffled(times: Array, path: Array) -> list[tuple[int, int]]:
     """Stands of a joint; where it goes from one place to another in a stand, there are two."""
     out: list[tuple[int, int]] = []
     rate = (len(times) - 1) / float(times[-1] - times[0])
-    rest = [(int(first), int(end)) for first, end in stand_frames(times, path)]
+    rest = [(int(first), int(end)) for first, end in stand_frames(times, path, MARGIN)]
     while rest:
         first, end = rest.pop()
         flat = path[first:end][:, [0, 2]]

@@ -51,15 +51,18 @@ def stands_of(times: Array, name: str, path: Array) -> list[StandingSpan]:
     ]
 
 
-def stand_frames(times: Array, path: Array) -> NDArray[np.int64]:
-    """First and one past the last frame of each stand of a joint, (n, 2); times and path as for `stands_of`."""
+def stand_frames(times: Array, path: Array, margin: float = 1.0) -> NDArray[np.int64]:
+    """First and one past the last frame of each stand of a joint, (n, 2); times and path as for `stands_of`.
+
+    margin : times higher, faster and, by as much, shorter than by the limits a stand may be
+    """
     if len(times) < 3:
         return np.empty((0, 2), dtype=np.int64)
     step = float(times[1] - times[0])
-    low = path[:, 1] < np.percentile(path[:, 1], 5) + SKATE_HEIGHT
-    slow = np.linalg.norm(np.gradient(path, step, axis=0), axis=1) < SKATE_SPEED
+    low = path[:, 1] < np.percentile(path[:, 1], 5) + margin * SKATE_HEIGHT
+    slow = np.linalg.norm(np.gradient(path, step, axis=0), axis=1) < margin * SKATE_SPEED
     spans = intervals(low & slow)
-    return np.asarray(spans[(spans[:, 1] - spans[:, 0]) * step >= SHORTEST])
+    return np.asarray(spans[(spans[:, 1] - spans[:, 0]) * step >= SHORTEST / margin])
 
 
 def _extent(places: Array) -> float:
