@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dancetutor_cli.dance.quality.foot_slide import stands_of
+from dancetutor_cli.dance.quality.foot_slide import stand_frames, stands_of
 
 TIMES = np.arange(181) / 60.0
 
@@ -29,3 +29,12 @@ def test_a_foot_in_the_air_or_that_runs_does_not_stand() -> None:
     assert stands_of(TIMES, "x", np.column_stack((2.0 * TIMES, 0.0 * TIMES, 0.0 * TIMES))) == []
     high = path(0.0, 0.0)
     assert all(one.end < 1.3 or one.start > 1.7 for one in stands_of(TIMES, "x", high))
+
+
+def test_a_margin_takes_what_an_eye_just_does_not() -> None:
+    for speed, seconds, high in ((0.55, 1.0, 0.0), (0.1, 0.09, 0.0), (0.1, 1.0, 0.055)):
+        times = np.arange(481) / 240.0
+        there = (times > 1.0) & (times < 1.0 + seconds)
+        fast = np.where(there, speed, 2.0)
+        place = np.column_stack((np.cumsum(fast) / 240.0, np.where(there, high, 0.0), 0.0 * times))
+        assert len(stand_frames(times, place)) == 0 and len(stand_frames(times, place, 1.15)) == 1
