@@ -330,7 +330,7 @@ def check_character(name_or_path: str) -> str:
 
 
 def dressed(name: str, gait: str) -> str:
-    """Who dances: who walks in heels (`--gait heels`) wears them, if she is the project's own dancer."""
+    """The character to draw: the project's own dancer wears heels if the gait is `heels`."""
     return IN_HEELS if name == DANCER and gait == "heels" else name
 
 

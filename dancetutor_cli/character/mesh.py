@@ -130,7 +130,7 @@ def _part(mesh: Mesh, triangles: NDArray[np.bool_], name: str, material: Materia
 # Two who dance: a character with a second one beside it, the same but for the colour of the clothes.
 
 _SEEN = 0.01  # part of the textures that has to change for two to be told apart
-PREFIX = "partner_"  # of the names of the second one's joints: who asks for a joint by name gets the first one's
+PREFIX = "partner_"  # of the names of the second one's joints: a search by name gets the first one's
 
 
 def with_partner(character: Character) -> Character:

@@ -126,7 +126,7 @@ def _reason_of_rows(rows: _Rows, onsets: Onsets) -> str | None:
     if len(rows.second) < _LEAST_ROWS or rows.second[-1] - rows.second[0] < _LEAST_SECONDS:
         return "it has too few notes"
     inside = (rows.second > onsets.start) & (rows.second < onsets.start + onsets.seconds)
-    return None if inside.mean() > 0.5 else "most of its notes lie outside the music"
+    return None if inside.mean() > 0.5 else "most of its notes are outside the music"
 
 
 def _cycle(beat: float) -> float:

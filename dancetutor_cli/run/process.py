@@ -153,7 +153,7 @@ class _Hook:
 
 
 def _interrupt() -> None:
-    """As the keyboard does; where only Python is notified, who waits for something hears of it when that has come."""
+    """As the keyboard does; where only Python is notified, code that waits notices it when the wait is over."""
     if hasattr(signal, "pthread_kill"):
         signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
     else:  # Windows

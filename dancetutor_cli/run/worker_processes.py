@@ -152,7 +152,7 @@ class ProcessWorkers:
     def _start(self) -> None:
         if self._server is not None:
             try:
-                # it may still import: who waits for that can be interrupted; its children hear of nothing, as it does
+                # it may still import: waiting for that can be interrupted; its children hear of nothing, as it does
                 self._started(self._server, contextlib.nullcontext())
                 return
             except (EOFError, OSError):  # it has been killed
