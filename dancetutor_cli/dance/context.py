@@ -95,7 +95,7 @@ class Context:
     ground : the pad as a rectangle, and the floor around it
     beats : seconds of the song's beats, in order; bar : what she holds on to, None for no bar
     stays : she does not walk off after the last step; course : settings that change over the song, None: they do not
-    person : 0 for who dances alone, else which of those beside each other: each has a chance and a phase of her own
+    person : 0 for a dancer alone, else which of those beside each other: each has a chance and a phase of her own
     sides : from which she comes and to which she goes, 0 left or 1 right, None: as the notes say
     """
 

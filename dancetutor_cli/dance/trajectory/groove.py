@@ -126,7 +126,7 @@ def leisure(plan: Plan, times: Array, numbers: GrooveSettings) -> Array:
 
 
 def stance(plan: Plan, times: Array, context: Context) -> Array:
-    """How far (n,) her weight shall be towards the left foot, metres, at even times: at leisure it goes onto the foot
+    """How far (n,) her weight must be towards the left foot, metres, at even times: at leisure it goes onto the foot
     that has landed and stays there until the next one has; not near jumps, nor at the bar."""
     numbers = context.settings.groove
     if context.bar is not None:
