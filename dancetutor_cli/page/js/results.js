@@ -91,7 +91,7 @@ function missed(app) {
   if (!list.length) return el("p", {}, t("nothingMissed"));
   return el("section", {}, el("h3", {}, t("missedTitle")), el("ol", { class: "cards" }, ...list.map((one) => el("li", {},
     el("button", { type: "button", class: "card missed", onclick: () => void app.loopBeats(one.from, one.to, one.rate) },
-      el("strong", {}, stretch(t, one.from / 4, one.to / 4)), el("span", { class: "figure" }, `${Math.round(100 * one.rate)} %`),
+      el("strong", {}, el("span", {}, stretch(t, one.from / 4, one.to / 4))), el("span", { class: "figure" }, `${Math.round(100 * one.rate)} %`),
       el("span", { class: "text" }, t(one.passed ? "missedRows" : "missedNew", { count: one.misses })))))));
 }
 
