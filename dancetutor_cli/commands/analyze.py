@@ -33,7 +33,6 @@ from dancetutor_cli.commands.pack import (
     write_sheet,
 )
 from dancetutor_cli.commands.settings import show_settings
-from dancetutor_cli.lint.snapshots import open_store
 from dancetutor_cli.reports.formats import FORMATS, Tally, open_brief_report, open_report
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import check_file
@@ -327,6 +326,8 @@ def _lint(run: LintRun, files: list[Source], options: dict[str, Any], output: IO
 
 def _keep(files: list[Source]) -> None:
     """Keep the charts as they are now, for --compare last."""
+    from dancetutor_cli.lint.snapshots import open_store
+
     store = open_store()
     if store is not None:
         store.prune()
