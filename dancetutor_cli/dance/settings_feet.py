@@ -59,6 +59,8 @@ class StepSettings:
     pivot_pitch: Degrees
     home: Metres
     stand: Seconds
+    stand_slow: Ratio
+    stand_quick: Seconds
     least_swing: Seconds
     overlap: Seconds
     following: Seconds

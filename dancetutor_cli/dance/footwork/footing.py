@@ -181,7 +181,9 @@ class FootState:
 
     def rested(self, time: float) -> float:
         """When the foot has come to rest after its last landing, as far as the next one leaves it the time."""
-        return max(self.landed + min(self.step.stand, (time - self.landed) / 3), self.turned + FREE_WINDOW)
+        gap = time - self.landed
+        stand = self.step.stand + self.step.stand_slow * max(gap - self.step.stand_quick, 0.0)
+        return max(self.landed + min(stand, gap / 3), self.turned + FREE_WINDOW)
 
 
 @dataclass(frozen=True, slots=True)
