@@ -61,7 +61,7 @@ def test_numbers_of_the_table_stand_under_their_names() -> None:
     lines = out.splitlines()
     numbers = next(n for n, line in enumerate(lines) if " 540 " in line)
     header, values = lines[numbers - 2], lines[numbers]
-    assert header.split()[:2] == ["rows", "cost"]
+    assert header.split()[:2] == ["rows", "units"]
     ends = {value: values.index(value) + len(value) for value in ("540", "86", "3", "14")}
     assert ends["540"] == header.index("rows") + 4
     assert ends["86"] == header.index("cost") + 4
