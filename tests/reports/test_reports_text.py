@@ -64,7 +64,7 @@ def test_numbers_of_the_table_stand_under_their_names() -> None:
     assert header.split()[:2] == ["rows", "units"]
     ends = {value: values.index(value) + len(value) for value in ("540", "86", "3", "14")}
     assert ends["540"] == header.index("rows") + 4
-    assert ends["86"] == header.index("cost") + 4
+    assert ends["86"] == header.index("units") + 5
     assert ends["3"] == header.index("steps") + 5
     assert ends["14"] >= header.index("135°") + 4 >= ends["14"] - 1
     assert max(map(len, lines)) < 80 or "DT201" in max(lines, key=len)
