@@ -155,8 +155,10 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
     hang[..., 2] = arms.forward + swing - arms.stream_back * effort
     hang += context.person * PARTNER * np.array([[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]])
     carried = body.arms[:, 3:]  # aside in one phrase of the music, ahead in another: in an arc about the trunk
-    hang[..., :2] += _upward(carried)[..., None] * [arms.carried_out, arms.carried_up] * SIDEWAYS
-    hang[..., 2] -= arms.carried_ahead * carried
+    way = np.zeros_like(hang)
+    way[..., :2] = _upward(carried)[..., None] * [arms.carried_out, arms.carried_up] * SIDEWAYS
+    way[..., 2] = -arms.carried_ahead * carried
+    hang += way
     raised = _upward(np.outer(body.arms[:, 1], (1.0, -1.0)))
     hang[..., 0] += raised * [1.0, -1.0]
     hang[..., 1] += 0.5 * raised
@@ -175,7 +177,7 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
         behind = np.array([sign * settings.across.free_out, -arms.down, -settings.across.free_back])
         hang[:, side] += np.maximum(sign * share, 0.0)[:, None] * (behind - hang[:, side])
     free = 1.0 - hold_share(plan.grips, body.times, settings.bar.reach_time)
-    hang += free[..., None] * (_behind_the_chest(hang, body.chest_yaw, rate, arms) - hang)
+    hang += free[..., None] * (_behind_the_chest((hang, way), body.chest_yaw, rate, arms) - hang)
     chest = leaning(body.tilt, body.chest_yaw)
     upright = quat.from_axis_angle(UP, body.chest_yaw)
     pelvis = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
@@ -234,15 +236,18 @@ def lately(tempo: Array, rate: float, around: float) -> Array:
     return np.asarray((summed[2 * width :] - summed[: -2 * width]) / (2 * width))
 
 
-def _behind_the_chest(hang: Array, yaw: Array, rate: float, arms: ArmSettings) -> Array:
-    """Hands (n, 2, 3) in quick turns of the chest, yaw (n,) radians: nearer to the body, and later than the chest."""
-    ones, most = np.ones(len(yaw)), np.radians(arms.turn_late)
+def _behind_the_chest(hands: tuple[Array, Array], yaw: Array, rate: float, arms: ArmSettings) -> Array:
+    """Hands (n, 2, 3) in quick turns of the chest, yaw (n,) radians: nearer to the body, and later than the chest.
+
+    hands : where they hang, and the part of it by which they are carried, which a quick turn takes away
+    """
+    (hang, way), ones, most = hands, np.ones(len(yaw)), np.radians(arms.turn_late)
     late = smooth_path(yaw[:, None], ones, rate, arms.turn_time)[:, 0] - yaw
     late = most * np.tanh(late / most)
     quick = np.abs(np.gradient(yaw)) * rate
     drawn = smooth((quick - np.radians(arms.turn_easy)) / np.radians(arms.turn_quick))[:, None]
     drawn = smooth_path(drawn, ones, rate, arms.turn_time)
-    near = hang.copy()
+    near = hang - 0.7 * drawn[..., None] * way
     near[..., 0] -= arms.drawn_in * drawn * np.array([1.0, -1.0])
     near[..., 2] *= 1.0 - arms.drawn_back * drawn
     return quat.rotate(quat.from_axis_angle(UP, late)[:, None], near)
