@@ -22,7 +22,7 @@ from dancetutor_cli.dance.smoothing import smooth
 
 Array = NDArray[np.float64]
 ROUNDS = 4
-MARGIN = 1.15  # times an eye's limits within which feet are held: legs' give moves them across those limits later
+MARGIN = 1.05  # times an eye's limits within which feet are held: the give of legs moves them across those limits later
 ON_FLOOR = 0.015  # metres over the floor up to which the end of a foot that stands is put on it
 FLAT = np.radians(8.0)  # of pitch up to which a foot that stands lies flat
 TURNS = np.radians(45.0)  # a foot that turns more while it stands pivots on purpose
