@@ -2,6 +2,7 @@
 
 import { calibrateDialog } from "./calibrate.js";
 import { el, toggle } from "./dom.js";
+import { CONTROLS } from "./input.js";
 import { GOOD, WINDOW } from "./judge.js";
 import { panelName } from "./labels.js";
 import { meanText, scoreText } from "./said.js";
@@ -54,13 +55,18 @@ function assignDialog(app, done) {
   const text = el("p", { role: "status" });
   const dialog = el("dialog", { class: "assign", "aria-label": t("assign") }, el("h2", {}, t("assign")), text,
     el("button", { type: "button", onclick: () => dialog.close() }, t("cancel")));
+  const panels = app.doc.pad.names;
   let column = 0;
-  const ask = () => { text.textContent = t("pressFor", { panel: panelName(app.t, app.doc.pad.names[column]) }); };
+  const ask = () => {
+    text.textContent = column < panels.length ? t("pressFor", { panel: panelName(app.t, panels[column]) }) : t(`pressControl-${CONTROLS[column - panels.length]}`);
+  };
   app.input.learning = (name) => {
     if (name === "Escape") return dialog.close();
-    app.input.assign(column, name);
+    if (column < panels.length) app.input.assign(column, name);
+    else app.input.assignControl(column - panels.length, name);
     ++column;
-    if (column < app.doc.pad.names.length) ask();
+    const last = panels.length + (name.includes("#") ? CONTROLS.length : 0); // a mat has Start and Select too
+    if (column < last) ask();
     else dialog.close();
   };
   dialog.addEventListener("close", () => { app.input.learning = null; app.save(); done(); dialog.remove(); });

@@ -43,6 +43,7 @@ export class App {
       claps: this.claps, metronome: this.settings.metronome, played: (row) => this.practice.along && row.steps.some(({ note }) => !this.practice.judge.asks(note)),
     }));
     this.input = new Input(doc.pad.names, this.settings, doc.pad.directions);
+    this.input.onControl = (name) => (name === "start" ? void this.padStart() : this.toStart());
     this.input.onPress = (press) => {
       this.fresh = true;
       if (press.device === "pad" && !this.practice.along) this.notice = this.t("padIdle");
@@ -60,6 +61,7 @@ export class App {
     this.notice = ""; // what is to be known of a link; until something else is done
     this.musicName = ""; // the file that the music comes from
     this.musicBad = ""; // the file that is no music
+    this.musicLoading = false; // the page's own is being unpacked
     /** @type {import("./picture.js").Picture | null} */
     this.picture = null;
     /** @type {import("./highway.js").Highway | null} */
@@ -94,7 +96,10 @@ export class App {
   /** The clock does something else than before. */
   changed() {
     this.sound.follow(this.transport.run);
-    if (!this.transport.playing) this.practice.keep();
+    if (!this.transport.playing) {
+      this.practice.keep();
+      this.practice.feedback = null;
+    }
     this.tell("clock");
   }
 
@@ -152,6 +157,37 @@ export class App {
     this.transport.pause();
     this.seek(this.opening);
     await this.play();
+  }
+
+  /** What a mat's Start does: play along, pause; after a result the same again. */
+  async padStart() {
+    if (this.practice.over) return this.begin();
+    if (!this.transport.playing && !this.practice.along) this.practice.setAlong(true); // who stands on a mat means to play
+    await this.play();
+  }
+
+  /** Back to the loop's start, or the song's; what plays goes on from there. */
+  toStart() {
+    if (this.transport.loop) this.restartLoop();
+    else this.seek(this.opening);
+  }
+
+  /** From the loop's lead-in. */
+  restartLoop() {
+    const { loop } = this.transport;
+    if (!loop) return;
+    this.transport.restartLoop();
+    if (this.practice.along) this.practice.restart(loop.a);
+    this.practice.updateHold();
+  }
+
+  /** Play along, in the loop if there is one. */
+  async beginAlong() {
+    this.practice.endRamp();
+    this.practice.setAlong(true);
+    if (!this.transport.loop) return this.begin();
+    this.restartLoop();
+    if (!this.transport.playing) await this.play();
   }
 
   /** Where whoever plays begins: a little before the first step. */
@@ -267,27 +303,8 @@ export class App {
     const [a, b] = [this.chart.secondAt(from), this.chart.secondAt(to)];
     this.setLoop(a, b);
     if (rate !== undefined) this.setRate(rate);
-    const playing = this.transport.playing;
-    this.transport.restartLoop();
-    if (this.practice.along) this.practice.restart(a);
-    if (!playing) await this.play();
-    this.practice.updateHold();
-  }
-
-  /** Keep the loop that there is under a name. @param {string} name */
-  saveLoop(name) {
-    const { loop } = this.transport;
-    if (!loop) return;
-    const round = (/** @type {number} */ beat) => Math.round(1000 * beat) / 1000;
-    const [from, to] = [loop.a, loop.b].map((second) => round(this.chart.beatAt(second)));
-    this.record.loops = [...this.record.loops, { name: name.slice(0, 60), from, to, rate: Math.round(100 * this.practice.chosenRate) }].slice(-50);
-    this.saveRecord();
-  }
-
-  /** @param {import("./record.js").SavedLoop} loop */
-  dropLoop(loop) {
-    this.record.loops = this.record.loops.filter((one) => one !== loop);
-    this.saveRecord();
+    this.restartLoop();
+    if (!this.transport.playing) await this.play();
   }
 
   nextHelp() {
@@ -305,9 +322,9 @@ export class App {
     if (CAMERAS.includes(name)) this.set("camera", name);
   }
 
-  /** Mirrored lanes fit a dancer who is seen from before. */
+  /** Mirrored lanes fit a dancer who is seen from before; whoever plays along has the mat's own. */
   get mirrored() {
-    return this.settings.camera === "front";
+    return this.settings.camera === "front" && !this.practice.along;
   }
 
   /** The row whose feet are shown as soles on the pad: the next one, while the picture stands. */
@@ -365,6 +382,7 @@ export class App {
       marked: (_, row) => practice.tells(row), verdicts: practice.along ? practice.judge.verdicts : new Map(),
       asked: (n) => !practice.along || practice.judge.asks(n),
       loop: this.transport.loop, feet: this.redance.limbs, chosen: this.chosen,
+      along: practice.along, errors: practice.along ? practice.errors : [],
       keys: practice.along ? this.input.names().map(([name]) => name) : [], held: practice.along ? this.input.held : [],
       feedback: practice.along ? practice.shown() : null,
     };

@@ -8,6 +8,7 @@ const BETWEEN = 0.6; // seconds between them
 const BEFORE = 1.2; // seconds until the first
 const LIT = 120; // milliseconds that the light is on
 const WIDE = 0.25; // seconds around a beat within which a tap is one to it
+const SURE = 0.03; // seconds: taps that spread wider tell no delay
 const FEWEST = 4; // taps that say something
 
 /**
@@ -36,10 +37,13 @@ export function calibrateDialog(app) {
   const tap = el("button", { type: "button", class: "tap", disabled: true }, t("calibrateTap"));
   const ends = el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, t("calibrateEarly")), el("span", {}, "0"), el("span", {}, t("calibrateLate")));
   const figures = el("p", { class: "hint" });
+  const apply = el("button", { type: "button", id: "calibrate-apply", class: "main" }, t("calibrateApply"));
+  const keep = el("button", { type: "button", id: "calibrate-keep" }, t("calibrateKeep"));
+  const choice = el("p", { class: "group choice", hidden: true }, apply, keep);
   const ear = el("button", { type: "button", id: "by-ear", class: "main", onclick: () => void begin("latency") }, t("byEar"));
   const eye = el("button", { type: "button", id: "by-eye", onclick: () => void begin("sight") }, t("byEye"));
   const dialog = el("dialog", { class: "assign calibrate", "aria-label": t("calibrate") }, el("h2", {}, t("calibrate")), text,
-    el("p", { class: "group" }, ear, eye), light, tap, scale, ends, figures,
+    el("p", { class: "group" }, ear, eye), light, tap, scale, ends, choice, figures,
     el("button", { type: "button", onclick: () => dialog.close() }, t("close")));
   const show = () => { figures.textContent = t("calibrateNow", { ear: Math.round(1000 * settings.latency), eye: Math.round(1000 * settings.sight) }); };
   /** @type {number[]} */
@@ -54,6 +58,7 @@ export function calibrateDialog(app) {
   async function begin(what) {
     const mine = ++round;
     [taps, beats] = [[], []];
+    choice.hidden = true;
     scale.replaceChildren();
     if (what === "latency") await sound.start();
     if (mine !== round) return;
@@ -105,12 +110,22 @@ export function calibrateDialog(app) {
     light.classList.remove("lit");
     const found = delayOf(taps, beats);
     if (!found) return void (text.textContent = t("calibrateFew"));
-    mark(found.middle, "middle");
     const [ms, spread] = [Math.round(1000 * found.middle), Math.round(1000 * found.spread)];
+    if (found.spread > SURE) return void (text.textContent = t("calibrateWide", { spread, most: 1000 * SURE }));
+    mark(found.middle, "middle");
     // By eye a tap is late by the same hand, and by the screen: what is more than by ear is the screen's.
-    app.set(what, Math.round(1000 * (what === "latency" ? found.middle : found.middle - settings.latency)) / 1000);
-    text.textContent = t(what === "latency" ? "calibrateDone" : "calibrateSeen", { ms, spread, taps: found.errors.length, more: Math.round(1000 * settings.sight) });
-    show();
+    const more = Math.round(1000 * (what === "latency" ? found.middle : found.middle - settings.latency));
+    const name = (what === "latency" ? "calibrateDone" : "calibrateSeen") + (ms < 0 ? "Before" : "");
+    text.textContent = t(name, { ms: Math.abs(ms), spread, taps: found.errors.length, more });
+    choice.hidden = false;
+    const chosen = (/** @type {boolean} */ taken) => {
+      if (taken) app.set(what, more / 1000);
+      choice.hidden = true;
+      text.textContent = t(taken ? "calibrateTaken" : "calibrateKept");
+      show();
+    };
+    apply.onclick = () => chosen(true);
+    keep.onclick = () => chosen(false);
   }
 
   tap.addEventListener("pointerdown", (event) => { event.preventDefault(); take(); });

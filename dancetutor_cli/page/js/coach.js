@@ -1,12 +1,11 @@
 // The coach: loops what was missed, and raises or lowers the speed by what is hit, until it goes at full speed.
 
-import { coachRate, hitShare, missedOf, whereOf } from "./record.js";
+import { FIRST, coachRate, missedOf, scoreShare, whereOf } from "./record.js";
 
 const FULL = 1; // the speed that is wanted in the end
 const PASSED = 0.95; // share of hits with which a stretch is passed
-const NEW = 0.7; // speed of a passage that nobody has passed
 
-/** @typedef {{from: number, to: number, rate: number}} Target beats, and the speed to begin at */
+/** @typedef {{from: number, to: number, rate: number, passed: boolean}} Target beats, the speed to begin at, whether it was passed at that */
 
 export class Coach {
   /** @param {import("./app.js").App} app @param {import("./practice.js").Practice} practice */
@@ -25,7 +24,7 @@ export class Coach {
     for (const { start, end } of doc.passages) {
       const [from, to] = [chart.beatAt(start), chart.beatAt(end)];
       const best = (record.best[whereOf(from, to)] ?? 0) / 100;
-      if (best < FULL) return { from, to, rate: best || NEW };
+      if (best < FULL) return { from, to, rate: best || FIRST, passed: best > 0 };
     }
     return null;
   }
@@ -53,7 +52,7 @@ export class Coach {
     const { app } = this;
     app.transport.setRate(target.rate);
     this.on = true;
-    this.said = app.t("coachBegins", { rate: Math.round(100 * target.rate) });
+    this.said = app.t(target.passed ? "coachBegins" : "coachNew", { rate: Math.round(100 * target.rate) });
     app.tell("coach");
   }
 
@@ -61,11 +60,11 @@ export class Coach {
   pass(tally) {
     const { app } = this;
     const { transport, chart } = app;
-    const share = hitShare(tally, tally.wrong);
+    const share = scoreShare(tally, tally.wrong);
     const percent = Math.round(100 * share);
     if (share < PASSED || transport.rate < FULL) {
       transport.rate = coachRate(transport.rate, share, FULL);
-      this.said = app.t("coachGoesOn", { percent, rate: Math.round(100 * transport.rate) });
+      this.said = app.t(share < PASSED ? "coachFailed" : "coachGoesOn", { percent, rate: Math.round(100 * transport.rate) });
       return;
     }
     const target = this.next();

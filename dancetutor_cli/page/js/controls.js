@@ -126,7 +126,8 @@ export function makeBar(app, ui) {
   const rate = el("input", { type: "range", min: 0.25, max: 2, step: 0.05, value: 1, "aria-label": t("speed"), class: "rate" });
   rate.addEventListener("input", () => app.setRate(Number(rate.value)));
   const rateText = el("output", { class: "rate-text" }, "100 %");
-  const where = el("output", { class: "where", "aria-label": t("position") });
+  const [whereMeasure, whereBeat, whereTime] = [el("span"), el("span", { class: "where-beat" }), el("span")];
+  const where = el("output", { class: "where", "aria-label": t("position") }, whereMeasure, whereBeat, whereTime);
   const toggles = /** @type {[string, string, () => boolean, (on: boolean) => void][]} */ ([
     ["ramp", "r", () => settings.ramp, (on) => app.set("ramp", on)],
     ["countIn", "i", () => settings.countIn, (on) => app.set("countIn", on)],
@@ -161,7 +162,7 @@ export function makeBar(app, ui) {
       const second = app.second();
       const exact = Math.max(0, Math.round(100 * app.chart.beatAt(second)) / 100);
       const beat = transport.playing && !transport.waiting ? Math.floor(exact) : exact; // what stands has a place between the beats too
-      where.textContent = t("where", { measure: Math.floor(beat / 4), beat: Math.round(100 * beat) / 100, time: clock(second) });
+      [whereMeasure.textContent, whereBeat.textContent, whereTime.textContent] = whereParts(t("where", { measure: Math.floor(beat / 4), beat: Math.round(100 * beat) / 100, time: clock(second) }));
       play.textContent = transport.playing ? "❚❚" : "▶";
       return;
     }
@@ -171,6 +172,12 @@ export function makeBar(app, ui) {
     for (const one of toggles) one.button.setAttribute("aria-pressed", String(one.is()));
   });
   return bar;
+}
+
+/** Measure, beat and time, each with what stands between them: a narrow window leaves the beat out. @param {string} text */
+function whereParts(text) {
+  const [measure, beat, time] = text.split(" · ");
+  return [measure, ` · ${beat}`, ` · ${time}`];
 }
 
 /** @param {number} second */

@@ -4,7 +4,8 @@ import { KIND, UNPLAYED } from "./chart.js";
 import { lightOf } from "./feet.js";
 import { labelsOf } from "./labels.js";
 import { clamp } from "./maths.js";
-import { INK, NOBODY, VERDICTS, drawBody, drawMarker, drawMine, drawPress, drawVerdict, drawWord, markerAt, notePath } from "./noteart.js";
+import { COLOURS, INK, NOBODY, VERDICTS, drawBody, drawErrors, drawMarker, drawMine, drawPress, drawVerdict, drawWord, markerAt, notePath } from "./noteart.js";
+import { SHOWN } from "./practice.js";
 
 /**
  * @typedef {object} Scene
@@ -17,6 +18,8 @@ import { INK, NOBODY, VERDICTS, drawBody, drawMarker, drawMine, drawPress, drawV
  * @property {{a: number, b: number} | null} loop
  * @property {Map<number, number>} feet limbs the author gave to notes
  * @property {number} chosen note that is chosen, or -1
+ * @property {boolean} along whether somebody plays along
+ * @property {number[]} errors how late the last presses were, seconds
  * @property {string[]} keys of the panels, to be shown while somebody plays along; else none
  * @property {boolean[]} held panels that are pressed by who plays along
  * @property {import("./practice.js").Feedback | null} feedback the verdict of the last press
@@ -39,6 +42,7 @@ export class Highway {
     for (const row of chart.rows) for (const step of row.steps) this.rowOf.set(step.note, row);
     this.labels = labelsOf(doc, chart, t);
     this.words = verdictWords(t);
+    this.along = false; // somebody plays along: verdicts need room above the receptors, fingers wide lanes
   }
 
   /** Words of another language. @param {import("./words.js").Translate} t */
@@ -62,12 +66,15 @@ export class Highway {
     if (this.canvas.width !== width) this.canvas.width = width;
     if (this.canvas.height !== height) this.canvas.height = height;
     const { columns, beats } = this.chart;
-    const numbers = (8 + 7 * String(beats.length >> 2).length) * ratio; // room left of the lanes, for the last measure's number
-    const wide = width > 200 * ratio; // else there is no room for words, and lanes are worth more
+    const finger = this.along && window.innerWidth <= NARROW;
+    const numbers = finger && columns > 5 ? 0 : (8 + 7 * String(beats.length >> 2).length) * ratio; // room left of the lanes, for the last measure's number
+    const wide = !finger && width > 200 * ratio; // else there is no room for words, and lanes are worth more
     const words = wide ? clamp((columns > 5 ? 0.12 : 0.34) * width, 46 * ratio, 80 * ratio) : 8 * ratio; // and right of them
     const lane = Math.min((width - numbers - words) / columns, 72 * ratio);
-    const left = numbers + 0.28 * (width - numbers - words - lane * columns);
-    return { ratio, width, height, lane, left, receptor: Math.max(0.11 * height, 0.62 * lane), size: 0.92 * lane };
+    const free = width - lane * columns;
+    const left = clamp(0.5 * free, numbers, Math.max(numbers, free - words)); // in the middle, if words leave it room
+    const above = this.along ? VERDICT * ratio : 0;
+    return { ratio, width, height, lane, left, receptor: Math.max(0.11 * height, 0.62 * lane + above), size: 0.92 * lane };
   }
 
   /** x of the middle of a lane. @param {number} column @param {{lane: number, left: number}} m @param {boolean} mirror */
@@ -78,6 +85,7 @@ export class Highway {
 
   /** @param {Scene} scene */
   draw(scene) {
+    this.along = scene.along;
     const m = this.measure();
     const { context: c, chart, style } = this;
     const y = (/** @type {number} */ second) => m.receptor + (second - scene.second) * scene.speed * m.height;
@@ -106,10 +114,20 @@ export class Highway {
       this.drawNote(n, m, scene, y);
     }
     this.drawLabels(m, y, from, until);
-    if (!feedback) return;
-    const middle = m.left + 0.5 * m.lane * chart.columns;
-    drawWord(c, feedback.verdict, this.words[feedback.verdict], middle, m.receptor + 1.1 * m.lane, m.ratio);
-    if (feedback.run >= RUN) drawWord(c, feedback.verdict, String(feedback.run), middle, m.receptor + 1.1 * m.lane + 30 * m.ratio, 1.5 * m.ratio);
+    const x = m.left + 0.5 * m.lane * chart.columns;
+    if (scene.along) drawErrors(c, scene.errors, { x, y: m.receptor + 0.62 * m.lane + 10 * m.ratio, width: Math.min(0.8 * m.lane * chart.columns, 220 * m.ratio), ratio: m.ratio });
+    if (feedback) this.drawFeedback(feedback, x, m);
+  }
+
+  /** The verdict of the last press, how early or late it was, and the notes in a row: above the receptors, where no note comes. @param {import("./practice.js").Feedback} feedback @param {number} x @param {ReturnType<Highway["measure"]>} m */
+  drawFeedback({ verdict, at, run, error }, x, m) {
+    const c = this.context;
+    const top = m.receptor - 0.62 * m.lane;
+    const late = error === undefined || verdict === "hit" ? "" : `${error < 0 ? "−" : "+"}${Math.round(1000 * Math.abs(error))} ms`;
+    c.globalAlpha = clamp(2 - (2 * (performance.now() - at)) / SHOWN, 0, 1);
+    drawWord(c, COLOURS[verdict], this.words[verdict], x, top - 41 * m.ratio, 24 * m.ratio);
+    drawWord(c, "#fff", [late, run >= RUN ? `${run} ×` : ""].filter(Boolean).join("   "), x, top - 17 * m.ratio, 17 * m.ratio);
+    c.globalAlpha = 1;
   }
 
   /** @param {ReturnType<Highway["measure"]>} m */
@@ -282,6 +300,8 @@ export function linesOf(text, fits) {
 }
 
 const LEAST = 12; // pixels of the smallest words
+const NARROW = 860; // pixels of a phone's window, as in page.css
+const VERDICT = 58; // pixels above the receptors for a verdict
 const RUN = 4; // notes in a row from which their number is shown
 const ARROWS = "←↑→↓↖↗↘↙";
 const GROUND = "#171a30"; // beside the lanes: that of the panels

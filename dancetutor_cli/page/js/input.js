@@ -16,6 +16,9 @@ const CROSS = { left: 14, down: 13, up: 12, right: 15 }; // buttons of the stand
 /** Numbers of buttons from which on both ends of a mat's axes count as such: many mats call their arrows axes. */
 const AXES = 64;
 const ENDS = { left: AXES, right: AXES + 1, up: AXES + 2, down: AXES + 3 };
+/** What else a mat's buttons do, and which do so unless others were chosen: as controllers number them. */
+export const CONTROLS = /** @type {const} */ (["start", "select"]);
+const OWN = [9, 8];
 const PUSHED = 0.5; // of an axis' way
 
 const SIGNS = ["↑", "↗", "→", "↘", "↓", "↙", "←", "↖"]; // clockwise
@@ -44,6 +47,8 @@ export class Input {
     this.changed = false; // a panel went down or up since the last picture
     /** @type {(press: Press) => void} */
     this.onPress = () => {};
+    /** @type {(name: "start" | "select") => void} a button that is no panel but does something */
+    this.onControl = () => {};
     /** @type {((name: string) => void) | null} gets the next key or button instead: a panel is being assigned */
     this.learning = null;
   }
@@ -91,6 +96,12 @@ export class Input {
     const column = this.buttons(pad).indexOf(number);
     if (column >= 0 || number < AXES || this.settings.pads[this.padName(pad)]) return column;
     return this.panels.findIndex((name) => ENDS[/** @type {keyof typeof ENDS} */ (name)] === number);
+  }
+
+  /** Buttons of a pad that do what `CONTROLS` names. @param {string} name the pad's @returns {(number | null)[]} */
+  controls(name) {
+    const own = this.settings.controls[name];
+    return own && own.length === CONTROLS.length ? own : OWN;
   }
 
   /** Which buttons of a pad are down, by number. @param {Gamepad} pad */
@@ -167,9 +178,28 @@ export class Input {
         const column = this.panelOf(pad, number);
         if (column >= 0 && is) this.press(column, "pad", pad.timestamp);
         else if (column >= 0) this.release(column);
+        else if (is) this.control(name, number);
       });
+      if (!this.down.has(name)) this.touched = true; // a mat has arrows on it
       this.down.set(name, now);
     }
+  }
+
+  /** A button that is no panel. @param {string} name the pad's @param {number} number */
+  control(name, number) {
+    const which = CONTROLS[this.controls(name).indexOf(number)];
+    if (!which) return;
+    this.changed = true;
+    this.onControl(which);
+  }
+
+  /** Give Start or Select another button of a mat; keys have no such. @param {number} which of `CONTROLS` @param {string} name as `learning` got it */
+  assignControl(which, name) {
+    const pad = /^(.*)#(\d+)$/.exec(name);
+    if (!pad) return;
+    const buttons = [...this.controls(pad[1])];
+    buttons[which] = Number(pad[2]);
+    this.settings.controls[pad[1]] = buttons;
   }
 
   /** @param {number} column @param {Press["device"]} device @param {number} at milliseconds of the page's clock */

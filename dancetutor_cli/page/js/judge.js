@@ -3,6 +3,7 @@
 /** Seconds of real time around a note in which a press counts. */
 export const WINDOW = 0.135;
 export const GOOD = 0.045; // within: a hit; beyond: early or late
+const SAME = 2e-3; // seconds within which notes are of one row
 
 /** @typedef {"hit" | "early" | "late" | "miss"} Verdict */
 /** @typedef {{hit: number, early: number, late: number, miss: number, wrong: number, sum: number, count: number}} Tally */
@@ -17,8 +18,8 @@ export class Judge {
     this.errors = new Map();
     /** @type {number[]} seconds at which a panel was pressed that nothing asks for */
     this.wrong = [];
-    /** @type {Map<number, {row: number, limb: number}>} the solver's row and foot of each note */
-    this.stepOf = new Map(chart.rows.flatMap((row) => row.steps.map(({ note, limb }) => [note, { row: row.row, limb }])));
+    /** @type {Map<number, {row: number, limb: number, measure: number}>} the solver's row and foot of each note */
+    this.stepOf = new Map(chart.rows.flatMap((row) => row.steps.map(({ note, limb }) => [note, { row: row.row, limb, measure: Math.floor(row.beat / 4 + 1e-6) }])));
     this.next = 0; // first row that may still be missed
     this.from = -Infinity; // rows before it are not asked for
     /** @type {number} the foot that is practised, 0 left or 1 right; -1: both */
@@ -26,6 +27,8 @@ export class Judge {
     /** @type {import("./record.js").Outcome[]} what came of notes since it was taken last */
     this.outcomes = [];
     this.slips = 0; // wrong presses since then
+    /** @type {number | undefined} seconds that the last press that took a note was late; none where the clock waits */
+    this.lastError = undefined;
   }
 
   /** Whether a note is asked for: the other foot's are not when one foot is practised. @param {number} note */
@@ -49,7 +52,8 @@ export class Judge {
   settle(note, verdict, error) {
     this.verdicts.set(note, verdict);
     if (error !== undefined) this.errors.set(note, error);
-    this.outcomes.push({ row: this.stepOf.get(note)?.row ?? -1, limb: this.limbOf(note), verdict, error });
+    const { row = -1, measure = -1 } = this.stepOf.get(note) ?? {};
+    this.outcomes.push({ row, measure, limb: this.limbOf(note), verdict, error });
   }
 
   /** Begin at a second: notes from there on are open again. @param {number} second */
@@ -73,25 +77,26 @@ export class Judge {
    */
   press(column, second, rate, patient = false) {
     let best = -1;
-    let least = WINDOW * rate;
+    const reach = patient ? SAME : WINDOW * rate; // who waits for a row asks for its panels only
+    let least = reach;
     for (const n of this.chart.presses[column] ?? []) {
       const away = Math.abs(this.chart.second[n] - second);
       if (this.chart.second[n] > second + least) break;
       if (away <= least && !this.verdicts.has(n) && this.asks(n) && this.chart.second[n] >= this.from) [best, least] = [n, away];
     }
-    if (best < 0) return this.stray(column, second, rate);
+    if (best < 0) return this.stray(column, second, reach);
     const error = (second - this.chart.second[best]) / rate;
     const verdict = patient || Math.abs(error) <= GOOD ? "hit" : error < 0 ? "early" : "late";
-    this.settle(best, verdict, patient ? undefined : error);
+    this.lastError = patient ? undefined : error;
+    this.settle(best, verdict, this.lastError);
     return verdict;
   }
 
   /**
    * A press that takes no note: wrong, but for a panel pressed again, or that is held down just now.
-   * @param {number} column @param {number} second @param {number} rate
+   * @param {number} column @param {number} second @param {number} wide seconds around a note in which its panel is asked for
    */
-  stray(column, second, rate) {
-    const wide = WINDOW * rate;
+  stray(column, second, wide) {
     const { second: starts, end: ends } = this.chart;
     const asked = (this.chart.presses[column] ?? []).some((n) => starts[n] - wide <= second && second <= ends[n] + wide);
     if (asked || second < this.from - wide) return null;

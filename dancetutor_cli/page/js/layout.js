@@ -8,7 +8,7 @@ import { findingsPanel, passagesPanel, settingsPanel } from "./panels.js";
 import { resultsPanel } from "./results.js";
 import { CAMERAS, FIRST_VIEW } from "./settings.js";
 import { resultCard, standing } from "./scores.js";
-import { besideCaption, besideText, countOf, musicText, onlyScore, quiet, saidOf } from "./said.js";
+import { besideCaption, besideText, countOf, musicText, passedOf, quiet, saidOf } from "./said.js";
 
 /**
  * @typedef {object} Canvases what is drawn on; it stays when the words change
@@ -23,6 +23,7 @@ import { besideCaption, besideText, countOf, musicText, onlyScore, quiet, saidOf
  * @property {() => void} help opens the help sheet
  * @property {(name: string) => void} tab opens a tab
  * @property {() => boolean} fewer closes "more controls", which on a phone lie over the panels; whether they were open
+ * @property {() => void} fold folds the panels of a phone away: who plays looks at the notes
  */
 
 /**
@@ -44,6 +45,8 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   const sheet = helpSheet(app, actions);
   ui.help = () => sheet.showModal();
   ui.tab = tabs.choose;
+  ui.fold = tabs.fold;
+  let [played, along] = [app.transport.playing, app.practice.along];
   const badge = el("span", { class: "badge" }, words.badge);
   badge.style.borderColor = style.difficulty[words.difficulty] ?? "#b9bdc9";
   const about = [words.artist, words.steps, `${words.bpm} BPM`, words.credit && t("stepsBy", { name: words.credit })];
@@ -54,8 +57,9 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   const captions = [[t("theseFeet"), ""], besideCaption(app)].map(([who, rows], k) =>
     el("p", { class: `caption ${k ? "right" : "left"}` }, who, el("span", {}, rows && ` (${rows})`)));
   const count = el("p", { class: "count", "aria-hidden": "true" }); // it is heard too
+  const passed = el("p", { class: "passed", role: "status" });
   for (const old of stage.querySelectorAll(":scope > :not(canvas)")) old.remove();
-  stage.append(cameraButtons(app), count, ...captions, standing(app), resultCard(app));
+  stage.append(cameraButtons(app), count, passed, ...captions, standing(app), resultCard(app));
   const note = el("p", { class: "unseen", role: "status" });
   app.listeners.add((what) => { if (what === "feet") note.textContent = app.chosen >= 0 ? noteText(app, app.chosen) : ""; });
   const root = /** @type {HTMLElement} */ (document.getElementById("app"));
@@ -67,11 +71,16 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   if (open) tabs.choose(open);
   app.highway?.speak(t);
   app.listeners.add((what) => {
-    if (what !== "frame") return;
+    if (what !== "frame") {
+      if ((app.transport.playing && !played) || (app.practice.along && !along)) ui.fold();
+      [played, along] = [app.transport.playing, app.practice.along];
+      return;
+    }
     said.textContent = said.title = saidOf(app);
     said.classList.toggle("quiet", quiet(app));
-    said.classList.toggle("doubled", onlyScore(app));
     count.textContent = countOf(app);
+    const now = passedOf(app);
+    if (passed.textContent !== now) passed.textContent = now;
     pick.hidden = app.sound.music !== null;
     pick.title = musicText(app);
     pick.classList.toggle("small", app.played); // on a phone only its sign is left then
@@ -138,6 +147,12 @@ function makeTabs(app, ui, panels) {
     side.classList.toggle("folded", fold);
     app.fresh = true;
   }
+  /** A phone that is held upright has no room for both. */
+  function fold() {
+    if (!matchMedia("(max-width: 860px) and (orientation: portrait)").matches) return;
+    ui.fewer();
+    side.classList.add("folded");
+  }
   const row = el("div", { role: "tablist", class: "tabs", "aria-label": app.t("panels") }, ...tabs);
   row.addEventListener("keydown", (event) => {
     const by = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
@@ -147,7 +162,7 @@ function makeTabs(app, ui, panels) {
     tabs[k].focus();
   });
   const side = el("aside", { class: "side" }, row, ...bodies);
-  return { side, choose };
+  return { side, choose, fold };
 }
 
 /** Buttons of the cameras over the picture. @param {import("./app.js").App} app */

@@ -23,12 +23,13 @@ async function main() {
   const skins = decodeSkins(doc, arrays); // goes on wherever this gives way
   await pause();
   const app = new App(doc, arrays);
+  app.musicLoading = text("music").length > 0;
   const stage = el("section", { class: "picture" });
   const lanes = el("canvas", { class: "lanes", role: "application", tabindex: 0 });
   const strip = el("canvas", {
     class: "strip", role: "slider", tabindex: 0, "aria-valuemin": app.start.toFixed(1), "aria-valuemax": app.end.toFixed(1), "aria-valuenow": "0",
   });
-  const ui = { zoom: (/** @type {number} */ _by) => {}, help: () => {}, tab: (/** @type {string} */ _name) => {}, fewer: () => false };
+  const ui = { zoom: (/** @type {number} */ _by) => {}, help: () => {}, tab: (/** @type {string} */ _name) => {}, fewer: () => false, fold: () => {} };
   const actions = actionsOf(app, ui);
   const show = () => layOut(app, { stage, lanes, strip }, ui, { actions, load: loadFile });
   app.onLanguage = () => {
@@ -65,19 +66,21 @@ async function main() {
   };
   frame();
   document.documentElement.dataset.ready = performance.now().toFixed(0);
-  if (text("music").length > 0) await loadMusic(/** @type {ArrayBuffer} */ (fromBase64(text("music")).buffer));
+  if (app.musicLoading) await loadMusic(/** @type {ArrayBuffer} */ (fromBase64(text("music")).buffer));
 
   /** @param {ArrayBuffer} data @param {string} [name] the file's */
   async function loadMusic(data, name = "") {
     try {
       await app.sound.load(data);
     } catch {
+      app.musicLoading = false;
       app.musicBad = name || doc.words.music;
       app.notice = musicText(app);
       return app.tell("music");
     }
     app.musicName = name;
     app.musicBad = "";
+    app.musicLoading = false;
     app.notice = "";
     app.tell("music");
     app.tell("settings");

@@ -1,5 +1,7 @@
 // How notes look: their shapes, bodies of holds and rolls, mines, markers of who steps, signs of how they were hit.
 
+import { GOOD, WINDOW } from "./judge.js";
+
 // Corners of an arrow that points up, in halves of its size (video/sprites.py).
 const ARROW = [[0, -0.94], [0.94, 0], [0.62, 0.32], [0.36, 0.06], [0.36, 0.88], [-0.36, 0.88], [-0.36, 0.06],
   [-0.62, 0.32], [-0.94, 0]];
@@ -179,18 +181,47 @@ export function drawPress(c, verdict, x, y, size) {
 }
 
 /**
- * A verdict in a word, below the receptors.
- * @param {Context} c @param {string} verdict @param {string} word @param {number} x its middle @param {number} y
- * @param {number} ratio pixels of the canvas for one of CSS
+ * A verdict in a word, above the receptors.
+ * @param {Context} c @param {string} colour @param {string} word @param {number} x its middle @param {number} y
+ * @param {number} size pixels of the canvas
  */
-export function drawWord(c, verdict, word, x, y, ratio) {
-  c.font = `800 ${Math.round(20 * ratio)}px system-ui, sans-serif`;
+export function drawWord(c, colour, word, x, y, size) {
+  c.font = `800 ${Math.round(size)}px system-ui, sans-serif`;
   c.textAlign = "center";
   c.textBaseline = "middle";
   c.lineJoin = "round";
-  c.lineWidth = 5 * ratio;
+  c.lineWidth = 0.25 * size;
   c.strokeStyle = INK;
   c.strokeText(word, x, y);
-  c.fillStyle = COLOURS[verdict];
+  c.fillStyle = colour;
   c.fillText(word, x, y);
+}
+
+/**
+ * A scale of how late the last presses were, early ones left: the newest is the brightest, a triangle stands at their mean.
+ * @param {Context} c @param {number[]} errors seconds @param {{x: number, y: number, width: number, ratio: number}} place its middle
+ */
+export function drawErrors(c, errors, { x, y, width, ratio }) {
+  const at = (/** @type {number} */ error) => x + (0.5 * width * Math.max(-WINDOW, Math.min(error, WINDOW))) / WINDOW;
+  const colour = (/** @type {number} */ error) => COLOURS[Math.abs(error) <= GOOD ? "hit" : error < 0 ? "early" : "late"];
+  c.globalAlpha = 0.6;
+  for (const [from, to, fill] of /** @type {[number, number, string][]} */ ([[-WINDOW, -GOOD, COLOURS.early], [-GOOD, GOOD, COLOURS.hit], [GOOD, WINDOW, COLOURS.late]])) {
+    c.fillStyle = fill;
+    c.fillRect(at(from), y - 1.5 * ratio, at(to) - at(from), 3 * ratio);
+  }
+  errors.forEach((error, k) => {
+    c.globalAlpha = 0.25 + (0.75 * (k + 1)) / errors.length;
+    c.fillStyle = colour(error);
+    c.fillRect(at(error) - ratio, y - 6 * ratio, 2 * ratio, 12 * ratio);
+  });
+  c.globalAlpha = 1;
+  c.fillStyle = "#fff";
+  c.fillRect(x - 0.5 * ratio, y - 6 * ratio, ratio, 12 * ratio);
+  if (!errors.length) return;
+  const mean = at(errors.reduce((sum, error) => sum + error, 0) / errors.length);
+  c.beginPath();
+  c.moveTo(mean, y + 7 * ratio);
+  c.lineTo(mean - 4 * ratio, y + 13 * ratio);
+  c.lineTo(mean + 4 * ratio, y + 13 * ratio);
+  c.fill();
 }

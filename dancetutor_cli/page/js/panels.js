@@ -13,7 +13,7 @@ export function passagesPanel(app) {
   const list = el("ol", { class: "cards" });
   const buttons = doc.passages.map((passage, k) => {
     const button = el("button", { type: "button", class: "card", "aria-pressed": "false", onclick: () => void app.loopPassage(k) },
-      el("strong", {}, el("span", { class: "number" }, `${passage.number}`), el("span", {}, stretch(t, passage.from, passage.to))),
+      el("strong", {}, el("span", { class: "number", title: `--section hardest:${passage.number}` }, `${k + 1}`), el("span", {}, stretch(t, passage.from, passage.to))),
       el("span", { class: "figure" }, t("rate", { rate: Math.round(10 * passage.rate) / 10 })),
       el("span", { class: "text" }, passage.sentence[language] ?? passage.sentence.en),
       passage.again.length ? el("span", { class: "text" }, t("again", { where: passage.again.map((/** @type {[number, number]} */ one) => stretch(t, ...one)).join("; ") })) : null,
@@ -28,8 +28,10 @@ export function passagesPanel(app) {
       const { start, end } = doc.passages[k];
       const tally = app.practice.judge.tally(start, end);
       const any = tally.hit + tally.early + tally.late + tally.miss + tally.wrong > 0;
-      const best = app.record.best[whereOf(app.chart.beatAt(start), app.chart.beatAt(end))];
-      const text = [any && app.practice.along ? scoreText(app, tally) : "", best ? t("bestRate", { rate: best }) : ""].filter(Boolean).join(" · ");
+      const where = whereOf(app.chart.beatAt(start), app.chart.beatAt(end));
+      const best = app.record.best[where];
+      const score = app.record.scores[where];
+      const text = [any && app.practice.along ? scoreText(app, tally) : "", score === undefined ? "" : t("bestScore", { percent: score }), best ? t("bestRate", { rate: best }) : ""].filter(Boolean).join(" · ");
       /** @type {HTMLElement} */ (button.querySelector(".hits")).textContent = text;
     });
   });
@@ -40,15 +42,22 @@ export function passagesPanel(app) {
 /** The three ways to begin. @param {import("./app.js").App} app */
 function startPart(app) {
   const { t, practice } = app;
-  const begin = (/** @type {boolean} */ along) => {
-    practice.setAlong(along);
+  const watch = () => {
+    practice.setAlong(false);
     void app.begin();
   };
   const ways = /** @type {[string, string, string, () => void][]} */ ([
-    ["watch", "▶", t("watch"), () => begin(false)], ["step", "✥", t("along"), () => begin(true)], ["coached", "↻", t("coach"), () => void practice.coach.start()],
+    ["watch", "▶", t("watch"), watch], ["step", "✥", t("along"), () => void app.beginAlong()], ["coached", "↻", t("coach"), () => void practice.coach.start()],
   ]);
-  return el("div", { class: "ways", role: "group", "aria-label": t("waysTitle") }, ...ways.map(([name, sign, text, run]) =>
-    el("button", { type: "button", class: `way ${name}`, onclick: run }, el("span", { class: "icon", "aria-hidden": "true" }, sign), el("strong", {}, text), el("span", { class: "text" }, t(`way-${name}`)))));
+  const buttons = ways.map(([name, sign, text, run]) =>
+    el("button", { type: "button", class: `way ${name}`, onclick: run }, el("span", { class: "icon", "aria-hidden": "true" }, sign), el("strong", {}, text), el("span", { class: "text" }, t(`way-${name}`))));
+  const show = () => {
+    const mode = practice.coach.on ? "coached" : practice.along ? "step" : "watch";
+    buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(ways[k][0] === mode)));
+  };
+  app.listeners.add((what) => { if (what !== "frame") show(); });
+  show();
+  return el("div", { class: "ways", role: "group", "aria-label": t("waysTitle") }, ...buttons);
 }
 
 /**
@@ -68,8 +77,8 @@ export function findingsPanel(app) {
       type: "button", class: "card", title: about, disabled: one.second === null,
       onclick: () => { app.transport.pause(); app.seek(one.second ?? 0); },
     },
-      el("strong", {}, el("span", { class: "sign-of" }, SIGNS[/** @type {keyof typeof SIGNS} */ (one.severity)] ?? ""), el("span", {}, `${one.rule} ${name}`)),
-      el("span", { class: "figure" }, one.beat === null ? "" : placeOf(t, one.beat)),
+      el("strong", {}, el("span", { class: "sign-of" }, SIGNS[/** @type {keyof typeof SIGNS} */ (one.severity)] ?? ""), el("span", {}, name)),
+      el("span", { class: "figure" }, [one.beat === null ? "" : placeOf(t, one.beat), one.rule].filter(Boolean).join(" · ")),
       language !== "en" && about ? el("span", { class: "text" }, `${about} ${findingFigures(t, one)}`.trim()) : el("span", { class: "text", lang: "en" }, one.message));
     const item = el("li", { class: `finding ${one.severity}` }, box, go);
     const show = () => item.classList.toggle("done", box.checked);

@@ -2,13 +2,14 @@
 
 import { Coach } from "./coach.js";
 import { Judge, ramp } from "./judge.js";
-import { addClean, addOutcomes, dayOf, hitShare, whereOf } from "./record.js";
+import { addClean, addOutcomes, addScore, dayOf, scoreShare, whereOf } from "./record.js";
 import { FEET, HELPS } from "./settings.js";
 
 const STRAY = 5000; // milliseconds that the keys are said
-const SHOWN = 700; // milliseconds that a verdict stands beside the receptors
+export const SHOWN = 400; // milliseconds in which a verdict above the receptors fades
+const MARKS = 24; // presses on the scale of errors
 
-/** @typedef {{verdict: string, column: number, at: number, run: number}} Feedback of the last press, or of a miss (column -1); at: ms; run: notes in a row */
+/** @typedef {{verdict: string, column: number, at: number, run: number, error: number | undefined}} Feedback of the last press, or of a miss (column -1); at: ms; run: notes in a row; error: seconds late */
 
 const EARLY = 0.2; // seconds before a row from which its press counts while the clock waits for rows
 
@@ -25,6 +26,10 @@ export class Practice {
     this.chosenRate = 1; // the speed that was asked for; the ramp only goes on from it
     /** @type {import("./judge.js").Tally | null} of the pass before */
     this.before = null;
+    /** @type {number[]} scores of the passes of this loop, 0..1 */
+    this.scores = [];
+    /** @type {number[]} how late the last presses were, seconds */
+    this.errors = [];
     /** @type {import("./judge.js").Tally | null} of a song that has come to its end */
     this.over = null;
     /** @type {"" | "now" | "said"} whether a key was pressed that is no panel: once, the keys are said then */
@@ -48,6 +53,7 @@ export class Practice {
     const { transport } = this.app;
     this.passes = 0;
     this.before = null;
+    this.scores = [];
     this.coach.on = false;
     if (transport.rate === this.chosenRate) return;
     transport.setRate(this.chosenRate);
@@ -63,19 +69,30 @@ export class Practice {
     this.before = this.along ? this.tally() : null;
     const slips = this.before ? this.before.miss + this.before.wrong : 0;
     ++this.passes;
+    const idle = this.before !== null && !this.wait && isIdle(this.before); // nobody plays: nothing is to be learnt of it
+    if (this.before && !idle) this.scores.push(scoreShare(this.before));
     if (this.before && !this.wait) {
-      const { chart, record } = this.app;
-      if (!slips && this.judge.foot < 0) addClean(record, whereOf(chart.beatAt(loop.a), chart.beatAt(loop.b)), transport.rate);
+      if (!idle) this.keepPart(loop, this.before);
       this.keep();
     }
-    if (this.coach.on && this.before && !this.wait) this.coach.pass(this.before);
-    else if (settings.ramp) transport.rate = ramp(transport.rate, slips, this.along);
-    if (settings.help === "auto" && this.along) {
+    if (this.coach.on && this.before && !this.wait) {
+      if (!idle) this.coach.pass(this.before);
+    } else if (settings.ramp && !idle) transport.rate = ramp(transport.rate, slips, this.along);
+    if (settings.help === "auto" && this.along && !idle) {
       this.helpNow = Math.min(Math.max(this.helpNow + (slips ? -1 : 1), 0), 2);
     }
     this.app.tell("pass");
     if (this.along) this.restart(transport.loop?.a ?? loop.a); // the coach may have gone on to another loop
     this.updateHold();
+  }
+
+  /** How a part of the song went, if both feet played it. @param {{a: number, b: number}} part seconds @param {import("./judge.js").Tally} tally */
+  keepPart({ a, b }, tally) {
+    const { chart, record, transport } = this.app;
+    if (this.judge.foot >= 0) return;
+    const where = whereOf(chart.beatAt(a), chart.beatAt(b));
+    if (!tally.miss && !tally.wrong) addClean(record, where, transport.rate);
+    if (transport.rate >= 1) addScore(record, where, scoreShare(tally));
   }
 
   /** What came of notes goes into the record; while the clock waits, or nobody presses anything, there is nothing to keep. */
@@ -107,6 +124,7 @@ export class Practice {
     this.before = null;
     this.stray = "";
     this.feedback = null;
+    this.errors = [];
     if (!on) this.wait = false;
     this.judge.restart(on ? this.app.transport.second() : -Infinity);
     if (!on) this.judge.verdicts.clear();
@@ -129,7 +147,8 @@ export class Practice {
     const { loop } = this.app.transport;
     this.over = null;
     this.run = 0;
-    if (!loop) this.longest = 0;
+    this.feedback = null;
+    if (!loop) [this.longest, this.errors] = [0, []];
     this.keep();
     this.judge.restart(loop && second < loop.b ? Math.max(second, loop.a) : second);
     this.app.tell("hits");
@@ -174,7 +193,9 @@ export class Practice {
     if (!verdict) return;
     this.run = verdict === "miss" || verdict === "wrong" ? 0 : this.run + 1;
     this.longest = Math.max(this.longest, this.run);
-    this.feedback = { verdict, column, at: performance.now(), run: this.run };
+    const error = verdict === "miss" || verdict === "wrong" ? undefined : this.judge.lastError;
+    if (error !== undefined) this.errors = [...this.errors, error].slice(-MARKS);
+    this.feedback = { verdict, column, at: performance.now(), run: this.run, error };
   }
 
   /** The verdict that is shown now; what is no longer is forgotten. */
@@ -204,8 +225,12 @@ export class Practice {
     this.judge.advance(Infinity, this.app.transport.rate);
     this.over = this.judge.tally(-Infinity, Infinity);
     this.topBefore = this.app.record.top;
-    const whole = this.judge.from <= this.app.chart.first && this.judge.foot < 0 && !this.wait;
-    if (whole && this.app.transport.rate >= 1) this.app.record.top = Math.max(this.topBefore, Math.round(100 * hitShare(this.over)));
+    const whole = this.judge.from <= this.app.chart.first && this.judge.foot < 0 && !this.wait && !isIdle(this.over);
+    if (whole && this.app.transport.rate >= 1) this.app.record.top = Math.max(this.topBefore, Math.round(100 * scoreShare(this.over)));
+    for (const { start, end } of this.wait ? [] : this.app.doc.passages) {
+      const tally = this.judge.tally(start, end);
+      if (this.judge.from <= start + 1e-3 && !isIdle(tally)) this.keepPart({ a: start, b: end }, tally);
+    }
     this.keep();
     this.app.tell("hits");
   }
@@ -220,3 +245,6 @@ export class Practice {
     return this.help === "all" || (this.help === "tricky" && Boolean(row?.tricky));
   }
 }
+
+/** Whether nobody pressed anything. @param {import("./judge.js").Tally} tally */
+const isIdle = ({ hit, early, late, wrong }) => hit + early + late + wrong === 0;

@@ -11,7 +11,7 @@ const FORMAT = "dancetutor-practice";
 const APART = 1; // measures between missed rows of one stretch
 const LONGEST = 4; // measures of one stretch: what is longer is practised in parts
 const LOWEST = 0.25;
-const FIRST = 0.6; // the speed of what was never passed
+export const FIRST = 0.7; // the speed of what was never passed
 
 /**
  * @typedef {object} Day counts of one day, and errors of left and right foot in bins
@@ -19,13 +19,22 @@ const FIRST = 0.6; // the speed of what was never passed
  * @property {number} hit @property {number} early @property {number} late @property {number} miss @property {number} wrong
  * @property {[number[], number[]]} feet
  */
-/** @typedef {{tries: number, misses: number, timed: number, sum: number, missed: boolean, rate: number}} RowRecord sum: ms; missed: the last time; rate: % of the last hit, 0: none */
+/** @typedef {{tries: number, misses: number, timed: number, sum: number, missed: boolean, rate: number}} RowRecord sum: ms; missed: the last time; rate: % at which its measure was last played without a miss, 0: never */
 /** @typedef {{name: string, from: number, to: number, rate: number}} SavedLoop beats, %; where it ends */
-/** @typedef {{days: Day[], rows: Record<string, RowRecord>, loops: SavedLoop[], best: Record<string, number>, top: number}} PracticeRecord best: % of clean passes, by beats "16-32"; top: most hits of a whole song at full speed, % */
-/** @typedef {{row: number, limb: number, verdict: import("./judge.js").Verdict, error: number | undefined}} Outcome of a note; error: seconds */
+/**
+ * @typedef {object} PracticeRecord
+ * @property {Day[]} days @property {Record<string, RowRecord>} rows @property {SavedLoop[]} loops
+ * @property {Record<string, number>} best speeds of clean passes, %, by beats "16-32"
+ * @property {Record<string, number>} scores the best at full speed, %, by beats
+ * @property {number} top the best of a whole song at full speed, %
+ */
+/** @typedef {{row: number, limb: number, measure?: number, verdict: import("./judge.js").Verdict, error: number | undefined}} Outcome of a note; error: seconds */
 
 /** @returns {PracticeRecord} */
-export const emptyRecord = () => ({ days: [], rows: {}, loops: [], best: {}, top: 0 });
+export const emptyRecord = () => ({ days: [], rows: {}, loops: [], best: {}, scores: {}, top: 0 });
+
+/** The bar of an error. @param {number} error seconds */
+export const errorBin = (error) => clamp(Math.round((1000 * error) / BIN), -(BINS >> 1), BINS >> 1) + (BINS >> 1);
 
 /** @param {Date} date */
 export const dayOf = (date) => [date.getFullYear(), date.getMonth() + 1, date.getDate()].map((n) => String(n).padStart(2, "0")).join("-");
@@ -40,17 +49,18 @@ export function addOutcomes(record, day, outcomes, wrong, rate) {
   if (!today) record.days.push((today = newDay(day)));
   record.days = record.days.slice(-MOST.days);
   today.wrong += wrong;
-  for (const { row, limb, verdict, error } of outcomes) {
+  const failed = new Set(outcomes.filter(({ verdict }) => verdict === "miss").map(({ measure }) => measure));
+  for (const { row, limb, measure, verdict, error } of outcomes) {
     ++today[verdict];
     const own = (record.rows[row] ??= { tries: 0, misses: 0, timed: 0, sum: 0, missed: false, rate: 0 });
     ++own.tries;
     own.missed = verdict === "miss";
     if (own.missed) ++own.misses;
-    else own.rate = Math.round(100 * rate);
+    else if (!failed.has(measure)) own.rate = Math.round(100 * rate);
     if (error === undefined) continue;
     ++own.timed;
     own.sum += Math.round(1000 * error);
-    if (limb === 0 || limb === 1) ++today.feet[limb][clamp(Math.round((1000 * error) / BIN), -(BINS >> 1), BINS >> 1) + (BINS >> 1)];
+    if (limb === 0 || limb === 1) ++today.feet[limb][errorBin(error)];
   }
 }
 
@@ -59,12 +69,27 @@ export function addClean(record, where, rate) {
   record.best[where] = Math.max(record.best[where] ?? 0, Math.round(100 * rate));
 }
 
+/** How a pass at full speed went. @param {PracticeRecord} record @param {string} where @param {number} share 0..1 */
+export function addScore(record, where, share) {
+  record.scores[where] = Math.max(record.scores[where] ?? 0, Math.round(100 * share));
+}
+
 /** @param {number} from @param {number} to beats */
 export const whereOf = (from, to) => `${Math.round(100 * from) / 100}-${Math.round(100 * to) / 100}`;
 
 /** Share of hits among notes, 0..1. @param {{hit: number, early: number, late: number, miss: number}} counts @param {number} [wrong] presses that count as notes missed */
 export function hitShare({ hit, early, late, miss }, wrong = 0) {
   return hit / Math.max(hit + early + late + miss + wrong, 1);
+}
+
+/** @typedef {{hit: number, early: number, late: number, miss: number}} Counts */
+
+/** Share of notes whose panel was pressed, on time or not, 0..1. @param {Counts} counts */
+export const panelShare = ({ hit, early, late, miss }) => (hit + early + late) / Math.max(hit + early + late + miss, 1);
+
+/** The score, 0..1: an early or late press is worth half a hit. @param {Counts} counts @param {number} [wrong] presses that count as notes missed */
+export function scoreShare({ hit, early, late, miss }, wrong = 0) {
+  return (hit + (early + late) / 2) / Math.max(hit + early + late + miss + wrong, 1);
 }
 
 /**
@@ -100,9 +125,9 @@ export function missedOf(record, rows, most = 6) {
     else out.push({ from: 4 * measure, to: 4 * (measure + 1), misses: 1, rate: FIRST, passed: false });
   }
   for (const one of out) {
-    const passed = rows.filter(({ row, beat }) => beat >= one.from - 1e-6 && beat < one.to - 1e-6 && record.rows[row]?.rate).map(({ row }) => record.rows[row].rate);
-    one.passed = passed.length > 0;
-    if (one.passed) one.rate = clamp(Math.min(...passed) / 100, LOWEST, 1);
+    const rates = rows.filter(({ beat }) => beat >= one.from - 1e-6 && beat < one.to - 1e-6).map(({ row }) => record.rows[row]?.rate ?? 0);
+    one.passed = rates.every((rate) => rate > 0);
+    if (one.passed) one.rate = clamp(Math.min(...rates) / 100, LOWEST, 1);
   }
   return out.sort((a, b) => b.misses - a.misses || a.from - b.from).slice(0, most);
 }
@@ -146,9 +171,11 @@ export function merged(mine, theirs) {
     const own = days.get(one.day);
     if (!own || played(one) > played(own)) days.set(one.day, one);
   }
-  const out = { ...mine, days: [...days.values()].sort((a, b) => (a.day < b.day ? -1 : 1)).slice(-MOST.days), rows: { ...mine.rows }, best: { ...mine.best }, loops: [...mine.loops], top: Math.max(mine.top, theirs.top) };
+  const out = { ...mine, days: [...days.values()].sort((a, b) => (a.day < b.day ? -1 : 1)).slice(-MOST.days), rows: { ...mine.rows }, best: { ...mine.best }, scores: { ...mine.scores }, loops: [...mine.loops], top: Math.max(mine.top, theirs.top) };
   for (const [row, one] of Object.entries(theirs.rows)) if (one.tries > (out.rows[row]?.tries ?? 0)) out.rows[row] = one;
-  for (const [where, rate] of Object.entries(theirs.best)) out.best[where] = Math.max(out.best[where] ?? 0, rate);
+  for (const kind of /** @type {const} */ (["best", "scores"])) {
+    for (const [where, value] of Object.entries(theirs[kind])) out[kind][where] = Math.max(out[kind][where] ?? 0, value);
+  }
   const same = (/** @type {SavedLoop} */ a, /** @type {SavedLoop} */ b) => a.name === b.name && a.from === b.from && a.to === b.to;
   for (const one of theirs.loops) if (out.loops.length < MOST.loops && !out.loops.some((own) => same(own, one))) out.loops.push(one);
   return out;
@@ -163,7 +190,7 @@ const count = (value) => Number.isInteger(value) && within(value, 0, 1e9);
 
 /** What may be kept of anything at all: each value that is as it must be. @param {unknown} value @returns {PracticeRecord} */
 export function validRecord(value) {
-  const { days, rows, loops, best, top } = table(value);
+  const { days, rows, loops, best, scores, top } = table(value);
   const list = (/** @type {unknown} */ some, /** @type {number} */ most) => (Array.isArray(some) ? some.slice(-most) : []);
   const out = emptyRecord();
   if (within(top, 0, 100)) out.top = top;
@@ -185,8 +212,10 @@ export function validRecord(value) {
     if (typeof name !== "string" || !within(from, 0, MOST.beat) || !within(to, 0, MOST.beat) || to <= from || !within(rate, 25, 200)) continue;
     out.loops.push({ name: name.slice(0, MOST.name), from, to, rate });
   }
-  for (const [where, rate] of Object.entries(table(best)).slice(0, MOST.best)) {
-    if (/^\d{1,6}(\.\d{1,2})?-\d{1,6}(\.\d{1,2})?$/.test(where) && within(rate, 25, 200)) out.best[where] = rate;
+  for (const [kind, some, low, high] of /** @type {["best" | "scores", unknown, number, number][]} */ ([["best", best, 25, 200], ["scores", scores, 0, 100]])) {
+    for (const [where, value] of Object.entries(table(some)).slice(0, MOST.best)) {
+      if (/^\d{1,6}(\.\d{1,2})?-\d{1,6}(\.\d{1,2})?$/.test(where) && within(value, low, high)) out[kind][where] = value;
+    }
   }
   return out;
 }

@@ -1,12 +1,13 @@
 // The panel of results: errors by foot, days, rows that go wrong, what was missed, the coach, and a file of it all.
 
 import { bars, download, el, toggle } from "./dom.js";
-import { placeOf, stretch } from "./places.js";
-import { BIN, BINS, LARGEST, dayOf, fromFile, hitShare, missedOf, missesThrough, streakOf, toFile } from "./record.js";
+import { placeInMeasure, stretch } from "./places.js";
+import { BIN, BINS, LARGEST, dayOf, fromFile, hitShare, missedOf, missesThrough, panelShare, streakOf, toFile } from "./record.js";
 import { allRecords, loadRecord, saveRecord, takeRecords } from "./settings.js";
 
 const DAYS = 14; // that are shown
 const ROWS = 5; // rows that are listed
+const OFF = 30; // ms beside the note on average from which a row is listed that is never missed
 
 /** @param {import("./app.js").App} app */
 export function resultsPanel(app) {
@@ -30,7 +31,8 @@ export function resultsPanel(app) {
   const show = () => {
     coach.setAttribute("aria-pressed", String(practice.coach.on));
     const today = app.record.days.find(({ day }) => day === dayOf(new Date()));
-    body.replaceChildren(...(app.record.days.length ? [summary(app), histogram(app, today), missed(app), through(app), rowsOf(app), days(app)] : [el("p", {}, t("noResults"))]));
+    const parts = app.record.days.length ? [summary(app), histogram(app, today), missed(app), through(app), rowsOf(app), days(app)] : [el("p", {}, t("noResults"))];
+    body.replaceChildren(...parts.filter((part) => part !== null));
   };
   app.listeners.add((what) => {
     if (["record", "coach", "settings", "pass", "along"].includes(what)) show();
@@ -60,21 +62,26 @@ function summary({ t, record }) {
   const one = record.days.find(({ day }) => day === today);
   const streak = streakOf(record.days, today);
   const played = one ? one.hit + one.early + one.late + one.miss : 0;
-  return el("p", { class: "score" }, one ? t("today", { notes: played, percent: Math.round(100 * hitShare(one)) }) : t("todayNone"), " ",
+  return el("p", { class: "score" }, one ? t("today", { notes: played, panel: Math.round(100 * panelShare(one)), percent: Math.round(100 * hitShare(one)) }) : t("todayNone"), " ",
     streak.now ? t("streak", { days: streak.now, most: streak.most }) : "");
 }
 
 /** Errors of left and right foot, of today if anything was played, else of all days. @param {import("./app.js").App} app @param {import("./record.js").Day} [today] */
-function histogram({ t, record, doc }, today) {
-  const some = today ? [today] : record.days;
+function histogram(app, today) {
+  const some = today ? [today] : app.record.days;
   const feet = [0, 1].map((foot) => Array.from({ length: BINS }, (_, k) => some.reduce((sum, day) => sum + day.feet[foot][k], 0)));
+  return timing(app, feet, app.t(today ? "histogramToday" : "histogramAll"));
+}
+
+/** How early or late each foot was. @param {import("./app.js").App} app @param {number[][]} feet counts by bar @param {string} title */
+export function timing({ t, doc }, feet, title) {
   const about = feet.map((counts, foot) => {
     const all = counts.reduce((a, b) => a + b, 0);
     const mean = Math.round(counts.reduce((sum, n, k) => sum + n * BIN * (k - (BINS >> 1)), 0) / Math.max(all, 1));
     return t(foot ? "rightMean" : "leftMean", { count: all, mean: (mean > 0 ? "+" : "") + mean });
   });
   const edge = BIN * (BINS >> 1);
-  return el("figure", {}, el("figcaption", {}, t(today ? "histogramToday" : "histogramAll")),
+  return el("figure", {}, el("figcaption", {}, title),
     bars(feet, doc.style.limbs, `${about.join("; ")}`, undefined, "timing"),
     el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, t("early", { ms: edge })), el("span", {}, "0"), el("span", {}, t("late", { ms: edge }))),
     el("p", { class: "legend" }, ...about.map((text, foot) => {
@@ -92,7 +99,7 @@ function missed(app) {
   return el("section", {}, el("h3", {}, t("missedTitle")), el("ol", { class: "cards" }, ...list.map((one) => el("li", {},
     el("button", { type: "button", class: "card missed", onclick: () => void app.loopBeats(one.from, one.to, one.rate) },
       el("strong", {}, el("span", {}, stretch(t, one.from / 4, one.to / 4))), el("span", { class: "figure" }, `${Math.round(100 * one.rate)} %`),
-      el("span", { class: "text" }, t(one.passed ? "missedRows" : "missedNew", { count: one.misses })))))));
+      el("span", { class: "text" }, `${t(one.misses === 1 ? "missedRow" : "missedRows", { count: one.misses })} ${t(one.passed ? "missedPassed" : "missedNew")}`))))));
 }
 
 /** Where in the song notes were missed, by foot. @param {import("./app.js").App} app */
@@ -109,9 +116,11 @@ function rowsOf(app) {
   const { t, record, chart } = app;
   const worst = chart.rows.filter(({ row }) => record.rows[row]?.tries).map((row) => ({ row, own: record.rows[row.row] }))
     .map((one) => ({ ...one, mean: one.own.timed ? Math.round(one.own.sum / one.own.timed) : 0 }))
+    .filter(({ own, mean }) => own.misses > 0 || Math.abs(mean) > OFF)
     .sort((a, b) => b.own.misses / b.own.tries - a.own.misses / a.own.tries || Math.abs(b.mean) - Math.abs(a.mean)).slice(0, ROWS);
+  if (!worst.length) return null;
   const cells = worst.map(({ row, own, mean }) => el("tr", {},
-    el("th", { scope: "row" }, el("button", { type: "button", class: "link", onclick: () => app.goTo(row.steps[0].note) }, placeOf(t, row.beat))),
+    el("th", { scope: "row" }, el("button", { type: "button", class: "link", onclick: () => app.goTo(row.steps[0].note) }, placeInMeasure(t, row.beat))),
     el("td", {}, row.steps.map(({ limb }) => (limb === 0 || limb === 1 ? t(limb ? "footR" : "footL") : "")).join("")),
     el("td", {}, t("missedOf", { misses: own.misses, tries: own.tries })), el("td", {}, own.timed ? `${mean > 0 ? "+" : ""}${mean} ms` : "")));
   return el("section", {}, el("h3", {}, t("rowsTitle")), el("table", { class: "rows" }, el("thead", {}, el("tr", {},

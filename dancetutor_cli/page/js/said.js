@@ -2,7 +2,9 @@
 
 import { keyName } from "./input.js";
 import { placeOf, stretch } from "./places.js";
-import { hitShare } from "./record.js";
+import { panelShare, scoreShare } from "./record.js";
+
+export const KINDS = /** @type {const} */ (["hit", "early", "late", "miss", "wrong"]);
 
 /** @param {import("./app.js").App} app */
 export function saidOf(app) {
@@ -10,21 +12,18 @@ export function saidOf(app) {
   if (app.notice) return app.notice;
   if (practice.stray === "now") return keysText(app);
   if (transport.waiting) return t("waiting");
-  if (practice.coach.on && practice.along) return [scoreText(app, practice.tally()), practice.coach.said, loopText(app)].filter(Boolean).join(" · ");
-  const score = practice.along ? practice.over ? overText(app, practice.over) : scoreText(app, practice.tally()) : "";
-  const told = [score, loopText(app)].filter(Boolean).join(" · ");
+  const over = practice.along && practice.over ? overText(app, practice.over) : "";
+  const told = [over, practice.coach.on && practice.along ? practice.coach.said : "", loopText(app)].filter(Boolean).join(" · ");
   return told || (!app.played && !sound.music ? musicText(app) : "");
 }
 
 /** Whether nothing happens that is worth a look: only that there is no music. @param {import("./app.js").App} app */
 export const quiet = (app) => !app.notice && !app.practice.along && !app.transport.loop;
 
-/** Whether only the counts are said, which stand over the picture too. @param {import("./app.js").App} app */
-export const onlyScore = ({ notice, practice, transport }) => practice.along && !notice && !practice.over && !practice.coach.on && practice.stray !== "now" && !transport.waiting && !transport.loop;
-
 /** Whether there is music, and whose; told in the same words wherever it is asked. @param {import("./app.js").App} app */
 export function musicText(app) {
   const { t, sound, musicName, musicBad } = app;
+  if (app.musicLoading) return t("musicLoading");
   const now = sound.music ? t("musicIs", { name: musicName || app.doc.words.music || "…" }) : t("musicMissing");
   return musicBad ? `${t("musicBad", { name: musicBad })} ${now}` : now;
 }
@@ -39,7 +38,13 @@ export function keysText(app) {
 
 /** How a song went that is over. @param {import("./app.js").App} app @param {import("./judge.js").Tally} tally */
 function overText(app, tally) {
-  return app.t("songOver", { percent: Math.round(100 * hitShare(tally)), counts: `${scoreText(app, tally)} ${meanText(app, tally)}`.trim() });
+  return app.t("songOver", { percent: Math.round(100 * scoreShare(tally)), counts: `${scoreText(app, tally)} ${meanText(app, tally)}`.trim() });
+}
+
+/** What the score is made of. @param {import("./app.js").App} app @param {import("./record.js").Counts} counts */
+export function sharesText(app, counts) {
+  const all = Math.max(counts.hit + counts.early + counts.late + counts.miss, 1);
+  return app.t("shares", { panel: Math.round(100 * panelShare(counts)), time: Math.round((100 * counts.hit) / all) });
 }
 
 /** How late presses came on average; "" without any. @param {import("./app.js").App} app @param {import("./judge.js").Tally} tally */
@@ -57,14 +62,19 @@ function loopText(app) {
   const percent = (/** @type {number} */ x) => Math.round(100 * x);
   const full = app.settings.ramp && rate >= 1 && practice.chosenRate >= 1;
   const ramped = practice.coach.on ? "" : full ? t("rampFull", { rate: percent(rate) }) : rate === practice.chosenRate ? "" : t("ramped", { from: percent(practice.chosenRate), to: percent(rate) });
-  const before = practice.before ? t("passBefore", { counts: scoreText(app, practice.before) }) : "";
-  return [t("loopFrom", { where, passes: practice.passes }), ramped, before].filter(Boolean).join(" · ");
+  return [t("loopFrom", { where, passes: practice.passes }), ramped].filter(Boolean).join(" · ");
 }
 
-/** How it went. @param {import("./app.js").App} app @param {import("./judge.js").Tally} tally */
-export function scoreText(app, tally) {
-  const { hit, early, late, miss, wrong } = tally;
-  return app.t("counts", { hit, early, late, miss, wrong });
+/** How it went: the counts that are not 0. @param {import("./app.js").App} app @param {import("./judge.js").Tally} tally */
+export function scoreText({ t }, tally) {
+  const some = KINDS.filter((name) => tally[name] > 0);
+  return (some.length ? some : [KINDS[0]]).map((name) => `${tally[name]} ${t(`verdict-${name}`)}`).join(", ");
+}
+
+/** The last passes of a loop, for its count-in: "80 % → 100 %"; "" while it plays. @param {import("./app.js").App} app */
+export function passedOf({ transport, practice }) {
+  if (!practice.along || !transport.counting) return "";
+  return practice.scores.slice(-2).map((share) => `${Math.round(100 * share)} %`).join(" → ");
 }
 
 /** Who dances beside her, and where her feet differ, for her caption. @param {import("./app.js").App} app */

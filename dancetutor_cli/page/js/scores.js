@@ -1,37 +1,63 @@
-// How it goes, over the picture: the share of hits and the counts while somebody plays along, and a card at the song's end.
+// How it goes, over the picture: the score and the counts while somebody plays along, and a card at the song's end.
 
 import { el } from "./dom.js";
 import { COLOURS } from "./noteart.js";
-import { hitShare, missedOf } from "./record.js";
-import { meanText } from "./said.js";
+import { BINS, errorBin, missedOf, scoreShare } from "./record.js";
+import { timing } from "./results.js";
+import { KINDS, meanText, sharesText } from "./said.js";
 
-const KINDS = /** @type {const} */ (["hit", "early", "late", "miss", "wrong"]);
+const GOOD = 0.9; // a score that is good
+const FAIR = 0.7; // and one below which the missed rows are worth more than another try
 
-/** Each count in its colour, with its word. @param {import("./app.js").App} app */
+/** Each count that is not 0 in its colour, with its word. @param {import("./app.js").App} app */
 function countsRow({ t }) {
   const numbers = KINDS.map(() => el("b", {}, "0"));
-  const row = el("p", { class: "counts" }, ...KINDS.map((name, k) => {
+  const each = KINDS.map((name, k) => {
     numbers[k].style.color = COLOURS[name];
     return el("span", {}, numbers[k], ` ${t(`verdict-${name}`)}`);
-  }));
-  const show = (/** @type {import("./judge.js").Tally} */ tally) => KINDS.forEach((name, k) => { numbers[k].textContent = String(tally[name]); });
+  });
+  const row = el("p", { class: "counts" }, ...each);
+  const show = (/** @type {import("./judge.js").Tally} */ tally) => KINDS.forEach((name, k) => {
+    numbers[k].textContent = String(tally[name]);
+    each[k].hidden = tally[name] === 0;
+  });
   return { row, show };
 }
 
-/** @param {import("./judge.js").Tally} tally */
-const percentOf = (tally) => `${Math.round(100 * hitShare(tally))} %`;
+/** A line that is parted as the notes were judged. */
+function countsBar() {
+  const parts = KINDS.slice(0, 4).map((name) => {
+    const part = el("span");
+    part.style.background = COLOURS[name];
+    return part;
+  });
+  const bar = el("div", { class: "parts", "aria-hidden": "true" }, ...parts);
+  const show = (/** @type {import("./judge.js").Tally} */ tally) => parts.forEach((part, k) => { part.style.flexGrow = String(tally[KINDS[k]]); });
+  return { bar, show };
+}
 
-/** The score while it plays; a line above the picture says it to readers. @param {import("./app.js").App} app */
+/** The score, large, in a colour by how good it is. @param {HTMLElement} element @param {import("./judge.js").Tally} tally */
+function showShare(element, tally) {
+  const share = scoreShare(tally);
+  element.textContent = share || tally.miss ? `${Math.round(100 * share)} %` : "–";
+  element.style.color = share || tally.miss ? COLOURS[share >= GOOD ? "hit" : share >= FAIR ? "early" : "miss"] : "";
+}
+
+/** The score while it plays; the panel of playing along says it to readers. @param {import("./app.js").App} app */
 export function standing(app) {
   const share = el("strong", {}, "");
+  const shares = el("p", { class: "shares" }, "");
   const { row, show } = countsRow(app);
-  const box = el("div", { class: "standing", "aria-hidden": "true" }, share, row);
+  const line = countsBar();
+  const box = el("div", { class: "standing", "aria-hidden": "true" }, share, line.bar, shares, row);
   app.listeners.add((what) => {
     if (what === "frame") return;
     box.hidden = !app.practice.along || app.practice.over !== null;
     if (box.hidden) return;
     const tally = app.practice.tally();
-    share.textContent = hitShare(tally) || tally.miss ? percentOf(tally) : "–";
+    showShare(share, tally);
+    shares.textContent = sharesText(app, tally);
+    line.show(tally);
     show(tally);
   });
   box.hidden = true;
@@ -42,28 +68,57 @@ export function standing(app) {
 export function resultCard(app) {
   const { t, practice } = app;
   const share = el("strong", {}, "");
+  const shares = el("p", { class: "shares" }, "");
   const mean = el("p", { class: "hint" }, "");
   const best = el("p", { class: "best" }, "");
+  const part = el("p", { class: "part" }, "");
+  const feet = el("div", { class: "feet" });
   const { row, show } = countsRow(app);
+  const line = countsBar();
   const missed = () => missedOf(app.record, app.chart.rows)[0];
-  const again = el("button", { type: "button", class: "main", onclick: () => void app.begin() }, t("again-play"));
-  const slow = el("button", { type: "button", onclick: () => {
+  const again = el("button", { type: "button", id: "again-play", onclick: () => void app.begin() }, t("again-play"));
+  const slow = el("button", { type: "button", id: "again-missed", onclick: () => {
     const one = missed();
     practice.over = null;
     void app.loopBeats(one.from, one.to, one.rate);
   } }, t("again-missed"));
   const close = el("button", { type: "button", class: "sign shut", "aria-label": t("close"), title: t("close"), onclick: () => { practice.over = null; app.tell("hits"); } }, "✕");
-  const card = el("section", { class: "result", "aria-label": t("tab-results"), hidden: true }, el("h2", {}, t("tab-results")), share, best, row, mean, el("p", { class: "group" }, again, slow), close);
+  const card = el("section", { class: "result", "aria-label": t("tab-results"), hidden: true }, el("h2", {}, t("tab-results")), part, share, line.bar, shares, best, row, mean, feet, el("p", { class: "group" }, again, slow), close);
   app.listeners.add((what) => {
     if (what === "frame") return;
-    card.hidden = practice.over === null;
-    if (!practice.over) return;
-    share.textContent = percentOf(practice.over);
-    mean.textContent = [meanText(app, practice.over).replace(/^\((.*)\)$/, "$1"), t("longestRun", { notes: practice.longest })].filter(Boolean).join(" · ");
+    const { over } = practice;
+    card.hidden = over === null;
+    if (!over) return;
+    showShare(share, over);
+    shares.textContent = sharesText(app, over);
+    part.textContent = partText(app, over);
+    mean.textContent = [meanText(app, over).replace(/^\((.*)\)$/, "$1"), t("longestRun", { notes: practice.longest })].filter(Boolean).join(" · ");
     const { top } = app.record;
     best.textContent = top > practice.topBefore ? t("bestNew") : top ? t("bestPlay", { percent: top }) : "";
+    feet.replaceChildren(...(over.count ? [timing(app, feetOf(practice.judge), t("histogramNow"))] : []));
     slow.hidden = !missed();
-    show(practice.over);
+    const bad = !slow.hidden && scoreShare(over) < FAIR;
+    slow.classList.toggle("main", bad);
+    again.classList.toggle("main", !bad);
+    line.show(over);
+    show(over);
   });
   return card;
+}
+
+/** What was played, if it was not the whole song. @param {import("./app.js").App} app @param {import("./judge.js").Tally} over */
+function partText({ t, chart, practice }, { hit, early, late, miss }) {
+  const { from } = practice.judge;
+  if (from <= chart.first) return "";
+  return t("playedPart", { notes: hit + early + late + miss, from: Math.floor(chart.beatAt(Math.max(from, 0)) / 4 + 1e-3) });
+}
+
+/** Errors of left and right foot, in bars. @param {import("./judge.js").Judge} judge */
+function feetOf(judge) {
+  const feet = [new Array(BINS).fill(0), new Array(BINS).fill(0)];
+  for (const [note, error] of judge.errors) {
+    const limb = judge.limbOf(note);
+    if (limb === 0 || limb === 1) ++feet[limb][errorBin(error)];
+  }
+  return feet;
 }

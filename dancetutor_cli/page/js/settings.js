@@ -17,6 +17,7 @@ const DEFAULTS = {
   help: "all", foot: "both", latency: 0, sight: 0, volume: 0.9, ...FIRST_VIEW,
   /** @type {Record<string, string[]>} keys by number of panels */ keys: {},
   /** @type {Record<string, (number | null)[]>} buttons by pad and number of panels */ pads: {},
+  /** @type {Record<string, (number | null)[]>} buttons for Start and Select by pad */ controls: {},
 };
 
 /** Lowest and highest value of settings that an old page, or a hand, may have stored otherwise. */
@@ -42,6 +43,7 @@ export function loadSettings() {
   if (!/^[a-z]{0,8}$/.test(out.language)) out.language = DEFAULTS.language;
   out.keys = valid(stored.keys, isKey, (panels, one) => Number(panels) === one.length && new Set(one).size === one.length);
   out.pads = valid(stored.pads, isButton);
+  out.controls = valid(stored.controls, isButton);
   return out;
 }
 

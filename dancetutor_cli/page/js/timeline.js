@@ -5,6 +5,7 @@ import { clamp } from "./maths.js";
 const DRAG = 6; // pixels that make a drag out of a click
 const EDGE = 9; // pixels around an end of the loop that take hold of it
 const CLOSER = 1.5; // times nearer with each step of the zoom
+const MARKS = 28; // pixels of a loop with room for A and B
 const LEAST = 8; // seconds that the strip shows at least
 const NARROW = 3; // pixels: measures that would be drawn narrower are drawn together
 
@@ -186,8 +187,8 @@ export class Timeline {
       c.textBaseline = "top";
       c.textAlign = "left";
       const at = Math.max(x(passage.start) + ratio, free); // two of one place stand side by side
-      free = at + c.measureText(String(passage.number)).width + 4 * ratio;
-      c.fillText(String(passage.number), at, 1.5 * ratio);
+      free = at + c.measureText(String(k + 1)).width + 4 * ratio;
+      c.fillText(String(k + 1), at, 1.5 * ratio);
     }
     for (const one of this.doc.findings) {
       if (one.second === null) continue;
@@ -214,10 +215,12 @@ export class Timeline {
     c.fillStyle = "#fff";
     c.font = `700 ${12 * ratio}px system-ui, sans-serif`;
     c.textBaseline = "bottom";
-    for (const [edge, name, side] of /** @type {[number, string, CanvasTextAlign][]} */ ([[loop.a, "A", "left"], [loop.b, "B", "right"]])) {
-      c.fillRect(x(edge) - (side === "right" ? 2 * ratio : 0), 0, 2 * ratio, height);
-      c.textAlign = side;
-      c.fillText(name, x(edge) + (side === "left" ? 4 : -4) * ratio, height - 2 * ratio);
+    const outside = x(loop.b) - x(loop.a) < MARKS * ratio; // in a short loop there is no room for both
+    for (const [edge, name, side] of /** @type {[number, string, 1 | -1][]} */ ([[loop.a, "A", 1], [loop.b, "B", -1]])) {
+      c.fillRect(x(edge) - (side < 0 ? 2 * ratio : 0), 0, 2 * ratio, height);
+      const way = outside ? -side : side;
+      c.textAlign = way > 0 ? "left" : "right";
+      c.fillText(name, x(edge) + 4 * way * ratio, height - 2 * ratio);
     }
   }
 }

@@ -10,7 +10,7 @@ const WAYS = [270, 180, 0, 90];
 function plugged(pad) {
   const all = { id: "mat", connected: true, mapping: "", axes: [0, 0], timestamp: 0, buttons: Array.from({ length: 12 }, () => ({ pressed: false, value: 0 })), ...pad };
   Object.defineProperty(globalThis, "navigator", { value: { getGamepads: () => [all] }, configurable: true });
-  const input = new Input(NAMES, { keys: {}, pads: {} }, WAYS);
+  const input = new Input(NAMES, { keys: {}, pads: {}, controls: {} }, WAYS);
   const pressed = [];
   input.onPress = ({ column }) => pressed.push(column);
   return { input, pressed, pad: all };
@@ -69,4 +69,28 @@ test("buttons that were chosen hold in place of axes, and an end can be chosen",
   pad.axes = [-1, 0];
   input.poll();
   assert.deepEqual(pressed, [2], "left was not chosen so");
+});
+
+test("Start and Select of a mat do what they say, others that were chosen do so instead, and panels come first", () => {
+  const { input, pressed, pad } = plugged({});
+  /** @type {string[]} */
+  const done = [];
+  input.onControl = (name) => done.push(name);
+  const tap = (number) => {
+    for (const down of [true, false]) {
+      pad.buttons[number] = { pressed: down, value: 0 };
+      input.poll();
+    }
+  };
+  pad.buttons = Array.from({ length: 12 }, () => ({ pressed: false, value: 0 }));
+  input.poll();
+  for (const number of [9, 8, 10]) tap(number);
+  assert.deepEqual(done, ["start", "select"]);
+  input.assignControl(0, "mat/4#10");
+  input.assignControl(1, "KeyK"); // keys have their own
+  for (const number of [10, 9, 8]) tap(number);
+  assert.deepEqual(done, ["start", "select", "start", "select"]);
+  input.assign(0, "mat/4#8"); // now a panel
+  tap(8);
+  assert.deepEqual([done.length, pressed.at(-1)], [4, 0]);
 });

@@ -84,6 +84,14 @@ test("a row that waits is open until all its panels are pressed", () => {
   assert.equal(judge.open(-Infinity), null);
 });
 
+test("while the clock waits for a row, the panel of the next one is wrong, however near it is", () => {
+  const judge = new Judge({ ...chart(), second: [1, 2, 1.1, 3], end: [1, 2, 1.1, 3] });
+  judge.restart(0);
+  assert.equal(judge.press(3, 1, 1, true), "wrong");
+  assert.equal(judge.press(0, 1, 1, true), "hit");
+  assert.equal(judge.tally(0, 4).wrong, 1);
+});
+
 test("going back opens rows again", () => {
   const judge = new Judge(chart());
   judge.restart(0);

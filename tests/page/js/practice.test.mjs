@@ -5,7 +5,7 @@ import { Transport } from "../../../dancetutor_cli/page/js/clock.js";
 import { Input } from "../../../dancetutor_cli/page/js/input.js";
 import { Practice } from "../../../dancetutor_cli/page/js/practice.js";
 import { addOutcomes, emptyRecord } from "../../../dancetutor_cli/page/js/record.js";
-import { countOf, saidOf } from "../../../dancetutor_cli/page/js/said.js";
+import { countOf, passedOf, saidOf } from "../../../dancetutor_cli/page/js/said.js";
 
 /** An app with a beat a second, a row at every second, and a clock that the test turns. */
 function make() {
@@ -65,7 +65,60 @@ test("a wrong panel makes a pass unclean, and what was pressed is said in the ne
   }
   go(at, transport, 10);
   assert.equal(transport.rate, 0.95);
-  assert.match(saidOf(app), /passBefore counts 2 0 0 0 1/);
+  assert.equal(passedOf(app), "100 %"); // in the count-in: both notes hit
+  go(at, transport, 8.5);
+  assert.equal(passedOf(app), "");
+});
+
+test("a pass in which nobody presses anything teaches neither the coach nor the ramp anything", async () => {
+  const { at, app, transport } = make();
+  app.loopBeats = async (a, b) => { transport.setLoop({ a, b }); transport.restartLoop(); transport.play(); };
+  app.doc.passages = [{ start: 8, end: 12 }];
+  await app.practice.coach.start();
+  assert.deepEqual([transport.rate, app.practice.coach.said], [0.7, "coachNew 70"]);
+  for (const press of [false, true]) {
+    app.practice.restart(8);
+    go(at, transport, 8);
+    if (press) app.practice.press(0, 0);
+    go(at, transport, 12.01);
+    assert.equal(transport.rate, press ? 0.6 : 0.7); // a quarter hit: back by a tenth
+  }
+  assert.equal(app.practice.coach.said, "coachFailed 25 60");
+  app.practice.coach.stop();
+  transport.setRate(0.7);
+  app.practice.restart(8);
+  go(at, transport, 12.01);
+  assert.equal(transport.rate, 0.7);
+});
+
+test("what a press was fades away, and is gone as a pass begins or the clock stands", () => {
+  const { at, app, transport } = make();
+  app.practice.setAlong(true);
+  transport.setLoop({ a: 8, b: 10 });
+  transport.play();
+  app.practice.restart(8);
+  go(at, transport, 8.06);
+  app.practice.press(0, 0);
+  assert.ok(Math.abs(app.practice.shown().error - 0.06) < 1e-6);
+  assert.deepEqual(app.practice.errors.map((error) => Math.round(1000 * error)), [60]);
+  go(at, transport, 10);
+  assert.equal(app.practice.feedback, null);
+  assert.equal(app.practice.errors.length, 1); // the scale goes on
+});
+
+test("the best pass of a passage is kept from a song that is played, too", () => {
+  const { at, app, transport } = make();
+  app.doc.passages = [{ start: 8, end: 12 }, { start: 20, end: 24 }];
+  app.practice.setAlong(true);
+  transport.onEnd = () => app.practice.finish();
+  transport.play();
+  for (const second of [8, 9, 10.1, 11]) {
+    go(at, transport, second);
+    app.practice.press(0, 0);
+  }
+  go(at, transport, 40.5);
+  assert.deepEqual(app.record.scores, { "8-12": 88 }); // 3 hits and a half of 4; nobody played the other one
+  assert.deepEqual(app.record.best, { "8-12": 100 });
 });
 
 test("the count-in shows the beats that are left, and nothing once the loop has begun", () => {
@@ -97,9 +150,9 @@ test("each press is judged in sight, for a moment; the end of the song says how 
   assert.equal(app.practice.shown(), null);
   go(at, transport, 40.5);
   assert.equal(transport.playing, false);
-  assert.match(saidOf(app), /^songOver 3 counts 1 1 1 37 1/); // one of 40 is 2.5 %
+  assert.match(saidOf(app), /^songOver 5 1 verdict-hit, 1 verdict-early, 1 verdict-late, 37 verdict-miss, 1 verdict-wrong/); // 1 + 2 halves of 40
   app.practice.restart(0);
-  assert.match(saidOf(app), /^counts 0 0 0 0/);
+  assert.equal(saidOf(app), "");
 });
 
 test("the first key that is no panel has the keys said, until a panel is pressed", () => {
@@ -140,8 +193,8 @@ test("the coach loops what was missed, raises the speed by what is hit, and goes
   pass(4);
   assert.equal(transport.rate, 1);
   pass(4);
-  assert.deepEqual([transport.loop, transport.rate], [{ a: 20, b: 24 }, 0.6]); // passed: the next stretch, never passed yet
-  assert.match(saidOf(app), /coachNext 100 60/);
+  assert.deepEqual([transport.loop, transport.rate], [{ a: 20, b: 24 }, 0.7]); // passed: the next stretch, never passed yet
+  assert.match(saidOf(app), /coachNext 100 70/);
   coach.stop();
   assert.equal(transport.rate, 1);
   assert.deepEqual(app.record.best, { "8-12": 100 });

@@ -2,11 +2,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import {
-  BINS, addClean, addOutcomes, coachRate, dayOf, emptyRecord, fromFile, hitShare, merged, missedOf, missesThrough, streakOf, toFile, validRecord,
+  BINS, addClean, addOutcomes, addScore, coachRate, dayOf, emptyRecord, fromFile, hitShare, merged, missedOf, missesThrough, panelShare, scoreShare, streakOf, toFile, validRecord,
 } from "../../../dancetutor_cli/page/js/record.js";
 import { thinned, together } from "../../../dancetutor_cli/page/js/timeline.js";
 
-const outcome = (row, verdict, error, limb = row % 2) => ({ row, limb, verdict, error });
+const outcome = (row, verdict, error, limb = row % 2) => ({ row, measure: Math.floor(row / 4), limb, verdict, error });
 
 /** Two days of a chart of eight rows, a beat apart. */
 function played() {
@@ -25,20 +25,30 @@ test("errors are counted by day and foot, and by row", () => {
   assert.equal(days[0].feet[1][middle + 6], 1); // 90 ms late, right
   assert.equal(days[1].feet[0][middle - 5], 1); // 80 ms early, left
   assert.equal(days.flatMap(({ feet }) => feet.flat()).reduce((a, b) => a + b), 4); // misses have no error
-  assert.deepEqual(rows[1], { tries: 2, misses: 1, timed: 1, sum: 90, missed: true, rate: 80 });
-  assert.deepEqual(rows[2], { tries: 2, misses: 1, timed: 1, sum: -80, missed: false, rate: 90 });
+  assert.deepEqual(rows[1], { tries: 2, misses: 1, timed: 1, sum: 90, missed: true, rate: 0 }); // its measure was never played without a miss
+  assert.deepEqual(rows[2], { tries: 2, misses: 1, timed: 1, sum: -80, missed: false, rate: 0 });
   assert.equal(hitShare(days[0]), 1 / 3);
   assert.equal(hitShare(days[0], days[0].wrong), 0.25);
 });
 
 test("a row's last outcome says whether it is missed, and the stretch begins where all of it was passed", () => {
   const rows = Array.from({ length: 40 }, (_, row) => ({ row, beat: row }));
-  const record = played(); // row 1, in measure 0; rows 0 to 2 passed at 90, 80 and 90 %
+  const record = played(); // row 1, in measure 0, of which no pass was without a miss: what was hit in those does not count
+  assert.deepEqual(missedOf(record, rows), [{ from: 0, to: 4, misses: 1, rate: 0.7, passed: false }]);
+  addOutcomes(record, "2026-11-24", [0, 1, 2, 3].map((row) => outcome(row, "late", 0.06)), 0, 0.8);
+  addOutcomes(record, "2026-11-24", [0, 1, 2, 3].map((row) => outcome(row, row === 1 ? "miss" : "hit")), 0, 1);
   assert.deepEqual(missedOf(record, rows), [{ from: 0, to: 4, misses: 1, rate: 0.8, passed: true }]);
   addOutcomes(record, "2026-11-24", [4, 5, 6, 24].map((row) => outcome(row, "miss")), 0, 1);
-  assert.deepEqual(missedOf(record, rows), [{ from: 0, to: 8, misses: 4, rate: 0.8, passed: true }, { from: 24, to: 28, misses: 1, rate: 0.6, passed: false }]);
+  assert.deepEqual(missedOf(record, rows), [{ from: 0, to: 8, misses: 4, rate: 0.7, passed: false }, { from: 24, to: 28, misses: 1, rate: 0.7, passed: false }]);
   addOutcomes(record, "2026-11-24", [1, 4, 5, 6, 24].map((row) => outcome(row, "hit", 0)), 0, 1);
   assert.deepEqual(missedOf(record, rows), []);
+});
+
+test("the right panel counts although it is early or late: half in the score", () => {
+  const counts = { hit: 1, early: 3, late: 4, miss: 2 };
+  assert.deepEqual([panelShare(counts), hitShare(counts), scoreShare(counts)], [0.8, 0.1, 0.45]);
+  assert.equal(scoreShare(counts, 5), 0.3);
+  assert.equal(scoreShare({ hit: 0, early: 0, late: 0, miss: 0 }), 0);
 });
 
 test("a streak goes on until a day is left out, over the ends of months", () => {
@@ -59,6 +69,8 @@ test("a file comes back as it was, and taken in twice changes nothing", () => {
   const record = played();
   record.loops.push({ name: "bridge </script>", from: 4, to: 8.5, rate: 75 });
   addClean(record, "4-8.5", 0.75);
+  addScore(record, "4-8.5", 0.66);
+  addScore(record, "4-8.5", 0.5);
   const back = fromFile(toFile({ "song.ssc#0:12": record })).get("song.ssc#0:12");
   assert.deepEqual(back, record);
   const both = merged(emptyRecord(), back);
@@ -73,6 +85,7 @@ test("a file comes back as it was, and taken in twice changes nothing", () => {
   assert.equal(joined.top, 81);
   assert.deepEqual([80, -1, 101, "80", NaN].map((top) => validRecord({ top }).top), [80, 0, 0, 0, 0]);
   assert.equal(joined.best["4-8.5"], 90);
+  assert.equal(joined.scores["4-8.5"], 66);
   assert.equal(joined.rows[5].tries, 1);
 });
 
@@ -86,6 +99,7 @@ test("of a stranger's file only what may be is kept", () => {
     rows: { 3: good, "-1": good, x: good, 4: { ...good, rate: 1e9 }, 5: { ...good, missed: 1 }, 6: { ...good, sum: "1" }, __proto__: good },
     loops: [{ name: "a".repeat(999), from: 0, to: 4, rate: 100 }, { name: "b", from: 4, to: 4, rate: 100 }, { name: 3, from: 0, to: 4, rate: 100 },
       { name: "c", from: 0, to: 4, rate: 1 }, "x"],
+    scores: { "0-4": 80, "4-8": 101, "0-<b>": 80, "8-12": -1 },
     best: { "0-4": 90, "0-4<b>": 90, "4-8": "90", "8-12": null },
     other: 1,
   };
@@ -94,7 +108,8 @@ test("of a stranger's file only what may be is kept", () => {
   assert.deepEqual(kept.rows, { 3: good });
   assert.deepEqual(kept.loops.map(({ name }) => name.length), [60]);
   assert.deepEqual(kept.best, { "0-4": 90 });
-  assert.deepEqual(Object.keys(kept), ["days", "rows", "loops", "best", "top"]);
+  assert.deepEqual(kept.scores, { "0-4": 80 });
+  assert.deepEqual(Object.keys(kept), ["days", "rows", "loops", "best", "scores", "top"]);
   for (const value of [null, 3, "x", [], { days: {}, rows: [], loops: 3, best: "x" }]) assert.deepEqual(validRecord(value), emptyRecord());
 });
 
