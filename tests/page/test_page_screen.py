@@ -42,10 +42,13 @@ def test_a_phone_shows_all_of_it_without_scrolling(browser: Browser, page_file: 
     buttons = "[...document.querySelectorAll('button, select')].filter(b => b.offsetParent)"
     assert browser.run(f"{buttons}.filter(b => b.getBoundingClientRect().height < 44).map(b => b.textContent)") == []
     browser.click(".card")  # loops a passage, where the picture is in sight
-    assert boxes(browser, ".picture")[0] == stage and said(browser).startswith("loop measure")
+    higher = boxes(browser, ".picture")[0]  # the panel is folded away: who plays looks at the picture
+    assert higher[3] > stage[3] + 150 and said(browser).startswith("loop measure")
     browser.key("p", "KeyP")
     ((left, top, right, bottom),) = boxes(browser, ".said")  # above the picture, whole, and clear of her
-    assert said(browser).startswith("0 hit") and left >= 0 and top >= 0 and bottom <= stage[1] and right <= 380
+    lane = browser.run("document.querySelector('.lanes').clientWidth") - 2 * 22
+    assert lane / 4 >= 44  # wide enough for fingers
+    assert said(browser).startswith("loop measure") and left >= 0 and top >= 0 and bottom <= stage[1] and right <= 380
     assert browser.run("(e => e.scrollHeight <= e.clientHeight + 1)(document.querySelector('.said'))")
     browser.click(".more")  # all controls, and still a picture
     assert boxes(browser, ".picture")[0][3] - stage[1] > 200

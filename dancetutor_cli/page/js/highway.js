@@ -68,8 +68,8 @@ export class Highway {
     const { columns, beats } = this.chart;
     const finger = this.along && window.innerWidth <= NARROW;
     const numbers = finger && columns > 5 ? 0 : (8 + 7 * String(beats.length >> 2).length) * ratio; // room left of the lanes, for the last measure's number
-    const wide = !finger && width > 200 * ratio; // else there is no room for words, and lanes are worth more
-    const words = wide ? clamp((columns > 5 ? 0.12 : 0.34) * width, 46 * ratio, 80 * ratio) : 8 * ratio; // and right of them
+    const wide = !this.along && width > 200 * ratio; // else there is no room for words, and lanes are worth more; who plays has them in the middle
+    const words = wide ? clamp((columns > 5 ? 0.12 : 0.34) * width, 46 * ratio, 80 * ratio) : this.along ? numbers : 8 * ratio; // and right of them
     const lane = Math.min((width - numbers - words) / columns, 72 * ratio);
     const free = width - lane * columns;
     const left = clamp(0.5 * free, numbers, Math.max(numbers, free - words)); // in the middle, if words leave it room
@@ -243,7 +243,7 @@ export class Highway {
     const c = this.context;
     const x = m.left + m.lane * this.chart.columns + 5 * m.ratio;
     const room = m.width - x - 2 * m.ratio;
-    if (room < 26 * m.ratio) return;
+    if (room < WORD * m.ratio) return; // they would be cut
     c.textAlign = "left";
     c.textBaseline = "middle";
     for (const { second, text, short, severity } of this.labels) {
@@ -302,6 +302,7 @@ export function linesOf(text, fits) {
 const LEAST = 12; // pixels of the smallest words
 const NARROW = 860; // pixels of a phone's window, as in page.css
 const VERDICT = 58; // pixels above the receptors for a verdict
+const WORD = 42; // pixels of the shortest words
 const RUN = 4; // notes in a row from which their number is shown
 const ARROWS = "←↑→↓↖↗↘↙";
 const GROUND = "#171a30"; // beside the lanes: that of the panels

@@ -73,11 +73,14 @@ function histogram(app, today) {
   return timing(app, feet, app.t(today ? "histogramToday" : "histogramAll"));
 }
 
-/** How early or late each foot was. @param {import("./app.js").App} app @param {number[][]} feet counts by bar @param {string} title */
-export function timing({ t, doc }, feet, title) {
+/**
+ * How early or late each foot was. @param {import("./app.js").App} app @param {number[][]} feet counts by bar @param {string} title
+ * @param {number[]} [means] ms; else those of the bars
+ */
+export function timing({ t, doc }, feet, title, means) {
   const about = feet.map((counts, foot) => {
     const all = counts.reduce((a, b) => a + b, 0);
-    const mean = Math.round(counts.reduce((sum, n, k) => sum + n * BIN * (k - (BINS >> 1)), 0) / Math.max(all, 1));
+    const mean = Math.round(means?.[foot] ?? counts.reduce((sum, n, k) => sum + n * BIN * (k - (BINS >> 1)), 0) / Math.max(all, 1));
     return t(foot ? "rightMean" : "leftMean", { count: all, mean: (mean > 0 ? "+" : "") + mean });
   });
   const edge = BIN * (BINS >> 1);

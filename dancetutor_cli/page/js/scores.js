@@ -56,7 +56,7 @@ export function standing(app) {
     if (box.hidden) return;
     const tally = app.practice.tally();
     showShare(share, tally);
-    shares.textContent = sharesText(app, tally);
+    shares.textContent = scoreShare(tally) || tally.miss ? sharesText(app, tally) : "";
     line.show(tally);
     show(tally);
   });
@@ -95,7 +95,7 @@ export function resultCard(app) {
     mean.textContent = [meanText(app, over).replace(/^\((.*)\)$/, "$1"), t("longestRun", { notes: practice.longest })].filter(Boolean).join(" · ");
     const { top } = app.record;
     best.textContent = top > practice.topBefore ? t("bestNew") : top ? t("bestPlay", { percent: top }) : "";
-    feet.replaceChildren(...(over.count ? [timing(app, feetOf(practice.judge), t("histogramNow"))] : []));
+    feet.replaceChildren(...(over.count ? [feetPart(app)] : []));
     slow.hidden = !missed();
     const bad = !slow.hidden && scoreShare(over) < FAIR;
     slow.classList.toggle("main", bad);
@@ -113,12 +113,16 @@ function partText({ t, chart, practice }, { hit, early, late, miss }) {
   return t("playedPart", { notes: hit + early + late + miss, from: Math.floor(chart.beatAt(Math.max(from, 0)) / 4 + 1e-3) });
 }
 
-/** Errors of left and right foot, in bars. @param {import("./judge.js").Judge} judge */
-function feetOf(judge) {
-  const feet = [new Array(BINS).fill(0), new Array(BINS).fill(0)];
-  for (const [note, error] of judge.errors) {
-    const limb = judge.limbOf(note);
-    if (limb === 0 || limb === 1) ++feet[limb][errorBin(error)];
-  }
-  return feet;
+/** How early or late each foot was in this play. @param {import("./app.js").App} app */
+function feetPart(app) {
+  const { judge } = app.practice;
+  /** @type {number[][]} */
+  const errors = [[], []];
+  for (const [note, error] of judge.errors) errors[judge.limbOf(note)]?.push(error); // a hand's have no bars
+  const feet = errors.map((some) => some.reduce((bars, error) => {
+    ++bars[errorBin(error)];
+    return bars;
+  }, new Array(BINS).fill(0)));
+  const means = errors.map((some) => (1000 * some.reduce((sum, error) => sum + error, 0)) / Math.max(some.length, 1));
+  return timing(app, feet, app.t("histogramNow"), means);
 }
