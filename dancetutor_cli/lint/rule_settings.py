@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
@@ -277,12 +278,15 @@ def limit_of(band: Band, share: float) -> int:
     return max(few, default=0)
 
 
-def described(move: str, share: float) -> Iterator[str]:
-    """A line for each band: the limit, and the share of charts on either side of it."""
+def described(move: str, share: float, slowest: float = math.inf) -> Iterator[str]:
+    """A line for each band: the limit, at most `slowest` (s), and the share of charts on either side of it."""
     times = milliseconds()
     for band in bands(move):
         at = limit_of(band, share)
         parts = dict(zip(times, band.within, strict=True))
+        if at > slowest * 1000:
+            yield f"{band.pad:12} meter {band.meters:12} up to {slowest * 1000:g} ms, the rule's limit"
+            continue
         said = f"up to {at} ms ({parts[at]:g} % of {band.charts} charts" if at else f"none ({band.charts} charts"
         more = next((time for time in times if time > at), None)
         said += f"; {parts[more]:g} % up to {more} ms)" if more else ")"

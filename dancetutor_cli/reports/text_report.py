@@ -311,9 +311,9 @@ def explain(rule: type[Rule]) -> str:
         share = settings["share"]
         lines += [
             "",
-            f"Reported up to these times, at which at most {share:g} % of the charts of a meter have it:",
+            f"Slowest one that is reported, by meter (at most {share:g} % of the charts of a meter have one as quick):",
         ]
-        lines += [f"  {line}" for line in described(rule.times, share)]
+        lines += [f"  {line}" for line in described(rule.times, share, rule.slowest)]
     return "\n".join(lines) + "\n"
 
 
