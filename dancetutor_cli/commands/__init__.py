@@ -19,7 +19,7 @@ from dancetutor_cli.run.errors import did_you_mean
 
 # name -> (module, short help); the short help stands here so that `--help` imports no subcommand.
 COMMANDS = {
-    "analyze": ("analyze", "Find the feet of charts and lint them."),
+    "analyze": ("analyze", "Work out which foot steps each note, and check the chart."),
     "annotate": ("annotate", "Write L/R foot markers into chart files, or remove them."),
     "animate": ("animate", "Bake a 3D dancer who plays a chart."),
     "retarget": ("retarget", "Put captured motion on a character."),

@@ -188,11 +188,12 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     help="Print the documentation of a rule and exit.",
 )
 def command(**options: Any) -> int:  # fmt: skip
-    """Find the feet of charts and lint them.
+    """Work out which foot steps each note, and check the chart.
 
     PATH is a .sm, .ssc or .ucs file, a folder with such files, or - for standard input.
 
-    Exit status: 0 no findings, 1 findings (see --fail-on), 2 a file cannot be read or an option is wrong.
+    Exit status: 0 no errors or warnings, 1 errors or warnings (see --fail-on), 2 a file cannot be read or an option is
+    wrong.
     """
     from dancetutor_cli.lint.run import LintRequest, LintRun
 

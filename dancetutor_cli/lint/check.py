@@ -131,7 +131,7 @@ def _as_sure_as_they_are(
             continue
         margin, confidence = subject.confidence(finding.beat)
         if margin is not None and margin <= settings.coin_toss:
-            said = f"other feet are as good here; with the feet shown: {finding.message}"
+            said = f"ambiguous: either foot can start here. As shown, {finding.message}"
             if ambiguity is None:
                 yield replace(finding, severity="info", message=said)
             elif finding.beat not in known:

@@ -37,6 +37,7 @@ class Tally:
     rules: Counter[str] = field(default_factory=Counter)
     unselected: list[str] = field(default_factory=list)
     suggested: int = 0
+    suggested_rule: str = ""
     page: list[str] = field(default_factory=list)
     quiet: bool = False
 
@@ -51,7 +52,9 @@ class Tally:
         for finding, _ in result.all_findings():
             self.rules[f"{finding.rule} {finding.name}"] += 1
             self.severities[finding.severity] += result.error is None
-            self.suggested += finding.suggestion is not None
+            if finding.suggestion is not None:
+                self.suggested += 1
+                self.suggested_rule = self.suggested_rule or finding.rule
 
     @property
     def exit_status(self) -> int:
@@ -71,7 +74,9 @@ class Tally:
         """What --suggest has found, also when that is nothing."""
         if not self.suggested:
             return "no small edit would remove a finding"
-        return f"{_plural(self.suggested, 'finding')} would be removed by a small edit; --fix writes it"
+        have = "has" if self.suggested == 1 else "have"
+        fix = f"--fix {self.suggested_rule}"
+        return f"{_plural(self.suggested, 'finding')} {have} a small edit; `{fix}` writes it, `{fix} --diff` shows it"
 
     def closing_lines(self) -> list[str]:
         """What stands below all findings: the page and the summary."""

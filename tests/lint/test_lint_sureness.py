@@ -50,7 +50,7 @@ def test_a_coin_toss_is_an_ambiguity(margins: list[int]) -> None:  # of its row,
     (finding,) = found(margins)
     assert (finding.rule, finding.name, finding.severity) == ("DT207", "ambiguous-start", "info")
     assert finding.message == (
-        "other feet are as good here; with the feet shown: "
+        "ambiguous: either foot can start here. As shown, "
         "the right foot steps twice in a row although the other foot is free"
     )
 
@@ -66,7 +66,7 @@ def test_an_ambiguity_is_told_once_in_a_row() -> None:
 def test_a_coin_toss_without_the_rule_for_it_is_an_info() -> None:
     (finding,) = found([SURE, SURE, 0, SURE, SURE, SURE, SURE], only="DT201")
     assert (finding.rule, finding.severity) == ("DT201", "info")
-    assert finding.message.startswith("other feet are as good here")
+    assert finding.message.startswith("ambiguous: either foot can start here")
 
 
 @pytest.mark.parametrize("rule", ["DT201", "DT207"])

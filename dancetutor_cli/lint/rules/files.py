@@ -141,7 +141,7 @@ def _is_script(subject: FileSubject, name: str) -> bool:
 
 
 class OddTag(ReaderRule):
-    """A tag has a wrong value: a decimal comma, a meter that is no number, a difficulty that no game knows.
+    """A tag has a wrong value: a decimal comma, a meter that is not a number, a difficulty that no game knows.
 
     A lost value that no player sees, such as that of MENUCOLOR, is an info.
 

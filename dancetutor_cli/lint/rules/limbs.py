@@ -136,7 +136,7 @@ _SCALE = "itg"  # of meters, on which `least_meter` is measured
 
 
 class Hand(MoveRule):
-    """Three panels are down at once: a bracket or a hand, and the players of this chart know neither.
+    """Three panels at once (a hand) in a chart for players who do not know hands yet.
 
     The games count such rows as hands. Held panels count. Rows at most two measures apart are one finding.
 
