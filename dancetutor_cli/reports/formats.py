@@ -23,6 +23,7 @@ class Tally:
     fail_on : "error", "warning" or "never"; the least severity that fails the run
     exit_zero : findings do not fail the run whatever they are; unreadable files still do
     folders : that gave no file, because none is in them or they cannot be read; they are unreadable, and no files
+    suggested, suggested_rule : findings with an edit; the rule of the first of them
     page : lines about all files together, to stand above the summary
     quiet : nothing is said at the end
     """
