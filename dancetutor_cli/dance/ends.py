@@ -91,7 +91,11 @@ def exit_of(plan: Plan, span: Span, context: Context) -> Plan:
         grips=tuple(grip for grip in plan.grips if grip.start < until),
         let_go=(),
     )
-    return homeward(rest, span, context)
+    home = homeward(rest, span, context)
+    if home is None:
+        return rest
+    left, right = (replace(track, moves=(*track.moves, *own)) for track, own in zip(rest.feet, home[0], strict=True))
+    return replace(rest, feet=(left, right), turns=(*rest.turns, home[1]))
 
 
 def entrance_piece(plan: Plan, context: Context, fps: float, cut: Cut, ragdoll: RagdollStyle | None) -> Piece:

@@ -31,7 +31,7 @@ def test_check_says_where_and_why(song: Path, ssc: Path) -> None:
     said = Said([ssc, "--check"])
     assert said.status == 1
     assert "has other feet than the solver finds" in said.out
-    assert "has feet that do not fit their rows any more" in said.out
+    assert "has feet that no longer fit their rows" in said.out
 
 
 def test_diff_is_plain_in_a_pipe_and_coloured_on_a_terminal(

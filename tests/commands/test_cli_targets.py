@@ -155,7 +155,7 @@ def test_folders_are_made_with_those_above(demo: Path) -> None:
     assert run("annotate", demo, *ONE, "-o", "a/b/marked") == 0
     assert b"{dt1 " in Path("a/b/marked/song.ssc").read_bytes()
     assert run("render", demo, *ONE, *FILM, "--frames", "a/c/frames") == 0
-    assert len(list(Path("a/c/frames").glob("*.png"))) == 25
+    assert len(list(Path("a/c/frames").glob("*.png"))) == 32
     assert run("render", demo, *ONE, *FILM, "--poses", "a/d/poses") == 0
     assert Path("a/d/poses/poses.json").is_file()
     assert run("render", demo.parent, *ONE, *FILM, "-o", "a/e/videos") == 0

@@ -62,7 +62,7 @@ def test_hostile_files_are_one_line_and_no_film(
         (("-o", "nowhere/film.mp4"), "folder"),
         (("--font", "nofont.ttf", "--section", "4:5"), "nofont.ttf"),
         (("--push", "9:300:up"), "ahead, left, back, right"),
-        (("--push", "99:300:left", "--section", "8:9"), "the motion lasts from 8.000 s to 10.500 s"),
+        (("--push", "99:300:left", "--section", "8:9"), "the motion lasts from 8.000 s to 11.200 s"),
     ],
 )
 def test_what_does_not_exist_is_refused_with_what_does(
@@ -165,8 +165,8 @@ def test_a_passage_has_time_to_come_to_rest_in_whatever_it_is_written_to(
 ) -> None:
     small = ("--index", "0", "--layout", "highway", "--size", "64x64", "--section", "8:9", "--mute", "--jobs", "1")
     for to, length in (
-        (("-o", str(tmp_path / "a.mp4")), "2.5 s"),
-        (("-o", str(tmp_path / "a.gif")), "2.5 s"),
+        (("-o", str(tmp_path / "a.mp4")), "3.2 s"),
+        (("-o", str(tmp_path / "a.gif")), "3.2 s"),
         (("--frames", str(tmp_path / "frames")), "75 pictures"),
         (("--poses", str(tmp_path / "poses")), "2 pictures"),
     ):

@@ -59,7 +59,7 @@ def test_only_a_terminal_is_told(
     assert capsys.readouterr().err == ""
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
     announce_compiling(PresetChoice())
-    assert capsys.readouterr().err.startswith("compiling the solver's kernels (once;")
+    assert capsys.readouterr().err.startswith("compiling the solver's kernels (only once;")
     shutil.rmtree(cache)
 
 

@@ -42,7 +42,7 @@ pads:
 
 
 def written(tmp_path: Path, text: str = GOOD) -> Path:
-    path = tmp_path / "score.yaml"
+    path = tmp_path / f"score-{len(list(tmp_path.iterdir()))}.yaml"  # what was read of a path is kept
     path.write_text(text, encoding="utf-8")
     return path
 

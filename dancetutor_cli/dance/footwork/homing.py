@@ -147,17 +147,17 @@ def _nearest(places: Array, begin: Stand) -> float:
     return float(places[np.argmin(np.round(np.abs(places - begin.middle[0]), 6))])
 
 
-def homeward(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
-    """The plan, whose feet stand from the first second of a span on, with steps home until its last one.
+def homeward(plan: Plan, span: tuple[float, float], context: Context) -> tuple[list[list[Move]], Turn] | None:
+    """Steps home of each foot, with a turn, for feet that stand from the first second of a span on, until its last one.
 
-    Unchanged at the bar, where she is at home already, or where there is too little time: she stands `home.settle`
+    None at the bar, where she is at home already, or where there is too little time: she stands `home.settle`
     before the end.
     """
     settings, step = context.settings, context.settings.step
     free = max(span[0], *(move.land for track in plan.feet for move in track.moves[-1:]))
     free = max(free, *(press.end + settings.hands.reach_down for press in plan.presses[-2:]), free)
     if context.bar is not None:
-        return plan
+        return None
     begin = standing(plan.feet, free, plan.turns)
     whole = 2.0 * np.pi * round(begin.heading / (2.0 * np.pi))
     place = _nearest(places_along(context.squares, plan.lead), begin)
@@ -166,17 +166,15 @@ def homeward(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
     time = span[1] - free - settings.home.settle
     pause, long = _pace(time, len(falls), settings.home)
     if not falls or pause + len(falls) * long > time + 1e-9:
-        return plan
-    moves: tuple[list[Move], list[Move]] = ([], [])
+        return None
+    moves: list[list[Move]] = [[], []]
     places = [(ball, float(yaw)) for ball, yaw in zip(begin.balls, begin.yaws, strict=True)]
     for k, (side, fall) in enumerate(falls):
         start = free + pause + k * long
         when = start + step.double_support * long, start + long, long
         moves[side].append(sidestep(when, fall, _bulge(places, side, fall, step), step))
         places[side] = (fall.ball, fall.yaw)
-    left, right = (replace(track, moves=(*track.moves, *own)) for track, own in zip(plan.feet, moves, strict=True))
-    turn = Turn(free + pause, free + pause + len(falls) * long, goal.heading)
-    return replace(plan, feet=(left, right), turns=(*plan.turns, turn))
+    return moves, Turn(free + pause, free + pause + len(falls) * long, goal.heading)
 
 
 def faces_as_at_home(row: Row, footing: Footing) -> bool:

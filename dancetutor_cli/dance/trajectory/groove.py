@@ -101,7 +101,8 @@ def groove_of(plan: Plan, times: Array, engaged: Occupation, context: Context) -
     beat = beat_bounce(context, times, calmer, engaged.busy)
     share = dancing(calmer, engaged.busy, settings.layers) * (1.0 - engaged.waits)
     grounded = _grounded(plan, times, settings)
-    share *= (numbers.steps + (1.0 - numbers.steps) * jacks) * grounded
+    slow = share
+    share = share * (numbers.steps + (1.0 - numbers.steps) * jacks) * grounded
     easy = leisure(plan, times, numbers)
     share *= 1.0 + numbers.leisure * easy
     late = np.interp(times - settings.layers.beat_late, times, beat)
@@ -110,7 +111,7 @@ def groove_of(plan: Plan, times: Array, engaged: Occupation, context: Context) -
     to_side = sway(plan, times, context)
     free = np.clip(1.0 - share - engaged.busy - engaged.waits, 0.0, 1.0)
     loose = np.clip(1.0 - engaged.busy - engaged.waits, 0.0, 1.0) * _among_steps(plan, times, numbers)
-    loose *= (1.0 + grounded) / 2.0
+    loose *= slow * (1.0 + grounded) / 2.0
     carried = loose[:, None] * carriage(plan, times, context)
     return Groove(beat, sink, share * to_side, free * grounded * to_side, grounded, carried)
 

@@ -111,6 +111,6 @@ def test_the_followed_frame_is_the_same_whoever_draws_it(tmp_path: Path) -> None
             main(["render", str(DEMO), *ASKED, "--frames", str(tmp_path / jobs), "--jobs", jobs])
         assert stop.value.code == 0
     names = sorted(p.name for p in (tmp_path / "1").iterdir())
-    assert len(names) == 15  # more than one segment of work, and the rest after it
+    assert len(names) == 17  # more than one segment of work, and the rest after it
     for name in names:
         assert (tmp_path / "1" / name).read_bytes() == (tmp_path / "2" / name).read_bytes()
