@@ -33,7 +33,6 @@ from dancetutor_cli.dance.settings_feet import (
     StepSettings,
     WalkSettings,
 )
-from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.run.reading import config_path, named_file
 from dancetutor_cli.run.yaml_files import load
 
@@ -132,6 +131,8 @@ WHOLE = 1.0 - 1e-9  # of a state beside which there is no other one
 
 def state_weights(changes: Sequence[Span], times: Array) -> Array:
     """How much (f, k + 1) of each state there is at times (f,); changes : k spans, seconds, in order, apart."""
+    from dancetutor_cli.dance.smoothing import smooth  # numba, which help does without
+
     after = np.array([smooth((times - start) / (end - start)) for start, end in changes]).reshape(-1, len(times))
     risen = np.vstack((np.ones(len(times)), after))
     return np.asarray((risen - np.vstack((after, np.zeros(len(times))))).T)

@@ -74,7 +74,7 @@ def test_a_held_note_that_a_shove_makes_her_leave_is_missed_and_named() -> None:
     events = [(1.0, {0: plays.L}), (1.3, {3: plays.R}), (3.2, {1: plays.L})]
     play = plays.play(events, holds={(0, 0): 2.9})
     held = bake(plays.chart().timing, play, plays.pad(), section=(0.6, 3.8))
-    made = through_ragdoll(held, NEUTRAL, Wishes(pushes=(Push(WHEN, 1200.0, 270.0),))).motion
+    made = through_ragdoll(held, NEUTRAL, Wishes(pushes=(Push(WHEN, 1200.0, 90.0),))).motion
     assert "missed: 1.000 s column 0 (left foot, held)" in made.notes[-1]
     assert report(held)["contacts missed"].value == 0 and report(made)["contacts missed"].value == 1
     light = through_ragdoll(held, NEUTRAL, Wishes(pushes=(Push(WHEN, 200.0, 270.0),))).motion

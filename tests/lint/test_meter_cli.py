@@ -44,7 +44,7 @@ def test_the_brief_form_tells_the_number_alone() -> None:
 def test_text_tells_what_a_chart_scores_like_beneath_what_it_plays_like() -> None:
     lines = printed("--full").splitlines()
     plays = [n for n, line in enumerate(lines) if line.startswith("plays like")]
-    assert all(re.match(r"scores like \d+\.\d\d: level \d+\.\d\d, .*\(\d", lines[n + 1]) for n in plays)
+    assert all(re.match(r"scores like meter \d+\.\d\d: level \d+\.\d\d, .*\(\d", lines[n + 1]) for n in plays)
 
 
 def test_json_and_csv_tell_the_same_score_and_its_bill_adds_up() -> None:

@@ -60,7 +60,7 @@ def test_jumps_are_no_jacks_and_one_tap_in_a_stream_is_nothing() -> None:
 
 
 def test_she_sways_from_side_to_side_on_beats_and_never_alike() -> None:
-    sway = groove(jack(0.25, 36)).sway
+    sway = groove(jack(0.25, 38)).sway
     inside = (TIMES > 3.0) & (TIMES < 9.0)
     turns = TIMES[1:-1][(np.diff(np.sign(np.diff(sway))) != 0) & inside[1:-1]]
     assert len(turns) >= 7 and np.abs(turns / 0.5 - np.round(turns / 0.5)).max() < 0.02
