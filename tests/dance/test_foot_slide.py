@@ -32,7 +32,7 @@ def test_a_foot_in_the_air_or_that_runs_does_not_stand() -> None:
 
 
 def test_a_margin_takes_what_an_eye_just_does_not() -> None:
-    for speed, seconds, high in ((0.51, 1.0, 0.0), (0.1, 0.096, 0.0), (0.1, 1.0, 0.051)):
+    for speed, seconds, high in ((0.51, 1.0, 0.0), (0.1, 0.103, 0.0), (0.1, 1.0, 0.051)):
         times = np.arange(481) / 240.0
         there = (times > 1.0) & (times < 1.0 + seconds)
         fast = np.where(there, speed, 2.0)

@@ -167,7 +167,7 @@ def test_a_passage_has_time_to_come_to_rest_in_whatever_it_is_written_to(
     for to, length in (
         (("-o", str(tmp_path / "a.mp4")), "3.2 s"),
         (("-o", str(tmp_path / "a.gif")), "3.2 s"),
-        (("--frames", str(tmp_path / "frames")), "75 pictures"),
+        (("--frames", str(tmp_path / "frames")), "96 pictures"),
         (("--poses", str(tmp_path / "poses")), "2 pictures"),
     ):
         assert render(DEMO, *small, *to) == 0

@@ -115,7 +115,9 @@ export function calibrateDialog(app) {
     mark(found.middle, "middle");
     // By eye a tap is late by the same hand, and by the screen: what is more than by ear is the screen's.
     const more = Math.round(1000 * (what === "latency" ? found.middle : found.middle - settings.latency));
-    const name = (what === "latency" ? "calibrateDone" : "calibrateSeen") + (ms < 0 ? "Before" : "");
+    const after = what === "latency" ? "calibrateDone" : "calibrateSeen";
+    const before = what === "latency" ? "calibrateDoneBefore" : "calibrateSeenBefore";
+    const name = ms < 0 ? before : after;
     text.textContent = t(name, { ms: Math.abs(ms), spread, taps: found.errors.length, more });
     choice.hidden = false;
     const chosen = (/** @type {boolean} */ taken) => {
