@@ -37,6 +37,24 @@ def browser() -> Iterator[Browser]:
     one.close()
 
 
+@pytest.fixture(scope="module")
+def flat() -> Iterator[Browser]:
+    """A browser without WebGL: it draws quickly whatever else the machine does."""
+    one = Browser(flags=("--disable-gpu", "--disable-3d-apis"))
+    yield one
+    one.close()
+
+
+@pytest.fixture
+def opened(flat: Browser, page_file: Path) -> Browser:
+    """The page without WebGL, opened with nothing stored."""
+    flat.size(1280, 720)
+    flat.call("Storage.clearDataForOrigin", origin="file://", storageTypes="local_storage")
+    flat.problems.clear()
+    flat.open(page_file)
+    return flat
+
+
 @pytest.fixture
 def fresh(browser: Browser, page_file: Path) -> None:
     """The page, opened anew, with nothing stored."""

@@ -2,30 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from page_chromium import NOW, Browser, pad_script, said, text
-
-FLAGS = ("--disable-gpu", "--disable-3d-apis")  # without WebGL: it draws quickly whatever else the machine does
-
-
-@pytest.fixture(scope="module")
-def flat() -> Iterator[Browser]:
-    """A browser without WebGL."""
-    one = Browser(flags=FLAGS)
-    yield one
-    one.close()
-
-
-@pytest.fixture
-def opened(flat: Browser, page_file: Path) -> Browser:
-    flat.size(1280, 720)
-    flat.call("Storage.clearDataForOrigin", origin="file://", storageTypes="local_storage")
-    flat.problems.clear()
-    flat.open(page_file)
-    return flat
 
 
 def shown(browser: Browser, selector: str) -> bool:

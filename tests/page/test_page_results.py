@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,23 +15,6 @@ RECORD = (
 HOSTILE = "<img src=x onerror=window.hacked=1>"
 # What a link of a file to download held, without a download.
 CATCH = "URL.createObjectURL = blob => { window.caught = blob; return 'data:,'; }; 1"
-
-
-@pytest.fixture(scope="module")
-def flat() -> Iterator[Browser]:
-    """A browser without WebGL: it draws quickly whatever else the machine does."""
-    one = Browser(flags=("--disable-gpu", "--disable-3d-apis"))
-    yield one
-    one.close()
-
-
-@pytest.fixture
-def opened(flat: Browser, page_file: Path) -> Browser:
-    flat.size(1280, 720)
-    flat.call("Storage.clearDataForOrigin", origin="file://", storageTypes="local_storage")
-    flat.problems.clear()
-    flat.open(page_file)
-    return flat
 
 
 def loop(browser: Browser, link: str = "#m1-1") -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -15,23 +14,6 @@ from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.page.facts import differing
 from dancetutor_cli.page.work import PageRequest, make_page
-
-
-@pytest.fixture(scope="module")
-def flat() -> Iterator[Browser]:
-    """A browser without WebGL: it draws quickly whatever else the machine does."""
-    one = Browser(flags=("--disable-gpu", "--disable-3d-apis"))
-    yield one
-    one.close()
-
-
-@pytest.fixture
-def opened(flat: Browser, page_file: Path) -> Browser:
-    flat.size(1280, 720)
-    flat.call("Storage.clearDataForOrigin", origin="file://", storageTypes="local_storage")
-    flat.problems.clear()
-    flat.open(page_file)
-    return flat
 
 
 @pytest.fixture(scope="module")
