@@ -71,6 +71,7 @@ def test_nobody_stands_a_shove_of_1500_newtons_and_the_notes_missed_are_named(pl
 
 
 def test_a_held_note_that_a_shove_makes_her_leave_is_missed_and_named() -> None:
+    """Her weight is over the foot that holds, so the push goes to the other side than that foot: it has to leave."""
     events = [(1.0, {0: plays.L}), (1.3, {3: plays.R}), (3.2, {1: plays.L})]
     play = plays.play(events, holds={(0, 0): 2.9})
     held = bake(plays.chart().timing, play, plays.pad(), section=(0.6, 3.8))

@@ -150,7 +150,7 @@ def through_ragdoll(motion: Motion, style: Style | Blend, wishes: Wishes = Wishe
             poses = repinned(skeleton, (poses[0], root), feet)
             poses, feet, plants = eased_ankles(skeleton, poses, feet, plants, held, motion.times)
     if not wishes.corrections:
-        poses = _possible(motion, poses, feet, 0.5 if wishes.pushes or wishes.trips else 0.0)
+        poses = _possible(motion, poses, feet)
     rotations, root = pin_hands(motion, poses, feet)
     if "limits" in corrections:
         rotations = push_arms_out(skeleton, (rotations, root), motion.times)
@@ -171,12 +171,12 @@ def _undisturbed(motion: Motion, wishes: Wishes) -> Array:
     return out
 
 
-def _possible(motion: Motion, poses: Poses, feet: AnkleTracks, least: float) -> Poses:
+def _possible(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
     """Poses that give way only so far that hips and ankles of feet which stay stay within their limits."""
     for _ in range(GIVING_BACK):
         past = np.zeros(len(motion.times))
         for name in (f"{s}_{n}" for s in "lr" for n in ("hip", "talocrural")):
-            past = np.maximum(past, beyond(motion.skeleton, name, poses[0][:, motion.skeleton.index(name)]) > least)
+            past = np.maximum(past, beyond(motion.skeleton, name, poses[0][:, motion.skeleton.index(name)]) > 0.5)
         if not past.any():
             break
         share = 0.3 * np.minimum(upper_envelope(motion.times, past, 0.2), 1.0)

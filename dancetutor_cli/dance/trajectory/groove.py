@@ -58,6 +58,7 @@ def dancing(tempo: Array, busy: Array, layers: LayerSettings) -> Array:
 # Her trunk in jacks and slow steps: she leans and turns from side to side with the beat, never twice alike.
 
 SEED = 20020716
+OVERSHOOT = 0.1  # how far a smooth path may go beyond what it is near to: 0.06 has been seen
 MOSTLY = 0.6  # part of the way from `groove.mostly` to all the time at which she dances as in jacks
 
 
@@ -122,8 +123,8 @@ def leisure(plan: Plan, times: Array, numbers: GrooveSettings) -> Array:
     k = np.searchsorted(lands, times)
     gap = np.append(lands, np.inf)[k] - np.append(-np.inf, lands)[k]
     much = smooth((gap - numbers.leisure_from) / (numbers.leisure_full - numbers.leisure_from))
-    rate = 1.0 / float(times[1] - times[0])
-    return np.asarray(smooth_path(much[:, None], np.ones(len(times)), rate, numbers.ease)[:, 0])
+    eased = smooth_path(much[:, None], np.ones(len(times)), 1.0 / float(times[1] - times[0]), numbers.ease)[:, 0]
+    return np.asarray(smooth((eased - OVERSHOOT) / (1.0 - 2.0 * OVERSHOOT)))
 
 
 def stance(plan: Plan, times: Array, context: Context) -> Array:

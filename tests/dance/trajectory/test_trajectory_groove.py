@@ -59,8 +59,9 @@ def test_jumps_are_no_jacks_and_one_tap_in_a_stream_is_nothing() -> None:
     assert repeated(plan_of(chart().timing, play(one), pad()), TIMES, settings).max() < 0.5
 
 
-def test_she_sways_from_side_to_side_on_beats_and_never_alike() -> None:
-    sway = groove(jack(0.25, 38)).sway
+@pytest.mark.parametrize("count", [34, 36, 42, 58])  # each has draws of its own
+def test_she_sways_from_side_to_side_on_beats_and_never_alike(count: int) -> None:
+    sway = groove(jack(0.25, count)).sway
     inside = (TIMES > 3.0) & (TIMES < 9.0)
     turns = TIMES[1:-1][(np.diff(np.sign(np.diff(sway))) != 0) & inside[1:-1]]
     assert len(turns) >= 7 and np.abs(turns / 0.5 - np.round(turns / 0.5)).max() < 0.02
@@ -105,13 +106,13 @@ def test_shoulders_hands_and_head_take_part_in_jacks_within_the_goals(gap: float
 
 
 def test_arms_are_carried_otherwise_from_phrase_to_phrase_and_slowly() -> None:
-    """Far, for it is seen; slow, for what is quick is a twitch: a fifth of the 4 m/s that a wrist may go."""
+    """Far, for it is seen; slow, for what is quick is a twitch."""
     events = stream(0.25, 36)
     arms, carried = context().settings.arms, groove(events).carried
     inside = (TIMES > 3.0) & (TIMES < 10.0)
     assert np.ptp(carried[inside], axis=0).min() > 1.0
     ways = carried * np.linalg.norm([arms.carried_out, arms.carried_up, arms.carried_ahead])
-    assert np.abs(np.gradient(ways, TIMES, axis=0)).max() < 0.8
+    assert np.abs(np.gradient(ways, TIMES, axis=0)).max() < 0.55  # 0.51 as measured
     assert np.abs(carried[:, 0] - carried[:, 1])[inside].max() > 0.2, "each in its own way"
 
 
