@@ -8,7 +8,7 @@ touch is the same in all states. Poses are then solved with the numbers of each 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,12 @@ from dancetutor_cli.dance.trajectory.height import Height
 from dancetutor_cli.dance.trajectory.posture import Trajectory
 
 Array = NDArray[np.float64]
+_PATHS = {field.name for field in fields(Trajectory)} - {
+    "times",
+    "mass_height",
+    "softened",
+    "hands",
+}  # arrays over time
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,9 +81,3 @@ def mean_body(bodies: Sequence[Trajectory], changes: Sequence[Span]) -> Trajecto
     height = MeanHeight(tuple(body.mass_height for body in bodies), tuple(changes))
     softened = tuple(dict.fromkeys(what for body in bodies for what in body.softened))
     return replace(first, mass_height=height, softened=softened, hands=None, **paths)
-
-
-_PATHS = (
-    "mass", "ground", "height", "yaw", "chest_yaw", "head_yaw", "tilt", "reaching", "heels", "knees", "beat", "sway",
-    "listed", "arms",
-)  # fmt: skip

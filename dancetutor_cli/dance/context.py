@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.motion import Bar, Contact, Grip, Ground, Motion
+from dancetutor_cli.dance.plan import Plan, chance_of
 from dancetutor_cli.dance.rig.body import BALL_AHEAD
 from dancetutor_cli.dance.rig.skeleton import Skeleton, dancer_skeleton
 from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, Span
@@ -19,7 +20,6 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import StepKind
 
 if TYPE_CHECKING:
-    from dancetutor_cli.dance.plan import Plan
     from dancetutor_cli.feet.pads import Pad
 
 
@@ -184,7 +184,7 @@ def grip_phrases(plan: Plan, times: Array, yaw: Array, settings: BarSettings) ->
     song.
     yaw : (n,) radians that the chest is turned
     """
-    chance = np.random.default_rng([SEED, round(1000 * plan.first), round(1000 * plan.last) & 0xFFFFFFFF])
+    chance = chance_of(SEED, *plan.song)
     holds, apart = np.ones((len(times), 2), dtype=bool), np.full(len(times), settings.apart)
     notes, start = np.array([touch.start for touch in plan.touches]), float(times[0])
     while start < times[-1]:

@@ -17,7 +17,7 @@ from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.ik.full_body import Poses
 from dancetutor_cli.dance.ik.targets import lately
 from dancetutor_cli.dance.layers import Glances
-from dancetutor_cli.dance.plan import Plan, Step
+from dancetutor_cli.dance.plan import Plan, Step, Swing, chance_of
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.quaternion import UP
@@ -73,13 +73,13 @@ def peeks_at(plan: Plan, free: Array, at: Array, context: Context) -> Peeks:
     """
     numbers, song = context.settings.face, song_of(plan, context)
     out = Peeks(np.zeros(len(at)), np.zeros((len(at), 3)))
-    steps = [move for track in plan.feet for move in track.moves if isinstance(move, Step)]
+    swings = [move for track in plan.feet for move in track.moves if isinstance(move, Swing)]
     before = -np.inf
-    for step in sorted(steps, key=lambda one: one.land):
+    for step in sorted(swings, key=lambda one: one.land):
         gap, before = step.land - before, step.land
-        seed = [PEEK_SEED, *(number & 0xFFFFFFFF for number in (*song, round(1000 * step.land)))]
-        wanted = gap > numbers.long or np.random.default_rng(seed).random() < numbers.often
-        if gap < numbers.least or not wanted:
+        drawn = chance_of(PEEK_SEED, *song, round(1000 * step.land)).random()
+        wanted = gap > numbers.long or drawn < numbers.often
+        if not isinstance(step, Step) or gap < numbers.least or not wanted:
             continue
         start = max(step.land - gap + numbers.after, step.lift - numbers.early)
         near = slice(*np.searchsorted(at, (start, step.land)).tolist())
@@ -153,7 +153,7 @@ def eyelids(times: Array, every: float, blink: float) -> Array:
     cell = np.floor(times / every).astype(np.int64)
     out = np.zeros_like(times)
     for c in np.unique(cell):
-        start = (c + np.random.default_rng([BLINK_SEED, int(c) & 0xFFFFFFFF]).uniform(0.1, 0.8)) * every
+        start = (c + chance_of(BLINK_SEED, int(c)).uniform(0.1, 0.8)) * every
         s = (times - start) / blink
         near = (s > 0) & (s < 1)
         out[near] = np.where(s < 0.4, smooth(s / 0.4), 1.0 - smooth((s - 0.4) / 0.6))[near]

@@ -14,7 +14,7 @@ from dancetutor_cli.dance.ik.full_body import ArmGoal, arm_rotations, solve
 from dancetutor_cli.dance.ik.hands import Torso, elbows_across, elbows_on_bar, inward, rest_on_bar
 from dancetutor_cli.dance.ik.targets import ik_targets
 from dancetutor_cli.dance.motion import Grip
-from dancetutor_cli.dance.plan import Plan
+from dancetutor_cli.dance.plan import Plan, chance_of
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import SIDES, centre_of_mass, world_transforms
 from dancetutor_cli.dance.rig.quaternion import UP
@@ -248,8 +248,7 @@ def _between(times: Array, start: float, end: float) -> slice:
 
 def _chance(plan: Plan, second: float) -> tuple[float, float]:
     """Two numbers from 0 to 1, always the same ones for a second of a song."""
-    song = [round(1000 * t) & 0xFFFFFFFF for t in (plan.first, plan.last, second)]
-    one, other = np.random.default_rng([SEED, *song]).random(2)
+    one, other = chance_of(SEED, *plan.song, round(1000 * second)).random(2)
     return float(one), float(other)
 
 

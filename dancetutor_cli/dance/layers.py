@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.dance.context import Context, hold_share
 from dancetutor_cli.dance.ik.full_body import Poses
 from dancetutor_cli.dance.ik.targets import lately
-from dancetutor_cli.dance.plan import Plan, Swing, Walk
+from dancetutor_cli.dance.plan import Plan, Swing, Walk, chance_of
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import SIDES, hand_direction, palm_normal, world_transforms
 from dancetutor_cli.dance.rig.quaternion import UP, leaning
@@ -92,9 +92,8 @@ def glances_at(plan: Plan, body: Trajectory, times: Array, context: Context) -> 
     busy += [(press.start - press.lead, press.end + numbers.hand) for press in plan.presses]
     busy += [(start - numbers.jump, end + numbers.jump) for start, end in plan.flights]
     first, last = (int(np.floor(t / numbers.every)) for t in (times.min(), times.max()))
-    song = [*(round(1000 * t) & 0xFFFFFFFF for t in (plan.first, plan.last)), *context.own]
     for cell in range(first - 1, last + 1):
-        chance = np.random.default_rng([GLANCE_SEED, *song, cell & 0xFFFFFFFF])
+        chance = chance_of(GLANCE_SEED, *plan.song, *context.own, cell)
         start = numbers.every * (cell + chance.uniform(0.0, 0.5))
         end = start + numbers.lasts * chance.uniform(0.6, 1.4)
         kind, side, far = int(chance.integers(len(_WAYS))), float(chance.choice([-1.0, 1.0])), chance.uniform(0.6, 1.2)

@@ -96,7 +96,7 @@ class Performance:
             piece = entrance_piece(entrance, context, fps, wanted, style)
             motion = with_entrance(motion, _one(each, piece), wanted)
         if (until := rest_from(plan, wanted, walks_off)) is not None:
-            rest = exit_of(plan, (until, wanted.end), context)
+            rest = exit_of(plan, (until, wanted.end), context.at(until))
             piece = exit_piece(rest, context, fps, (until, wanted.end), style)
             motion = with_exit(motion, _one(each, piece), until, wanted)
         return replace(done, motion=motion)

@@ -179,6 +179,11 @@ class Route:
     gait: str
 
 
+def chance_of(*numbers: int) -> np.random.Generator:
+    """Random draws that are always the same for the same whole numbers, of which some may be negative."""
+    return np.random.default_rng([number & 0xFFFFFFFF for number in numbers])
+
+
 @dataclass(frozen=True, slots=True)
 class Plan:
     """Everything that the chart asks of the dancer.
@@ -201,6 +206,11 @@ class Plan:
     walks: tuple[Route, ...] = ()
     lead: int = 0
     let_go: tuple[DroppedNote, ...] = ()
+
+    @property
+    def song(self) -> tuple[int, int]:
+        """Milliseconds of the first and the last contact: chance knows a song by them, mirrored or in pieces."""
+        return round(1000 * self.first), round(1000 * self.last)
 
     @property
     def hand(self) -> float:

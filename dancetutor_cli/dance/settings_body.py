@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from dancetutor_cli.dance.units import (
     Degrees,
     DegreesPerSecond,
+    Duration,
     Metres,
     MetresPerSecondSquared,
     PerSecond,
@@ -166,7 +167,7 @@ class FaceSettings:
     """What her face shows, and when her eyes go to where the next foot steps."""
 
     around: Seconds
-    fades: Seconds
+    fades: Duration
     hard_from: Ratio
     hard_full: Ratio
     relief_from: Ratio
@@ -177,13 +178,13 @@ class FaceSettings:
     panting: Degrees
     squint: Ratio
     easy: Ratio
-    smile_time: Seconds
+    smile_time: Duration
     least: Seconds
     long: Seconds
     often: Ratio
     after: Seconds
     early: Seconds
-    ease: Seconds
+    ease: Duration
     aside: Degrees
     down: Degrees
     lids_follow: Ratio
@@ -214,7 +215,7 @@ class GrooveSettings:
     stance: Metres
     stance_time: Seconds
     phrase: Seconds
-    phrase_ease: Seconds
+    phrase_ease: Duration
     phrase_stays: Ratio
 
 

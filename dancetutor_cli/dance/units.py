@@ -11,6 +11,7 @@ from dancetutor_cli.run.schema import Bounds
 
 Metres = Annotated[float, Bounds(0, 20, "metres")]
 Seconds = Annotated[float, Bounds(0, 1000, "seconds")]  # as long as a song: a wait that never comes
+Duration = Annotated[float, Bounds(0.001, 1000, "seconds")]  # of something that takes time
 Degrees = Annotated[float, Bounds(0, 360, "degrees")]
 PerSecond = Annotated[float, Bounds(0, 1000, "per second")]
 MetresPerSecond = Annotated[float, Bounds(0, 100, "metres per second")]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context
-from dancetutor_cli.dance.plan import Plan
+from dancetutor_cli.dance.plan import Plan, chance_of
 from dancetutor_cli.dance.settings_body import WaitSettings
 from dancetutor_cli.dance.smoothing import smooth
 
@@ -89,12 +89,12 @@ Song = tuple[int, ...]
 
 def song_of(plan: Plan, context: Context) -> Song:
     """What chance knows a song, and who dances it, by; the same for its mirror image, and for a piece of it."""
-    return round(1000 * plan.first), round(1000 * plan.last), *context.own
+    return *plan.song, *context.own
 
 
 def _chance(song: Song, *numbers: int) -> np.random.Generator:
     """What chance says of something in this song."""
-    return np.random.default_rng([SEED, *(number & 0xFFFFFFFF for number in (*song, *numbers))])
+    return chance_of(SEED, *song, *numbers)
 
 
 class _Draw(NamedTuple):
@@ -142,7 +142,7 @@ def _shift(times: Array, context: Context) -> Array:
     for beat in (*before, *beats, *after):
         if not heard or beat - heard[-1] >= numbers.shift_time - 1e-6:
             heard.append(float(beat))
-    at, chance = np.array(heard), np.random.default_rng([SEED, *context.own])
+    at, chance = np.array(heard), chance_of(SEED, *context.own)
     far, stays = chance.uniform(0.7, 1.3, len(at)), chance.random(len(at)) < numbers.stays
     stays[1:] &= ~stays[:-1]
     place = numbers.shift * far * np.cumprod(np.where(stays, 1.0, -1.0))

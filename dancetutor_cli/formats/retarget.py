@@ -163,7 +163,8 @@ class Retargeting:
         """Names of the p retargeting points, and their places (f, p, 3) at the keys of input and output, metres."""
         before, after = self.source_motion, self.ragdoll_result.motion
         bones = bones_of(self.body)
-        points = tuple(p for p in points_of(self.body, bones, self.blend.styles[0]) if not p.extra)
+        styles, _ = self.blend.within(after.times)  # the one with most first, as the distances are measured
+        points = tuple(p for p in points_of(self.body, bones, styles[0]) if not p.extra)
         given, made = (place_points(self.body, bones, points, m.rotations, m.root) for m in (before, after))
         return tuple(p.name for p in points), given, made
 

@@ -39,7 +39,7 @@ PresetOf = Callable[[Chart], Preset]
 
 @dataclass(frozen=True, slots=True)
 class AppliedFix:
-    """One thing done. place : the finding it was asked for, None: one of the safe fixes; fix : what was written"""
+    """One thing done. finding : the finding it was asked for, None: one of the safe fixes; fix : what was written"""
 
     chart: str
     fix: Fix
@@ -181,7 +181,7 @@ class FixSession:
                         self._try(self._state(chart, player + 1), [fix])
 
     def finding(self, chart: int, finding: Finding, player: int = 0) -> None:
-        """Remove one finding of a chart with the smallest edit that does it; `left` says where there is none.
+        """Remove one finding of a chart with the smallest edit that does it; `unfixed` says where there is none.
 
         player : in whose part of a chart for two it was found
         """

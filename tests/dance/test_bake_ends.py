@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from dance_requests import apart
@@ -125,3 +127,18 @@ def test_a_foot_that_was_on_its_way_does_not_slide_back(end: float) -> None:
     wanted = DanceRequest(charts_path() / "two_left_feet" / "two_left_feet.ssc", Selection(index=2))
     (one,) = perform(solve(wanted), wanted).motions(Cut(end - 4.0, end + 1.5, steps_until=end), walks_off=False)
     assert report(one.motion)["plant slide"].met, report(one.motion)["plant slide"]
+
+
+@pytest.mark.parametrize(("offset", "end"), [("0", 0.7), ("2", 0.5)])
+def test_a_film_that_ends_before_the_first_step_or_begins_before_the_music(
+    tmp_path: Path, offset: str, end: float
+) -> None:
+    """No foot has moved yet at the end of the first one; the first note of the second one is at -2 s."""
+    path = tmp_path / "early.sm"
+    path.write_text(f"#TITLE:T;#OFFSET:{offset};#BPMS:0=120;#NOTES:dance-single::Easy:3::0000\n0000\n1000\n0001,1000;")
+    wanted = DanceRequest(path, Selection())
+    performance = perform(solve(wanted), wanted)
+    (film,) = performance.motions(Cut(0.0, end + 1.5, steps_until=end), walks_off=False)
+    (whole,) = performance.motions()
+    assert np.isfinite(film.motion.rotations).all() and np.isfinite(whole.motion.rotations).all()
+    assert len(whole.motion.contacts) == 3

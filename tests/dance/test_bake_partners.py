@@ -14,6 +14,7 @@ from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.dance.trajectory.groove import carriage
 
 HEAD = "#TITLE:T;\n#OFFSET:0;\n#BPMS:0=70;\n#NOTES:dance-{}::Easy:3::\n{};\n"
 OWN = ["1000", "0001", "0100", "0001", "0010", "1000", "0001", "1000", "0000", "0000", "0000", "0000", "1000", "0100"]
@@ -69,6 +70,13 @@ def test_arms_gaze_and_blinks_differ(pair: list[Motion]) -> None:
     first, second = (blinks(motion) for motion in pair)
     assert len(first) > 2 and len(second) > 2
     assert np.abs(first[:, None] - second[None]).min() > 0.05
+
+
+def test_each_carries_her_arms_in_phrases_of_her_own(tmp_path: Path) -> None:
+    both = danced(tmp_path, "couple", [row + row for row in OWN]).dancers
+    times = np.arange(0.5, 10.0, 1 / 60)
+    ways = [carriage(one.plan, times, one.context) for one in both]
+    assert np.abs(ways[0] - ways[1]).mean() > 0.2
 
 
 def test_feet_of_both_are_exact_and_joints_within_their_limits(pair: list[Motion]) -> None:

@@ -12,14 +12,15 @@ import pytest
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.bake import bake_plan, cut, planned
 from dancetutor_cli.dance.motion import Motion, sample
-from dancetutor_cli.dance.physics.blend import Blend, load_choice
+from dancetutor_cli.dance.physics.blend import Blend, load_choice, mean_distances
 from dancetutor_cli.dance.physics.pipeline import Wishes, through_ragdoll
+from dancetutor_cli.dance.physics.simulation import Distances
 from dancetutor_cli.dance.physics.style import load_style
-from dancetutor_cli.dance.pieces import RagdollStyle, in_turn, pieces_of
+from dancetutor_cli.dance.pieces import Piece, RagdollStyle, in_turn, pieces_of
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig.body import place, sole_points, world_transforms
-from dancetutor_cli.dance.settings import SettingsCourse, default_settings, load_settings
+from dancetutor_cli.dance.settings import SettingsCourse, default_settings, load_settings, state_weights
 from dancetutor_cli.run.errors import FileError, UsageError
 from dancetutor_cli.run.fingerprint import fingerprint
 from dancetutor_cli.run.reading import charts_path, config_names
@@ -100,6 +101,33 @@ def test_measures_name_files_beside_theirs_and_begin_with_the_file_itself(tmp_pa
     assert changes == ((2.0, 4.0), (8.0, 10.0)), "a measure of two seconds each, complete where the file says"
 
 
+@pytest.mark.parametrize("other", ["../mine.yaml", "{outside}/mine.yaml", "lazy:0.5,../mine.yaml:0.5"])
+def test_measures_name_no_file_outside_the_folder_of_theirs(tmp_path: Path, other: str) -> None:
+    """A style file may be a stranger's: what lies elsewhere is not opened, so nothing of it is in a message."""
+    written(tmp_path, "secret: 1\n", "mine.yaml")
+    inside = tmp_path / "inside"
+    inside.mkdir()
+    text = written(inside, f"measures: {{2: '{other.format(outside=tmp_path)}'}}\n")
+    with pytest.raises(FileError, match=r"is outside the folder of the style file; put it beside it") as error:
+        load_choice(text)
+    assert error.value.line == 1 and "secret" not in str(error.value)
+
+
+def test_measures_name_no_file_of_the_working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    written(tmp_path, "body: {gravity: 1}\n", "mine.yaml")
+    (tmp_path / "styles").mkdir()
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(FileError, match=r"mine\.yaml"):
+        load_choice(written(tmp_path / "styles", "measures: {2: mine.yaml}\n"))
+
+
+def test_signs_of_a_blend_in_the_name_of_a_file(tmp_path: Path) -> None:
+    written(tmp_path, "body: {gravity: 1}\n", "a,b.yaml")
+    path = written(tmp_path, "measures: {2: 'a,b.yaml'}\n")
+    assert [style.name for style in load_choice(path).styles] == ["song", "a,b"]
+    assert load_choice(f"{path}:1").measures == (2,)
+
+
 def test_a_result_is_kept_by_what_the_files_say(tmp_path: Path) -> None:
     request = DanceRequest(DEMO, Selection())
     other = written(tmp_path, "body: {gravity: 1}\n", "mine.yaml")
@@ -158,6 +186,10 @@ def of(style: str) -> Motion:
 
 @cache
 def danced(style: str, span: tuple[float, float]) -> Motion:
+    return cut(pieces_in(style), span, in_turn).motion
+
+
+def pieces_in(style: str) -> list[Piece]:
     timing = plays.chart().timing
     turns, seconds = (0, 3, 1, 2), [0.5, 1.0, 1.4, 1.7]
     events = [
@@ -167,7 +199,7 @@ def danced(style: str, span: tuple[float, float]) -> Motion:
     blend = load_choice(style).blend(timing)
     manner = {"settings": blend.settings(None, "usual")}
     plan, context = planned(timing, plays.play(sorted(events, key=lambda e: e[0])), plays.pad(), **manner)  # type: ignore[arg-type]
-    return cut(pieces_of(plan, context, 60.0, RagdollStyle(blend, Wishes())), span, in_turn).motion
+    return list(pieces_of(plan, context, 60.0, RagdollStyle(blend, Wishes())))
 
 
 @pytest.fixture(scope="module")
@@ -201,13 +233,46 @@ def test_a_cut_is_a_part_of_the_whole_dance_that_changes(changing: str) -> None:
     assert np.abs(whole[0] - part[0]).max() < 1e-6 and np.abs(whole[1] - part[1]).max() < 1e-6
 
 
+def test_a_change_in_a_later_piece_is_danced_as_in_one(changing: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pieces of a few seconds, with changes at their joints: within a millimetre of one piece."""
+    times = np.arange(0.5, 12.5, 0.01)
+    whole = _soles(of(changing), times)
+    for name, seconds in (("LONGEST", 6.0), ("LENGTH", 5.0), ("WITHIN", 1.0)):
+        monkeypatch.setattr(f"dancetutor_cli.dance.pieces.{name}", seconds)
+    assert len(pieces_in(changing)) > 1
+    again = _soles(cut(pieces_in(changing), (0.0, 13.0), in_turn).motion, times)
+    assert np.abs(whole[0] - again[0]).max() < 1e-3 and np.abs(whole[1] - again[1]).max() < 1e-3
+
+
 def test_weights_of_states_sum_to_one_and_are_whole_outside_of_changes() -> None:
     usual, edge = default_settings(), load_settings(None, "edge")
     course = SettingsCourse((usual, edge, usual), ((1.0, 2.0), (2.0, 4.0)))
     assert course.at(0.5) is usual and course.at(2.0) is edge and course.at(9.0) is usual
     assert course.at(1.5).step.edge == pytest.approx(0.5)
+    weights = state_weights(course.changes, np.arange(0.0, 5.0, 0.01))
+    assert weights.sum(axis=1) == pytest.approx(1.0) and weights.min() >= 0.0
     assert course.within(0.0, 0.9).states == (usual,) and len(course.within(1.5, 3.0).states) == 3
     assert course.within(4.5, 9.0).states == (usual,) and course.within(1.5, 1.8).changes == ((1.0, 2.0),)
+
+
+def test_distances_are_those_of_the_style_of_their_time() -> None:
+    """A ragdoll 1 cm away until the change, then another one 11 cm away."""
+    times = np.arange(0.0, 10.0, 0.1)
+    runs = [Distances(("hand",), times, np.full((100, 1), far)) for far in (1.0, 11.0)]
+    late = (times > 5.0).astype(float)
+    mean = mean_distances(runs, times, np.column_stack((1.0 - late, late)))
+    np.testing.assert_allclose(mean.values[:, 0], np.where(times > 5.0, 11.0, 1.0))
+
+
+def test_steps_home_are_those_of_the_style_of_their_time() -> None:
+    usual = default_settings()
+    out = replace(usual, step=replace(usual.step, toe_out=40.0))
+    events = [(0.5, {0: plays.L}), (1.0, {3: plays.R}), (1.5, {0: plays.L}), (9.0, {3: plays.R})]
+    course = SettingsCourse((usual, out), ((2.0, 2.5),))
+    timing, play, pad = plays.chart().timing, plays.play(events), plays.pad()
+    plans = [planned(timing, play, pad, settings=settings)[0] for settings in (course, out)]
+    yaws = [[round(m.yaw, 6) for track in plan.feet for m in track.moves if 2.5 < m.land < 8.9] for plan in plans]
+    assert yaws[0] == yaws[1] and len(yaws[0]) >= 2
 
 
 # Legs.

@@ -23,7 +23,7 @@ from dancetutor_cli.dance.footwork.walks import (
     waits,
     walks_there,
 )
-from dancetutor_cli.dance.plan import Bulge, Move, Plan, Press, Shake, Turn
+from dancetutor_cli.dance.plan import Bulge, Move, Plan, Press, Shake, Turn, chance_of
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_feet import HomeSettings, StepSettings
 
@@ -150,12 +150,12 @@ def _nearest(places: Array, begin: Stand) -> float:
 def homeward(plan: Plan, span: tuple[float, float], context: Context) -> tuple[list[list[Move]], Turn] | None:
     """Steps home of each foot, with a turn, for feet that stand from the first second of a span on, until its last one.
 
-    None at the bar, where she is at home already, or where there is too little time: she stands `home.settle`
-    before the end.
+    Returns the moves of the left and of the right foot, and the turn; None at the bar, where she is at home already, or
+    where there is too little time: she stands `home.settle` before the end.
     """
     settings, step = context.settings, context.settings.step
-    free = max(span[0], *(move.land for track in plan.feet for move in track.moves[-1:]))
-    free = max(free, *(press.end + settings.hands.reach_down for press in plan.presses[-2:]), free)
+    lands = (move.land for track in plan.feet for move in track.moves[-1:])
+    free = max((span[0], *lands, *(press.end + settings.hands.reach_down for press in plan.presses[-2:])))
     if context.bar is not None:
         return None
     begin = standing(plan.feet, free, plan.turns)
@@ -202,8 +202,7 @@ def leg_shakes(plan: Plan, mines: Array, context: Context) -> list[tuple[int, Sh
     """
     loose, found = context.settings.loose, []
     for number, (free, lift) in enumerate(waits(plan, mines, loose.least)):
-        song = round(1000 * plan.first), round(1000 * plan.last) & 0xFFFFFFFF
-        chance = np.random.default_rng([SEED, *song, number, *context.own])
+        chance = chance_of(SEED, *plan.song, number, *context.own)
         time, side = free + loose.pause * chance.uniform(1.0, 2.0), int(chance.integers(2))
         while True:
             legs = 2 if chance.random() < loose.both else 1

@@ -75,6 +75,8 @@ class Planner:
         if self.context.course is not None:
             self.context = self.context.at(time)
             self.settings, self.footing = self.context.settings, self.footing.in_context(self.context)
+            for rule in (self.asides, self.homes, self.facing):
+                rule.settings = self.settings
         row = Row(self.play, self.context, i, time, pressed_by(self.play, i))
         soon = slice(int(np.searchsorted(self.play.rows.second, self._stays(i, time))))
         panels, mines = self.context.panels, self.play.rows.mines[soon]

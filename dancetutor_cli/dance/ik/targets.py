@@ -62,7 +62,6 @@ LOOSE_SOFT = 0.015  # metres over which a forearm that is held up comes to sink
 SUNK = 1.8  # so much farther a hand sinks, for its elbow comes down with it
 ELBOWS_IN = 0.62  # part of their way by which elbows turn to the body for another dancer: wholly, they would be in it
 GIVEN_WAY = 0.145  # metres that a hand gives way to another dancer with which its elbow turns to the body
-PARTNER = np.array([0.01, 0.03, 0.04])  # metres that the second of two carries her hands farther out, up and ahead
 SIDEWAYS = np.array([[1.0, 1.0], [-1.0, 1.0]])  # outward and up, of both hands
 ASKEWED = 1.6  # about how far `_wandering` goes up and down
 
@@ -153,7 +152,6 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
     hang[..., 0] = np.array([1.0, -1.0]) * (arms.out + arms.stream_out * effort)
     hang[..., 1] = -arms.down + arms.swing_up * _upward(swing) + arms.stream_up * effort * unlike
     hang[..., 2] = arms.forward + swing - arms.stream_back * effort
-    hang += context.person * PARTNER * np.array([[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]])
     carried = body.arms[:, 3:]  # aside in one phrase of the music, ahead in another: in an arc about the trunk
     way = np.zeros_like(hang)
     way[..., :2] = _upward(carried)[..., None] * [arms.carried_out, arms.carried_up] * SIDEWAYS

@@ -17,8 +17,8 @@ from dancetutor_cli.dance.physics.simulation import Distances
 from dancetutor_cli.dance.physics.style import NEUTRAL, Style, load_style
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, Span, load_settings, state_weights
-from dancetutor_cli.run.errors import DancetutorError, UsageError
-from dancetutor_cli.run.reading import config_names, named_file
+from dancetutor_cli.run.errors import DancetutorError, UsageError, did_you_mean
+from dancetutor_cli.run.reading import config_names, is_outside, named_file
 from dancetutor_cli.run.yaml_files import read
 
 if TYPE_CHECKING:
@@ -97,18 +97,20 @@ def load_choice(text: str) -> StyleChoice:
     Raises UsageError for what is no such text and for names that there are not, FileError with the line for a file that
     is wrong.
     """
-    parts = _parts(text)
+    weights = weights_of(text)
+    parts = _parts(text, weights)
     changing = [style for style, _ in parts if style.measures]
     if not changing:
         return StyleChoice(text, *_states([parts]))
     if len(parts) > 1:
         name = changing[0].name
         raise UsageError(f"style {name} changes by measures and cannot be blended; write the blend in its file")
-    own, source = changing[0], read(named_file("styles", text))
+    own, source = changing[0], read(named_file("styles", weights[0][0]))
     blends, measures = [parts], sorted(own.measures)
     for measure in measures:
         try:
-            blends.append(_parts(own.measures[measure], source.path.parent))
+            other = own.measures[measure]
+            blends.append(_parts(other, weights_within(other, source.path.parent)))
             if nested := [style.name for style, _ in blends[-1] if style.measures]:
                 raise UsageError(f"style {nested[0]} changes by measures itself; name another one")
         except DancetutorError as error:
@@ -126,15 +128,18 @@ def style_sources(text: str) -> tuple[tuple[str | Path, float], ...]:
         out.append((Path(name) if is_file else name, weight))
         if is_file:
             for _, other in sorted(load_style(name).measures.items()):
-                own = ((_style_name(one, Path(name).parent), share) for one, share in weights_of(other))
+                own = weights_within(other, Path(name).parent)
                 out += ((one if one in config_names("styles") else Path(one), share) for one, share in own)
     return tuple(out)
 
 
-def weights_of(text: str) -> list[tuple[str, float]]:
-    """Names of styles and their weights in a `--style`, one with the weight 1. UsageError for what is no such text."""
+def weights_of(text: str, folder: Path = Path()) -> list[tuple[str, float]]:
+    """Names of styles and their weights, above 0 to 1, in a `--style`; one alone has 1. folder : where files lie
+
+    Raises UsageError for what is no such text.
+    """
     parts = [part.strip() for part in text.split(",")]
-    if len(parts) == 1 or is_one_name(text):
+    if len(parts) == 1 or is_one_name(text, folder):
         name, colon, weight = text.rpartition(":")
         return [(name, _weight(text, weight))] if colon and _is_number(weight) else [(text, 1.0)]
     out = []
@@ -146,9 +151,9 @@ def weights_of(text: str) -> list[tuple[str, float]]:
     return out
 
 
-def is_one_name(text: str) -> bool:
+def is_one_name(text: str, folder: Path = Path()) -> bool:
     """Whether a text is the name of one file, whatever signs it has."""
-    return text in config_names("styles") or Path(text).is_file()
+    return text in config_names("styles") or (folder / text).is_file()
 
 
 def _is_number(text: str) -> bool:
@@ -165,15 +170,25 @@ def _weight(text: str, weight: str) -> float:
     return float(weight)
 
 
-def _style_name(name: str, folder: Path | None) -> str:
-    """A name of `configs/styles`, or the path of a file, which may lie in a folder."""
-    beside = None if folder is None or name in config_names("styles") else folder / name
-    return str(beside) if beside is not None and beside.is_file() else name
+def weights_within(text: str, folder: Path) -> list[tuple[str, float]]:
+    """As `weights_of`, of a text in a style file: names of `configs/styles`, or paths of files below its folder.
+
+    UsageError for a file elsewhere: a style file may be a stranger's.
+    """
+    names, out = config_names("styles"), []
+    for name, weight in weights_of(text, folder):
+        path = folder / name
+        if is_outside(path, folder):
+            raise UsageError(f"'{name}' is outside the folder of the style file; put it beside it")
+        if name not in names and not path.suffix and not path.is_file():
+            raise UsageError(f"there is no style '{name}'{did_you_mean(name, names)}; there are: {', '.join(names)}")
+        out.append((name if name in names else str(path), weight))
+    return out
 
 
-def _parts(text: str, folder: Path | None = None) -> list[tuple[Style, float]]:
-    """Styles with their shares, which sum to 1: what is missing is neutral. folder : where files may lie"""
-    parts = [(load_style(_style_name(name, folder)), weight) for name, weight in weights_of(text)]
+def _parts(text: str, weights: Sequence[tuple[str, float]]) -> list[tuple[Style, float]]:
+    """Styles with their shares, which sum to 1: what is missing is neutral. text : for errors"""
+    parts = [(load_style(name), weight) for name, weight in weights]
     total = sum(weight for _, weight in parts)
     if any(one is other for (one, _), (other, _) in combinations(parts, 2)):
         raise UsageError(f"style '{text}' names one style twice; name each once")
@@ -207,14 +222,13 @@ def mean_poses(poses: Sequence[Poses], shares: Array) -> Poses:
     return quat.mean([rotations for rotations, _ in poses], shares), np.asarray(root)
 
 
-def mean_distances(runs: Sequence[Distances], shares: Array) -> Distances:
-    """The mean of distances, each with its share (s,), of the points that all ragdolls have."""
+def mean_distances(runs: Sequence[Distances], times: Array, shares: Array) -> Distances:
+    """The mean of the distances of ragdolls, which have the same points, each with its share (f, s) at times (f,)."""
     first = runs[0]
     if len(runs) == 1:
         return first
-    names = tuple(name for name in first.names if all(name in one.names for one in runs))
-    values = np.zeros((len(first.times), len(names)))
-    for one, share in zip(runs, shares, strict=True):
-        own = [one.values[:, one.names.index(name)] for name in names]
-        values += share * np.column_stack([np.interp(first.times, one.times, value) for value in own])
-    return Distances(names, first.times, values)
+    values = np.zeros_like(first.values)
+    for k, one in enumerate(runs):
+        share = np.interp(first.times, times, shares[:, k])
+        values += share[:, None] * np.column_stack([np.interp(first.times, one.times, own) for own in one.values.T])
+    return Distances(first.names, first.times, values)

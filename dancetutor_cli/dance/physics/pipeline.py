@@ -112,7 +112,7 @@ def through_ragdoll(motion: Motion, style: Style | Blend, wishes: Wishes = Wishe
     runs = [_followed(motion, one, wishes, blows) for one in styles]
     first, limits = runs[0], any(one.limits for one in styles)
     rotations, root = mean_poses([_read(run.at, *run.made, motion.times) for run in runs], shares)
-    distances = mean_distances([run.distances for run in runs], shares.mean(axis=0))
+    distances = mean_distances([run.distances for run in runs], motion.times, shares)
     share = 1.0 - _pressing(motion)
     rotations = quat.slerp(motion.rotations, rotations, share[:, None])
     root = motion.root + share[:, None] * (root - motion.root)

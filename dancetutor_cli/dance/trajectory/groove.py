@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context
-from dancetutor_cli.dance.plan import Move, Plan, Sidestep, Step, Swing
+from dancetutor_cli.dance.plan import Move, Plan, Sidestep, Step, Swing, chance_of
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_body import GrooveSettings, LayerSettings
 from dancetutor_cli.dance.smoothing import smooth, smooth_path
@@ -188,7 +188,7 @@ def sway(plan: Plan, times: Array, context: Context) -> Array:
     at = heard_beats(context.beats, max(numbers.shortest, 0.1))
     if len(at) < 2:
         return np.zeros(len(times))
-    chance = np.random.default_rng([SEED, round(1000 * plan.first), round(1000 * plan.last) & 0xFFFFFFFF, *context.own])
+    chance = chance_of(SEED, *plan.song, *context.own)
     far, stays = chance.uniform(0.55, 1.1, len(at)), chance.random(len(at)) < numbers.stays
     stays[1:] &= ~stays[:-1]
     place = far * np.cumprod(np.where(stays, 1.0, -1.0))
@@ -212,7 +212,7 @@ def carriage(plan: Plan, times: Array, context: Context) -> Array:
     at = np.array(heard_beats(tuple(beats[::4].tolist()), numbers.phrase))
     if len(at) < 2:
         return np.zeros((len(times), 2))
-    chance = np.random.default_rng([SEED, ARMS, round(1000 * plan.first), round(1000 * plan.last) & 0xFFFFFFFF])
+    chance = chance_of(SEED, ARMS, *plan.song, *context.own)
     far, stays = chance.uniform(0.6, 1.0, (len(at), 2)), chance.random((len(at), 2)) < numbers.phrase_stays
     stays[1:] &= ~stays[:-1]
     place = far * np.cumprod(np.where(stays, 1.0, -1.0), axis=0)
