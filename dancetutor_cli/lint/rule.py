@@ -295,7 +295,7 @@ def rule_named(name: str) -> type[Rule]:
         if name.upper() == code or name.lower() == rule.name:
             return rule
     near = did_you_mean(name, [word for code, rule in all_rules().items() for word in (code, rule.name)])
-    raise UsageError(f"there is no rule '{name}'{near}; the rules are {described(all_rules().values())}")
+    raise UsageError(f"there is no rule '{name}'{near}; see --explain all")
 
 
 def matching(selector: str) -> set[str]:
@@ -310,8 +310,3 @@ def named_singly(selectors: Iterable[str]) -> frozenset[str]:
     """Codes of the selectors that are the code or the name of one rule, not of a family."""
     words = {selector.upper() for selector in selectors}
     return frozenset(code for code, rule in all_rules().items() if {code, rule.name.upper()} & words)
-
-
-def described(classes: Iterable[type[Rule]]) -> str:
-    """For error messages: "DT201 doublestep, DT202 spin"."""
-    return ", ".join(f"{rule.code} {rule.name}" for rule in classes)

@@ -23,7 +23,7 @@ _WIDE = 2.5  # panel widths: more than from one side of a pad to the other
 
 
 class Crossover(TimedRule):
-    """The feet cross in a chart whose players do not know crossovers yet.
+    """A crossover: the feet cross, in a chart whose players do not know crossovers yet.
 
     Off for most charts. configs/lint/default.yaml switches it on for the lowest difficulties. A contest or your own
     dancetutor.yaml can switch it on for other charts.
@@ -37,7 +37,8 @@ class Crossover(TimedRule):
     A single crossed step on the way from one pad to the other is an info.
 
     `max_seconds`: only steps at most this long after the step before count. With more time a beginner does not cross
-    but starts again with the other foot. From 0.25 s on this is so where the next step comes in half the time.
+    but starts again with the other foot. So does a beginner at 0.25 s and slower if the next step comes in half that
+    time: an 8th, then a 16th.
     by-meter: the longest time at which at most `share` per cent of the charts of this meter have the move, and at most
     0.4 s. On two pads the walk from one to the other crosses the feet too; few of those crossovers are so quick.
 

@@ -96,9 +96,9 @@ class Length(ChartRule):
 class MeterOff(SongRule):
     """The meter is far from how hard the chart plays, measured on the scale of the song's other charts.
 
-    `by`: the least difference that is reported, in meters. The meter also has to be outside the range in which four of
-    five charts that play like this one are. Nothing is reported if the scale is unknown. Two other charts of the pad in
-    the file, the tag #METERTYPE or --meter-scale set the scale. docs/meter.md explains the estimate.
+    `by`: the least difference that is reported, in levels of the meter. The meter also has to be outside the range that
+    80 of 100 charts have that play like this one. Nothing is reported if the scale is unknown. Two other charts of the
+    pad in the file, the tag #METERTYPE or --meter-scale set the scale. docs/meter.md explains the estimate.
 
     Bad: Easy 3, Medium 9 (plays like 6), Hard 8. Better: Easy 3, Medium 6, Hard 8.
     """
@@ -119,7 +119,7 @@ class MeterOff(SongRule):
 class OrderOfPlay(SongRule):
     """A chart plays easier than a chart with an easier difficulty. Their meters do not matter; DT503 compares those.
 
-    `by`: the least difference that is reported, in meters.
+    `by`: the least difference that is reported, in levels of the meter.
 
     Bad: a Medium that plays like 7, a Hard that plays like 5. Better: the two exchanged.
     """

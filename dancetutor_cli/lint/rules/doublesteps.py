@@ -20,7 +20,7 @@ _LED = 3  # the same, between two pads
 
 
 class Doublestep(MoveRule):
-    """The cheapest way to play this row moves the foot that has just stepped, although the other foot is free.
+    """A doublestep: the foot that has just stepped steps again, on another panel, although the other foot is free.
 
     Players expect left and right in turn. A doublestep makes them stumble, and is mostly an accident of the pattern
     before it.
@@ -36,8 +36,10 @@ class Doublestep(MoveRule):
       twice the time between steps;
     - at 0.25 s and slower: where a quicker group begins with the step, or where the repeat can wait until after a rest.
 
-    An info: around the centre of a Pump pad at 0.25 s and slower, if alternating feet would cross once before a jump;
-    and between two pads, on the way to a jack from which alternating feet cross the middle.
+    It is only an info:
+    - on Pump, to or from the centre, at 0.25 s and slower;
+    - if alternating feet would cross once, and a jump follows that uncrosses them;
+    - on two pads, after a jack, if alternating feet would be crossed for three steps at most.
 
     `max_seconds`: only steps at most this long after the step before count; after a longer rest players begin with
     whichever foot they like. by-meter: the longest time at which at most `share` per cent of the charts of this meter
@@ -195,7 +197,7 @@ def _own_side(subject: ChartSubject, row: int, *, exchanged: bool = False) -> bo
 
 
 class TripleStep(TimedRule):
-    """One foot plays three rows in a row and moves each time: two doublesteps without a rest.
+    """A triple step: one foot plays three rows in a row and moves each time, two doublesteps without a rest.
 
     Not reported: steps while the other foot is on a hold, taps of a roll, steps around a mine; steps beside two panels
     that can be jumped, after a wall of mines, or beside a hold on which the feet change (any foot can go on there);

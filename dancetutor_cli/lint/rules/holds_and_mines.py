@@ -62,7 +62,6 @@ class MineUnderHold(TimedRule):
 
     `max_seconds`: the longest time between the step and the mine; a foot has left a tap after about a tenth of a
     second.
-    by-meter: the longest time at which at most `share` per cent of the charts of this meter have the move.
 
     Bad (max_seconds = 1.5):
 

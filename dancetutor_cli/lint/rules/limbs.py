@@ -16,7 +16,7 @@ _NEAR = 0.3  # seconds
 
 
 class LowBracket(TimedRule):
-    """One foot has to press two panels in a chart whose players do not know brackets yet.
+    """A bracket: one foot has to press two panels, in a chart whose players do not know brackets yet.
 
     Three panels down at once are a hand (DT302). Not reported: the same two panels again and again, or two panels of
     which a foot has just stepped one; these are jumps, however quick. All brackets of a chart are one finding.
@@ -24,8 +24,8 @@ class LowBracket(TimedRule):
     `least_meter`: the meter from which on brackets are expected.
     `max_seconds`: only rows at most this long after the step before count, less than a 16th at 150 BPM; with more time
     players jump.
-    `most_quick`: nothing is reported in a chart in which more per cent of the steps are so quick: such a chart is not
-    for beginners, whatever its meter says.
+    `most_quick`: in per cent. Nothing is reported if more of the steps than this come within `max_seconds`: the chart
+    is not for beginners, whatever its meter says.
 
     Bad (least_meter = 10, max_seconds = 0.6, most_quick = 100):
 
@@ -136,15 +136,16 @@ _SCALE = "itg"  # of meters, on which `least_meter` is measured
 
 
 class Hand(MoveRule):
-    """Three panels at once (a hand) in a chart for players who do not know hands yet.
+    """A hand: three panels at once, in a chart for players who do not know hands yet.
 
     The games count such rows as hands. Held panels count. Rows at most two measures apart are one finding.
 
     Off for most charts; configs/lint/default.yaml switches it on for the lower difficulties.
 
-    `least_meter`: the meter from which on hands are expected, whatever the difficulty. A chart of meter 1 that plays
-    like such a meter (docs/meter.md) has no real meter yet, and a chart of one row is a stub: nothing is reported for
-    them.
+    Skipped: a chart of one row, and a chart of meter 1 or less that plays like `least_meter` or harder
+    (docs/meter.md). Such a meter says nothing.
+
+    `least_meter`: the meter from which on hands are expected, whatever the difficulty.
 
     Bad (least_meter = 10):
 

@@ -16,16 +16,14 @@ _LONGER = 1.4  # times the pace of the run: a pause before it, in which a foot i
 
 
 class Footswitch(MoveRule):
-    """One foot takes over the panel that the other foot is on, in a chart whose players do not know footswitches yet.
+    """A footswitch: one foot takes over the panel of the other, in a chart whose players do not know footswitches yet.
 
     Off for most charts; configs/lint/default.yaml switches it on for the lowest difficulties. To these players two
-    steps on one panel are a jack, whatever foot the pattern after them wants. So a footswitch is reported only if the
-    author means it (a mine on the panel, or feet that the author set), or if a jack would lead to the wrong foot: eight
-    such quick steps follow without a rest, none of them on the panel before it. It is not reported if a jack can be
-    danced without crossing.
+    steps on one panel are a jack. A footswitch is reported only in two cases: the author asks for it (a mine just
+    before it, or pinned feet), or a jack puts the player on the wrong foot for at least eight quick steps without a
+    rest or a jack. Without a mine nothing is reported if the player can jack there and go on without crossing.
 
     `max_seconds`: only steps at most this long after the step before count; with more time the same foot steps again.
-    by-meter: the longest time at which at most `share` per cent of the charts of this meter have the move.
 
     Bad (max_seconds = 0.6):
 
@@ -86,10 +84,10 @@ def _leads_a_run(subject: ChartSubject, row: int, quick: float) -> bool:
 
 
 class Sideswitch(MoveRule):
-    """One foot takes over the left or right panel that the other foot is on, so the body has to turn sideways.
+    """A sideswitch: one foot takes over the left or right panel of the other, so the body has to turn sideways.
 
     Not reported, because players jack there with the same foot: in a passage of jacks, where a panel shortly before is
-    stepped on twice, and where the steps up to the next rest are uncrossed after a jack. A mine on the panel asks for
+    stepped on twice, and where the steps up to the next rest are uncrossed after a jack. A mine just before it asks for
     the switch, and then it is reported. Switches with a bracket belong to DT210.
 
     `max_seconds`: only steps at most this long after the step before count; with more time the same foot steps again.
@@ -131,7 +129,7 @@ class Sideswitch(MoveRule):
 
 
 class Holdswitch(MoveRule):
-    """A hold has to be handed from one foot to the other while it lasts.
+    """A holdswitch: a hold has to be handed from one foot to the other while it lasts.
 
     Bad: the right foot takes over the left panel, so that the left foot can step down.
 
@@ -155,7 +153,7 @@ class Holdswitch(MoveRule):
 
 
 class JumpFootswitch(MoveRule):
-    """In this jump a foot that is already on one of the panels has to change to the other panel, and quickly.
+    """A quick jump footswitch: a foot on one panel of the jump has to move to the other panel of it.
 
     `max_seconds`: only jumps at most this long after the step before count; with more time nobody notices.
     by-meter: the longest time at which at most `share` per cent of the charts of this meter have the move.
@@ -183,7 +181,7 @@ class JumpFootswitch(MoveRule):
 
 
 class SwitchJack(TimedRule):
-    """Several quick steps on one panel look like a jack, but the feet have to change in it.
+    """A footswitch that looks like a jack: several quick steps on one panel, in which the feet have to change.
 
     A player who jacks them with one foot ends on the wrong foot and doublesteps.
 

@@ -24,7 +24,7 @@ ONE_PAD = 2.0  # panel widths from the leftmost to the rightmost panel
 
 
 class Spin(MoveRule):
-    """The pattern turns the dancer past 180 degrees: a spin, or a doublestep to avoid it.
+    """A spin: the pattern turns the dancer past 180 degrees, unless a foot doublesteps to avoid it.
 
     Not reported:
     - steps between two rests or jumps that can be danced uncrossed if the other foot begins; a rest is about twice the
@@ -33,9 +33,12 @@ class Spin(MoveRule):
     - a phrase that begins after a jump and needs one crossover in place of the spin;
     - spins in a burst, which DT305 reports.
 
-    More than four spins in a chart are one finding. A spin in a jump is DT203. It is an info on Pump pads from meter 20
-    on; on pads of more than four panels where the steps go round no four of them, as in twists about a Pump centre; and
-    on all pads where mines leave no other panel.
+    More than four spins in a chart are one finding. A spin in a jump is DT203.
+
+    It is only an info:
+    - on Pump from meter 20 on;
+    - for twists on a pad of more than four panels, as around the Pump centre: no four steps go around four panels;
+    - where mines leave no other panel.
 
     `max_seconds`: only steps at most this long after the step before count. With more time players turn back instead.
 
@@ -162,7 +165,7 @@ def _between_mines(subject: ChartSubject, row: int) -> bool:
 
 
 class JumpSpin(ChartRule):
-    """The feet land on a jump only after turning past the dancer's back: a spin in the air.
+    """A spin in a jump: the feet land on the jump only after turning past the dancer's back.
 
     Both feet leave the pad, so nothing guides the turn as in a usual spin, and the screen is out of sight on landing.
 
@@ -193,7 +196,7 @@ class JumpSpin(ChartRule):
 
 
 class HalfTurn(ChartRule):
-    """Between two rows the body turns by 180 degrees at once, from one side to the other.
+    """A half turn: between two rows the body turns by 180 degrees at once, from one side to the other.
 
     `max_seconds`: only rows at most this long after the step before count; with more time the dancer turns step by
     step.

@@ -48,10 +48,10 @@ class FeetWish(ChartRule):
 
 
 class AmbiguousStart(ChartRule):
-    """Either foot can take this step at the same cost: players will begin the chart or the passage on different feet.
+    """A tie: the other foot costs the same, so some players take this step with the left foot and some with the right.
 
-    Such a tie is a play with the other foot that costs the same. Inside a chart a tie is reported only if the feet of
-    the steps after it depend on it. A tie after a jump that can be turned round is not reported.
+    Inside a chart a tie is reported only if the feet of the steps after it depend on it. A tie after a jump that can be
+    turned round is not reported.
 
     Bad:
 
@@ -84,9 +84,8 @@ class AmbiguousStart(ChartRule):
 class UnsureFeet(ChartRule):
     """Here the solver is least sure which foot steps: these are the least sure passages of the chart.
 
-    Players step about 60 of 100 rows that are 60 % sure as the solver says. Checking these rows helps more than
-    checking all others; if you disagree, pin the measure with `{dt1! ...}`. Nothing is reported if no confidence is
-    known.
+    "60 % sure" means that about 60 of 100 such rows are stepped as shown. Checking these rows helps more than checking
+    all others; if you disagree, pin the measure with `{dt1! ...}`. Nothing is reported if no confidence is known.
 
     `below`: rows that are less sure than this count, in per cent. Such rows with at most two others between them make
     one passage.
