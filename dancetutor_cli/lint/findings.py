@@ -138,6 +138,7 @@ class Figures:
 
 AUTO = "auto"
 SCALES = (AUTO, "itg", "ddr", "low")
+_SCALE_NAMES = {"itg": "ITG", "ddr": "DDR", "low": "low", "pump": "Pump"}  # for people
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,19 +161,19 @@ class Estimate:
 
     @property
     def bill(self) -> str:
-        """For people: "11.4: streams +3.1, crossovers +0.6, rest +0.2"."""
-        return _bill(self.meter, self.terms, 1)
+        """For people: "11.4 on the ITG scale (10.2 to 12.6; scale assumed): streams +3.1, rest +0.2"."""
+        return _bill(f"{self.meter:.1f}{self.span}", self.terms, 1)
 
     def most(self, count: int) -> str:
-        """The same with so many terms at most."""
-        return _bill(self.meter, self.terms, 1, count)
+        """The number with so many terms at most: "11.4: streams +3.1, crossovers +0.6"."""
+        return _bill(f"{self.meter:.1f}", self.terms, 1, count)
 
     @property
     def span(self) -> str:
-        """For people: "10.2 to 12.6 on the scale itg"; what is not known is said."""
+        """For people: " on the ITG scale (10.2 to 12.6; scale assumed)"; "at rate 1.1" where it is not 1."""
         rate = "" if self.rate == 1.0 else f" at rate {self.rate:g}"
-        guess = "" if self.is_scale_known else ", a guess: the scale is not sure"
-        return f"{self.low:.1f} to {self.high:.1f} on the scale {self.scale}{rate}{guess}"
+        assumed = "" if self.is_scale_known else "; scale assumed"
+        return f" on the {_SCALE_NAMES[self.scale]} scale{rate} ({self.low:.1f} to {self.high:.1f}{assumed})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,22 +191,22 @@ class ScoreEstimate:
 
     @property
     def bill(self) -> str:
-        """For people: "14.62: level 14.41, rhythm +0.21"."""
+        """For people: "14.62 on the DDR scale (14.35 to 14.89): level 14.41, rhythm +0.21"."""
         (name, level), *terms = self.terms
-        return _bill(self.meter, terms, 2, first=(f"{name} {level:.2f}",))
+        return _bill(f"{self.meter:.2f}{self.span}", terms, 2, first=(f"{name} {level:.2f}",))
 
     @property
     def span(self) -> str:
-        """For people: "14.35 to 14.89 on the scale ddr"."""
-        return f"{self.low:.2f} to {self.high:.2f} on the scale ddr"
+        """For people: " on the DDR scale (14.35 to 14.89)"."""
+        return f" on the {_SCALE_NAMES['ddr']} scale ({self.low:.2f} to {self.high:.2f})"
 
 
 def _bill(
-    meter: float, terms: Sequence[tuple[str, float]], digits: int, most: int | None = None, first: tuple[str, ...] = ()
+    meter: str, terms: Sequence[tuple[str, float]], digits: int, most: int | None = None, first: tuple[str, ...] = ()
 ) -> str:
-    """A number and what adds up to it, without what rounds to nothing."""
+    """A number, as text, and what adds up to it, without what rounds to nothing."""
     told = [f"{name} {value:+.{digits}f}" for name, value in terms if round(abs(value), digits) > 0]
-    return f"{meter:.{digits}f}: {', '.join([*first, *told][:most])}"
+    return f"{meter}: {', '.join([*first, *told][:most])}"
 
 
 # Beats against the audio, as it is kept and shown.

@@ -65,15 +65,15 @@ class Column(NamedTuple):
 
 
 MOVE_COLUMNS = (
-    Column("double\nsteps", 6, ("doublestep",)),
-    Column("forced\ndouble\nsteps", 6, ("forced-doublestep",)),
-    Column("cross\nover\n135°", 5, ("crossover-half",)),
-    Column("cross\nover\n180°", 5, ("crossover-full",)),
+    Column("DS", 4, ("doublestep",)),
+    Column("forced\nDS", 6, ("forced-doublestep",)),
+    Column("XO 135°", 7, ("crossover-half",)),
+    Column("XO 180°", 7, ("crossover-full",)),
     Column("spins", 5, ("spin",)),
-    Column("jump\nfoot\nswitch", 6, ("jump-footswitch",)),
-    Column("foot\nswitch", 6, ("footswitch-up", "footswitch-down"), always=False),
-    Column("side\nswitch", 6, ("sideswitch-left", "sideswitch-right"), always=False),
-    Column("hold\nswitch", 6, ("holdswitch",), always=False),
+    Column("jump\nFS", 4, ("jump-footswitch",)),
+    Column("FS", 4, ("footswitch-up", "footswitch-down"), always=False),
+    Column("SS", 4, ("sideswitch-left", "sideswitch-right"), always=False),
+    Column("hold\nFS", 4, ("holdswitch",), always=False),
     Column("brackets", 8, ("bracket",), always=False),
     Column("jacks", 5, ("jack",)),
     Column("candles", 7, ("candle",)),
@@ -220,9 +220,9 @@ class TextReport(LineReport):
         if chart.playable:
             self._stream.write(chart_table(chart, self._terminal, [one for one in result.charts if one.playable]))
             if chart.estimate is not None:
-                self._line(f"plays like meter {chart.estimate.bill}", self._paint(f"  ({chart.estimate.span})", "dim"))
+                self._line(f"plays like meter {chart.estimate.bill}")
             if chart.score is not None:
-                self._line(f"scores like meter {chart.score.bill}", self._paint(f"  ({chart.score.span})", "dim"))
+                self._line(f"scores like meter {chart.score.bill}")
             self._alternatives(chart)
             self._forced(chart)
         for finding in chart.findings:

@@ -32,7 +32,7 @@ def test_text_tells_the_bill() -> None:
     told = [line for line in printed("--full").splitlines() if line.startswith("plays like")]
     assert len(told) == 6
     assert "rest" in told[-1] or "+" in told[-1]
-    assert "on the scale" in told[0]
+    assert all(re.match(r"plays like meter \d+\.\d on the \w+ scale \(\d+\.\d to \d+\.\d[;)]", line) for line in told)
 
 
 def test_the_brief_form_tells_the_number_alone() -> None:
@@ -41,10 +41,13 @@ def test_the_brief_form_tells_the_number_alone() -> None:
     assert "streams +" not in printed("--brief", "--select", "DT501")
 
 
+_SCORE = r"scores like meter \d+\.\d\d on the DDR scale \(\d+\.\d\d to \d+\.\d\d\): level \d+\.\d\d, "
+
+
 def test_text_tells_what_a_chart_scores_like_beneath_what_it_plays_like() -> None:
     lines = printed("--full").splitlines()
     plays = [n for n, line in enumerate(lines) if line.startswith("plays like")]
-    assert all(re.match(r"scores like meter \d+\.\d\d: level \d+\.\d\d, .*\(\d", lines[n + 1]) for n in plays)
+    assert all(re.match(_SCORE, lines[n + 1]) for n in plays)
 
 
 def test_json_and_csv_tell_the_same_score_and_its_bill_adds_up() -> None:

@@ -49,8 +49,9 @@ def test_the_bill_adds_up_and_is_told_like_one() -> None:
         told = estimated(play, steps_type)
         assert sum(meters for _, meters in told.terms) == pytest.approx(told.meter)
         assert told.low <= told.meter <= told.high
-        assert told.bill.startswith(f"{told.meter:.1f}: ")
-    assert Estimate(11.4, 10, 13, "itg", True, (("streams", 3.1), ("rest", 0.02))).bill == "11.4: streams +3.1"
+        assert told.bill.startswith(f"{told.meter:.1f} on the ")
+    one = Estimate(11.4, 10, 13, "itg", True, (("streams", 3.1), ("rest", 0.02)))
+    assert one.bill == "11.4 on the ITG scale (10.0 to 13.0): streams +3.1" and one.most(1) == "11.4: streams +3.1"
 
 
 @pytest.mark.parametrize("scale", ["itg", "ddr", "low"])
@@ -150,7 +151,7 @@ def test_what_nothing_tells_the_scale_of_has_a_wider_interval() -> None:
     sure, guess = on_scale(one, "itg", True), on_scale(one, "itg", False)
     assert guess.meter == sure.meter
     assert guess.low < sure.low and guess.high > sure.high
-    assert "a guess" in guess.span and "a guess" not in sure.span
+    assert "; scale assumed)" in guess.span and "assumed" not in sure.span
 
 
 def test_pads_that_nobody_has_rated_have_no_estimate() -> None:

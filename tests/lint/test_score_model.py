@@ -65,8 +65,9 @@ def test_terms_are_what_charts_of_the_level_do_not_have(tmp_path: Path) -> None:
     assert "speed" not in bill  # as usual
     assert told.meter == pytest.approx(sum(bill.values()))
     assert (told.low, told.high) == (pytest.approx(told.meter - 0.2), pytest.approx(told.meter + 0.3))
-    assert told.span == f"{told.low:.2f} to {told.high:.2f} on the scale ddr"
-    assert told.bill.startswith("6.31: level 5.90, rhythm +0.20, timing tempo changes +0.18, timing stops +0.03")
+    assert told.span == f" on the DDR scale ({told.low:.2f} to {told.high:.2f})"
+    terms = "level 5.90, rhythm +0.20, timing tempo changes +0.18, timing stops +0.03"
+    assert told.bill.startswith(f"6.31{told.span}: {terms}")
 
 
 def test_beyond_what_the_fit_has_seen_nothing_is_added(tmp_path: Path) -> None:
