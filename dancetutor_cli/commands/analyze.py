@@ -124,8 +124,8 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 @click.option(
     "--statistics",
     is_flag=True,
-    help="Print only how many findings each rule has; with --full above the summary, with other formats than text to "
-    "standard error.",
+    help="Print only the number of findings of each rule. With --full: the findings too, before these numbers. With "
+    "another format than text: the numbers to standard error.",
 )
 @click.option(
     "--sheet",

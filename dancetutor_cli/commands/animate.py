@@ -15,11 +15,13 @@ from dancetutor_cli.chart.timing import FASTEST, SLOWEST, heard
 from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, default_name, into, warn
 from dancetutor_cli.commands.chart_options import (
     TABLE,
+    bar_option,
     character_option,
     form_option,
     gait_option,
     motion_option,
     number,
+    play_option,
     preset_option,
     push_options,
     report_option,
@@ -86,12 +88,7 @@ class AnimateOptions:
     metavar="RATE",
     help="Speed of the music, 1 is normal.",
 )
-@click.option(
-    "--play",
-    type=_FILE,
-    metavar="FILE.json",
-    help="Take the feet from this JSON file of analyze, not from the solver.",
-)
+@play_option
 @report_option("Measure the motion, and print a table or write JSON.")
 @click.option(
     "--plot",
@@ -99,7 +96,7 @@ class AnimateOptions:
     metavar="FILE.svg|.png",
     help="Draw a diagram over time: errors, height and jerk of the motion.",
 )
-@click.option("--bar", is_flag=True, help="Let the dancer hold the bar behind the pad, as players of hard charts do.")
+@bar_option
 @gait_option
 @form_option
 @motion_option

@@ -131,6 +131,17 @@ motion_option = click.option(
     help="How the dancer moves: a YAML file with the numbers of configs/motion.yaml that you change.",
 )
 
+play_option = click.option(
+    "--play",
+    type=GivenPath(),
+    metavar="FILE.json",
+    help="Take the feet from this JSON file of analyze, not from the solver.",
+)
+
+bar_option = click.option(
+    "--bar", is_flag=True, help="Let the dancer hold the bar behind the pad, as players of hard charts do."
+)
+
 push_options = combined(
     click.option(
         "--push",

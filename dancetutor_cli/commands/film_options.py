@@ -11,6 +11,7 @@ import click
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.arguments import GivenPath, folder, named
 from dancetutor_cli.commands.chart_options import (
+    bar_option,
     character_option,
     combined,
     form_option,
@@ -18,6 +19,7 @@ from dancetutor_cli.commands.chart_options import (
     language_option,
     motion_option,
     number,
+    play_option,
     push_options,
     section_option,
     style_option,
@@ -63,9 +65,7 @@ film_options = combined(
         "background with --background]",
     ),
     character_option,
-    click.option(
-        "--bar", is_flag=True, help="Let the dancer hold the bar behind the pad, as players of hard charts do."
-    ),
+    bar_option,
     gait_option,
     form_option,
     motion_option,
@@ -101,12 +101,7 @@ film_options = combined(
         show_default=True,
         help="Which H.264 encoder to use; auto: NVENC where it works, otherwise x264.",
     ),
-    click.option(
-        "--play",
-        type=GivenPath(),
-        metavar="FILE.json",
-        help="Take the feet from this JSON file of analyze, not from the solver.",
-    ),
+    play_option,
     click.option(
         "--rate",
         metavar="R[,R...]",

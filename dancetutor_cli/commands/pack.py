@@ -44,15 +44,15 @@ pack_options = combined(
         "--tech-counts",
         type=GivenPath(exists=True),
         metavar="CACHE|FILE.csv",
-        help="Print only a table: our technique counts beside those of ITGmania (its folder Cache/Songs) or of a CSV. "
-        "With --full every chart that differs.",
+        help="Compare technique counts with those of ITGmania (its folder Cache/Songs) or of a CSV file: print only a "
+        "table. With --full: also every chart that differs.",
     ),
     click.option(
         "--meter-scale",
         type=click.Choice(SCALES),
         default=AUTO,
         show_default=True,
-        help="Scale of the estimated meters of dance charts; auto: that of the song's other charts.",
+        help="Estimate the meters of dance charts on this scale. auto: the scale of the song's other charts.",
     ),
     click.option(
         "--rate",

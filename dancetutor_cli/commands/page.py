@@ -13,12 +13,14 @@ from dancetutor_cli.chart import one_song
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.arguments import GivenPath, into, warn
 from dancetutor_cli.commands.chart_options import (
+    bar_option,
     character_option,
     exclude_option,
     form_option,
     gait_option,
     language_option,
     motion_option,
+    play_option,
     preset_option,
     quiet_option,
     selection_options,
@@ -62,13 +64,8 @@ class PageOptions:
     help="Where to write: an .html file, or a folder for a folder of charts.  [default: SONG-difficulty.html, pages]",
 )
 @click.option("--music", is_flag=True, help="Put the music into the page; without it the page asks for the file.")
-@click.option(
-    "--play",
-    type=_FILE,
-    metavar="FILE.json",
-    help="Take the feet from this JSON file of analyze, not from the solver.",
-)
-@click.option("--bar", is_flag=True, help="Let the dancer hold the bar behind the pad, as players of hard charts do.")
+@play_option
+@bar_option
 @click.option(
     "--second",
     metavar="next|PRESET|FILE",
