@@ -289,12 +289,16 @@ def all_rules() -> Mapping[str, type[Rule]]:
     return dict(sorted(found.items()))
 
 
+_DIGITS = str.maketrans("OIL", "011")  # letters that are typed for digits of a code
+
+
 def rule_named(name: str) -> type[Rule]:
-    """The rule with this code or name; UsageError names the valid ones."""
+    """The rule with this code or name; UsageError with the nearest name."""
     for code, rule in all_rules().items():
         if name.upper() == code or name.lower() == rule.name:
             return rule
-    near = did_you_mean(name, [word for code, rule in all_rules().items() for word in (code, rule.name)])
+    code = "DT" + name.upper()[2:].translate(_DIGITS)
+    near = did_you_mean(name, [code] if code in all_rules() else (rule.name for rule in all_rules().values()))
     raise UsageError(f"there is no rule '{name}'{near}; see --explain all")
 
 

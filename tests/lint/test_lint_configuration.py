@@ -200,12 +200,12 @@ def test_it_is_found_up_the_tree(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
-        ("rules:\n  DT2O1: error\n", 2, ["DT2O1", "DT201 doublestep"]),
+        ("rules:\n  DT2O1: error\n", 2, ["DT2O1", "did you mean DT201?", "--explain all"]),
         ("rules:\n  DT201:\n    colour: red\n", 3, ["colour", "severity"]),
         ("rules:\n  DT205: {max_rows: many}\n", 2, ["max_rows", "8"]),
         ("rules:\n  DT201: fatal\n", 2, ["fatal", "error, warning, info, off"]),
         ("rule: {}\n", 1, ["rule", "rules"]),
-        ("\nfail-on: never\nselect: DT9\n", 3, ["DT9", "DT201"]),
+        ("\nfail-on: never\nselect: DT9\n", 3, ["DT9", "--explain all"]),
         ("fail-on: sometimes\n", 1, ["error, warning, never"]),
         ("overrides:\n  - rules: {}\n", 2, ["when"]),
         ("overrides:\n  - when: {metre: 3}\n", 2, ["metre", "meter"]),
