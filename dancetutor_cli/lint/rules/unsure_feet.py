@@ -51,7 +51,8 @@ class AmbiguousStart(ChartRule):
     """A tie: the other foot costs the same, so some players take this step with the left foot and some with the right.
 
     Inside a chart a tie is reported only if the feet of the steps after it depend on it. A tie after a jump that can be
-    turned round is not reported.
+    turned round is not reported. A finding of another rule about feet becomes DT207 where other feet cost at most
+    `coin-toss` more (docs/linter.md).
 
     Bad:
 
