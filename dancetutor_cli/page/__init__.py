@@ -5,5 +5,6 @@
     capture                       a capture beside what `retarget` made of it
     document                      data, style and modules in one file that loads nothing
 
-The page itself is `js/` and `style.css`, its words `configs/languages`; docs/page.schema.json says what the data are.
+The page itself is `js/`, `page.css`, `capture.css` and `index.css`, its words `configs/languages`;
+docs/page.schema.json says what the data are.
 """

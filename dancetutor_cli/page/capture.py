@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.motion import Motion
 
 Array = NDArray[np.float64]
-SCHEMA = 1  # of the page's data; grows when an old page's script could not read it
 RATE = 60.0  # keys a second of points and skeleton
 STEP = 1e-3  # metres of a step of their places
 
@@ -51,7 +50,6 @@ def capture_page(content: CaptureContent) -> bytes:
     scene = Scene(character, floor)
     at = times[0] + np.arange(int(np.ceil((times[-1] - times[0]) * RATE)) + 1) / RATE
     doc: dict[str, Any] = {
-        "schema": SCHEMA,
         "language": "",
         "words": {"title": content.title, "badge": ""},
         "pad": {"panels": floor.panels.tolist(), "width": PANEL},

@@ -131,6 +131,16 @@ def test_it_plays_slowly_steps_and_turns_by_keys(opened: Browser, tmp_path: Path
     amber = (np.abs(first[half] - [242, 181, 90]).max(axis=2) < 12).sum()
     assert amber > 500, "the skeleton is drawn in the input's half"
     assert (np.abs(first - second).max(axis=2) > 40).mean() > 0.01, "both turned"
+    opened.click("footer .bar:last-of-type button:last-child")  # whoever has clicked a button still turns by keys
+    before_turn = opened.run("document.querySelector('.lines').toDataURL()")
+    opened.key("ArrowRight")
+    assert opened.run("document.querySelector('.lines').toDataURL()") != before_turn
+    at = shown()
+    opened.run("document.querySelector('.strip').focus()")
+    before_turn = opened.run("document.querySelector('.lines').toDataURL()")
+    opened.call("Input.dispatchKeyEvent", type="keyDown", key="ArrowUp", code="ArrowUp", windowsVirtualKeyCode=38)
+    opened.drawn()
+    assert shown() > at, "on the strip they go through the time"
     dots = opened.run("document.querySelector('.lines').toDataURL()")
     opened.key("d")
     assert opened.run("document.querySelector('.lines').toDataURL()") != dots

@@ -1,7 +1,7 @@
 // The page of a capture: input beside output, play, seek, slow motion, and how far each point is from the input.
 
 import { unpack } from "./blob.js";
-import { CaptureView, apart, colourOf } from "./capture_view.js";
+import { CaptureView, colourOf, pointDistances } from "./capture_view.js";
 import { Transport } from "./clock.js";
 import { el, toggle } from "./dom.js";
 import { failed } from "./failed.js";
@@ -45,7 +45,7 @@ async function main() {
   const transport = new Transport(() => performance.now() / 1000, start, end);
   const place = el("section", { class: "picture", tabindex: 0, role: "application", "aria-label": t("capturePicture") });
   const view = new CaptureView(place, doc, arrays, new Motion(doc.motions[0], arrays, doc.body));
-  const most = farthest(view, doc.clock);
+  const distance = farthest(view, doc.clock);
   const number = (/** @type {number} */ value) => value.toFixed(1).replace(".", t("decimal"));
 
   const act = {
@@ -64,15 +64,15 @@ async function main() {
   const sign = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ press) =>
     el("button", { type: "button", class: "sign", "aria-label": t(label), title: t(label), onclick: press }, text);
   const clock = el("output", { class: "clock" });
-  const said = el("p", { class: "caption output" });
+  const summary = el("p", { class: "caption output" });
   const rows = doc.points.map((name, k) => {
-    const now = el("td");
-    const there = el("button", { type: "button", class: "link", title: t("captureGo"), onclick: () => act.go(most.when[k]) }, number(most.cm[k]));
-    return { now, row: el("tr", {}, el("th", { scope: "row" }, name), now, el("td", {}, number(most.mean[k])), el("td", {}, there)) };
+    const cell = el("td");
+    const most = el("button", { type: "button", class: "link", title: t("captureGo"), onclick: () => act.go(distance.when[k]) }, number(distance.most[k]));
+    return { cell, row: el("tr", {}, el("th", { scope: "row" }, name), cell, el("td", {}, number(distance.mean[k])), el("td", {}, most)) };
   });
   const head = ["capturePoint", "captureNow", "captureMean", "captureMost"].map((label) => el("th", { scope: "col" }, t(label)));
   const table = el("table", {}, el("caption", {}, t("captureTable")), el("thead", {}, el("tr", {}, ...head)), el("tbody", {}, ...rows.map((one) => one.row)));
-  place.append(el("p", { class: "caption input" }, t("captureInput")), said);
+  place.append(el("p", { class: "caption input" }, t("captureInput")), summary);
   document.getElementById("app")?.replaceChildren(
     el("header", {}, el("h1", {}, doc.words.title)),
     el("main", {}, place, el("section", { class: "side", tabindex: 0, "aria-label": t("captureTable") }, table)),
@@ -91,10 +91,10 @@ async function main() {
     play.textContent = transport.playing ? "❚❚" : "▶";
     if (document.activeElement !== seek || transport.playing) seek.value = String(second);
     clock.textContent = t("captureClock", { second: (second - start).toFixed(2), end: (end - start).toFixed(2) });
-    said.textContent = t("captureSaid", { point: doc.points[worst], far: number(far[worst]), mean: number(far.reduce((sum, one) => sum + one, 0) / far.length) });
-    rows.forEach(({ now }, k) => {
-      now.textContent = number(far[k]);
-      now.style.setProperty("--far", colourOf(far[k], doc.far));
+    summary.textContent = t("captureSaid", { point: doc.points[worst], far: number(far[worst]), mean: number(far.reduce((sum, one) => sum + one, 0) / far.length) });
+    rows.forEach(({ cell }, k) => {
+      cell.textContent = number(far[k]);
+      cell.style.setProperty("--far", colourOf(far[k], doc.far));
     });
     requestAnimationFrame(frame);
   };
@@ -106,15 +106,15 @@ async function main() {
 function farthest(view, clock) {
   const count = view.before.keys;
   const points = view.before.rows / 3;
-  const [mean, cm, when] = [0, 0, clock.start].map((value) => new Array(points).fill(value));
+  const [mean, most, when] = [0, 0, clock.start].map((value) => new Array(points).fill(value));
   for (let key = 0; key < count; ++key) {
     const second = clock.start + key / clock.rate;
-    apart(view.before.at(second), view.after.at(second)).forEach((far, k) => {
+    pointDistances(view.before.at(second), view.after.at(second)).forEach((far, k) => {
       mean[k] += far / count;
-      if (far > cm[k]) [cm[k], when[k]] = [far, second];
+      if (far > most[k]) [most[k], when[k]] = [far, second];
     });
   }
-  return { mean, cm, when };
+  return { mean, most, when };
 }
 
 /**
@@ -131,7 +131,7 @@ function listen(place, view, act) {
       ArrowLeft: () => view.turn(-TURN, 0), ArrowRight: () => view.turn(TURN, 0), ArrowUp: () => view.turn(0, TURN), ArrowDown: () => view.turn(0, -TURN),
       "+": () => view.nearer(ZOOM), "-": () => view.nearer(1 / ZOOM),
     })[event.key];
-    if (!by || (event.key.startsWith("Arrow") && target !== place && target !== document.body)) return;
+    if (!by || (event.key.startsWith("Arrow") && target !== place && target !== document.body && target.tagName !== "BUTTON")) return;
     event.preventDefault();
     by();
   });

@@ -20,7 +20,7 @@ export class Track {
     this.rows = values.length / this.keys;
     this.values = values;
     this.clock = clock;
-    this.now = new Float64Array(this.rows);
+    this.places = new Float64Array(this.rows);
   }
 
   /** @param {number} second @returns {Float64Array} x, y and z of each place; the same array every time */
@@ -31,9 +31,9 @@ export class Track {
     const share = place - before;
     for (let row = 0; row < this.rows; ++row) {
       const k = row * this.keys + before;
-      this.now[row] = step * (this.values[k] * (1 - share) + (share ? this.values[k + 1] : 0) * share);
+      this.places[row] = step * (this.values[k] * (1 - share) + (share ? this.values[k + 1] : 0) * share);
     }
-    return this.now;
+    return this.places;
   }
 }
 
@@ -41,7 +41,7 @@ export class Track {
  * Centimetres between two sets of places.
  * @param {ArrayLike<number>} a @param {ArrayLike<number>} b
  */
-export function apart(a, b) {
+export function pointDistances(a, b) {
   return Array.from({ length: a.length / 3 }, (_, k) => 100 * Math.hypot(a[3 * k] - b[3 * k], a[3 * k + 1] - b[3 * k + 1], a[3 * k + 2] - b[3 * k + 2]));
 }
 
@@ -159,7 +159,7 @@ export class CaptureView {
     flat.lineCap = "round";
     const { doc } = this;
     const [before, after] = [this.before.at(second), this.after.at(second)];
-    const far = apart(before, after);
+    const far = pointDistances(before, after);
     halves.forEach((half, k) => {
       flat.save();
       flat.beginPath();
