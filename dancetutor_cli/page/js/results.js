@@ -102,7 +102,7 @@ function missed(app) {
   return el("section", {}, el("h3", {}, t("missedTitle")), el("ol", { class: "cards" }, ...list.map((one) => el("li", {},
     el("button", { type: "button", class: "card missed", onclick: () => void app.loopBeats(one.from, one.to, one.rate) },
       el("strong", {}, el("span", {}, stretch(t, one.from / 4, one.to / 4))), el("span", { class: "figure" }, `${Math.round(100 * one.rate)} %`),
-      el("span", { class: "text" }, `${t(one.misses === 1 ? "missedRow" : "missedRows", { count: one.misses })} ${t(one.passed ? "missedPassed" : "missedNew")}`))))));
+      el("span", { class: "text" }, `${t("missedRows", { count: one.misses })} ${t(one.passed ? "missedPassed" : "missedNew")}`))))));
 }
 
 /** Where in the song notes were missed, by foot. @param {import("./app.js").App} app */

@@ -17,10 +17,11 @@ export function speak(languages, wanted) {
 }
 
 /**
- * Numbers, not texts, get the language's decimal sign.
+ * A number that is given, not a text, gets the language's decimal sign; "{count|press|presses}" is the word for one, or for more.
  * @param {string} text @param {Record<string, string | number>} values @param {string} [decimal]
  */
 export function fillIn(text, values, decimal = ".") {
-  const said = (/** @type {string | number} */ value) => (typeof value === "number" ? String(value).replace(".", decimal) : value);
-  return text.replace(/\{(\w+)\}/g, (whole, name) => (name in values ? said(values[name]) : whole));
+  const shown = (/** @type {string | number} */ value) => (typeof value === "number" ? String(value).replace(".", decimal) : value);
+  const numbered = text.replace(/\{(\w+)\|([^|}]*)\|([^}]*)\}/g, (_, name, one, more) => (Number(values[name]) === 1 ? one : more));
+  return numbered.replace(/\{(\w+)\}/g, (whole, name) => (name in values ? shown(values[name]) : whole));
 }

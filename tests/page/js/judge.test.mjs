@@ -172,6 +172,7 @@ test("words beside the notes have short forms for narrow lanes", () => {
     assert.ok(labels[0].text.length > labels[0].short.length && labels[0].short.length <= 6);
     for (const [name, word] of Object.entries(words)) if (name.startsWith("short-")) assert.ok(word.length <= 6, name);
   }
+  assert.deepEqual([0, 1, 2].map((count) => fillIn("{count} {count|press|presses}", { count })), ["0 presses", "1 press", "2 presses"]);
   assert.equal(fillIn("{a} {b}", { a: 2.5, b: "2.5" }, ","), "2,5 2.5"); // numbers only, no names
 });
 
