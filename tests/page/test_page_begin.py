@@ -68,13 +68,11 @@ def test_a_song_that_is_over_shows_its_result_and_what_to_practise(opened: Brows
     assert "1 hit" in result and "1 late" in result and "longest run: 2" in result
     assert "a new best" in result
     share = opened.run("Number(/(\\d+) %/.exec(document.querySelector('.result strong').textContent)[1])")
-    notes = opened.run(
-        "[...document.querySelectorAll('.result .counts b')].slice(0, 4).reduce((n, e) => n + +e.textContent, 0)"
-    )
-    assert share == round(150 / notes)  # a hit, and half for the late one
+    notes = counted(opened)
+    assert share == round(150 / (notes + 1))  # a hit, and half for the late one; the wrong press counts as a note
     assert "right panel" in result and f"on time {round(100 / notes)} %" in result
     assert opened.run("document.querySelectorAll('.result .timing > *').length") == 19
-    assert "left foot: 1 presses, +20 ms" in result and "right foot: 1 presses, +90 ms" in result
+    assert "left foot: 1 press, +20 ms" in result and "right foot: 1 press, +90 ms" in result
     assert opened.run("document.querySelector('.result .main').id") == "again-missed"  # so many were missed
     opened.click("#again-missed")
     assert not shown(opened, ".result") and said(opened).startswith("loop measure")
@@ -158,7 +156,43 @@ def test_a_part_that_was_played_says_so(opened: Browser) -> None:
     opened.key(" ", "Space")
     for _ in range(4):
         opened.turn(30)
-    assert "1 notes, from measure 8" in text(opened, ".result .part") and opened.problems == []
+    assert "1 note, from measure 8" in text(opened, ".result .part") and opened.problems == []
+
+
+def test_a_pause_is_no_new_beginning(opened: Browser) -> None:
+    """Two notes, a pause, a note: the result is of all of it, and of nothing before a seek."""
+    opened.run(pad_script())
+    opened.click(".way.step")
+    opened.turn(0.06 + 2.0)
+    step(opened, 0)
+    opened.turn(0.25)
+    step(opened, 1)
+    opened.key(" ", "Space")
+    opened.turn(5)
+    opened.key(" ", "Space")
+    opened.turn(0.06 + 0.25)
+    step(opened, 3)
+    for _ in range(4):
+        opened.turn(30)
+    result = text(opened, ".result")
+    assert "3 hit" in result and "longest run: 3" in result and "a new best" in result
+    assert text(opened, ".result .part") == ""
+    whole = counted(opened)
+    opened.key("Home")
+    opened.click(".way.step")
+    opened.turn(0.06 + 2.0)
+    step(opened, 0)
+    opened.key("End")  # to the last row
+    for _ in range(4):
+        opened.turn(30)
+    assert counted(opened) == 1 < whole and "1 note, from measure 8" in text(opened, ".result .part")
+    assert opened.problems == []
+
+
+def counted(browser: Browser) -> int:
+    """Notes in the counts of the result."""
+    counts = "[...document.querySelectorAll('.result .counts b')].slice(0, 4).reduce((n, e) => n + +e.textContent, 0)"
+    return int(browser.run(counts))
 
 
 def test_lanes_are_the_mats_own_whatever_the_camera_sees(opened: Browser, page_file: Path) -> None:
@@ -179,15 +213,16 @@ def test_the_pass_before_stands_in_the_count_in(opened: Browser) -> None:
     opened.wait("document.querySelector('.said').textContent.includes('loop')")
     opened.key("p", "KeyP")
     opened.key(" ", "Space")
-    for scores in ("50 %", "50 % → 50 %"):  # one hit and seven late, none early
-        assert text(opened, ".passed") in ("", "50 %")
-        opened.turn(0.06 + 2.0 if scores == "50 %" else 1.9)
+    for before, scores in (("", "50 %"), ("50 %", "50 % → 50 %")):  # four of the eight notes are hit
+        assert text(opened, ".passed") == before
+        opened.turn(1.9 if before else 0.06 + 2.0)
         for number, column in enumerate((0, 1, 3, 1)):
             opened.turn(0.0 if number == 0 else 0.25)
             opened.run(f"window.pad.buttons[{column}].pressed = true; window.pad.timestamp = performance.now()")
             opened.drawn()
             opened.run(f"window.pad.buttons[{column}].pressed = false")
             opened.drawn()
+        assert text(opened, ".passed") == ""  # while it plays
         opened.turn(1.35)
         assert text(opened, ".passed") == scores
     assert opened.problems == []

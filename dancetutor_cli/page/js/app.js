@@ -141,13 +141,15 @@ export class App {
 
   async play() {
     if (this.transport.playing) return this.transport.pause();
-    const opened = !this.played && !this.transport.loop && this.transport.at > this.opening && this.transport.at < this.chart.first;
+    const { at } = this.transport;
+    const opened = !this.played && !this.transport.loop && at > this.opening && at < this.chart.first;
     if (opened) this.transport.seek(this.opening); // time to get ready
     this.played = true;
     this.notice = "";
     await this.sound.start();
     this.transport.play();
-    if (this.practice.along) this.practice.restart(this.transport.second()); // from the start again after the end
+    const jumped = this.transport.second() !== at; // to the start again after the end, to the loop's lead-in
+    if (this.practice.along && (this.practice.over || jumped)) this.practice.restart(this.transport.second());
     this.practice.updateHold();
   }
 

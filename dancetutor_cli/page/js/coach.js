@@ -1,9 +1,9 @@
-// The coach: loops what was missed, and raises or lowers the speed by what is hit, until it goes at full speed.
+// The coach: loops what was missed, and raises or lowers the speed by the score, until it goes at full speed.
 
 import { FIRST, coachRate, missedOf, scoreShare, whereOf } from "./record.js";
 
 const FULL = 1; // the speed that is wanted in the end
-const PASSED = 0.95; // share of hits with which a stretch is passed
+const PASSED = 0.95; // score with which a stretch is passed
 
 /** @typedef {{from: number, to: number, rate: number, passed: boolean}} Target beats, the speed to begin at, whether it was passed at that */
 
@@ -60,9 +60,9 @@ export class Coach {
   pass(tally) {
     const { app } = this;
     const { transport, chart } = app;
-    const share = scoreShare(tally, tally.wrong);
+    const share = scoreShare(tally);
     const percent = Math.round(100 * share);
-    if (share < PASSED || transport.rate < FULL) {
+    if (share < PASSED || this.practice.judge.slowest < FULL) {
       transport.rate = coachRate(transport.rate, share, FULL);
       this.said = app.t(share < PASSED ? "coachFailed" : "coachGoesOn", { percent, rate: Math.round(100 * transport.rate) });
       return;

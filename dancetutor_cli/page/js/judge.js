@@ -22,6 +22,7 @@ export class Judge {
     this.stepOf = new Map(chart.rows.flatMap((row) => row.steps.map(({ note, limb }) => [note, { row: row.row, limb, measure: Math.floor(row.beat / 4 + 1e-6) }])));
     this.next = 0; // first row that may still be missed
     this.from = -Infinity; // rows before it are not asked for
+    this.slowest = Infinity; // the slowest rate since the first row after it
     /** @type {number} the foot that is practised, 0 left or 1 right; -1: both */
     this.foot = -1;
     /** @type {import("./record.js").Outcome[]} what came of notes since it was taken last */
@@ -60,6 +61,7 @@ export class Judge {
   restart(second) {
     this.from = second - 1e-3;
     this.next = 0;
+    this.slowest = Infinity;
     this.wrong = this.wrong.filter((at) => at < this.from);
     while (this.next < this.chart.rows.length && this.chart.rowSeconds[this.next] < this.from) ++this.next;
     for (const row of this.chart.rows.slice(this.next)) {
@@ -68,6 +70,12 @@ export class Judge {
         this.errors.delete(step.note);
       }
     }
+  }
+
+  /** The music goes at a rate; slow practice before the first row that is asked for does not count. @param {number} second @param {number} rate */
+  noteRate(second, rate) {
+    const first = this.chart.rowSeconds.find((one) => one >= this.from) ?? Infinity;
+    if (second >= first - WINDOW * rate) this.slowest = Math.min(this.slowest, rate);
   }
 
   /**
@@ -88,6 +96,7 @@ export class Judge {
     const error = (second - this.chart.second[best]) / rate;
     const verdict = patient || Math.abs(error) <= GOOD ? "hit" : error < 0 ? "early" : "late";
     this.lastError = patient ? undefined : error;
+    this.slowest = Math.min(this.slowest, rate);
     this.settle(best, verdict, this.lastError);
     return verdict;
   }
@@ -111,6 +120,7 @@ export class Judge {
    * @returns {number} how many notes were missed now
    */
   advance(second, rate, end = Infinity) {
+    this.noteRate(Math.min(second, end), rate);
     let missed = 0;
     while (this.next < this.chart.rows.length && this.chart.rowSeconds[this.next] < Math.min(second - WINDOW * rate, end - 1e-3)) {
       for (const step of this.chart.rows[this.next].steps) {

@@ -42,10 +42,10 @@ export class Practice {
     this.topBefore = 0; // % of the best play before this one
   }
 
-  /** What was hit in the loop, or in all. */
+  /** What was hit in the loop, or in all, since rows are asked for. */
   tally() {
     const { loop } = this.app.transport;
-    return this.judge.tally(loop ? loop.a : -Infinity, loop ? loop.b : Infinity);
+    return this.judge.tally(Math.max(loop ? loop.a : -Infinity, this.judge.from), loop ? loop.b : Infinity);
   }
 
   /** The speed is the one that was asked for again: the ramp, or its loop, is over. */
@@ -69,7 +69,8 @@ export class Practice {
     this.before = this.along ? this.tally() : null;
     const slips = this.before ? this.before.miss + this.before.wrong : 0;
     ++this.passes;
-    const idle = this.before !== null && !this.wait && isIdle(this.before); // nobody plays: nothing is to be learnt of it
+    // Begun in its middle, or nobody plays: nothing is to be learnt of it.
+    const idle = this.before !== null && (this.judge.from > loop.a || (!this.wait && isIdle(this.before)));
     if (this.before && !idle) this.scores.push(scoreShare(this.before));
     if (this.before && !this.wait) {
       if (!idle) this.keepPart(loop, this.before);
@@ -88,18 +89,19 @@ export class Practice {
 
   /** How a part of the song went, if both feet played it. @param {{a: number, b: number}} part seconds @param {import("./judge.js").Tally} tally */
   keepPart({ a, b }, tally) {
-    const { chart, record, transport } = this.app;
-    if (this.judge.foot >= 0) return;
+    const { chart, record } = this.app;
+    const { foot, slowest } = this.judge;
+    if (foot >= 0) return;
     const where = whereOf(chart.beatAt(a), chart.beatAt(b));
-    if (!tally.miss && !tally.wrong) addClean(record, where, transport.rate);
-    if (transport.rate >= 1) addScore(record, where, scoreShare(tally));
+    if (!tally.miss && !tally.wrong) addClean(record, where, slowest);
+    if (slowest >= 1) addScore(record, where, scoreShare(tally));
   }
 
   /** What came of notes goes into the record; while the clock waits, or nobody presses anything, there is nothing to keep. */
   keep() {
     const { outcomes, wrong } = this.judge.take();
     if (this.wait || (!wrong && outcomes.every(({ verdict }) => verdict === "miss"))) return;
-    addOutcomes(this.app.record, dayOf(new Date()), outcomes, wrong, this.app.transport.rate);
+    addOutcomes(this.app.record, dayOf(new Date()), outcomes, wrong, this.judge.slowest);
     this.app.saveRecord();
   }
 
@@ -132,12 +134,12 @@ export class Practice {
     this.app.tell("along");
   }
 
-  /** @param {boolean} on */
+  /** What was pressed while the clock waited is not in time: rows are asked for anew on both ways. @param {boolean} on */
   setWait(on) {
     this.keep();
     if (on && !this.along) this.setAlong(true);
     this.wait = on;
-    if (on) this.restart(this.app.transport.second());
+    if (this.along) this.restart(this.app.transport.second());
     this.updateHold();
     this.app.tell("along");
   }
@@ -223,10 +225,10 @@ export class Practice {
   finish() {
     if (!this.along) return;
     this.judge.advance(Infinity, this.app.transport.rate);
-    this.over = this.judge.tally(-Infinity, Infinity);
+    this.over = this.tally();
     this.topBefore = this.app.record.top;
     const whole = this.judge.from <= this.app.chart.first && this.judge.foot < 0 && !this.wait && !isIdle(this.over);
-    if (whole && this.app.transport.rate >= 1) this.app.record.top = Math.max(this.topBefore, Math.round(100 * scoreShare(this.over)));
+    if (whole && this.judge.slowest >= 1) this.app.record.top = Math.max(this.topBefore, Math.round(100 * scoreShare(this.over)));
     for (const { start, end } of this.wait ? [] : this.app.doc.passages) {
       const tally = this.judge.tally(start, end);
       if (this.judge.from <= start + 1e-3 && !isIdle(tally)) this.keepPart({ a: start, b: end }, tally);

@@ -77,18 +77,16 @@ export function addScore(record, where, share) {
 /** @param {number} from @param {number} to beats */
 export const whereOf = (from, to) => `${Math.round(100 * from) / 100}-${Math.round(100 * to) / 100}`;
 
-/** Share of hits among notes, 0..1. @param {{hit: number, early: number, late: number, miss: number}} counts @param {number} [wrong] presses that count as notes missed */
-export function hitShare({ hit, early, late, miss }, wrong = 0) {
-  return hit / Math.max(hit + early + late + miss + wrong, 1);
-}
+/** @typedef {{hit: number, early: number, late: number, miss: number, wrong: number}} Counts */
 
-/** @typedef {{hit: number, early: number, late: number, miss: number}} Counts */
+/** Share of hits among notes, 0..1. @param {Counts} counts */
+export const hitShare = ({ hit, early, late, miss }) => hit / Math.max(hit + early + late + miss, 1);
 
 /** Share of notes whose panel was pressed, on time or not, 0..1. @param {Counts} counts */
 export const panelShare = ({ hit, early, late, miss }) => (hit + early + late) / Math.max(hit + early + late + miss, 1);
 
-/** The score, 0..1: an early or late press is worth half a hit. @param {Counts} counts @param {number} [wrong] presses that count as notes missed */
-export function scoreShare({ hit, early, late, miss }, wrong = 0) {
+/** The score, 0..1: an early or late press is worth half a hit, a wrong one counts as a note that was missed. @param {Counts} counts */
+export function scoreShare({ hit, early, late, miss, wrong }) {
   return (hit + (early + late) / 2) / Math.max(hit + early + late + miss + wrong, 1);
 }
 
@@ -155,7 +153,7 @@ export function missesThrough(record, rows, most = 48) {
 }
 
 /**
- * The coach's next speed: it goes by the share that was hit. @param {number} rate @param {number} share 0..1
+ * The coach's next speed: it goes by the score. @param {number} rate @param {number} share 0..1
  * @param {number} goal the speed that is wanted in the end
  */
 export function coachRate(rate, share, goal) {

@@ -2,7 +2,7 @@
 
 import { keyName } from "./input.js";
 import { placeOf, stretch } from "./places.js";
-import { panelShare, scoreShare } from "./record.js";
+import { hitShare, panelShare, scoreShare } from "./record.js";
 
 export const KINDS = /** @type {const} */ (["hit", "early", "late", "miss", "wrong"]);
 
@@ -13,14 +13,14 @@ export function saidOf(app) {
   if (practice.stray === "now") return keysText(app);
   if (transport.waiting) return t("waiting");
   const over = practice.along && practice.over ? overText(app, practice.over) : "";
-  const told = [over, practice.coach.on && practice.along ? practice.coach.said : "", loopText(app)].filter(Boolean).join(" · ");
-  return told || (!app.played && !sound.music ? musicText(app) : "");
+  const parts = [over, practice.coach.on && practice.along ? practice.coach.said : "", loopText(app)].filter(Boolean).join(" · ");
+  return parts || (!app.played && !sound.music ? musicText(app) : "");
 }
 
 /** Whether nothing happens that is worth a look: only that there is no music. @param {import("./app.js").App} app */
 export const quiet = (app) => !app.notice && !app.practice.along && !app.transport.loop;
 
-/** Whether there is music, and whose; told in the same words wherever it is asked. @param {import("./app.js").App} app */
+/** Whether there is music, and whose: the same words wherever it is said. @param {import("./app.js").App} app */
 export function musicText(app) {
   const { t, sound, musicName, musicBad } = app;
   if (app.musicLoading) return t("musicLoading");
@@ -43,8 +43,7 @@ function overText(app, tally) {
 
 /** What the score is made of. @param {import("./app.js").App} app @param {import("./record.js").Counts} counts */
 export function sharesText(app, counts) {
-  const all = Math.max(counts.hit + counts.early + counts.late + counts.miss, 1);
-  return app.t("shares", { panel: Math.round(100 * panelShare(counts)), time: Math.round((100 * counts.hit) / all) });
+  return app.t("shares", { panel: Math.round(100 * panelShare(counts)), time: Math.round(100 * hitShare(counts)) });
 }
 
 /** How late presses came on average; "" without any. @param {import("./app.js").App} app @param {import("./judge.js").Tally} tally */

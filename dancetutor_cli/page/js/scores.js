@@ -118,7 +118,9 @@ function feetPart(app) {
   const { judge } = app.practice;
   /** @type {number[][]} */
   const errors = [[], []];
-  for (const [note, error] of judge.errors) errors[judge.limbOf(note)]?.push(error); // a hand's have no bars
+  for (const [note, error] of judge.errors) {
+    if (judge.chart.second[note] >= judge.from) errors[judge.limbOf(note)]?.push(error); // a hand's have no bars
+  }
   const feet = errors.map((some) => some.reduce((bars, error) => {
     ++bars[errorBin(error)];
     return bars;

@@ -14,7 +14,7 @@ function make() {
   const chart = {
     second: seconds, end: seconds, rowSeconds: seconds, presses: [seconds],
     given: new Map(), rows: seconds.map((second) => ({ row: second, beat: second, second, steps: [{ note: second, column: 0, limb: 0, part: 0 }] })),
-    beatAt: (second) => second, secondAt: (beat) => beat,
+    first: 0, beatAt: (second) => second, secondAt: (beat) => beat,
   };
   const transport = new Transport(() => at.now, 0, 40);
   transport.lead = (a) => a - 4;
@@ -65,7 +65,7 @@ test("a wrong panel makes a pass unclean, and what was pressed is said in the ne
   }
   go(at, transport, 10);
   assert.equal(transport.rate, 0.95);
-  assert.equal(passedOf(app), "100 %"); // in the count-in: both notes hit
+  assert.equal(passedOf(app), "67 %"); // in the count-in: both notes hit, and a wrong press
   go(at, transport, 8.5);
   assert.equal(passedOf(app), "");
 });
@@ -121,6 +121,109 @@ test("the best pass of a passage is kept from a song that is played, too", () =>
   assert.deepEqual(app.record.best, { "8-12": 100 });
 });
 
+/** Play the song from its start: press a second's panels, then go on. */
+function song(change = () => {}, columns = [0]) {
+  const { at, app, transport } = make();
+  app.chart.presses = [app.chart.second, [], []];
+  app.doc.passages = [{ start: 8, end: 12 }];
+  transport.onEnd = () => app.practice.finish();
+  app.practice.setAlong(true);
+  app.practice.restart(0);
+  transport.play();
+  for (let second = 0; second < 40; ++second) {
+    go(at, transport, second);
+    change(second, app);
+    for (const column of columns) app.practice.press(column, 0);
+    app.practice.advance(second + 0.2);
+  }
+  go(at, transport, 40.5);
+  return app;
+}
+
+test("a song that is played at full speed is the best, and what is pressed besides counts against it", () => {
+  const { record, practice } = song();
+  assert.deepEqual([record.top, record.scores, record.best, practice.longest], [100, { "8-12": 100 }, { "8-12": 100 }, 40]);
+  const all = song(undefined, [0, 1, 2]); // every panel on every row
+  assert.deepEqual([all.record.top, all.record.scores, all.record.best], [33, { "8-12": 33 }, {}]);
+  assert.match(saidOf(all), /^songOver 33 /);
+});
+
+test("what was pressed while the clock waited is no part of the best", () => {
+  const off = (last) => song((second, { practice }) => { if (second === 1 || second === last) practice.setWait(second === 1); });
+  for (const last of [13, 39]) {
+    const { record, practice } = off(last);
+    assert.deepEqual([record.top, record.scores, record.best], [0, {}, {}]);
+    assert.equal(practice.over.hit, 40 - last); // since it waits no more
+  }
+  assert.deepEqual(off(5).record.best, { "8-12": 100 }); // all of the passage was played in time
+});
+
+test("a pass of a loop that the clock waited in is no pass, whatever came after", () => {
+  const { at, app, transport } = make();
+  app.practice.setAlong(true);
+  transport.setLoop({ a: 8, b: 12 });
+  transport.play();
+  app.practice.restart(8);
+  app.practice.setWait(true);
+  for (const second of [8, 9, 10, 11]) {
+    go(at, transport, second);
+    if (second === 11) app.practice.setWait(false);
+    app.practice.press(0, 0);
+  }
+  go(at, transport, 12.01);
+  assert.deepEqual([app.record.scores, app.record.best, app.practice.scores, transport.rate], [{}, {}, [], 1]);
+  for (const second of [8, 9, 10, 11]) {
+    go(at, transport, second);
+    app.practice.press(0, 0);
+  }
+  go(at, transport, 12.01);
+  assert.deepEqual([app.record.scores, app.record.best, app.practice.scores], [{ "8-12": 100 }, { "8-12": 100 }, [1]]);
+});
+
+test("what was played slowly is not the best at full speed, whichever speed it ended at", () => {
+  const at = (slow, full) => song((second, { transport }) => {
+    if (second === slow) transport.setRate(0.25);
+    if (second === full) transport.setRate(1);
+  });
+  const { record } = at(0, 39);
+  assert.deepEqual([record.top, record.scores, record.best, record.rows[39].rate], [0, {}, { "8-12": 25 }, 25]);
+  assert.equal(at(20, 21).record.top, 0);
+});
+
+test("the speed before the first row is nobody's practice", () => {
+  const { at, app, transport } = make();
+  app.practice.setAlong(true);
+  transport.setLoop({ a: 8, b: 10 });
+  transport.setRate(0.5);
+  transport.play();
+  app.practice.restart(8);
+  go(at, transport, 6);
+  app.practice.advance(6);
+  transport.setRate(1);
+  for (const second of [8, 9]) {
+    go(at, transport, second);
+    app.practice.advance(second);
+    app.practice.press(0, 0);
+  }
+  go(at, transport, 10);
+  assert.deepEqual(app.record.best, { "8-10": 100 });
+});
+
+test("the coach has a stretch passed at full speed only if all of it was", async () => {
+  const { at, app, transport } = make();
+  app.doc.passages = [{ start: 8, end: 10 }];
+  app.loopBeats = async (a, b) => { transport.setLoop({ a, b }); transport.restartLoop(); transport.play(); };
+  await app.practice.coach.start();
+  app.practice.restart(8);
+  for (const second of [8, 9]) {
+    go(at, transport, second);
+    if (second === 9) transport.setRate(1);
+    app.practice.press(0, 0);
+  }
+  go(at, transport, 10);
+  assert.equal(app.practice.coach.said, "coachGoesOn 100 100");
+});
+
 test("the count-in shows the beats that are left, and nothing once the loop has begun", () => {
   const { at, app, transport } = make();
   transport.setLoop({ a: 8, b: 12 });
@@ -150,7 +253,7 @@ test("each press is judged in sight, for a moment; the end of the song says how 
   assert.equal(app.practice.shown(), null);
   go(at, transport, 40.5);
   assert.equal(transport.playing, false);
-  assert.match(saidOf(app), /^songOver 5 1 verdict-hit, 1 verdict-early, 1 verdict-late, 37 verdict-miss, 1 verdict-wrong/); // 1 + 2 halves of 40
+  assert.match(saidOf(app), /^songOver 5 1 verdict-hit, 1 verdict-early, 1 verdict-late, 37 verdict-miss, 1 verdict-wrong/); // 1 + 2 halves of 41
   app.practice.restart(0);
   assert.equal(saidOf(app), "");
 });

@@ -28,7 +28,7 @@ test("errors are counted by day and foot, and by row", () => {
   assert.deepEqual(rows[1], { tries: 2, misses: 1, timed: 1, sum: 90, missed: true, rate: 0 }); // its measure was never played without a miss
   assert.deepEqual(rows[2], { tries: 2, misses: 1, timed: 1, sum: -80, missed: false, rate: 0 });
   assert.equal(hitShare(days[0]), 1 / 3);
-  assert.equal(hitShare(days[0], days[0].wrong), 0.25);
+  assert.equal(scoreShare(days[0]), 1.5 / 4); // of three notes and a wrong press
 });
 
 test("a row's last outcome says whether it is missed, and the stretch begins where all of it was passed", () => {
@@ -45,10 +45,10 @@ test("a row's last outcome says whether it is missed, and the stretch begins whe
 });
 
 test("the right panel counts although it is early or late: half in the score", () => {
-  const counts = { hit: 1, early: 3, late: 4, miss: 2 };
+  const counts = { hit: 1, early: 3, late: 4, miss: 2, wrong: 0 };
   assert.deepEqual([panelShare(counts), hitShare(counts), scoreShare(counts)], [0.8, 0.1, 0.45]);
-  assert.equal(scoreShare(counts, 5), 0.3);
-  assert.equal(scoreShare({ hit: 0, early: 0, late: 0, miss: 0 }), 0);
+  assert.equal(scoreShare({ ...counts, wrong: 5 }), 0.3);
+  assert.equal(scoreShare({ hit: 0, early: 0, late: 0, miss: 0, wrong: 0 }), 0);
 });
 
 test("a streak goes on until a day is left out, over the ends of months", () => {
