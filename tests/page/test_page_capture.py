@@ -141,6 +141,7 @@ def test_it_plays_slowly_steps_and_turns_by_keys(opened: Browser, tmp_path: Path
     opened.call("Input.dispatchKeyEvent", type="keyDown", key="ArrowUp", code="ArrowUp", windowsVirtualKeyCode=38)
     opened.drawn()
     assert shown() > at, "on the strip they go through the time"
+    opened.run("document.activeElement.blur()")
     dots = opened.run("document.querySelector('.lines').toDataURL()")
     opened.key("d")
     assert opened.run("document.querySelector('.lines').toDataURL()") != dots

@@ -156,7 +156,7 @@ def test_a_file_takes_results_to_another_browser(opened: Browser, page_file: Pat
     opened.open(page_file)
     assert "Nothing played yet" in results(opened)
     for _ in range(2):  # twice is once
-        assert load_file(opened, json.dumps(content)) == "Loaded 1 charts, this one among them."
+        assert load_file(opened, json.dumps(content)) == "Loaded 1 chart, this one among them."
         assert opened.run(RECORD) == before
     assert "Today: 8 notes, right panel 100 %, on time 100 %." in text(opened, "#panel-results")
     assert opened.requests[1:] == [] and opened.problems == []
@@ -177,7 +177,7 @@ def test_a_file_that_is_none_is_refused_and_nothing_is_lost(opened: Browser) -> 
         "version": 1,
         "charts": {"other": {"days": [7], "loops": [{"name": 1}]}},
     }
-    assert load_file(opened, f"JSON.stringify({json.dumps(hostile)})") == "Loaded 1 charts, but not this one."
+    assert load_file(opened, f"JSON.stringify({json.dumps(hostile)})") == "Loaded 1 chart, but not this one."
     assert opened.run(RECORD) == before and opened.run("window.hacked") is None
     assert opened.problems == []
 
