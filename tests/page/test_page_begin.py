@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import wave
 from pathlib import Path
 
 import pytest
@@ -187,6 +189,27 @@ def test_a_pause_is_no_new_beginning(opened: Browser) -> None:
         opened.turn(30)
     assert counted(opened) == 1 < whole and "1 note, from measure 8" in text(opened, ".result .part")
     assert opened.problems == []
+
+
+def test_music_that_comes_while_somebody_plays_is_no_new_beginning(opened: Browser) -> None:
+    opened.run(pad_script())
+    opened.click(".way.step")
+    opened.turn(0.06 + 2.0)
+    step(opened, 0)
+    silence = io.BytesIO()
+    with wave.open(silence, "wb") as file:
+        file.setparams((1, 2, 8000, 0, "NONE", ""))
+        file.writeframes(bytes(2000))
+    opened.run(
+        "(() => { const data = new DataTransfer();"
+        f"data.items.add(new File([new Uint8Array({list(silence.getvalue())})], 'a.wav'));"
+        "document.dispatchEvent(new DragEvent('drop', {dataTransfer: data})); })()"
+    )
+    opened.wait("document.querySelector('#music-state').textContent.includes('a.wav')", 20)
+    assert "1 hit" in text(opened, ".standing")
+    opened.turn(0.06 + 0.25)
+    step(opened, 1)
+    assert "2 hit" in text(opened, ".standing") and opened.problems == []
 
 
 def counted(browser: Browser) -> int:

@@ -201,7 +201,9 @@ export class Highway {
     const head = held && scene.second > chart.second[n] ? Math.min(scene.second, chart.end[n]) : chart.second[n];
     const x = this.laneX(column, m, scene.mirror);
     const top = y(head);
-    c.globalAlpha = verdict === "hit" || !scene.asked(n) ? 0.35 : 1;
+    const rest = scene.along ? passedAlpha(m.receptor - top, m.lane) : 1;
+    if (rest <= 0) return;
+    c.globalAlpha = rest * (verdict === "hit" || !scene.asked(n) ? 0.35 : 1);
     const whose = style.players[chart.player[n] - 1]; // of a chart for two
     if (held) {
       const roll = kind === KIND.ROLL;
@@ -234,8 +236,9 @@ export class Highway {
         c.strokeRect(x - 0.56 * m.size, top - 0.56 * m.size, 1.12 * m.size, 1.12 * m.size);
       }
     }
-    c.globalAlpha = 1;
+    c.globalAlpha = rest;
     if (verdict && verdict !== "hit") drawVerdict(c, verdict, x, top, m.size, m.ratio);
+    c.globalAlpha = 1;
   }
 
   /** @param {ReturnType<Highway["measure"]>} m @param {(s: number) => number} y @param {number} from @param {number} until */
@@ -284,6 +287,9 @@ export class Highway {
     return best;
   }
 }
+
+/** What is left of a note that has gone by the receptors: above them stands the verdict. @param {number} above pixels @param {number} lane pixels */
+export const passedAlpha = (above, lane) => clamp(1.5 - (2 * above) / lane, 0, 1);
 
 /**
  * A text's words in lines that fit. @param {string} text @param {(line: string) => boolean} fits

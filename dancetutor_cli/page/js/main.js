@@ -84,7 +84,7 @@ async function main() {
     app.notice = "";
     app.tell("music");
     app.tell("settings");
-    if (app.transport.playing) app.seek(app.transport.second());
+    if (app.transport.playing) app.transport.seek(app.transport.second()); // it is heard from here; whoever plays goes on
   }
 
   /** @param {File} file */

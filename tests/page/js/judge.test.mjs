@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { scrollSpeed } from "../../../dancetutor_cli/page/js/highway.js";
+import { passedAlpha, scrollSpeed } from "../../../dancetutor_cli/page/js/highway.js";
 import { findingFigures, labelsOf, moveNames } from "../../../dancetutor_cli/page/js/labels.js";
 import { fillIn } from "../../../dancetutor_cli/page/js/words.js";
 import { delayOf } from "../../../dancetutor_cli/page/js/calibrate.js";
@@ -149,6 +149,11 @@ test("quick charts have their rows farther apart, so that notes do not lie over 
   assert.ok(quick / 12 > 0.08 && quick < 1.1, String(quick));
   assert.equal(scrollSpeed(rows(1 / 30)), 1.2);
   assert.equal(scrollSpeed([]), 0.42);
+});
+
+test("a note is whole until it is by the receptors, and gone before the verdict's place", () => {
+  assert.deepEqual([-100, 0, 10, 30, 31].map((above) => passedAlpha(above, 40)), [1, 1, 1, 0, 0]);
+  assert.equal(passedAlpha(20, 40), 0.5);
 });
 
 test("a row's moves are named in a dancer's words, each once", () => {
