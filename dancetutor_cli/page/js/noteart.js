@@ -204,9 +204,10 @@ export function drawWord(c, colour, word, x, y, size) {
 export function drawErrors(c, errors, { x, y, width, ratio }) {
   const at = (/** @type {number} */ error) => x + (0.5 * width * Math.max(-WINDOW, Math.min(error, WINDOW))) / WINDOW;
   const colour = (/** @type {number} */ error) => COLOURS[Math.abs(error) <= GOOD ? "hit" : error < 0 ? "early" : "late"];
-  c.globalAlpha = 0.75;
-  c.fillStyle = INK; // notes go by beneath it
-  c.fillRect(x - 0.5 * width - 6 * ratio, y - 8 * ratio, width + 12 * ratio, 22 * ratio);
+  c.globalAlpha = 0.6;
+  c.fillStyle = INK; // notes go by beneath it, and are still seen
+  c.fillRect(x - 0.5 * width - 4 * ratio, y - 7 * ratio, width + 8 * ratio, 14 * ratio);
+  c.globalAlpha = 0.85;
   for (const [from, to, fill] of /** @type {[number, number, string][]} */ ([[-WINDOW, -GOOD, COLOURS.early], [-GOOD, GOOD, COLOURS.hit], [GOOD, WINDOW, COLOURS.late]])) {
     c.fillStyle = fill;
     c.fillRect(at(from), y - 1.5 * ratio, at(to) - at(from), 3 * ratio);
