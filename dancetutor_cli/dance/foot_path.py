@@ -275,7 +275,7 @@ def _stand_pitch(track: FootTrack, times: Array, done: NDArray[np.int64], settin
     touch = np.concatenate(([0.0], pitches[:, 2]))[done]
     leaves = np.array([*(m.lift for m in moves), 1e9])[done]
     leave = np.concatenate((pitches[:, 0], [0.0]))[done]
-    stood = leaves - landed
+    stood = np.maximum(leaves - landed, 1e-9)  # a foot may leave as it lands
     rest = np.where(stood < step.heel_stays, touch, rest)
     drop = np.minimum(step.heel_drop, step.heel_drop_share * stood)
     early = [settings.walk.heel_rise if isinstance(m, Walk) else step.heel_rise for m in moves]

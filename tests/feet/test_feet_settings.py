@@ -111,7 +111,7 @@ def test_findings_are_silenced_by_beat(song: Song) -> None:
 
 def test_an_unknown_rule_names_the_valid_ones(song: Song) -> None:
     configure(song, "feet:\n- when: {path: x.sm}\n  ignore: {2: doublestepp}\n")
-    with pytest.raises(FileError, match="DT201 doublestep"):
+    with pytest.raises(FileError, match="did you mean doublestep"):
         LintRun(LintRequest()).configuration(song.path)
 
 

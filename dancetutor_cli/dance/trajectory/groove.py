@@ -59,6 +59,7 @@ def dancing(tempo: Array, busy: Array, layers: LayerSettings) -> Array:
 
 SEED = 20020716
 OVERSHOOT = 0.1  # how far a smooth path may go beyond what it is near to: 0.06 has been seen
+CALM = 0.4  # part of her sway that she leaves off where she comes to rest
 MOSTLY = 0.6  # part of the way from `groove.mostly` to all the time at which she dances as in jacks
 
 
@@ -106,6 +107,9 @@ def groove_of(plan: Plan, times: Array, engaged: Occupation, context: Context) -
     share = share * (numbers.steps + (1.0 - numbers.steps) * jacks) * grounded
     easy = leisure(plan, times, numbers)
     share *= 1.0 + numbers.leisure * easy
+    if context.stays:  # at the end of a passage she comes to rest
+        landed = max((move.land for track in plan.feet for move in track.moves), default=-np.inf)
+        share *= 1.0 - CALM * smooth((times - landed) / settings.wait.ease)
     late = np.interp(times - settings.layers.beat_late, times, beat)
     deeper = np.maximum(numbers.deeper * jacks, numbers.leisure * np.maximum(easy, engaged.waits))
     sink = (1.0 + deeper) * settings.layers.bounce * late
