@@ -29,18 +29,19 @@ class Crossover(TimedRule):
     dancetutor.yaml can switch it on for other charts.
 
     Not reported:
-    - steps between two rests or jumps that can be danced uncrossed if the other foot begins;
+    - steps between two rests or jumps, if the feet stay uncrossed when the other foot begins;
     - a walk from one pad to the other;
-    - at 0.3 s and slower: where the feet can change on a jack instead, or where one doublestep, out of a jack or to the
-      other pad, avoids the crossover.
+    - steps at 0.3 s and slower, if the feet can change on a jack instead, or if one doublestep (out of a jack, or to
+      the other pad) avoids the crossover.
 
     A single crossed step on the way from one pad to the other is an info.
 
-    `max_seconds`: only steps at most this long after the step before count. With more time a beginner does not cross
-    but starts again with the other foot. So does a beginner at 0.25 s and slower if the next step comes in half that
-    time: an 8th, then a 16th.
-    by-meter: the longest time at which at most `share` per cent of the charts of this meter have the move, and at most
-    0.4 s. On two pads the walk from one to the other crosses the feet too; few of those crossovers are so quick.
+    `max_seconds`: only steps at most this long after the step before count. With more time, beginners do not cross but
+    start again with the other foot. They also do this at 0.25 s and slower, if the next step comes in half that time
+    (an 8th, then a 16th).
+    With by-meter, the limit is the longest time at which at most `share` per cent of the charts of this meter have the
+    move, but at most 0.4 s. On two pads, the walk from one to the other crosses the feet too; few of those crossovers
+    are so quick.
 
     Bad (max_seconds = 0.6):
 
@@ -125,10 +126,10 @@ class CrossedRun(ChartRule):
     """The feet stay crossed over many rows, so the dancer plays with the side or the back to the screen.
 
     `max_rows`: the longest run of crossed rows that is not reported.
-    `max_seconds`: only rows at most this far apart make a run; with more time nobody stays crossed. A rest ends a run
-    if it is about twice the pace of the passage and the other foot goes on uncrossed after it. Players crossed their
-    feet 7,100 times in 168,000 labelled rows. 31 of these runs were longer than five rows, and in nine of ten no step
-    came later than 0.45 s after the one before.
+    `max_seconds`: only rows at most this far apart make a run, because with more time nobody stays crossed. A rest also
+    ends a run if it is about twice the pace of the passage and the feet go on uncrossed with the other foot. In 168,000
+    labelled rows, players crossed their feet 7,100 times. 31 of these runs were longer than five rows, and in nine of
+    ten no step came later than 0.45 s after the one before.
 
     Bad (max_rows = 1, max_seconds = 0.6):
 
@@ -169,7 +170,8 @@ class HeldCrossover(TimedRule):
     """One foot crosses over the other foot, which has to stay on a hold: the dancer can neither switch feet nor turn.
 
     In a usual crossover the other foot takes the next step. Here it cannot, so the crossing foot has to come back the
-    way it went. Crossovers at most four measures apart are one finding: a foot that goes round a held foot makes many.
+    way it went. Crossovers at most four measures apart are one finding, because a foot that goes round a held foot
+    makes many of them.
 
     `max_seconds`: only steps at most this long after the step before count; with more time the dancer turns and comes
     back.

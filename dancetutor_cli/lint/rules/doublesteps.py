@@ -22,28 +22,28 @@ _LED = 3  # the same, between two pads
 class Doublestep(MoveRule):
     """A doublestep: the foot that has just stepped steps again, on another panel, although the other foot is free.
 
-    Players expect left and right in turn. A doublestep makes them stumble, and is mostly an accident of the pattern
-    before it.
+    Players expect left and right to alternate, so a doublestep makes them stumble. Most doublesteps are accidents of
+    the pattern before them.
 
     Not reported:
-    - doublesteps that a hold forces or a mine asks for, and brackets (two panels at once are one step);
-    - steps at another pace than the passage: with twice that time just before or soon after, players take a side panel
-      with the foot of that side;
-    - steps beside two panels that can be jumped, after a wall of mines, or beside a hold on which the feet change: any
-      foot can go on there;
-    - doublesteps that cross the feet, and 16ths that a short crossover solves;
-    - groups of steps that are uncrossed if each group begins with its own foot, where the time between groups is about
-      twice the time between steps;
-    - at 0.25 s and slower: where a quicker group begins with the step, or where the repeat can wait until after a rest.
+    - doublesteps that a hold forces or that a mine asks for, and brackets (two panels at once are one step);
+    - a step just after or soon before a pause of about two steps: there, players step a side panel with the foot of
+      that side;
+    - steps beside two panels that can be jumped, after a wall of mines, or beside a hold on which the feet change:
+      there, players can go on with either foot;
+    - doublesteps that cross the feet, and 16ths where a short crossover avoids the doublestep;
+    - groups of steps, if the time between groups is about twice the time between steps, and the feet stay uncrossed
+      when each group begins with a foot of its own;
+    - steps at 0.25 s and slower, if a quicker group begins with the step, or if the repeat can wait until after a rest.
 
     It is only an info:
-    - on Pump, to or from the centre, at 0.25 s and slower;
-    - if alternating feet would cross once, and a jump follows that uncrosses them;
+    - on Pump, if the step goes to or from the centre, at 0.25 s and slower;
+    - if alternating feet would cross once, and a jump after that uncrosses them;
     - on two pads, after a jack, if alternating feet would be crossed for three steps at most.
 
-    `max_seconds`: only steps at most this long after the step before count; after a longer rest players begin with
-    whichever foot they like. by-meter: the longest time at which at most `share` per cent of the charts of this meter
-    have the move, and at most 0.32 s: quarters of an easy chart make nobody stumble.
+    `max_seconds`: only steps at most this long after the step before count. After a longer rest, players begin with
+    either foot. With by-meter, the limit is the longest time at which at most `share` per cent of the charts of this
+    meter have the move, but at most 0.32 s, because quarters of an easy chart make nobody stumble.
     `min_seconds`: steps closer together are a flam, one movement of the foot.
 
     Bad (max_seconds = 0.6):
@@ -199,12 +199,14 @@ def _own_side(subject: ChartSubject, row: int, *, exchanged: bool = False) -> bo
 class TripleStep(TimedRule):
     """A triple step: one foot plays three rows in a row and moves each time, two doublesteps without a rest.
 
-    Not reported: steps while the other foot is on a hold, taps of a roll, steps around a mine; steps beside two panels
-    that can be jumped, after a wall of mines, or beside a hold on which the feet change (any foot can go on there);
-    steps after a jack that are uncrossed with alternating feet.
+    Not reported:
+    - steps while the other foot is on a hold, taps of a roll, and steps around a mine;
+    - steps beside two panels that can be jumped, after a wall of mines, or beside a hold on which the feet change:
+      there, players can go on with either foot;
+    - steps after a jack, if alternating feet stay uncrossed.
 
-    `max_seconds`: only steps at most this far apart count. by-meter: the longest time at which at most `share` per cent
-    of the charts of this meter have a doublestep (DT201).
+    `max_seconds`: only steps at most this far apart count. With by-meter, the limit is the longest time at which at
+    most `share` per cent of the charts of this meter have a doublestep (DT201).
     `min_seconds`: steps closer together are a flam, one movement of the foot.
 
     Bad (max_seconds = 0.6):

@@ -30,17 +30,17 @@ _RESTED = 0.2  # seconds since its last step, and a foot is as good as the other
 class FastStep(ChartRule):
     """One foot has to travel farther than it can in the time since its last step.
 
-    Whatever the limits, steps that the dancer of the films cannot take are reported: a step within 80 ms of the foot's
-    last step, to a panel that is not next to it. Such steps are reported once in two measures. They are an info in
-    charts of meter 20 and more, in rolls, and where the other foot could take them.
+    Steps that the dancer of the films cannot take are always reported, whatever the limits: steps within 80 ms of the
+    foot's last step, to a panel that is not next to it. They are reported once in two measures. They are an info in
+    charts of meter 20 and more, in rolls, and if the other foot could take them.
 
-    - A flam is not reported if the other foot is free for one of its two steps, or becomes free where its hold ends.
+    - A flam is not reported if the other foot is free for one of its two steps, or becomes free at the end of its hold.
     - Three panels among 16ths, and two, one and two panels in a row, have a message of their own.
-    - Rows less than 30 ms apart are reported as a slip of the grid; three or more rows less than 45 ms apart as a
-      burst, once in two measures.
+    - Rows less than 30 ms apart are reported as a slip of the grid. Three or more rows less than 45 ms apart are
+      reported as a burst, once in two measures.
     - On Pump pads it is an info from meter 14 on, because these players take neighbouring panels with heel and toe.
-      From meter 13 on it is not reported where the other foot is on a hold and can tap a panel next to it.
-    - Three or more other steps of one foot, at most two measures apart, are one finding.
+      From meter 13 on it is not reported if the other foot is on a hold and can tap a panel next to it.
+    - Three or more other such steps of one foot, at most two measures apart, are one finding.
 
     `max_speed`: panel widths per second, in a straight line from panel to panel. `min_seconds`: steps closer together
     are a flam, one movement of the foot, and do not count.

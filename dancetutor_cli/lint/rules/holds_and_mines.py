@@ -18,7 +18,7 @@ _NEAR = 2  # measures
 class BrokenHold(ReaderRule):
     """A hold has no end, an end has no head, or a note stands inside a hold: the games drop one of the two.
 
-    Near a misread row (DT102) nothing is reported: the missing head or end may be in that row.
+    Nothing is reported near a misread row (DT102), because the missing head or end may be in that row.
 
     Bad:
 
@@ -57,10 +57,10 @@ class BrokenHold(ReaderRule):
 class MineUnderHold(TimedRule):
     """A mine comes under a foot that can hardly step aside, because a hold keeps the weight on it.
 
-    The foot is on the hold, or the other foot is and this foot has just stepped. Before a wall of three or more mines
-    nothing is reported: everybody waits between the panels.
+    Either this foot is on the hold, or the other foot is and this foot has just stepped. Nothing is reported before a
+    wall of three or more mines, because everybody waits between the panels there.
 
-    `max_seconds`: the longest time between the step and the mine; a foot has left a tap after about a tenth of a
+    `max_seconds`: the longest time between the step and the mine. A foot has left a tap after about a tenth of a
     second.
 
     Bad (max_seconds = 1.5):
@@ -95,9 +95,9 @@ class MineUnderHold(TimedRule):
 class StuckHold(ChartRule):
     """There is no way to release a hold: a mine waits on its panel, or the limb is needed elsewhere at once.
 
-    `mine_seconds`: a mine on the same panel at most this long after the end of the hold is reported.
+    `mine_seconds`: a mine on the same panel is reported if it comes at most this long after the end of the hold.
     `min_seconds`: the least time between the end of the hold and the limb's next step on another panel. 0 allows any
-    time, because the games still count a hold that is left shortly before its end.
+    time, because the games still count a hold that is released shortly before its end.
 
     Bad (mine_seconds = 0.6):
 

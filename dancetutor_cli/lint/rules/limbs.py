@@ -18,14 +18,14 @@ _NEAR = 0.3  # seconds
 class LowBracket(TimedRule):
     """A bracket: one foot has to press two panels, in a chart whose players do not know brackets yet.
 
-    Three panels down at once are a hand (DT302). Not reported: the same two panels again and again, or two panels of
-    which a foot has just stepped one; these are jumps, however quick. All brackets of a chart are one finding.
+    Three panels down at once are a hand (DT302). Not reported: the same two panels again and again, and two panels if a
+    foot has just stepped on one of them. Players jump these, however quick. All brackets of a chart are one finding.
 
-    `least_meter`: the meter from which on brackets are expected.
-    `max_seconds`: only rows at most this long after the step before count, less than a 16th at 150 BPM; with more time
-    players jump.
-    `most_quick`: in per cent. Nothing is reported if more of the steps than this come within `max_seconds`: the chart
-    is not for beginners, whatever its meter says.
+    `least_meter`: from this meter on, players are expected to know brackets.
+    `max_seconds`: only rows at most this long after the step before count (less than a 16th at 150 BPM). With more
+    time, players jump.
+    `most_quick`: per cent of the steps. If more steps than this come within `max_seconds`, nothing is reported: the
+    chart is not for beginners, whatever its meter says.
 
     Bad (least_meter = 10, max_seconds = 0.6, most_quick = 100):
 
@@ -80,10 +80,9 @@ _SLIP = 0.02  # seconds between two rows that are meant as one
 class Unplayable(MoveRule):
     """No limb is left for a step of this row: both feet and both hands already press something.
 
-    Such rows at most two measures apart are one finding. It is an info in charts of meter 99 (gimmicks) and where rows
-    come less than 20 ms apart. It is also an info where a hand would have to come down again within 0.4 s, because a
-    foot may bracket instead. The dancer of the films does not play such steps, nor steps that a foot would have to leap
-    for (DT305).
+    Such rows at most two measures apart are one finding. It is an info in charts of meter 99 (gimmicks), and for rows
+    less than 20 ms apart. It is also an info if a hand would have to come down again within 0.4 s, because a foot may
+    bracket instead. The dancer of the films leaves out such steps, and steps that are too far for a foot (DT305).
 
     Bad: five panels at once.
 
@@ -142,10 +141,10 @@ class Hand(MoveRule):
 
     Off for most charts; configs/lint/default.yaml switches it on for the lower difficulties.
 
-    Skipped: a chart of one row, and a chart of meter 1 or less that plays like `least_meter` or harder
-    (docs/meter.md). Such a meter says nothing.
+    Charts of one row are skipped. So are charts of meter 1 or less that play like `least_meter` or harder
+    (docs/meter.md), because such a meter says nothing.
 
-    `least_meter`: the meter from which on hands are expected, whatever the difficulty.
+    `least_meter`: from this meter on, players are expected to know hands, whatever the difficulty.
 
     Bad (least_meter = 10):
 

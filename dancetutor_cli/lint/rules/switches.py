@@ -18,10 +18,11 @@ _LONGER = 1.4  # times the pace of the run: a pause before it, in which a foot i
 class Footswitch(MoveRule):
     """A footswitch: one foot takes over the panel of the other, in a chart whose players do not know footswitches yet.
 
-    Off for most charts; configs/lint/default.yaml switches it on for the lowest difficulties. To these players two
-    steps on one panel are a jack. A footswitch is reported only in two cases: the author asks for it (a mine just
-    before it, or pinned feet), or a jack puts the player on the wrong foot for at least eight quick steps without a
-    rest or a jack. Without a mine nothing is reported if the player can jack there and go on without crossing.
+    Off for most charts; configs/lint/default.yaml switches it on for the lowest difficulties. For these players, two
+    steps on one panel are a jack. So a footswitch is reported only in two cases: the author asks for it (by a mine just
+    before it, or by pinned feet), or a jack would put the player on the wrong foot for at least eight quick steps
+    without a rest or a jack. Without a mine, nothing is reported if the player can jack there and go on without
+    crossing.
 
     `max_seconds`: only steps at most this long after the step before count; with more time the same foot steps again.
 
@@ -86,9 +87,12 @@ def _leads_a_run(subject: ChartSubject, row: int, quick: float) -> bool:
 class Sideswitch(MoveRule):
     """A sideswitch: one foot takes over the left or right panel of the other, so the body has to turn sideways.
 
-    Not reported, because players jack there with the same foot: in a passage of jacks, where a panel shortly before is
-    stepped on twice, and where the steps up to the next rest are uncrossed after a jack. A mine just before it asks for
-    the switch, and then it is reported. Switches with a bracket belong to DT210.
+    Not reported, because players jack with the same foot:
+    - in a passage of jacks;
+    - if a panel shortly before is stepped on twice;
+    - if the feet stay uncrossed from a jack up to the next rest.
+
+    A mine just before the step asks for the switch, so it is then reported. DT210 reports switches with a bracket.
 
     `max_seconds`: only steps at most this long after the step before count; with more time the same foot steps again.
 
@@ -156,7 +160,8 @@ class JumpFootswitch(MoveRule):
     """A quick jump footswitch: a foot on one panel of the jump has to move to the other panel of it.
 
     `max_seconds`: only jumps at most this long after the step before count; with more time nobody notices.
-    by-meter: the longest time at which at most `share` per cent of the charts of this meter have the move.
+    With by-meter, the limit is the longest time at which at most `share` per cent of the charts of this meter have the
+    move.
 
     Bad (max_seconds = 0.6): the right foot has just come to the panel that the left foot needs.
 

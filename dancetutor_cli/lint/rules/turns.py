@@ -27,29 +27,30 @@ class Spin(MoveRule):
     """A spin: the pattern turns the dancer past 180 degrees, unless a foot doublesteps to avoid it.
 
     Not reported:
-    - steps between two rests or jumps that can be danced uncrossed if the other foot begins; a rest is about twice the
-      pace of the passage, or the long half of a swing rhythm, and two panels at once can always be jumped;
+    - steps between two rests or jumps, if the feet stay uncrossed when the other foot begins. A rest is about twice the
+      pace of the passage, or the long half of a swing rhythm; two panels at once can always be jumped;
     - a walk along two pads on which one foot passes the other;
-    - a phrase that begins after a jump and needs one crossover in place of the spin;
+    - a phrase that begins after a jump, if one crossover avoids the spin;
     - spins in a burst, which DT305 reports.
 
     More than four spins in a chart are one finding. A spin in a jump is DT203.
 
     It is only an info:
     - on Pump from meter 20 on;
-    - for twists on a pad of more than four panels, as around the Pump centre: no four steps go around four panels;
+    - for twists on a pad of more than four panels that do not go around four panels, such as twists around the Pump
+      centre;
     - where mines leave no other panel.
 
     `max_seconds`: only steps at most this long after the step before count. With more time players turn back instead.
 
-    Bad (max_seconds = 0.6): the crossover goes on in place of being unwound.
+    Bad (max_seconds = 0.6): the feet turn on instead of uncrossing.
 
         1000  L
         0100  R
         0001  L
         0010  R
 
-    Better (max_seconds = 0.6): back the way it came.
+    Better (max_seconds = 0.6): the last step goes back.
 
         1000  L
         0100  R
@@ -167,7 +168,8 @@ def _between_mines(subject: ChartSubject, row: int) -> bool:
 class JumpSpin(ChartRule):
     """A spin in a jump: the feet land on the jump only after turning past the dancer's back.
 
-    Both feet leave the pad, so nothing guides the turn as in a usual spin, and the screen is out of sight on landing.
+    Both feet leave the pad, so nothing guides the turn as in a usual spin, and the player cannot see the screen on
+    landing.
 
     Bad:
 

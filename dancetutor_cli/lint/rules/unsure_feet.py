@@ -50,9 +50,9 @@ class FeetWish(ChartRule):
 class AmbiguousStart(ChartRule):
     """A tie: the other foot costs the same, so some players take this step with the left foot and some with the right.
 
-    Inside a chart a tie is reported only if the feet of the steps after it depend on it. A tie after a jump that can be
-    turned round is not reported. A finding of another rule about feet becomes DT207 where other feet cost at most
-    `coin-toss` more (docs/linter.md).
+    Inside a chart, a tie is reported only if the feet of the next steps depend on it. A tie after a jump is not
+    reported if the jump can be stepped the other way round. A finding of another rule about feet becomes DT207 if other
+    feet cost at most `coin-toss` more (docs/linter.md).
 
     Bad:
 
@@ -61,7 +61,7 @@ class AmbiguousStart(ChartRule):
         0100
         0010
 
-    Better: a panel of one side says which foot begins.
+    Better: a side panel decides which foot begins.
 
         1000  L
         0100  R
@@ -85,15 +85,16 @@ class AmbiguousStart(ChartRule):
 class UnsureFeet(ChartRule):
     """Here the solver is least sure which foot steps: these are the least sure passages of the chart.
 
-    "60 % sure" means that about 60 of 100 such rows are stepped as shown. Checking these rows helps more than checking
-    all others; if you disagree, pin the measure with `{dt1! ...}`. Nothing is reported if no confidence is known.
+    "60 % sure" means that about 60 of 100 such rows are stepped as shown. If you check feet by hand, check these rows
+    first. If you disagree, pin the measure with `{dt1! ...}`. Nothing is reported if no confidence is known.
 
-    `below`: rows that are less sure than this count, in per cent. Such rows with at most two others between them make
-    one passage.
-    `most`: the most passages of a chart that are reported, those with the most rows that are likely to be wrong.
+    `below`: rows that are less sure than this, in per cent, count. Such rows with at most two other rows between them
+    make one passage.
+    `most`: the largest number of passages of a chart that are reported. Those with the most rows that are likely to be
+    wrong come first.
 
-    Bad: a footswitch that may as well be a jack. Better: a step on another panel before it, or a mine where the foot
-    has to be lifted; or leave it as it is, if either foot will do.
+    Bad: a footswitch that may also be a jack. Better: a step on another panel before it, or a mine where the foot has
+    to be lifted. If either foot will do, leave it as it is.
     """
 
     code = "DT213"
