@@ -165,8 +165,13 @@ class Estimate:
         return _bill(f"{self.meter:.1f}{self.span}", self.terms, 1)
 
     def most(self, count: int) -> str:
-        """The number with so many terms at most: "11.4: streams +3.1, crossovers +0.6"."""
-        return _bill(f"{self.meter:.1f}", self.terms, 1, count)
+        """The number with so many terms at most: "11.4 on the ITG scale: streams +3.1, crossovers +0.6"."""
+        return _bill(f"{self.meter:.1f} on the {_SCALE_NAMES[self.scale]} scale", self.terms, 1, count)
+
+    @property
+    def short(self) -> str:
+        """For a line about a chart: "ITG 11.4"; "about ITG 11.4" if the scale is assumed."""
+        return f"{'' if self.is_scale_known else 'about '}{_SCALE_NAMES[self.scale]} {self.meter:.1f}"
 
     @property
     def span(self) -> str:
@@ -199,6 +204,11 @@ class ScoreEstimate:
     def span(self) -> str:
         """For people: " on the DDR scale (14.35 to 14.89)"."""
         return f" on the {_SCALE_NAMES['ddr']} scale ({self.low:.2f} to {self.high:.2f})"
+
+    @property
+    def short(self) -> str:
+        """For a line about a chart: "DDR 14.62"."""
+        return f"{_SCALE_NAMES['ddr']} {self.meter:.2f}"
 
 
 def _bill(

@@ -196,8 +196,8 @@ def _counts(chart: ChartResult) -> str:
     words = [f"{n} {name}{'' if n == 1 else 's'}" for n, name in zip(found, ("error", "warning"), strict=True) if n]
     counted = [f"{n} {name}{'' if n == 1 else 's'}" for move, name in _MOVES.items() if (n := chart.counts.get(move))]
     rows = f"{chart.row_count} rows" if chart.playable else "no pad"
-    likes = [f"plays like meter {chart.estimate.meter:.1f}"] if chart.estimate else []
-    likes += [f"scores like meter {chart.score.meter:.2f}"] if chart.score else []
+    likes = [f"plays like {chart.estimate.short}"] if chart.estimate else []
+    likes += [f"scores like {chart.score.short}"] if chart.score else []
     return f"{safe(chart.label)}: {', '.join([*likes, rows, *counted])}" + (f"; {' and '.join(words)}" if words else "")
 
 

@@ -311,7 +311,7 @@ def explain(rule: type[Rule]) -> str:
         share = settings["share"]
         lines += [
             "",
-            f"Slowest one that is reported, by meter (at most {share:g} % of the charts of a meter have one as quick):",
+            f"The slowest {rule.times} that is reported, by meter (at most {share:g} % of its charts have one as quick):",
         ]
         lines += [f"  {line}" for line in described(rule.times, share, rule.slowest)]
     return "\n".join(lines) + "\n"
@@ -328,5 +328,5 @@ def explain_all() -> str:
         summary = (inspect.getdoc(rule) or "").splitlines()[0]
         severity, more, _ = default_severity(code).partition(";")
         lines.append(f"  {code} {rule.name:22} {severity + '*' * len(more):8} {summary}")
-    lines += ["", "* different for some charts; --explain RULE says for which"]
+    lines += ["", "* different for some charts; --explain RULE lists them"]
     return "\n".join(lines) + "\n"

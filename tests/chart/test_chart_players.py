@@ -126,7 +126,7 @@ def test_what_is_true_of_the_whole_chart_is_told_once(both: Path) -> None:
     both.write_text(both.read_text().replace("#CREDIT:C;", "#CREDIT:;"))
     result = analyze_file(LintRun(LintRequest()).task(both))
     credit = [(finding.message, chart) for finding, chart in result.all_findings() if finding.rule == "DT502"]
-    assert credit == [("nothing says who made the charts: #CREDIT is empty", None)]
+    assert credit == [("the charts name no author: #CREDIT is empty; write the name there", None)]
 
 
 def test_markers_of_both_stand_in_the_file_and_go_again(both: Path) -> None:

@@ -27,9 +27,9 @@ class DuplicateDifficulty(ReaderRule):
 
 
 class SameNotes(FileRule):
-    """Two charts of the same steps type have the same notes at the same times: one of them was meant to be different.
+    """Two charts of the same steps type have the same notes at the same times: one of them should differ.
 
-    Bad: Hard copied to Challenge and left so. Better: only one of them.
+    Bad: a Challenge that is an unchanged copy of the Hard. Better: only one of them.
     """
 
     code = "DT114"
@@ -138,7 +138,7 @@ class OrderOfPlay(SongRule):
         hardest = max(below, key=lambda one: one.estimate.meter, default=None)
         if hardest is not None and hardest.estimate.meter - chart.estimate.meter >= self.options["by"]:
             here, there = f"{chart.estimate.meter:.1f}", f"{hardest.estimate.meter:.1f}"
-            message = f"plays like {here} and is easier than {hardest.label}, which plays like {there}"
+            message = f"plays like meter {here}, easier than {hardest.label}, which plays like meter {there}"
             yield self.finding(message, chart.place)
 
 

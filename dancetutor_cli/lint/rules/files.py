@@ -29,9 +29,9 @@ class Unreadable(FileRule):
 
 
 class DifferingPair(FileRule):
-    """The song has a .sm and a .ssc with different charts: games that read the one play something else than the others.
+    """The song has a .sm and a .ssc with different charts: some games read one, some the other.
 
-    Reported for the .ssc, which newer games load.
+    It is reported for the .ssc, which newer games read.
 
     Bad: an edit in the .ssc that the .sm never got.
 
@@ -143,7 +143,7 @@ def _is_script(subject: FileSubject, name: str) -> bool:
 class OddTag(ReaderRule):
     """A tag has a wrong value: a decimal comma, a meter that is not a number, a difficulty that no game knows.
 
-    A lost value that no player sees, such as that of MENUCOLOR, is an info.
+    If no player sees the lost value, such as that of MENUCOLOR, it is an info.
 
     Bad: #OFFSET:1,5;
 

@@ -65,7 +65,7 @@ class MusicEnd(FileRule):
 
 
 class Preview(FileRule):
-    """#SAMPLESTART and #SAMPLELENGTH name a part outside the music, or an empty one: the games play something else.
+    """#SAMPLESTART and #SAMPLELENGTH name a part outside the music, or an empty one: the games play another part.
 
     `tolerance`: a preview that ends at most this many seconds after the music is not reported. Without the tags the
     games choose a part.

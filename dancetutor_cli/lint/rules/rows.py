@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 class OddTiming(ReaderRule):
     """A BPM, stop, delay or warp is negative, is not a number, overlaps another one or has no BPM before it.
 
-    Negative values are an old gimmick. #WARPS in .ssc do the same openly. They are an info, once for each file.
+    Negative values are an old gimmick, for which .ssc files have #WARPS. They are an info, once for each file.
 
     Bad: #BPMS:0.000;
 
@@ -77,8 +77,8 @@ class OffGrid(ChartRule):
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each run of such rows, at its first."""
         for tick, line, count in subject.notes.off_grid([int(name) for name in self.options["grid"]]):
-            more = f" and {count - 1} more after it" if count > 1 else ""
-            yield self.finding(f"this note{more} is on no {self._names()}", subject.at_tick(tick, line))
+            notes = "this note is" if count == 1 else f"this note and {count - 1} more after it are"
+            yield self.finding(f"{notes} on no {self._names()}", subject.at_tick(tick, line))
 
     def _names(self) -> str:
         names = [f"{name}{'nd' if name % 10 == 2 and name != 12 else 'th'}" for name in self.options["grid"]]

@@ -110,7 +110,7 @@ _LEAST = {"GREEK": 3}  # letters of a word: single ones stand for something else
 class Translit(FileRule):
     """Title, subtitle or artist is not in Latin letters, and no transliteration is given.
 
-    Players who cannot read it cannot search for it, and some fonts of the games lack its letters.
+    Players who cannot read the letters cannot search for the song, and some fonts of the games lack the letters.
 
     Bad: #TITLE:\u65e5\u672c; without #TITLETRANSLIT. Better: #TITLETRANSLIT:Nihon;
     """
@@ -192,10 +192,10 @@ class Credit(FileRule):
         anonymous = [chart for chart in charts if not (chart.tags.get("CREDIT", "") + chart.description).strip()]
         if not anonymous:
             return
-        said, place = "nothing says who made the charts", subject.tag_place("CREDIT")
+        said, place = "the charts name no author", subject.tag_place("CREDIT")
         if len(anonymous) < len(charts):
-            said, place = f"nothing says who made {_labels(anonymous)}", subject.place(anonymous[0].line)
-        yield self.finding(f"{said}: #CREDIT is empty", place)
+            said, place = f"no author is named for {_labels(anonymous)}", subject.place(anonymous[0].line)
+        yield self.finding(f"{said}: #CREDIT is empty; write the name there", place)
 
 
 _MOST_LABELS = 3  # charts that are named

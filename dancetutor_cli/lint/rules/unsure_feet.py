@@ -77,9 +77,9 @@ class AmbiguousStart(ChartRule):
         for row, resolved in subject.ties():
             begins = row == subject.step_rows[0]
             if (begins or not resolved) and not subject.is_jump(row):
-                after = "the feet after it are the same" if resolved else "the feet after it depend on it"
-                verb = "begin" if begins else "come"
-                yield self.finding(f"either foot can {verb} here at the same cost; {after}", subject.at_row(row))
+                after = "the feet after it are the same" if resolved else "the feet after it depend on this choice"
+                verb = "begin here" if begins else "take this step"
+                yield self.finding(f"either foot can {verb} at the same cost; {after}", subject.at_row(row))
 
 
 class UnsureFeet(ChartRule):
