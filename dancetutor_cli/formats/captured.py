@@ -15,7 +15,7 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.formats.bvh import read_bvh
 from dancetutor_cli.formats.npz import read_npz
-from dancetutor_cli.run.errors import FileError, UsageError
+from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.files import one_of
 
 Array = NDArray[np.float64]
@@ -34,11 +34,11 @@ def read_captured(path: Path, animation: str | None = None) -> CapturedMotion:
 
     Raises
     ------
-    UsageError for another suffix, FileError, one line, for a file that cannot be used.
+    FileError, one line, for another suffix and for a file that cannot be used.
     """
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        raise UsageError(f"{path}: the name of a motion must end in {one_of(SUFFIXES)}")
+        raise FileError(path, f"the name of a motion must end in {one_of(SUFFIXES)}")
     if suffix in (".glb", ".vrm"):
         return _of_container(read_container(path), animation)
     return of_motion(path, read_bvh(path, ends=True) if suffix == ".bvh" else read_npz(path))
@@ -95,7 +95,7 @@ def _find_animation(container: Container, wanted: str | None) -> dict[str, Any]:
         if animation.get("name") == wanted:
             return animation
     names = ", ".join(str(a.get("name", ""))[:40] for a in animations[:40])
-    raise UsageError(f"{container.path}: there is no animation {wanted!r}; there are: {names}")
+    raise FileError(container.path, f"there is no animation {wanted!r}; there are: {names}")
 
 
 def _channels(container: Container, animation: dict[str, Any]) -> list[tuple[int, str, Array, Array]]:

@@ -82,7 +82,7 @@ def test_sentences_tell_what_the_feet_do() -> None:
     passage = Passage(8, 12, 1.0, 9.0, 5.0, 4.0, 32, (2, 0), 135.0, 0, 1, 0, 0, 0, 3, 0, 0, 1)
     assert sentence(passage, languages()["en"]) == (
         "32 steps, the left foot crosses over 2 times, a foot takes two panels at once once, both feet jump 3 times, "
-        "she turns up to 135°, in one row the other foot is nearly as good."
+        "the dancer turns up to 135°, in one row the other foot is nearly as good."
     )
     assert "der linke Fuß kreuzt 2-mal" in sentence(passage, languages()["de"])
 
