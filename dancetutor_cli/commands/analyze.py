@@ -73,7 +73,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     "--output-file",
     type=GivenPath(dir_okay=False),
     metavar="FILE",
-    help="Where to write: a file.  [default: standard output]",
+    help="Write the output here: a file.  [default: standard output]",
 )
 @click.option(
     "--fail-on",
@@ -118,14 +118,14 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 @click.option(
     "--full/--brief",
     default=None,
-    help="Full: a table for each chart and rows for each finding. Brief: at most a screen for a song and a page for a "
-    "pack.  [default: brief at a terminal, otherwise one line per finding]",
+    help="Full: print a table for each chart and the rows around each finding. Brief: print at most a screen for a "
+    "song and a page for a pack.  [default: brief at a terminal, otherwise one line per finding]",
 )
 @click.option(
     "--statistics",
     is_flag=True,
-    help="Print only the number of findings of each rule. With --full: the findings too, before these numbers. With "
-    "another format than text: the numbers to standard error.",
+    help="Print only the number of findings of each rule. With --full, print the findings first. In formats other than "
+    "text, the numbers go to standard error.",
 )
 @click.option(
     "--sheet",

@@ -67,7 +67,7 @@ class AnimateOptions:
     "--output",
     type=_FILE,
     metavar="FILE",
-    help=f"Where to write: a {one_of(FORMATS)} file.  [default: SONG-difficulty.glb]",
+    help=f"Write the output here: a {one_of(FORMATS)} file.  [default: SONG-difficulty.glb]",
 )
 @click.option(
     "--fps",
@@ -109,7 +109,7 @@ class AnimateOptions:
     default=1,
     show_default=True,
     metavar="N",
-    help="Number of processes. More than one help with songs over two minutes.",
+    help="Number of processes. More than one is faster for songs over two minutes.",
 )
 @click.option("--yes", is_flag=True, help="Do not ask, even if the song is very long.")
 @character_option

@@ -56,7 +56,7 @@ Register-ArgumentCompleter -Native -CommandName %(prog_name)s -ScriptBlock {
 def command(shell: str | None, only_print: bool, remove: bool) -> None:
     """Make the Tab key complete commands, options and names.
 
-    SHELL is bash, zsh, fish or powershell; without it, the shell that runs. It works from the next window on.
+    Name the shell, or leave it out for the one that you use now. Completion works in windows that you open afterwards.
     """
     name = shell or running_shell()
     script = script_for(name)

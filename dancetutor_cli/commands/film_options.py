@@ -136,7 +136,7 @@ film_options = combined(
         type=GivenPath(),
         multiple=True,
         metavar="FILE.npz",
-        help="Draw this motion, baked by `animate`. For a chart for two give both.",
+        help="Draw this motion, which `animate` wrote. For two players, give both files.",
     ),
     click.option("--show-findings", is_flag=True, help="Show the findings of the linter, too (for authors)."),
     language_option("Language of the words.", ENGLISH),

@@ -61,7 +61,7 @@ class PageOptions:
     "--output",
     type=_FILE,
     metavar="FILE|DIR",
-    help="Where to write: an .html file, or a folder for a folder of charts.  [default: SONG-difficulty.html, pages]",
+    help="Write the output here: an .html file, or a folder if PATH is one.  [default: SONG-difficulty.html, pages]",
 )
 @click.option("--music", is_flag=True, help="Put the music into the page; without it the page asks for the file.")
 @play_option
@@ -82,7 +82,7 @@ class PageOptions:
     default=1,
     show_default=True,
     metavar="N",
-    help="Number of processes. More than one help with a folder and with songs over two minutes.",
+    help="Number of processes. More than one is faster for folders and for songs over two minutes.",
 )
 @quiet_option
 @exclude_option

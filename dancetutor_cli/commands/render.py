@@ -44,7 +44,7 @@ _NO_BACKGROUND = ("poses", "section", "rate", "loop", "count_in", "metronome", "
     "--output",
     type=GivenPath(),
     metavar="FILE|DIR",
-    help=f"Where to write: a {one_of(FILES)} file, or a folder for a folder of charts.  "
+    help=f"Write the output here: a {one_of(FILES)} file, or a folder if PATH is one.  "
     "[default: SONG-difficulty.mp4, videos]",
 )
 @click.option("--frames", type=GivenPath(), metavar="DIR", help="Write one PNG per frame into this folder, not a film.")

@@ -47,7 +47,7 @@ class RetargetOptions:
     type=_FILE,
     required=True,
     metavar="FILE",
-    help=f"Where to write: a {one_of(SUFFIXES)} file; a .html page shows input and output.",
+    help=f"Write the output here: a {one_of(SUFFIXES)} file; a .html page shows input and output.",
 )
 @click.option(
     "--character",
@@ -82,8 +82,8 @@ class RetargetOptions:
 def command(file: Path, options: RetargetOptions) -> None:
     """Put the motion of FILE (.bvh, .glb, .vrm or .npz) on a character. A ragdoll follows it.
 
-    Joints are recognised by their names, as H-Anim, CMU, Mixamo, Unreal, Rigify and others write them. The body keeps
-    its directions, and the feet stand where the captured feet stood, in proportion to the character's legs.
+    The joints are found by their names; those of H-Anim, CMU, Mixamo, Unreal, Rigify and others are known. The limbs
+    keep their directions, and the feet stand where the captured feet stood, in proportion to the character's legs.
     """
     from dancetutor_cli.dance.physics.pipeline import wishes_of
     from dancetutor_cli.formats.retarget import Retargeting, RetargetTask

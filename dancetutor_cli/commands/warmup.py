@@ -93,7 +93,7 @@ def _draw(prepared: PreparedFilm, quality: Quality) -> None:
 def command(quiet: bool) -> None:
     """Compile everything once, so that later runs start at once.
 
-    Solves, bakes and draws a few frames of the demo song, which fills numba's cache.
+    Solve, bake and draw a few frames of the demo song. This fills the cache of compiled code.
     """
 
     begin = time.monotonic()

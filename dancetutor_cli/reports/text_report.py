@@ -311,7 +311,7 @@ def explain(rule: type[Rule]) -> str:
         share = settings["share"]
         lines += [
             "",
-            f"The slowest {rule.times} that is reported, by meter (at most {share:g} % of its charts have one as quick):",
+            f"The slowest {rule.times} that is reported, by meter (at most {share:g} % of the charts are as quick):",
         ]
         lines += [f"  {line}" for line in described(rule.times, share, rule.slowest)]
     return "\n".join(lines) + "\n"
