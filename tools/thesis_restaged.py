@@ -39,6 +39,7 @@ from thesis_figures import (
 from thesis_pictures import picture
 
 from dancetutor_cli.dance.motion import Motion, sample
+from dancetutor_cli.dance.physics.blend import Blend
 from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, Wishes, through_ragdoll
 from dancetutor_cli.dance.physics.style import PARTS, Spring, Style, load_style
 from dancetutor_cli.formats.retarget import Retargeting, RetargetTask
@@ -275,7 +276,10 @@ def measured(experiment: Experiment, clips: dict[str, Motion]) -> list[dict[str,
     for row in experiment.rows:
         try:
             wishes = FULL if row.corrected else OWN
-            runs = {name: Taken(motion, through_ragdoll(motion, row.style, wishes)) for name, motion in clips.items()}
+            runs = {
+                name: Taken(motion, through_ragdoll(motion, Blend.of(row.style), wishes))
+                for name, motion in clips.items()
+            }
         except DancetutorError:  # the engine says that it fails
             out.append({"words": row.words})
             continue

@@ -206,7 +206,7 @@ def _followed(motion: Motion, piece: Piece, ragdoll: RagdollStyle) -> BakedPiece
     from dancetutor_cli.dance.physics.pipeline import through_ragdoll
 
     wishes, (first, last) = ragdoll.wishes.within(motion.times[0], motion.times[-1]), piece.kept_span
-    passed = through_ragdoll(motion, ragdoll.style, wishes)
+    passed = through_ragdoll(motion, ragdoll.blend, wishes)
     add_hair(motion.skeleton, motion.times, passed.motion.rotations, passed.motion.root, piece.context.settings.hair)
     seconds = [*(trip.second for trip in wishes.trips), *(push.second for push in wishes.pushes)]
     lines = zip(seconds, passed.motion.notes[len(motion.notes) :], strict=True)

@@ -23,7 +23,6 @@ from dancetutor_cli.feet.play import dropped_notes_message
 if TYPE_CHECKING:
     from dancetutor_cli.dance.physics.blend import Blend
     from dancetutor_cli.dance.physics.pipeline import Wishes
-    from dancetutor_cli.dance.physics.style import Style
 
 
 # The keys of a bake: which times get one, so that what a viewer draws between them holds every contact too.
@@ -139,7 +138,7 @@ BLEND = 0.5  # seconds before a piece's end in which it turns into the next one
 class RagdollStyle:
     """The style or styles in which a ragdoll follows the dancer, and what befalls her."""
 
-    style: Style | Blend
+    blend: Blend
     wishes: Wishes
 
 

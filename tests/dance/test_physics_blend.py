@@ -165,7 +165,7 @@ def test_a_blend_is_between_its_styles() -> None:
     given = bake_plan(plan, context, 60.0)
     lazy, fierce = load_style("lazy"), load_style("fierce")
     both = Blend((lazy, fierce), ((0.5, 0.5),))
-    made = [through_ragdoll(given, one).motion for one in (lazy, both, fierce)]
+    made = [through_ragdoll(given, one).motion for one in (Blend.of(lazy), both, Blend.of(fierce))]
     hand = given.skeleton.index("l_radiocarpal")
     places = [world_transforms(m.skeleton, m.rotations, m.root)[0][:, hand] - m.root for m in made]
     apart = [float(np.linalg.norm(a - b, axis=1).mean()) for a, b in combinations(places, 2)]

@@ -9,6 +9,7 @@ from physics_phrase import phrase
 
 from dancetutor_cli.character.humanoid import humanoid_of
 from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.physics.blend import Blend
 from dancetutor_cli.dance.physics.captured import CapturedMotion, on_body
 from dancetutor_cli.dance.physics.pipeline import through_ragdoll
 from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN
@@ -143,5 +144,5 @@ def test_the_ragdoll_follows_captured_people_as_closely_as_the_dancer(shared_dat
     made = on_dancer(of_motion(path, read_bvh(path)))
     part = slice(0, 900)
     motion = replace(made, times=made.times[part], rotations=made.rotations[part], root=made.root[part])
-    mean, deviation, largest = through_ragdoll(motion, load_style("neutral")).distances.worst
+    mean, deviation, largest = through_ragdoll(motion, Blend.of(load_style("neutral"))).distances.worst
     assert mean <= MEAN and deviation <= DEVIATION and largest <= LARGEST

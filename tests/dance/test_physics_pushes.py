@@ -6,6 +6,7 @@ import pytest
 
 from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.physics.blend import Blend
 from dancetutor_cli.dance.physics.pipeline import Wishes, through_ragdoll
 from dancetutor_cli.dance.physics.pushes import Push, Stumble, parse_push
 from dancetutor_cli.dance.physics.style import load_style
@@ -13,7 +14,7 @@ from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.run.errors import UsageError
 
-NEUTRAL = load_style("neutral")
+NEUTRAL = Blend.of(load_style("neutral"))
 WHEN = 1.72
 
 

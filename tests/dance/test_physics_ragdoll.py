@@ -11,6 +11,7 @@ from physics_phrase import phrase
 
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics import style as backend
+from dancetutor_cli.dance.physics.blend import Blend
 from dancetutor_cli.dance.physics.pipeline import RagdollResult, Wishes, through_ragdoll
 from dancetutor_cli.dance.physics.ragdoll import bones_of, points_of, pose_of, turns_of
 from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN
@@ -21,6 +22,10 @@ from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.run.errors import DancetutorError, UnavailableError, UsageError
 
 NEUTRAL = load_style("neutral")
+
+
+def followed(given: Motion, style: Style, own_legs: bool = False) -> RagdollResult:
+    return through_ragdoll(given, Blend.of(style), Wishes(own_legs=own_legs))
 
 
 def changed(style: Style = NEUTRAL, frequency: float | None = None, damping: float = 0.5, **numbers: float) -> Style:
@@ -47,7 +52,7 @@ def given() -> Motion:
 
 @pytest.fixture(scope="module")
 def neutral(given: Motion) -> RagdollResult:
-    return through_ragdoll(given, NEUTRAL)
+    return followed(given, NEUTRAL)
 
 
 def test_the_goals_of_one_on_one_simulation_hold(neutral: RagdollResult) -> None:
@@ -64,13 +69,13 @@ def test_the_pose_of_a_ragdoll_is_read_back(given: Motion) -> None:
 
 
 def test_two_runs_give_the_same_bytes(given: Motion, neutral: RagdollResult) -> None:
-    again = through_ragdoll(given, NEUTRAL)
+    again = followed(given, NEUTRAL)
     assert again.motion.rotations.tobytes() == neutral.motion.rotations.tobytes()
     assert again.motion.root.tobytes() == neutral.motion.root.tobytes()
 
 
 def test_feet_stay_where_the_input_has_them(given: Motion) -> None:
-    passed = through_ragdoll(given, changed(frequency=3.0))
+    passed = followed(given, changed(frequency=3.0))
     feet = [given.skeleton.index(f"{s}_{n}") for s in "lr" for n in ("talocrural", "metatarsal")]
     before, turned = world_transforms(given.skeleton, given.rotations, given.root)
     after, turned_after = world_transforms(given.skeleton, passed.motion.rotations, passed.motion.root)
@@ -80,7 +85,7 @@ def test_feet_stay_where_the_input_has_them(given: Motion) -> None:
 
 
 def test_without_extra_points_limbs_turn_about_themselves(given: Motion, neutral: RagdollResult) -> None:
-    loose = through_ragdoll(given, replace(NEUTRAL, extra_points=False))
+    loose = followed(given, replace(NEUTRAL, extra_points=False))
     assert degrees_off(given, neutral, "l_radiocarpal") < 3.0
     assert degrees_off(given, loose, "l_radiocarpal") > 20.0
 
@@ -101,13 +106,13 @@ def test_without_limits_a_knee_that_nothing_holds_bends_the_wrong_way() -> None:
 def test_without_joint_stiffness_joints_wobble(given: Motion) -> None:
     loose = changed(frequency=8.0, damping=0.05, stiffness=0.0)
     stiff = changed(loose, stiffness=1.0)
-    assert wobble(through_ragdoll(given, stiff)) < 0.8 * wobble(through_ragdoll(given, loose))
+    assert wobble(followed(given, stiff)) < 0.8 * wobble(followed(given, loose))
 
 
 def test_low_update_and_sample_rates_shake(given: Motion, neutral: RagdollResult) -> None:
-    slow = through_ragdoll(given, changed(update_rate=120))
+    slow = followed(given, changed(update_rate=120))
     assert slow.distances.worst[2] > 1.3 * neutral.distances.worst[2]
-    coarse = through_ragdoll(given, changed(sample_rate=8))
+    coarse = followed(given, changed(sample_rate=8))
     assert wobble(coarse) > 4 * wobble(neutral)
 
 
@@ -115,23 +120,23 @@ def test_too_low_an_update_rate_is_said_in_one_line_with_time_and_joint(given: M
     with pytest.raises(
         DancetutorError, match=r"style neutral: the simulation fails at -?\d+\.\d{3} s, joint \w+;"
     ) as e:
-        through_ragdoll(given, changed(update_rate=60))
+        followed(given, changed(update_rate=60))
     assert "\n" not in str(e.value) and e.value.exit_status == 2
 
 
 def test_stiffer_springs_follow_more_closely_and_each_axis_has_its_own(given: Motion) -> None:
-    soft, stiff = (through_ragdoll(given, changed(frequency=f)).distances.values.mean() for f in (4.0, 16.0))
+    soft, stiff = (followed(given, changed(frequency=f)).distances.values.mean() for f in (4.0, 16.0))
     assert soft > 3 * stiff
     sagging = replace(NEUTRAL, springs={p: Spring((24.0, 3.0, 24.0), (0.5,) * 3) for p in PARTS})
-    fell = through_ragdoll(phrase(1.0, straight=True), sagging)
+    fell = followed(phrase(1.0, straight=True), sagging)
     assert fell.distances.values[-1].mean() > 1.5, "gravity pulls down what is soft upward: g / (2 pi 3)^2 is 2.8 cm"
 
 
 def test_a_disabled_point_is_followed_less(given: Motion, neutral: RagdollResult) -> None:
-    off = through_ragdoll(given, replace(NEUTRAL, disabled=("l_elbow", "l_radiocarpal", "l_hand_tip")))
+    off = followed(given, replace(NEUTRAL, disabled=("l_elbow", "l_radiocarpal", "l_hand_tip")))
     assert off.distances.table()["l_hand_tip"][2] > 10 * neutral.distances.table()["l_hand_tip"][2]
     with pytest.raises(UsageError, match=r"no retargeting point 'l_elbw' \(did you mean l_elbow\?\)"):
-        through_ragdoll(given, replace(NEUTRAL, disabled=("l_elbw",)))
+        followed(given, replace(NEUTRAL, disabled=("l_elbw",)))
 
 
 @pytest.mark.parametrize(
@@ -144,14 +149,14 @@ def test_points_sit_at_ends_or_middles(given: Motion, placement: str, shank: flo
     for name, part in (("l_talocrural", shank), ("l_metatarsal", foot)):
         point = points[name]
         assert np.allclose(point.offset, part * bones[point.bone].end)
-    assert through_ragdoll(given, style).distances.worst[0] <= MEAN
+    assert followed(given, style).distances.worst[0] <= MEAN
 
 
 def test_masses_are_those_of_a_person_and_densities_count(given: Motion) -> None:
     assert 50 < sum(bone.mass for bone in bones_of(dancer_skeleton())) < 80
     soft = changed(frequency=4.0)
     heavy = replace(soft, density={**soft.density, "arms": 4000.0})
-    light, loaded = (through_ragdoll(given, s).distances.table()["l_radiocarpal"][2] for s in (soft, heavy))
+    light, loaded = (followed(given, s).distances.table()["l_radiocarpal"][2] for s in (soft, heavy))
     assert loaded > 1.5 * light
 
 
@@ -160,7 +165,7 @@ def test_a_second_of_motion_takes_at_most_a_quarter_of_a_second(given: Motion) -
     best = np.inf
     for _ in range(3):
         start = time.process_time()
-        through_ragdoll(longer, NEUTRAL)
+        followed(longer, NEUTRAL)
         best = min(best, time.process_time() - start)
     assert best / 5.0 <= 0.25, "four seconds and the one before them"
 
@@ -191,17 +196,17 @@ def _simulated(motion: Motion, style: Style):
 
 def test_springs_of_one_point_and_stiffness_of_one_joint(given: Motion, neutral: RagdollResult) -> None:
     soft = replace(NEUTRAL, points={"l_radiocarpal": Spring((1.5,) * 3, (0.5,) * 3)})
-    far = through_ragdoll(given, soft).distances.table()
+    far = followed(given, soft).distances.table()
     near = neutral.distances.table()
     assert far["l_radiocarpal"][2] > 5 * near["l_radiocarpal"][2]
     assert far["r_radiocarpal"][2] < 1.2 * near["r_radiocarpal"][2], "no other point of the part"
-    stiff = through_ragdoll(given, replace(NEUTRAL, stiffness={"l_elbow": 20.0})).distances.table()
+    stiff = followed(given, replace(NEUTRAL, stiffness={"l_elbow": 20.0})).distances.table()
     assert stiff["l_radiocarpal"][2] > 2 * near["l_radiocarpal"][2] and stiff["r_radiocarpal"] == pytest.approx(
         near["r_radiocarpal"], abs=0.05
     )
     for wrong in ({"points": {"l_wrst": soft.points["l_radiocarpal"]}}, {"stiffness": {"l_elbw": 1.0}}):
         with pytest.raises(UsageError, match=r"there is no (retargeting point|joint with stiffness) 'l_(wrst|elbw)'"):
-            through_ragdoll(given, replace(NEUTRAL, **wrong))
+            followed(given, replace(NEUTRAL, **wrong))
 
 
 def test_own_legs_show_what_gravity_does_and_exact_feet_do_not(given: Motion) -> None:
@@ -209,12 +214,12 @@ def test_own_legs_show_what_gravity_does_and_exact_feet_do_not(given: Motion) ->
 
     def sunk(own: bool, gravity: float) -> float:
         style = replace(soft, body=replace(soft.body, gravity=gravity))
-        made = through_ragdoll(given, style, Wishes(own_legs=own)).motion
+        made = followed(given, style, own).motion
         return 100.0 * float((given.root - made.root)[:, 1].mean())
 
     assert sunk(True, 20.0) - sunk(True, 0.0) > 1.5, "20 / (2 pi 5)^2 is 2 cm"
     ankles = [
         world_transforms(given.skeleton, made.rotations, made.root)[0][:, given.skeleton.index("l_talocrural")]
-        for made in (given, through_ragdoll(given, soft, Wishes()).motion)
+        for made in (given, followed(given, soft).motion)
     ]
     assert np.abs(ankles[0] - ankles[1]).max() < 1e-6

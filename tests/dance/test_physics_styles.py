@@ -13,6 +13,7 @@ from dancetutor_cli.dance.bake import bake_piece, planned
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.performance import perform, solve
+from dancetutor_cli.dance.physics.blend import Blend
 from dancetutor_cli.dance.physics.pipeline import Wishes, through_ragdoll
 from dancetutor_cli.dance.physics.style import load_style
 from dancetutor_cli.dance.pieces import MARGIN, RagdollStyle, Span, piece_of
@@ -43,7 +44,7 @@ class Passage:
 
     def motion(self, style: str | None = None) -> Motion:
         """Baked as a piece of its own: the ragdoll need not follow her through the whole song."""
-        ragdoll = None if style is None else RagdollStyle(load_style(style), Wishes())
+        ragdoll = None if style is None else RagdollStyle(Blend.of(load_style(style)), Wishes())
         return bake_piece(piece_of(self.plan, self.context, 60.0, (self.span, self.span, MARGIN), ragdoll)).motion
 
 
@@ -121,7 +122,7 @@ def test_arms_that_a_style_sends_through_her_go_back(hard: Passage) -> None:
     """A style whose forces press both arms into the trunk."""
     style = load_style("lazy")
     pressing = replace(style, force={**style.force, "arms": (-120.0, 0.0, -60.0), "hands": (-60.0, 0.0, -30.0)})
-    made = report(through_ragdoll(hard.motion(), pressing).motion)
+    made = report(through_ragdoll(hard.motion(), Blend.of(pressing)).motion)
     assert made["limb in torso"].met and made["arm in arm"].met and made["arm in leg"].met
 
 
@@ -153,7 +154,7 @@ def test_palms_press_their_panels_on_time_in_every_style() -> None:
 def test_the_mirror_image_of_a_motion_is_styled_to_the_mirror_image(danced: dict[str, Motion], name: str) -> None:
     """Forces outward, springs and limits have no side."""
     plain, style = danced["neutral"], load_style(name)
-    here, there = (through_ragdoll(m, style).motion for m in (plain, mirrored_motion(plain)))
+    here, there = (through_ragdoll(m, Blend.of(style)).motion for m in (plain, mirrored_motion(plain)))
     shown = [k for k, n in enumerate(plain.skeleton.names) if not n.startswith(FACE)]
     a, b = (world_transforms(m.skeleton, m.rotations, m.root)[0] for m in (here, mirrored_motion(there)))
     assert 1000 * np.abs(a - b)[:, shown].max() < 1.0, "millimetres"

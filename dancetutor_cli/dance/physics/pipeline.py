@@ -98,8 +98,8 @@ def wishes_of(push: Sequence[str], trip: Sequence[float], rate: float = 1.0) -> 
     )
 
 
-def through_ragdoll(motion: Motion, style: Style | Blend, wishes: Wishes = Wishes()) -> RagdollResult:
-    """Let the ragdoll of a style, or those of a blend, follow a motion of a skeleton with the dancer's joints.
+def through_ragdoll(motion: Motion, blend: Blend, wishes: Wishes = Wishes()) -> RagdollResult:
+    """Let the ragdolls of the styles of a blend follow a motion of a skeleton with the dancer's joints.
 
     Joints without a body keep their turns, feet their places in the world, unless corrected; times stay, and contacts,
     unless she is pushed or caught so that she misses them: then the motion's notes say which.
@@ -108,7 +108,7 @@ def through_ragdoll(motion: Motion, style: Style | Blend, wishes: Wishes = Wishe
     """
     skeleton, corrections = motion.skeleton, wishes.corrections
     motion, blows = disturbed(motion, wishes.pushes, wishes.trips)
-    styles, shares = (Blend.of(style) if isinstance(style, Style) else style).within(motion.times)
+    styles, shares = blend.within(motion.times)
     runs = [_followed(motion, one, wishes, blows) for one in styles]
     first, limits = runs[0], any(one.limits for one in styles)
     rotations, root = mean_poses([_read(run.at, *run.made, motion.times) for run in runs], shares)
@@ -327,7 +327,7 @@ def tuned(body: Skeleton, neutral: Style) -> Tuning:
 def _score(clip: Motion, style: Style) -> float:
     """The worst of the three figures in parts of its goal; infinite where the simulation fails."""
     try:
-        mean, deviation, largest = through_ragdoll(clip, style).distances.worst
+        mean, deviation, largest = through_ragdoll(clip, Blend.of(style)).distances.worst
     except DancetutorError:
         return float("inf")
     return max(mean / MEAN, deviation / DEVIATION, largest / LARGEST)
