@@ -13,11 +13,18 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from dancetutor_cli.character.gltf import BUILT_IN, DANCER, check_character, dressed, load_character, load_dancer
+    from dancetutor_cli.character.gltf import (
+        BUILT_IN,
+        DANCER,
+        check_character,
+        load_character,
+        load_dancer,
+        name_in_gait,
+    )
 
-__all__ = ["BUILT_IN", "DANCER", "check_character", "dressed", "load_character", "load_dancer"]
+__all__ = ["BUILT_IN", "DANCER", "check_character", "load_character", "load_dancer", "name_in_gait"]
 _MODULES = {
-    "gltf": ("BUILT_IN", "DANCER", "check_character", "dressed", "load_character", "load_dancer"),
+    "gltf": ("BUILT_IN", "DANCER", "check_character", "name_in_gait", "load_character", "load_dancer"),
 }
 
 

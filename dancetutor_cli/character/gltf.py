@@ -329,7 +329,7 @@ def check_character(name_or_path: str) -> str:
     return str(Path(name_or_path).absolute())
 
 
-def dressed(name: str, gait: str) -> str:
+def name_in_gait(name: str, gait: str) -> str:
     """The character to draw: the project's own dancer wears heels if the gait is `heels`."""
     return IN_HEELS if name == DANCER and gait == "heels" else name
 

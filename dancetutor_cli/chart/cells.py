@@ -182,17 +182,17 @@ def parts_of(cells: Cells, marks: Mapping[tuple[int, int], int], columns: int, l
     marks : (tick, column) -> player whose letter stands there
     """
     places = zip(cells.tick.tolist(), cells.column.tolist(), strict=True)
-    said = np.array([marks.get(place, 0) for place in places], dtype=np.int64)
+    owner = np.array([marks.get(place, 0) for place in places], dtype=np.int64)
     right = (cells.column >= columns // 2).astype(np.int64)
     mine = cells.kind == Kind.MINE
     if len(letters) == 2:
-        whose = np.where((said == 1) | (said == 2), said, 1 + right)
+        whose = np.where((owner == 1) | (owner == 2), owner, 1 + right)
         return [cells[(whose == player) | mine] for player in (1, 2)]
-    step, plain = np.isin(cells.kind, _STEPS), said == 0
-    colour = np.where(plain, _PLAIN, said)
+    step, plain = np.isin(cells.kind, _STEPS), owner == 0
+    colour = np.where(plain, _PLAIN, owner)
     whose = 2 * colour + right * np.isin(colour, _of_two(colour[step], cells.tick[step], right[step]))
-    counts = np.bincount(said[step & ~plain], minlength=1)
-    if (step & plain).sum() < _LEAST * counts[counts > 0].min(initial=len(said)) and counts.any():
+    counts = np.bincount(owner[step & ~plain], minlength=1)
+    if (step & plain).sum() < _LEAST * counts[counts > 0].min(initial=len(owner)) and counts.any():
         players = np.unique(whose[step & ~plain])
         steps = np.array([np.bincount(cells.column[step & (whose == one)], minlength=columns) for one in players])
         whose[plain] = players[steps.argmax(axis=0)][cells.column[plain]]

@@ -122,8 +122,8 @@ class _PartCells:
         shared = marked.parts_of(players[0], first.marks, form.columns, letters) if letters else []
         if len(shared) > 1:
             own = [NoteData(_table([cells], timing), *self._tables(parts[0]), ()) for cells in shared]
-            said = marked.for_several(len(own), letters)
-            warnings.insert(0, ReadWarning("stepf2-note", said, self._text.lines(start)))
+            message = marked.for_several(len(own), letters)
+            warnings.insert(0, ReadWarning("stepf2-note", message, self._text.lines(start)))
         elif not form.routine:  # letters of fakes alone
             own = []
         tables = self._tables(parts[0])

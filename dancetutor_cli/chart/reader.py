@@ -117,10 +117,10 @@ class SongReader:
             warnings.append(ReadWarning("unknown-steps-type", message, line))
         meter = _meter(tags.get("METER", ""), line, warnings)
         description = msd.one_line(tags.get("DESCRIPTION", ""))
-        difficulty, said = names.difficulty(tags.get("DIFFICULTY", ""), description, meter, self.format == "sm")
+        difficulty, named = names.difficulty(tags.get("DIFFICULTY", ""), description, meter, self.format == "sm")
         if self.path.suffix.lower() == EDIT_SUFFIX:
             difficulty = "Edit"
-        elif not said:
+        elif not named:
             message = f"difficulty '{msd.quote(tags.get('DIFFICULTY', ''))}' is unknown; the games show {difficulty}"
             warnings.append(ReadWarning("odd-difficulty", message, line))
         form = NoteForm(columns, names.is_routine(kind), trimmed=self.format == "sm")

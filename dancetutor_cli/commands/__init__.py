@@ -42,7 +42,7 @@ def _set_colours(context: click.Context, _: click.Parameter, value: str) -> None
     def restore() -> None:
         for name in names:
             os.environ.pop(name, None)
-        os.environ.update({name: said for name, said in before.items() if said is not None})
+        os.environ.update({name: earlier for name, earlier in before.items() if earlier is not None})
 
     context.call_on_close(restore)
 

@@ -312,13 +312,13 @@ def _lint(run: LintRun, files: list[Source], options: dict[str, Any], output: IO
     for line in pack.summary_lines(tally) if not options["quiet"] else ():
         click.echo(line, err=True)
     if options["sheet"] is not None and not tally.unreadable:
-        said = write_sheet(options["sheet"], tasks, options["language"] or ENGLISH)
+        message = write_sheet(options["sheet"], tasks, options["language"] or ENGLISH)
         if not options["quiet"]:
-            click.echo(said, err=True)
+            click.echo(message, err=True)
     if options["plot"] is not None and not tally.unreadable:
-        said = write_plot(options["plot"], tasks[0])
+        message = write_plot(options["plot"], tasks[0])
         if not options["quiet"]:
-            click.echo(said, err=True)
+            click.echo(message, err=True)
     if cache is not None and not options["watch"]:
         _keep(files)
     _finish(run, tally, options)
@@ -370,12 +370,12 @@ def _before_work(tasks: Sequence[AnalyzeTask]) -> None:
 
 def _finish(run: LintRun, tally: Tally, options: dict[str, Any]) -> None:
     """What is said after the results, to standard error: so that the results stay one document."""
-    said = run.close_baseline()
+    message = run.close_baseline()
     for line in tally.statistics() if options["statistics"] and options["format_name"] != "text" else ():
         click.echo(line, err=True)
     if options["suggest"] and not options["quiet"]:
         click.echo(tally.suggestions(), err=True)
-    for line in said if not options["quiet"] else ():
+    for line in message if not options["quiet"] else ():
         click.echo(line, err=True)
     if not tally.charts and not tally.unreadable and tally.unselected:
         has = "; ".join(tally.unselected[:20])

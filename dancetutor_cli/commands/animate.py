@@ -124,7 +124,7 @@ def command(file: Path, selection: Selection, options: AnimateOptions, **dance: 
     capture tools, or .json with only the steps of each foot. A chart for two players gives two files, NAME-p1 and
     NAME-p2; --player writes only one.
     """
-    from dancetutor_cli.character import DANCER, dressed, load_character
+    from dancetutor_cli.character import DANCER, load_character, name_in_gait
     from dancetutor_cli.character.mesh import partner_of
     from dancetutor_cli.dance.performance import perform, pooled, solve
     from dancetutor_cli.dance.request import DanceRequest, check_request, read_chart, with_style
@@ -135,7 +135,7 @@ def command(file: Path, selection: Selection, options: AnimateOptions, **dance: 
     output, character = options.output, options.character
     if character != DANCER and output is not None and not FORMATS[output.suffix.lower()].has_motion:
         raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
-    dances = load_character(dressed(character, dance["gait"]))
+    dances = load_character(name_in_gait(character, dance["gait"]))
     request = DanceRequest(one_song(file), selection, rates=(options.rate,), **dance)
     if options.physics and request.style is None:
         request = replace(request, style="neutral")

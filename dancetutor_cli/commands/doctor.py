@@ -100,10 +100,10 @@ def _ffmpeg() -> Check:
     except UnavailableError:
         return Check("ffmpeg", "broken", "none found", MEND)
     command = [path, "-version"]
-    said = subprocess.run(
+    output = subprocess.run(
         command, capture_output=True, check=True, timeout=20, encoding="utf-8", errors="replace"
     ).stdout
-    version = said.splitlines()[0].removeprefix("ffmpeg version ").split()[0]
+    version = output.splitlines()[0].removeprefix("ffmpeg version ").split()[0]
     return Check("ffmpeg", "ok", f"{version}, {'of imageio-ffmpeg' if 'imageio_ffmpeg' in str(path) else path}")
 
 

@@ -156,8 +156,8 @@ def _pages(request: PageRequest, folder: Path, options: PageOptions) -> None:
             for warning in one.warnings:
                 warnings.add(one.job.request.dance.path, warning)
             if not options.quiet:
-                said = f"FAILED: {one.error}" if one.error else f"{one.size / 1e6:.1f} MB"
-                click.echo(safe(f"[{number}/{len(wanted)}] {one.job.target.name}: {said}"))
+                result = f"FAILED: {one.error}" if one.error else f"{one.size / 1e6:.1f} MB"
+                click.echo(safe(f"[{number}/{len(wanted)}] {one.job.target.name}: {result}"))
     finally:
         for line in warnings.lines() if not options.quiet else ():
             click.echo(line, err=True)

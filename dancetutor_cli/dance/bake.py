@@ -174,13 +174,13 @@ def bake_piece(piece: Piece) -> BakedPiece:
     bodies = [settle(plan, grid, both_feet(plan.feet, grid, one.settings), one).trajectory for one in states]
     body = bodies[0] if len(bodies) == 1 else mean_body(bodies, changes)
     # all keys ask for free hands, and each round of more keys
-    dressed = tuple((replace(body, hands=free_hands(plan, body, one)), one) for one in states)
+    bodies_by_state = tuple((replace(body, hands=free_hands(plan, body, one)), one) for one in states)
     at = key_times(plan, piece.fps, *piece.baked)
-    keys = (at, *_posed_in(plan, dressed, at, changes))
+    keys = (at, *_posed_in(plan, bodies_by_state, at, changes))
     for _ in range(REFINEMENTS):
         middles = doubtful(skeleton, keys, plan.grips)
         if len(middles):
-            between = (middles, *_posed_in(plan, dressed, middles, changes))
+            between = (middles, *_posed_in(plan, bodies_by_state, middles, changes))
             keys = refined(skeleton, keys, between, plan.grips)
     first, last = piece.baked
     notes = tuple(
@@ -245,11 +245,11 @@ def posed(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Co
         stepping(feet, context.settings), free, plan.lead, mood.relief, sample_path(body.beat, body.times, at), waiting,
         glances,
     )  # fmt: skip
-    dressed = Poses(poses.rotations.copy(), poses.root)
-    look(dressed, body, at, context)
-    add_layers(dressed, at, doing, context)
+    trial = Poses(poses.rotations.copy(), poses.root)
+    look(trial, body, at, context)
+    add_layers(trial, at, doing, context)
     mass = mass_of(skeleton, poses)
-    head = mass_of(skeleton, dressed) - mass  # hardly changes as the body is moved
+    head = mass_of(skeleton, trial) - mass  # hardly changes as the body is moved
     for k in range(CORRECTIONS):
         targets = translated(targets, goal - head - (mass if k == 0 else mass_of(skeleton, poses)))
         poses = solve(skeleton, targets, reach, 0.0)

@@ -131,7 +131,7 @@ def pinned(song: Song, chart: Chart) -> tuple[list[CellOverride], list[FeetProbl
     by_measure: dict[int, list[int]] = {}
     for i, measure in enumerate(chart.rows.measure[rows.row].tolist()):
         by_measure.setdefault(measure, []).append(i)
-    said: list[CellOverride] = []
+    overrides: list[CellOverride] = []
     problems: list[FeetProblem] = []
     for pin in pins:
         line_start = song.data.rfind(b"\n", 0, pin.offset) + 1
@@ -147,8 +147,8 @@ def pinned(song: Song, chart: Chart) -> tuple[list[CellOverride], list[FeetProbl
             continue
         ticks = chart.rows.tick[rows.row[mine]].tolist()
         for tick, token, cells in zip(ticks, tokens, columns, strict=True):
-            said += _parse_token(tick, token, cells, pin.line, column)
-    return said, problems
+            overrides += _parse_token(tick, token, cells, pin.line, column)
+    return overrides, problems
 
 
 def has_pins(data: bytes, chart: Chart) -> bool:

@@ -77,8 +77,8 @@ class Ignores:
 
     def silenced_rule(self, tick: int, code: str, name: str) -> bool:
         """Whether findings of a rule of the linter are not wanted in the row at `tick`."""
-        said = self.rules.get(tick, ())
-        return any(name == one.lower() or code.startswith(one.upper()) or one.lower() == "all" for one in said)
+        cells = self.rules.get(tick, ())
+        return any(name == one.lower() or code.startswith(one.upper()) or one.lower() == "all" for one in cells)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,13 +119,13 @@ class CellOverride:
     place: int | None = None
 
 
-def contradictions(chart: Chart, said: Iterable[CellOverride]) -> tuple[list[CellOverride], list[FeetProblem]]:
+def contradictions(chart: Chart, cells: Iterable[CellOverride]) -> tuple[list[CellOverride], list[FeetProblem]]:
     """Split what was said into what can be danced and what contradicts itself.
 
     A row that contradicts itself is dropped as a whole; a step that contradicts a hold which its foot is said to keep
     pressing is dropped alone.
     """
-    ordered = sorted(said, key=lambda s: (s.tick, s.column))
+    ordered = sorted(cells, key=lambda s: (s.tick, s.column))
     if not ordered:
         return [], []
     pad = load_pad(chart.steps_type)

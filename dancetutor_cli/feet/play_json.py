@@ -110,11 +110,11 @@ def _cached_texts(keys: list[bytes], known: dict[bytes, str], say: Callable[[int
     """What is known of each key; of a new one what `say` reports its place."""
     if len(known) > _MAX_CACHED:
         known.clear()
-    said = [*map(known.get, keys)]
-    for place, (key, text) in enumerate(zip(keys, said, strict=True)):
+    texts = [*map(known.get, keys)]
+    for place, (key, text) in enumerate(zip(keys, texts, strict=True)):
         if text is None:
-            said[place] = known[key] = known.get(key) or say(place)
-    return cast("list[str]", said)
+            texts[place] = known[key] = known.get(key) or say(place)
+    return cast("list[str]", texts)
 
 
 @lru_cache(maxsize=32)
@@ -139,7 +139,7 @@ def _bytes(shown: NDArray[np.intp], *arrays: NDArray[Any]) -> list[bytes]:
 def _pose(play: Play, row: int) -> str:
     left, right = (None if panel < 0 else panel for panel in play.feet[row].tolist())
     limbs, parts = play.limb[row].tolist(), play.part[row].tolist()
-    said: dict[str, Any] = {
+    texts: dict[str, Any] = {
         "steps": [
             {"column": column, "limb": _LIMBS.get(limbs[column]), "kind": _KINDS[kind],
              "part": _PARTS.get(parts[column])}
@@ -149,7 +149,7 @@ def _pose(play: Play, row: int) -> str:
         "feet": {"left": left, "right": right},
         "facing": round(float(play.facing[row]), 6),
     }  # fmt: skip
-    return f'{json.dumps(said)[1:-1]}, "moves": {json.dumps(play.moves[row])}, '
+    return f'{json.dumps(texts)[1:-1]}, "moves": {json.dumps(play.moves[row])}, '
 
 
 def _terms(play: Play, row: int) -> str:

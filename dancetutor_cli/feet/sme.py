@@ -108,7 +108,7 @@ def tick_of(beat: float) -> int:
 def _chart_data(entry: Any, chart: Chart, ours: set[tuple[float, int, object]]) -> ChartData:
     notes = set(zip(chart.notes.tick.tolist(), chart.notes.column.tolist(), strict=True))
     lines = dict(zip(chart.notes.tick.tolist(), chart.notes.line.tolist(), strict=True))
-    said: list[CellOverride] = []
+    overrides: list[CellOverride] = []
     problems: list[FeetProblem] = []
     for beat, column, value in overrides_of(entry):
         if (beat, column, value) in ours:
@@ -119,15 +119,15 @@ def _chart_data(entry: Any, chart: Chart, ours: set[tuple[float, int, object]]) 
             problems.append(FeetProblem("sme-no-note", text))
             continue
         limb, part = FEET[value]
-        said.append(CellOverride(tick, column, limb, part, FILE_NAME, lines[tick], 1))
-    return ChartData(tuple(_with_parts(said)), dict(_ignores(entry)), tuple(problems))
+        overrides.append(CellOverride(tick, column, limb, part, FILE_NAME, lines[tick], 1))
+    return ChartData(tuple(_with_parts(overrides)), dict(_ignores(entry)), tuple(problems))
 
 
-def _with_parts(said: list[CellOverride]) -> Iterator[CellOverride]:
+def _with_parts(overrides: list[CellOverride]) -> Iterator[CellOverride]:
     """SMEditor calls a foot that is on one panel its heel; here heel and toe are only told apart in brackets."""
-    toes = {(s.tick, s.limb) for s in said if s.part == Part.TOE}
-    heels = {(s.tick, s.limb) for s in said if s.part != Part.TOE}
-    for s in said:
+    toes = {(s.tick, s.limb) for s in overrides if s.part == Part.TOE}
+    heels = {(s.tick, s.limb) for s in overrides if s.part != Part.TOE}
+    for s in overrides:
         part = s.part
         if part != Part.TOE:
             part = Part.HEEL if (s.tick, s.limb) in toes else Part.WHOLE

@@ -78,7 +78,7 @@ def read_settings(song: Song, chart: Chart, path: Path | None) -> SettingsFeet:
     if path is None:
         return SettingsFeet()
     status = path.stat()
-    said: list[CellOverride] = []
+    overrides: list[CellOverride] = []
     problems: list[FeetProblem] = []
     ignores: dict[int, frozenset[str]] = {}
     for when, entry in _entries(path, status.st_mtime_ns, status.st_size):
@@ -88,11 +88,11 @@ def read_settings(song: Song, chart: Chart, path: Path | None) -> SettingsFeet:
             continue
         for tick, letters in entry.steps.items():
             found = list(_parse_letters(chart, tick, letters))
-            said += [one for one in found if isinstance(one, CellOverride)]
+            overrides += [one for one in found if isinstance(one, CellOverride)]
             problems += [one for one in found if isinstance(one, FeetProblem)]
         for tick, rules in entry.ignore.items():
             ignores[tick] = ignores.get(tick, frozenset()).union(rules)
-    return SettingsFeet(tuple(said), ignores, tuple(problems))
+    return SettingsFeet(tuple(overrides), ignores, tuple(problems))
 
 
 @lru_cache(maxsize=8)
@@ -159,11 +159,11 @@ class SongFeet:
         pins, problems = pinned(song, in_file)
         editor = ChartData() if self._editor is None else read_sme(song, whole)
         settings = read_settings(song, whole, self._settings)
-        told = (*settings.cells, *editor.cells, *pins)
-        said = {
-            (s.tick, s.column): s for s in (told if chart.written is None else _of_player(chart, told))
+        given = (*settings.cells, *editor.cells, *pins)
+        overrides = {
+            (s.tick, s.column): s for s in (given if chart.written is None else _of_player(chart, given))
         }  # later win
-        good, contradictory = contradictions(chart, said.values())
+        good, contradictory = contradictions(chart, overrides.values())
         if chart.player > 1:  # what is wrong beside the notes is reported with the first player's
             editor, settings = replace(editor, problems=()), replace(settings, problems=())
             problems = [] if shares_rows(chart) else problems
@@ -172,10 +172,10 @@ class SongFeet:
         return Overrides.of(cells), ignores, (*problems, *editor.problems, *settings.problems, *contradictory)
 
 
-def _of_player(chart: Chart, said: Iterable[CellOverride]) -> Iterator[CellOverride]:
+def _of_player(chart: Chart, overrides: Iterable[CellOverride]) -> Iterator[CellOverride]:
     """What is about the notes of one of two players, in this player's columns."""
     mine = set(zip(chart.notes.tick.tolist(), chart.notes.column.tolist(), strict=True))
-    for one in said:
+    for one in overrides:
         column = one.column - chart.first_column
         if (one.tick, column) in mine:
             yield replace(one, column=column)

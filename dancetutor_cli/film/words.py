@@ -49,15 +49,15 @@ def filled(words: str, name: str, at: tuple[Play, int], view: PanelNames) -> lis
         return [words]
     play, row = at
     limbs = play.limb[row].tolist()
-    said = []
+    texts = []
     for who in _doers(name, limbs):
         heel = int(play.feet[row, who]) if 0 <= who < 2 else -1
         columns = [column for column, limb in enumerate(limbs) if limb == who]
         film, limb = view.language.film, view.language.limbs[LIMBS[who] if who >= 0 else "foot"]
         parts = sorted((column != heel, view.name(column)) for column in columns)
         places = ", ".join(film["toe" if toe else "heel"].replace("{panel}", panel) for toe, panel in parts)
-        said.append(words.replace("{who}", limb).replace("{places}", places))
-    return said
+        texts.append(words.replace("{who}", limb).replace("{places}", places))
+    return texts
 
 
 def _doers(name: str, limbs: list[int]) -> list[int]:
@@ -70,9 +70,9 @@ def _doers(name: str, limbs: list[int]) -> list[int]:
     return feet or [-1]
 
 
-def short_words(said: str) -> str:
+def short_words(texts: str) -> str:
     """What is said of a move without whose it is or why, for the narrow place beside the notes: "toe on up"."""
-    return (said.partition(": ")[2] or said).partition(" (")[0]
+    return (texts.partition(": ")[2] or texts).partition(" (")[0]
 
 
 @dataclass(frozen=True, slots=True)

@@ -131,8 +131,8 @@ def _check_type(path: Path, name: str, header: _Header, field: Field) -> None:
         "string": kind == "U" and 0 < width <= 4 * LONGEST_NAME,
     }[field.kind]
     if not fits:
-        said = "Python objects, which are never unpacked" if header.dtype.hasobject else f"{header.dtype}"
-        raise FileError(path, f"array '{name}' holds {said[:80]}; it must hold {_TAKEN[field.kind]}")
+        content = "Python objects, which are never unpacked" if header.dtype.hasobject else f"{header.dtype}"
+        raise FileError(path, f"array '{name}' holds {content[:80]}; it must hold {_TAKEN[field.kind]}")
 
 
 def _check_shapes(path: Path, headers: Mapping[str, _Header], fields: Mapping[str, Field]) -> None:

@@ -131,16 +131,16 @@ def _as_sure_as_they_are(
             continue
         margin, confidence = subject.confidence(finding.beat)
         if margin is not None and margin <= settings.coin_toss:
-            said = f"ambiguous: either foot can start here. As shown, {finding.message}"
+            qualified = f"ambiguous: either foot can start here. As shown, {finding.message}"
             if ambiguity is None:
-                yield replace(finding, severity="info", message=said)
+                yield replace(finding, severity="info", message=qualified)
             elif finding.beat not in known:
                 known.add(finding.beat)
                 tossed = replace(finding, rule=_AMBIGUITY, name=_rules_of_charts()[_AMBIGUITY].name)
-                yield replace(tossed, severity=ambiguity.options["severity"], message=said)
+                yield replace(tossed, severity=ambiguity.options["severity"], message=qualified)
         elif confidence is not None and 100 * confidence < settings.sure_feet:
-            said = f"{finding.message} (with these feet, which are {confidence:.0%} sure)".replace("%", " %")
-            yield replace(finding, severity="info", message=said)
+            qualified = f"{finding.message} (with these feet, which are {confidence:.0%} sure)".replace("%", " %")
+            yield replace(finding, severity="info", message=qualified)
         else:
             yield finding
 

@@ -50,8 +50,8 @@ class PackSyncs:
             kind = all_rules()[code]
             if issubclass(kind, PackRule):
                 rule = kind(options)
-                if said := rule.check_pack(songs, ini):
-                    findings.append(rule.finding(said, {}))
+                if message := rule.check_pack(songs, ini):
+                    findings.append(rule.finding(message, {}))
         if not findings:
             return None
         return FileResult(self._names[folder], folder.name, "", None, (), tuple(findings), ())

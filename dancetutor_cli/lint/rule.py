@@ -79,12 +79,12 @@ class SyncRule(FileRule):
         heard = subject.sync
         if heard is None:
             return
-        if heard.sync.is_sure and (said := self.message(heard.sync, subject)):
-            yield self.finding(said, subject.tag_place(self.tag))
+        if heard.sync.is_sure and (message := self.message(heard.sync, subject)):
+            yield self.finding(message, subject.tag_place(self.tag))
         for index, sync in heard.of_charts.items():
-            if sync.is_sure and (said := self.message(sync, subject)):
+            if sync.is_sure and (message := self.message(sync, subject)):
                 chart = subject.song.charts[index]
-                yield self.finding(f"{chart.label}: {said}", subject.place(chart.line), chart=index)
+                yield self.finding(f"{chart.label}: {message}", subject.place(chart.line), chart=index)
 
     @abstractmethod
     def message(self, sync: Sync, subject: FileSubject) -> str | None:
@@ -199,12 +199,12 @@ class TimedRule(ChartRule):
         quick = [one for one in self.occurrences(subject) if one.seconds <= longest]
         for passage in self.passages(quick, subject):
             rows = [one.row for one in passage]
-            row, _, said, column = passage[self.representative(subject, rows) if len(rows) > 1 else 0]
+            row, _, message, column = passage[self.representative(subject, rows) if len(rows) > 1 else 0]
             if len(rows) > 1:
                 first, last = (round(subject.beat(one), 3) for one in (rows[0], rows[-1]))
-                said += f"; {len(rows)} of them from beat {first:g} to {last:g}"
+                message += f"; {len(rows)} of them from beat {first:g} to {last:g}"
             least = {"severity": "info"} if self.no_surprise(subject, rows) else {}
-            yield self.finding(said, subject.at_row(row, column), **least)
+            yield self.finding(message, subject.at_row(row, column), **least)
 
     def representative(self, subject: ChartSubject, rows: list[int]) -> int:
         """Place in the rows of a passage of the one that its finding stands at and speaks of."""

@@ -287,10 +287,10 @@ def described(move: str, share: float, slowest: float = math.inf) -> Iterator[st
         if at > slowest * 1000:
             yield f"{band.pad:12} meter {band.meters:12} up to {slowest * 1000:g} ms, the rule's limit"
             continue
-        said = f"up to {at} ms ({parts[at]:g} % of {band.charts} charts" if at else f"none ({band.charts} charts"
+        quick = f"up to {at} ms ({parts[at]:g} % of {band.charts} charts" if at else f"none ({band.charts} charts"
         more = next((time for time in times if time > at), None)
-        said += f"; {parts[more]:g} % up to {more} ms)" if more else ")"
-        yield f"{band.pad:12} meter {band.meters:12} {said}"
+        quick += f"; {parts[more]:g} % up to {more} ms)" if more else ")"
+        yield f"{band.pad:12} meter {band.meters:12} {quick}"
 
 
 @dataclass(eq=False, repr=False)

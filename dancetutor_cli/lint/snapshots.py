@@ -137,9 +137,9 @@ def _git(folder: Path, revision: str, *words: str) -> bytes:
     import subprocess  # which an ordinary run does without
 
     program = next(programs(_GIT, os.environ.get("PATH", os.defpath)), None)
-    said = f"--compare {revision}: there is no such file or folder"
+    message = f"--compare {revision}: there is no such file or folder"
     if program is None:
-        raise UsageError(f"{said}; for a revision install git")
+        raise UsageError(f"{message}; for a revision install git")
     environment = {name: value for name, value in os.environ.items() if name not in _OF_ANOTHER} | _ENVIRONMENT
     try:
         done = subprocess.run(
@@ -152,14 +152,14 @@ def _git(folder: Path, revision: str, *words: str) -> bytes:
         return done.stdout
     why = done.stderr.decode("utf-8", "replace")
     if "not a git repository" in why:
-        raise UsageError(f"{said}, and {folder} is in no git repository")
+        raise UsageError(f"{message}, and {folder} is in no git repository")
     if "dubious ownership" in why:
         raise UsageError(
             f"--compare {revision}: {folder} is in a repository of somebody else, which git does not read; "
             "if you trust it, add it to git's safe.directory"
         )
     if words[0] == "rev-parse":
-        raise UsageError(f"{said}, nor a revision of that name; for the last run write {LAST}")
+        raise UsageError(f"{message}, nor a revision of that name; for the last run write {LAST}")
     raise UsageError(f"--compare {revision}: git: {' '.join(why.split())[:200] or f'status {done.returncode}'}")
 
 

@@ -74,8 +74,8 @@ def _judged(song: Song, charts: Sequence[Chart]) -> SongSync:
     except FileError as error:
         return SongSync(sync_of(None, 0.0, reason=f"its music {music.name} {error.message}"))
     except EncoderError as error:
-        said = f"its music cannot be decoded: {error}"
-        return SongSync(sync_of(None, 0.0, reason=said), damage=said)
+        reason = f"its music cannot be decoded: {error}"
+        return SongSync(sync_of(None, 0.0, reason=reason), damage=reason)
     found = judge(charts[0].timing, charts, heard.onsets)
     if isinstance(found, Sync):
         return SongSync(found, heard=heard)

@@ -104,18 +104,18 @@ def _cached(path: Path) -> Iterator[tuple[Key, dict[str, int]]]:
         data = read_bytes(path, CHART_LIMIT)
     except FileError:
         return
-    said: dict[str, str] = {}
+    values: dict[str, str] = {}
     for tag in [*scan(data), Tag("NOTEDATA", len(data), ())]:
         if tag.name != "NOTEDATA":
-            said[tag.name] = _text(data, tag)
+            values[tag.name] = _text(data, tag)
             continue
-        counts = _counts(said.get("TECHCOUNTS", ""))
-        if counts is not None and said.get("STEPSTYPE", "").lower() in COMPARED_STEPS_TYPES:
+        counts = _counts(values.get("TECHCOUNTS", ""))
+        if counts is not None and values.get("STEPSTYPE", "").lower() in COMPARED_STEPS_TYPES:
             # A cached chart names its file; any other .ssc that says TECHCOUNTS is its own.
-            name = said.get("STEPFILENAME") or path.as_posix()
-            description = said.get("DESCRIPTION", "")
-            yield _key(name, said.get("STEPSTYPE", ""), said.get("DIFFICULTY", ""), description), counts
-        said = {}
+            name = values.get("STEPFILENAME") or path.as_posix()
+            description = values.get("DESCRIPTION", "")
+            yield _key(name, values.get("STEPSTYPE", ""), values.get("DIFFICULTY", ""), description), counts
+        values = {}
 
 
 def _text(data: bytes, tag: Tag) -> str:

@@ -75,8 +75,8 @@ def _file(name: str, before: StoredFile, now: StoredFile) -> Iterator[ChartChang
     except FileError as error:
         yield ChartChange(name, "", (f"can no longer be read: {error.message}",))
         return
-    if said := tuple(_head(old, new)):
-        yield ChartChange(name, "", said)
+    if changes := tuple(_head(old, new)):
+        yield ChartChange(name, "", changes)
     charts, others = _by_key(old), _by_key(new)
     for key in dict.fromkeys((*charts, *others)):
         if key not in charts:
@@ -110,25 +110,25 @@ def _by_key(song: Song) -> dict[tuple[str, str, int], Chart]:
 
 
 def _chart(name: str, old: Chart, new: Chart) -> ChartChange | None:
-    said: list[str] = []
+    changes: list[str] = []
     if old.meter != new.meter:
-        said.append(f"meter {old.meter} → {new.meter}")
+        changes.append(f"meter {old.meter} → {new.meter}")
     if old.description != new.description:
-        said.append(f"description '{old.description}' → '{new.description}'")
+        changes.append(f"description '{old.description}' → '{new.description}'")
     a, b = _rows(old), _rows(new)
     if moved := _distance(a, b):
-        said.append(f"all notes moved {_beats(moved)}")
-        said += _times(old, new, sorted(a), moved)
-        return ChartChange(name, new.label, tuple(said))
-    said += _times(old, new, sorted(a.keys() & b.keys()))
+        changes.append(f"all notes moved {_beats(moved)}")
+        changes += _times(old, new, sorted(a), moved)
+        return ChartChange(name, new.label, tuple(changes))
+    changes += _times(old, new, sorted(a.keys() & b.keys()))
     columns = max(old.columns, new.columns)
     rows = tuple(_row(tick, a.get(tick, ()), b.get(tick, ()), columns) for tick in sorted(a.keys() | b.keys())
                  if a.get(tick) != b.get(tick))  # fmt: skip
     if rows:
         added, lost = sum(not row.before for row in rows), sum(not row.now for row in rows)
         kinds = ((added, "new"), (lost, "gone"), (len(rows) - added - lost, "other"))
-        said.append(f"rows: {', '.join(f'{count} {kind}' for count, kind in kinds if count)}")
-    return ChartChange(name, new.label, tuple(said), rows) if said else None
+        changes.append(f"rows: {', '.join(f'{count} {kind}' for count, kind in kinds if count)}")
+    return ChartChange(name, new.label, tuple(changes), rows) if changes else None
 
 
 def _rows(chart: Chart) -> Mapping[int, Row]:

@@ -79,8 +79,8 @@ def write(style: str, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> It
         table, lua = (folder / path.name for path in theme.paths_for(song.path))
         before, script = _present(table, song), _present(lua, song)
         theme.check_lua(lua, script)
-        said = theme.write(table, before, song, feet)
-        for path, old, new in ((table, before, theme.as_json(said)), (lua, script, theme.as_lua(said))):
+        content = theme.write(table, before, song, feet)
+        for path, old, new in ((table, before, theme.as_json(content)), (lua, script, theme.as_lua(content))):
             lacks = [] if old == new else [Lack(f"{path.name} is {'missing' if old is None else 'stale'}")]
             yield FileChange(path, old, new), lacks
 
@@ -108,9 +108,9 @@ def strip(style: str, song: Song, charts: Sequence[Chart]) -> Iterator[FilePlan]
         old, script = _read(table), _read(lua)
         theme.check_lua(lua, script)
         kept = theme.without_charts(table, old, charts)
-        said = {**theme.write(table, None, song, ()), "charts": kept}
-        yield _removed(table, old, theme.as_json(said) if kept and old else None)
-        yield _removed(lua, script, theme.as_lua(said) if kept and script else None)
+        content = {**theme.write(table, None, song, ()), "charts": kept}
+        yield _removed(table, old, theme.as_json(content) if kept and old else None)
+        yield _removed(lua, script, theme.as_lua(content) if kept and script else None)
 
 
 def _removed(path: Path, old: bytes | None, new: bytes | None) -> FilePlan:

@@ -171,11 +171,11 @@ def check_lua(path: Path, old: bytes | None) -> None:
         raise FileError(path, "is not a table of cues by dancetutor; move it away or choose another style")
 
 
-def as_json(said: dict[str, Any]) -> bytes:
+def as_json(table: dict[str, Any]) -> bytes:
     """The JSON file: a line for each cue, so that version control shows which have changed."""
-    head = {key: value for key, value in said.items() if key != "charts"}
+    head = {key: value for key, value in table.items() if key != "charts"}
     blocks = []
-    for chart in said["charts"]:
+    for chart in table["charts"]:
         about = json.dumps({key: value for key, value in chart.items() if key != "cues"}, ensure_ascii=False)
         cues = ",\n".join("   " + json.dumps(cue, ensure_ascii=False) for cue in chart["cues"])
         blocks.append(f'  {about[:-1]}, "cues": [\n{cues}]}}' if cues else f'  {about[:-1]}, "cues": []}}')
@@ -183,9 +183,9 @@ def as_json(said: dict[str, Any]) -> bytes:
     return encoded(text)
 
 
-def as_lua(said: dict[str, Any]) -> bytes:
+def as_lua(table: dict[str, Any]) -> bytes:
     """The Lua file: a chunk that returns the same table; it calls nothing."""
-    body = "\n".join(_lua_lines(said, 0))
+    body = "\n".join(_lua_lines(table, 0))
     return _HEAD + b"; docs/theme.md tells what stands in it\nreturn " + encoded(body) + b"\n"
 
 

@@ -294,8 +294,8 @@ def _style() -> dict[str, Any]:
         "callout": {name: hex_colour(colour) for name, colour in style.callout.items()},
         # beside the notes, whose markers say which foot it is: the move's name where a film says who does it
         "callouts": {
-            name: name.replace("-", " ") if "{" in said else said
-            for name, said in callout_words(load_language()).items()
+            name: name.replace("-", " ") if "{" in words else words
+            for name, words in callout_words(load_language()).items()
         },
         "limbs": [hex_colour(colour) for colour in limb_colours().by_limb],
         "limbs_rgb": [list(colour) for colour in limb_colours().by_limb],

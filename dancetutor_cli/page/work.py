@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dancetutor_cli import chart as charts
-from dancetutor_cli.character import dressed, load_character
+from dancetutor_cli.character import load_character, name_in_gait
 from dancetutor_cli.character.mesh import with_foot_colours
 from dancetutor_cli.chart.music import find_music
 from dancetutor_cli.chart.selection import Selection
@@ -130,7 +130,7 @@ def make_page(request: PageRequest) -> Page:
 
 def look_up_page(request: PageRequest) -> PageSubject:
     """The quick part of `make_page`: read and solve."""
-    character = with_foot_colours(load_character(dressed(request.character, request.dance.gait)))
+    character = with_foot_colours(load_character(name_in_gait(request.character, request.dance.gait)))
     check_request(request.dance)
     choice = read_chart(request.dance)
     if len(choice.parts) > 1 and request.beside is not None:

@@ -152,10 +152,10 @@ class Pack:
     def missing(self) -> Iterator[str]:
         """What the pack lacks, a line each."""
         yield from self._missing_difficulties()
-        for kind, said in (("music", "no music"), ("differ", ".sm and .ssc differ")):
+        for kind, words in (("music", "no music"), ("differ", ".sm and .ssc differ")):
             songs = list(dict.fromkeys(self.problems[kind]))
             if songs:
-                yield f"{said}: {_some(songs)}"
+                yield f"{words}: {_some(songs)}"
         if self._unreadable:
             yield f"cannot be read: {_some(list(self._unread()))}"
         yield from self._sync()
@@ -195,7 +195,7 @@ class Pack:
         for how_far, one, meter in sorted(off, key=lambda x: -x[0]):
             if how_far >= _FEW:
                 yield f"{one.name} plays like meter {meter:.1f}"
-        yield from (said for _, said in sorted(_much_of(charts), reverse=True))
+        yield from (words for _, words in sorted(_much_of(charts), reverse=True))
 
 
 def _much_of(charts: list[PackChart]) -> Iterator[tuple[float, str]]:
@@ -212,8 +212,8 @@ def _much_of(charts: list[PackChart]) -> Iterator[tuple[float, str]]:
             enough = one.rows_of(technique) >= _LEAST_ROWS and len(others) >= _FEWEST_SONGS
             if enough and share >= _TIMES * usual:
                 rows = f"{one.rows_of(technique)} rows with {technique}, {100 * share:.0f} % of its rows"
-                said = f"{one.name}: {rows} (usual at this meter: {100 * usual:.0f} %)"
-                yield share / usual, said
+                words = f"{one.name}: {rows} (usual at this meter: {100 * usual:.0f} %)"
+                yield share / usual, words
 
 
 def _some(names: list[str]) -> str:
@@ -265,8 +265,8 @@ def _by_technique(charts: list[PackChart]) -> str:
     return f"  charts with {', '.join(f'{technique}: {count}' for technique, count in counts.items())}"
 
 
-def _listed(what: str, said: Iterable[str], most: int) -> Iterator[str]:
-    lines = list(said)
+def _listed(what: str, words: Iterable[str], most: int) -> Iterator[str]:
+    lines = list(words)
     for line in lines[:most]:
         yield f"  {what}: {line}"
     if len(lines) > most:

@@ -244,8 +244,8 @@ def _techniques(charts: Sequence[PackChart]) -> str:
     return f'{caption}<div class="wide"><table><tr><th class="t"></th>{head}</tr>{"".join(rows)}</table></div>'
 
 
-def _list(title: str, said: Iterable[str]) -> str:
-    items = "".join(f"<li>{escape(line)}</li>" for line in said)
+def _list(title: str, lines: Iterable[str]) -> str:
+    items = "".join(f"<li>{escape(line)}</li>" for line in lines)
     return f"<h2>{title}</h2>" + (f"<ul>{items}</ul>" if items else '<p class="lead">Nothing.</p>')
 
 

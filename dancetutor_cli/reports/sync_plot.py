@@ -73,8 +73,8 @@ def _grid(found: Judgement, low: float, high: float) -> list[str]:
             out.append(text(name, _LEFT - 6, float(y) + 4, "axis", text_anchor="end"))
     for share in np.linspace(0, 1, 5):
         second = found.first + share * (found.last - found.first)
-        said = clock(second).rpartition(".")[0]
-        out.append(text(said, float(_x(float(share))), _HEIGHT - 26, "axis", text_anchor="middle"))
+        label = clock(second).rpartition(".")[0]
+        out.append(text(label, float(_x(float(share))), _HEIGHT - 26, "axis", text_anchor="middle"))
     note = "dark: attacks of the music around the notes of a part; dots: best value of each part; line: of the song"
     out.append(text(note, _LEFT, _HEIGHT - 8, "note"))
     return out

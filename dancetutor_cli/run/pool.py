@@ -96,8 +96,8 @@ def _sendable(error: Exception) -> DancetutorError:
         return UnavailableError("out of memory; try fewer --jobs or a smaller --size")
     if isinstance(error, OSError):
         return UnavailableError(os_error_message(error))
-    said = (str(error).strip().splitlines() or [""])[-1][:300]
-    return WorkFailedError(f"an internal error: {type(error).__name__}: {said}")
+    text = (str(error).strip().splitlines() or [""])[-1][:300]
+    return WorkFailedError(f"an internal error: {type(error).__name__}: {text}")
 
 
 class SerialWorkers:

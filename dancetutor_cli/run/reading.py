@@ -67,12 +67,12 @@ def _opened(path: Path) -> Iterator[tuple[BinaryIO, int]]:
     try:
         descriptor = os.open(path, _FLAGS)
     except FileNotFoundError:
-        said = "is a link to a file that is not there" if os.path.islink(path) else "no such file or folder"  # noqa: PTH114
-        raise MissingFileError(path, f"cannot be read: {said}") from None
+        reason = "is a link to a file that is not there" if os.path.islink(path) else "no such file or folder"  # noqa: PTH114
+        raise MissingFileError(path, f"cannot be read: {reason}") from None
     except (OSError, ValueError) as error:
-        said = f"cannot be read: {getattr(error, 'strerror', None) or error}"
+        reason = f"cannot be read: {getattr(error, 'strerror', None) or error}"
         is_too_long = getattr(error, "errno", None) == errno.ENAMETOOLONG  # so no file can have that name
-        raise (MissingFileError if is_too_long else FileError)(path, said) from None
+        raise (MissingFileError if is_too_long else FileError)(path, reason) from None
     try:
         status = os.fstat(descriptor)
         for is_kind, what in _KINDS:

@@ -146,8 +146,8 @@ class MarkedYaml:
             if name not in known:
                 where = f" in '{_path(keys)}'" if keys else ""
                 near, there = did_you_mean(str(name), known), ", ".join(known) or "none"
-                said = f"unknown key '{shown_key(name)}'{where}{near}; there are: {there}"
-                raise self.error((*keys, str(name)), said)
+                message = f"unknown key '{shown_key(name)}'{where}{near}; there are: {there}"
+                raise self.error((*keys, str(name)), message)
 
     def only(self, keys: Keys, known: Collection[str]) -> None:
         """Raise unless every key of the mapping at `keys` is one of `known`."""
@@ -311,8 +311,8 @@ _MOST_NAMED = 16  # keys of a mapping that a message names
 
 
 def _wrong(source: MarkedYaml, keys: Keys, data: Any, hint: Any, why: str = "") -> FileError:
-    said = f": {why}" if why else f" must be {_description(hint)}, not {_shown(data)}"
-    return source.error(keys, _path(keys) + said)
+    message = f": {why}" if why else f" must be {_description(hint)}, not {_shown(data)}"
+    return source.error(keys, _path(keys) + message)
 
 
 def _description(hint: Any) -> str:

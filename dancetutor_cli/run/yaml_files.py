@@ -60,8 +60,8 @@ def _parsed(content: bytes, path: Path) -> tuple[Any, dict[Keys, int]]:
         mark = getattr(error, "problem_mark", None)
         problem = getattr(error, "problem", None) or "not YAML"
         syntax = isinstance(error, yaml.scanner.ScannerError | yaml.parser.ParserError)
-        said = f"not YAML: {problem}" if syntax else _without_tag(str(problem))
-        raise FileError(path, said, None if mark is None else mark.line + 1) from error
+        message = f"not YAML: {problem}" if syntax else _without_tag(str(problem))
+        raise FileError(path, message, None if mark is None else mark.line + 1) from error
     except (ValueError, OverflowError) as error:  # numbers without end, dates that do not exist, bytes that are no text
         why = "has a number of too many digits" if "digits" in str(error) else str(error)
         raise FileError(path, f"cannot be read: {why}") from error

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.character import dressed, load_character, load_dancer
+from dancetutor_cli.character import load_character, load_dancer, name_in_gait
 from dancetutor_cli.character.mesh import Character, Mesh
 from dancetutor_cli.dance.layers import finger_axis
 from dancetutor_cli.dance.rig import quaternion as quat
@@ -231,9 +231,9 @@ def test_from_behind_her_head_is_round() -> None:
 
 
 def test_heels_stand_in_for_the_flat_shoes_and_nothing_else() -> None:
-    flat, heels = load_character("dancer"), load_character(dressed("dancer", "heels"))
-    assert dressed("dancer", "flat") == "dancer"
-    assert dressed("mannequin", "heels") == "mannequin"
+    flat, heels = load_character("dancer"), load_character(name_in_gait("dancer", "heels"))
+    assert name_in_gait("dancer", "flat") == "dancer"
+    assert name_in_gait("mannequin", "heels") == "mannequin"
     assert sorted(m.name for m in heels.meshes) == sorted(m.name for m in flat.meshes)
     same = {m.name for m in flat.meshes if np.array_equal(m.positions, mesh_named(heels, m.name).positions)}
     assert {m.name for m in flat.meshes} - same == {"left shoe", "right shoe", "shoes"}

@@ -109,7 +109,7 @@ def test_one_wild_label_does_not_outvote_the_others() -> None:
 
 
 def test_the_scale_is_what_the_user_says() -> None:
-    assert scales_of([sized(9, **ON)] * 3, tag="ddr x ", said="low") == [("low", True)] * 3
+    assert scales_of([sized(9, **ON)] * 3, tag="ddr x ", scale="low") == [("low", True)] * 3
     assert scales_of([sized(9, **ON)] * 3, tag="DDR") == [("itg", True)] * 3  # means two things, so it is not heard
 
 
@@ -131,7 +131,7 @@ def test_the_label_of_a_chart_is_on_the_scale_of_all_of_them() -> None:
     charts = [sized(9, **ON), sized(13, **ON), sized(13, **ON)]
     assert label_scales_of(charts) == ["ddr"] * 3
     assert label_scales_of([*charts, sized(5, "Edit", **ON)])[3] == "low"
-    assert label_scales_of(charts, said="low") == ["low"] * 3
+    assert label_scales_of(charts, scale="low") == ["low"] * 3
 
 
 def test_a_scale_ends() -> None:

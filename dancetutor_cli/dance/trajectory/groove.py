@@ -95,13 +95,13 @@ class Occupation:
     waits: Array
 
 
-def groove_of(plan: Plan, times: Array, engaged: Occupation, context: Context) -> Groove:
+def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context) -> Groove:
     """At even `times` (n,): in jacks and slow steps, not in streams; where she waits she sways as `waits` says."""
     settings = context.settings
     numbers, jacks = settings.groove, repeated(plan, times, settings)
-    calmer = engaged.tempo * (1.0 - numbers.jack * jacks)
-    beat = beat_bounce(context, times, calmer, engaged.busy)
-    share = dancing(calmer, engaged.busy, settings.layers) * (1.0 - engaged.waits)
+    calmer = occupation.tempo * (1.0 - numbers.jack * jacks)
+    beat = beat_bounce(context, times, calmer, occupation.busy)
+    share = dancing(calmer, occupation.busy, settings.layers) * (1.0 - occupation.waits)
     grounded = _grounded(plan, times, settings)
     slow = share
     share = share * (numbers.steps + (1.0 - numbers.steps) * jacks) * grounded
@@ -111,11 +111,11 @@ def groove_of(plan: Plan, times: Array, engaged: Occupation, context: Context) -
         landed = max((move.land for track in plan.feet for move in track.moves), default=-np.inf)
         share *= 1.0 - CALM * smooth((times - landed) / settings.wait.ease)
     late = np.interp(times - settings.layers.beat_late, times, beat)
-    deeper = np.maximum(numbers.deeper * jacks, numbers.leisure * np.maximum(easy, engaged.waits))
+    deeper = np.maximum(numbers.deeper * jacks, numbers.leisure * np.maximum(easy, occupation.waits))
     sink = (1.0 + deeper) * settings.layers.bounce * late
     to_side = sway(plan, times, context)
-    free = np.clip(1.0 - share - engaged.busy - engaged.waits, 0.0, 1.0)
-    loose = np.clip(1.0 - engaged.busy - engaged.waits, 0.0, 1.0) * _among_steps(plan, times, numbers)
+    free = np.clip(1.0 - share - occupation.busy - occupation.waits, 0.0, 1.0)
+    loose = np.clip(1.0 - occupation.busy - occupation.waits, 0.0, 1.0) * _among_steps(plan, times, numbers)
     loose *= slow * (1.0 + grounded) / 2.0
     carried = loose[:, None] * carriage(plan, times, context)
     return Groove(beat, sink, share * to_side, free * grounded * to_side, grounded, carried)

@@ -121,8 +121,8 @@ def body_trajectory(
     crouch = jump_crouch(plan, times, settings.jump)
     tempo = tempo_factor(plan, times, settings)
     waiting = waiting_at(plan, times, context)
-    engaged = Occupation(tempo, reached.sum(axis=1) + held + own, waiting.share)
-    groove = groove_of(plan, times, engaged, context)
+    occupation = Occupation(tempo, reached.sum(axis=1) + held + own, waiting.share)
+    groove = groove_of(plan, times, occupation, context)
     leg = settings.body.leg - settings.body.stream_crouch * tempo - crouch
     bent = bent_down(plan.presses, None if known is None else known.deeper, times, settings.hands)
     give = landing_give(plan, times, settings.body)

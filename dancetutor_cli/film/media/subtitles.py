@@ -79,8 +79,8 @@ def _moments(play: Play, words: Mapping[str, str], view: PanelNames) -> Iterator
         for name in named.intersection(names) - (IMPLIED_BY_BRACKET if "bracket" in names else set()):
             second = float(play.rows.second[row])
             who = () if "{" in words[name] else _limb_names(play, row, view.language)
-            for said in filled(words[name], name, (play, row), view):
-                yield Cue(second, second, said, who, name)
+            for text in filled(words[name], name, (play, row), view):
+                yield Cue(second, second, text, who, name)
 
 
 def _holds(play: Play, timing: Timing, words: Mapping[str, str], language: Language) -> Iterator[Cue]:

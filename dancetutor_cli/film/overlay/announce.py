@@ -43,8 +43,8 @@ class Runs:
         self.labels = [flag([text], 19 * scale, SOFT, face) for text in texts]
         counts = range(1, max(one.count for one in clock.passes) + 1)
         room, small = count[3] - count[1], min(20 * scale, 0.2 * (count[3] - count[1]))
-        (said,), small = fitted(self._words["count-in"], small, 0.9 * (count[2] - count[0]), face, most=1)
-        self.counted = face.sprite(said, small, SOFT, weight=small / 80, shadow=small / 14)
+        (label,), small = fitted(self._words["count-in"], small, 0.9 * (count[2] - count[0]), face, most=1)
+        self.counted = face.sprite(label, small, SOFT, weight=small / 80, shadow=small / 14)
         big = min(150 * scale, 0.8 * (room - self.counted.shape[0]))
         self.numbers = {n: face.sprite(str(n), big, WHITE, weight=big / 50, shadow=big / 30) for n in counts}
 
@@ -99,8 +99,8 @@ def _phrases(
     tries = [(text, CALL_LEAST), (named, CALL_LEAST), (text, CALL_SMALL)]
     if short and text.endswith(short):
         tries += [(named, CALL_SMALL), (short, CALL_LEAST), (short, CALL_SMALL)]
-    for said, least in tries:
-        lines, fits = _two_lines(said, size, width, face)
+    for label, least in tries:
+        lines, fits = _two_lines(label, size, width, face)
         if fits >= least * size:
             return lines, fits
     for ends in (",", ",:"):

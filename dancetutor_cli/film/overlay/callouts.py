@@ -74,15 +74,15 @@ class _Passage:
     weight: int = 0
     moves: list[_Move] = field(default_factory=list)
 
-    def takes(self, move: _Move, told: _TickTable) -> bool:
+    def takes(self, move: _Move, notices: _TickTable) -> bool:
         """Is a move part of it?"""
-        second, tick, name = told.second, move.first, move.phrase.move
+        second, tick, name = notices.second, move.first, move.phrase.move
 
         def within(since: int, most: tuple[int, float]) -> bool:
             return tick - since <= most[0] or second[tick] - second[since] <= most[1]
 
         near = within(self.last, JOIN) and second[tick] - second[self.last] < REST and within(self.first, LONGEST)
-        near = near and not told.parted(self.last, tick)
+        near = near and not notices.parted(self.last, tick)
         short = len(self.kinds) < KINDS and len(", ".join([*self.kinds, name])) <= LETTERS
         return near and move.weight == self.weight and (name in self.kinds or short)
 
@@ -94,7 +94,7 @@ class _Passage:
 
     def text(self) -> str:
         several = self.kinds.values()
-        return ", ".join(some[0].counted(len(some), len({one.said for one in some}) == 1) for some in several)
+        return ", ".join(some[0].counted(len(some), len({one.text for one in some}) == 1) for some in several)
 
     def why(self) -> str:
         """The reason, if it is the same for all of it."""
@@ -159,19 +159,19 @@ def callouts_of(
     findings = list(_findings(about.findings(), style)) if style.findings or ticks or mined else []
     why = {} if style.findings else dict(_reasons(ticks, findings, style.language))
     mined_name = style.language.finding_name(_OF_MINES, "mine under hold")
-    under = {} if style.findings else {tick: said for tick, _, said, _ in findings if mined_name in said}
+    under = {} if style.findings else {tick: text for tick, _, text, _ in findings if mined_name in text}
     found = list(_moves(about.pad, play, style, why))
     if style.findings:
-        found += (_Move(first, last, plain(said), weight) for first, last, said, weight in findings)
+        found += (_Move(first, last, plain(text), weight) for first, last, text, weight in findings)
     mine = style.words.get(MINE, "")
     found += (_Move(tick, tick, plain(mine + (f" ({under[tick]})" if tick in under else ""))) for tick in mined)
     timing = about.chart.timing
     asked = sorted({tick for move in found for tick in move[:2]})
     seconds = dict(zip(asked, timing.seconds(np.array(asked, dtype=np.int64)).tolist(), strict=True))
-    told = _TickTable(seconds, [] if play is None else _jumps(play))
+    notices = _TickTable(seconds, [] if play is None else _jumps(play))
     passages: list[_Passage] = []
     for move in sorted(found):
-        here = next((p for p in reversed(passages[-2:]) if p.takes(move, told)), None)
+        here = next((p for p in reversed(passages[-2:]) if p.takes(move, notices)), None)
         if here is None:
             here = _Passage(move.first, move.last, weight=move.weight)
             passages.append(here)
@@ -209,12 +209,12 @@ def _reasons(
 ) -> Iterator[tuple[int, str]]:
     """What the linter says of some rows, by tick: its finding there, or that of the passage, which goes on as long as
     such rows do."""
-    told = sorted((tick, said) for tick, _, said, _ in findings)
+    notices = sorted((tick, text) for tick, _, text, _ in findings)
     names = tuple(language.finding_name(rule, rule) for rule in _OF_PASSAGES)
     last, passage = -_PASSAGE, ""
     for tick in ticks:
-        here = [said for at, said in told if at == tick]
-        before = [said for at, said in told if said.endswith(names) and tick - _PASSAGE <= at <= tick]
+        here = [text for at, text in notices if at == tick]
+        before = [text for at, text in notices if text.endswith(names) and tick - _PASSAGE <= at <= tick]
         passage = before[-1] if before else passage if tick - last <= _PASSAGE else ""
         last = tick
         if here or passage:
@@ -239,8 +239,8 @@ def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[in
             phrase = plain(words[now]) if full else crossing_phrase(words[now], (play, row), pad, style.language)
             crossed[now] = ticks[row], phrase
         known |= {now, _CROSSED[-1]} if now else set()
-        told = {n for n in names if n in words and n not in _CROSSED}
-        for name in sorted(told - IMPLIED_BY_BRACKET if "bracket" in told else told):
+        notices = {n for n in names if n in words and n not in _CROSSED}
+        for name in sorted(notices - IMPLIED_BY_BRACKET if "bracket" in notices else notices):
             if name in HALF_TURNS:
                 turned = turning_phrase(words[name], (play, row), pad, style.language)
                 yield _Move(ticks[row], ticks[row], turned)
@@ -250,8 +250,8 @@ def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[in
                 limbs = play.limb[row].tolist()
                 yield _Move(ticks[row], ticks[row], stepped_phrase(words[name], name, limbs, style.language))
                 continue
-            for said in filled(words[name], name, (play, row), PanelNames(pad, style.turned, style.language)):
-                yield _Move(ticks[row], ticks[row], plain(said + reason))
+            for text in filled(words[name], name, (play, row), PanelNames(pad, style.turned, style.language)):
+                yield _Move(ticks[row], ticks[row], plain(text + reason))
     yield from (_Move(first, ticks[-1], phrase) for first, phrase in crossed.values())
 
 
@@ -264,5 +264,5 @@ def _findings(findings: Iterable[Finding], style: CallStyle) -> Iterator[tuple[i
     for finding in findings:
         if finding.beat is not None and finding.note_column is not None and finding.severity in _ORDER:
             tick = round(finding.beat * TICKS_PER_BEAT)
-            said = style.language.finding_name(finding.rule, finding.name.replace("-", " "))
-            yield tick, tick, said if style.findings else f"{finding.rule} {said}", _ORDER.index(finding.severity)
+            text = style.language.finding_name(finding.rule, finding.name.replace("-", " "))
+            yield tick, tick, text if style.findings else f"{finding.rule} {text}", _ORDER.index(finding.severity)

@@ -311,7 +311,7 @@ def callout_texts(callouts: Iterable[Callout], words: Iterable[str]) -> set[str]
     words : of moves, some with {who} and {places} to be filled in
     """
     tags = {tag for one in callouts for tag in (one.tag, *(tag for *_, tag in one.further))}
-    return tags | {short_words(said) for said in words if "{" not in said}
+    return tags | {short_words(text) for text in words if "{" not in text}
 
 
 def room_for(tags: Iterable[str], size: float, face: Typeface) -> float:

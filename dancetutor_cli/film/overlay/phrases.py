@@ -19,13 +19,13 @@ JUST = 2.0  # seconds ago at most, that a foot "has just stepped"
 
 
 class Phrase(NamedTuple):
-    """A move in words. move : its name for people, the same for all of its kind; said : with foot and way
+    """A move in words. move : its name for people, the same for all of its kind; text : with foot and way
 
     tag : for the place beside the notes; why : a reason, or ""; several : how a count of different ones is written
     """
 
     move: str
-    said: str
+    text: str
     tag: str
     why: str = ""
     several: str = ""
@@ -33,15 +33,15 @@ class Phrase(NamedTuple):
     def counted(self, count: int, alike: bool) -> str:
         """So many of them in a row; alike : all are said as this one is."""
         if count == 1:
-            return self.said
+            return self.text
         if alike or not self.several:
-            return f"{self.said if alike else self.move} ×{count}"
-        return self.several.replace("{move}", self.move).replace("{count}", str(count)).replace("{said}", self.said)
+            return f"{self.text if alike else self.move} ×{count}"
+        return self.several.replace("{move}", self.move).replace("{count}", str(count)).replace("{said}", self.text)
 
 
-def plain(said: str) -> Phrase:
+def plain(text: str) -> Phrase:
     """Words that stand for themselves."""
-    return Phrase(said, said, short_words(said))
+    return Phrase(text, text, short_words(text))
 
 
 def standing_tags(language: Language) -> tuple[str, ...]:
@@ -52,10 +52,10 @@ def standing_tags(language: Language) -> tuple[str, ...]:
 def stepped_phrase(move: str, name: str, limbs: list[int], language: Language) -> Phrase:
     """A move of the one foot that steps, for example a footswitch. limbs : of its row"""
     feet = {limb for limb in limbs if limb in (0, 1)}
-    said = language.calls.get(name)
-    if said is None or len(feet) != 1:
+    text = language.calls.get(name)
+    if text is None or len(feet) != 1:
         return plain(move)
-    return Phrase(move, said.replace("{who}", language.limbs[LIMBS[feet.pop()]]), short_words(move))
+    return Phrase(move, text.replace("{who}", language.limbs[LIMBS[feet.pop()]]), short_words(move))
 
 
 def crossing_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language) -> Phrase:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.character import DANCER, dressed, load_character
+from dancetutor_cli.character import DANCER, load_character, name_in_gait
 from dancetutor_cli.character.mesh import with_foot_colours
 from dancetutor_cli.character.retarget import retarget
 from dancetutor_cli.chart.density import fastest_bpm
@@ -176,7 +176,7 @@ def prepare(request: FilmRequest, subject: FilmSubject) -> PreparedFilm:
     start, end = clock.passes[0].start, clock.passes[-1].until
     whole = whole_song(chart)
     seconds = np.array([clock.at(k)[0] for k in range(clock.frames)])
-    who = dressed(request.character, request.dance.gait)
+    who = name_in_gait(request.character, request.dance.gait)
     character, motions = _fitted(who, dance.motions, bool(request.motions))
     look = _with_feet_camera(request.look, character, pad)
     plan = FilmPlan(

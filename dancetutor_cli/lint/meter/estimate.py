@@ -68,7 +68,7 @@ def tagged_scale(tag: str) -> str | None:
     return _TAGS.get(tag.strip().upper())
 
 
-def scales_of(charts: Sequence[MeteredChart], tag: str = "", said: str = AUTO) -> list[tuple[str, bool]]:
+def scales_of(charts: Sequence[MeteredChart], tag: str = "", scale: str = AUTO) -> list[tuple[str, bool]]:
     """The scale of each of a song's charts for one pad, and whether it is known.
 
     What the user says; else the scale on which the labels of the other charts are missed least, clearly, of which it
@@ -77,16 +77,16 @@ def scales_of(charts: Sequence[MeteredChart], tag: str = "", said: str = AUTO) -
     """
     if charts and len(charts[0].on) == 1:
         return [(next(iter(charts[0].on)), True)] * len(charts)
-    if said != AUTO:
-        return [(said, True)] * len(charts)
+    if scale != AUTO:
+        return [(scale, True)] * len(charts)
     main, edits = _votes(charts)
     return [_scale_of(one, main, edits, tagged_scale(tag)) for one in charts]
 
 
-def label_scales_of(charts: Sequence[MeteredChart], tag: str = "", said: str = AUTO) -> list[str]:
+def label_scales_of(charts: Sequence[MeteredChart], tag: str = "", scale: str = AUTO) -> list[str]:
     """The scale that each chart's label is on: that of all labels of the song, its own among them; an Edit's own."""
-    if said != AUTO or (charts and len(charts[0].on) == 1):
-        return [name for name, _ in scales_of(charts, tag, said)]
+    if scale != AUTO or (charts and len(charts[0].on) == 1):
+        return [name for name, _ in scales_of(charts, tag, scale)]
     main, edits = _votes(charts)
     tagged = tagged_scale(tag)
     found = []

@@ -74,8 +74,8 @@ class Crossover(TimedRule):
                 continue
             if goes_on_the_other_foot(subject, first, self.longest(subject)) or _walks_over(subject, first):
                 continue
-            said = f"the feet cross here, or one foot doublesteps, in a chart of meter {subject.chart.meter}"
-            yield Occurrence(first, subject.pause(first), said)
+            message = f"the feet cross here, or one foot doublesteps, in a chart of meter {subject.chart.meter}"
+            yield Occurrence(first, subject.pause(first), message)
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
         """Whether a single step crosses on the way from one of two pads to the other."""
@@ -205,5 +205,5 @@ class HeldCrossover(TimedRule):
             foot = int(limbs[row].max())
             if len(pressed) == 1 and foot <= 1 and subject.feet.holds(1 - foot, row):
                 feet = ("left", "right") if foot == 0 else ("right", "left")
-                said = f"the {feet[0]} foot crosses the {feet[1]} foot, which is on a hold"
-                yield Occurrence(row, subject.pause(row), said)
+                message = f"the {feet[0]} foot crosses the {feet[1]} foot, which is on a hold"
+                yield Occurrence(row, subject.pause(row), message)

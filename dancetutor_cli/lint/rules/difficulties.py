@@ -43,8 +43,8 @@ class SameNotes(FileRule):
             parts = (notes.tick, notes.column, notes.kind, notes.end, notes.judged)
             key = (chart.steps_type, chart.timing, *(part.tobytes() for part in parts))
             if key in first:
-                said = f"{chart.label} has the same notes as {first[key]}"
-                yield self.finding(said, subject.place(chart.line), chart=chart.index)
+                message = f"{chart.label} has the same notes as {first[key]}"
+                yield self.finding(message, subject.place(chart.line), chart=chart.index)
             first.setdefault(key, chart.label)
 
 

@@ -118,8 +118,8 @@ class Attacks(FileRule):
                 yield self.finding(f"#{tag} changes how the song is played", subject.tag_place(tag))
             for chart in subject.dance_charts:
                 if chart.tags.get(tag, "").strip():
-                    said = f"#{tag} changes how {chart.label} is played"
-                    yield self.finding(said, subject.place(chart.line), chart=chart.index)
+                    words = f"#{tag} changes how {chart.label} is played"
+                    yield self.finding(words, subject.place(chart.line), chart=chart.index)
         for tag in _CHANGES:
             for entry in song.tags.get(tag, "").split(","):
                 name = entry.split("=")[1].strip() if entry.count("=") else ""
@@ -221,8 +221,8 @@ class OddNotes(ReaderRule):
             before = subject.song.charts[: subject.chart.index]
             if any(_flattened(subject.song, chart) for chart in before):
                 return []
-            said = "the line breaks are missing: the rows of a measure are read as one long row"
-            return [replace(found[0], message=said)]
+            words = "the line breaks are missing: the rows of a measure are read as one long row"
+            return [replace(found[0], message=words)]
         alike: dict[tuple[str, str], list[Finding]] = {}
         for one in found:
             alike.setdefault((one.message, one.severity), []).append(one)

@@ -54,8 +54,8 @@ class LowBracket(TimedRule):
         for row in subject.rows_with("bracket"):
             if feet and feet.down[row] < 3 and not _jumped(subject, row):
                 pause = subject.pause(row)
-                said = f"a bracket: two panels {1000 * pause:.0f} ms after a step, too quick for a jump,"
-                yield Occurrence(row, pause, f"{said} in a chart of meter {meter}")
+                message = f"a bracket: two panels {1000 * pause:.0f} ms after a step, too quick for a jump,"
+                yield Occurrence(row, pause, f"{message} in a chart of meter {meter}")
 
     def _quick_throughout(self, subject: ChartSubject) -> bool:
         """Whether so many steps are as quick that the players of this chart are no beginners."""

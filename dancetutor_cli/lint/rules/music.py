@@ -60,8 +60,8 @@ class MusicEnd(FileRule):
         ]
         last, chart = max(ends, key=lambda end: end[0], default=(0.0, None))
         if chart is not None and last > music.seconds + self.options["tolerance"]:
-            said = f"{chart.label} goes on to {last:.1f} s, but the music ends at {music.seconds:.1f} s"
-            yield self.finding(said, subject.place(chart.line), chart=chart.index)
+            message = f"{chart.label} goes on to {last:.1f} s, but the music ends at {music.seconds:.1f} s"
+            yield self.finding(message, subject.place(chart.line), chart=chart.index)
 
 
 class Preview(FileRule):
@@ -88,8 +88,10 @@ class Preview(FileRule):
         elif start is not None and start < 0:
             yield self.finding(f"the preview starts at {start:g} s, before the music", subject.tag_place("SAMPLESTART"))
         elif start is not None and end is not None and start + (length or 0) > end + self.options["tolerance"]:
-            said = f"the preview goes from {start:g} to {start + (length or 0):g} s, but the music ends at {end:.1f} s"
-            yield self.finding(said, subject.tag_place("SAMPLESTART"))
+            message = (
+                f"the preview goes from {start:g} to {start + (length or 0):g} s, but the music ends at {end:.1f} s"
+            )
+            yield self.finding(message, subject.tag_place("SAMPLESTART"))
 
 
 _SUFFIXES = {".ogg": "vorbis", ".oga": "vorbis", ".mp3": "mp3", ".wav": "wav", ".flac": "flac", ".opus": "opus"}
@@ -125,19 +127,19 @@ class MusicFormat(FileRule):
             return
         formats, rates = self.options["formats"], self.options["rates"]
         named = _SUFFIXES.get(path.suffix.lower())
-        said = None
+        message = None
         if head.kind not in formats:
-            said = f"is {head.kind}, not {' or '.join(formats)}"
+            message = f"is {head.kind}, not {' or '.join(formats)}"
         elif named != head.kind:
-            said = f"is {head.kind}, whatever its name says"
+            message = f"is {head.kind}, whatever its name says"
         elif rates and head.rate not in rates:
-            said = f"has a sample rate of {head.rate} Hz, not {' or '.join(map(str, rates))}"
+            message = f"has a sample rate of {head.rate} Hz, not {' or '.join(map(str, rates))}"
         elif head.channels > self.options["channels"]:
-            said = f"has {head.channels} channels, more than {self.options['channels']}"
+            message = f"has {head.channels} channels, more than {self.options['channels']}"
         elif subject.sync is not None and subject.sync.damage:
-            said = "cannot be decoded"
-        if said:
-            yield self.finding(f"the music {path.name} {said}", subject.tag_place("MUSIC"))
+            message = "cannot be decoded"
+        if message:
+            yield self.finding(f"the music {path.name} {message}", subject.tag_place("MUSIC"))
 
 
 class LeadIn(FileRule):
@@ -156,8 +158,8 @@ class LeadIn(FileRule):
         starts = [(float(one.timing.seconds(one.notes.tick[:1])[0]), one) for one in subject.dance_charts]
         first, chart = min(starts, key=lambda start: start[0], default=(0.0, None))
         if chart is not None and first < self.options["min_seconds"]:
-            said = f"the first note of {chart.label} comes {abs(first):.2f} s {'before' if first < 0 else 'after'}"
-            yield self.finding(f"{said} the start of the music", subject.place(chart.line), chart=chart.index)
+            message = f"the first note of {chart.label} comes {abs(first):.2f} s {'before' if first < 0 else 'after'}"
+            yield self.finding(f"{message} the start of the music", subject.place(chart.line), chart=chart.index)
 
 
 class Silence(FileRule):
@@ -193,5 +195,5 @@ class Clipping(FileRule):
         """At most one finding."""
         heard = subject.sync.heard if subject.sync else None
         if heard is not None and 100 * heard.clipped > self.options["share"]:
-            said = f"{100 * heard.clipped:.1f} % of the music's samples are at full scale"
-            yield self.finding(said, subject.tag_place("MUSIC"))
+            message = f"{100 * heard.clipped:.1f} % of the music's samples are at full scale"
+            yield self.finding(message, subject.tag_place("MUSIC"))

@@ -153,8 +153,8 @@ class SongFolder(FileRule):
         if folder.name.lower() in _ROOTS:
             yield self.finding(f"the file is directly in {folder.name}, in no folder of a pack", subject.place())
         elif folder.parent.name.lower() in _ROOTS:
-            said = f"the song's folder is directly in {folder.parent.name}, in no folder of a pack"
-            yield self.finding(said, subject.place())
+            message = f"the song's folder is directly in {folder.parent.name}, in no folder of a pack"
+            yield self.finding(message, subject.place())
 
 
 class Title(FileRule):
@@ -192,10 +192,10 @@ class Credit(FileRule):
         anonymous = [chart for chart in charts if not (chart.tags.get("CREDIT", "") + chart.description).strip()]
         if not anonymous:
             return
-        said, place = "the charts name no author", subject.tag_place("CREDIT")
+        message, place = "the charts name no author", subject.tag_place("CREDIT")
         if len(anonymous) < len(charts):
-            said, place = f"no author is named for {_labels(anonymous)}", subject.place(anonymous[0].line)
-        yield self.finding(f"{said}: #CREDIT is empty; write the name there", place)
+            message, place = f"no author is named for {_labels(anonymous)}", subject.place(anonymous[0].line)
+        yield self.finding(f"{message}: #CREDIT is empty; write the name there", place)
 
 
 _MOST_LABELS = 3  # charts that are named

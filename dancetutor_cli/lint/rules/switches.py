@@ -218,5 +218,5 @@ class SwitchJack(TimedRule):
         for rows, limbs in subject.feet.switching_runs(least, self.longest(subject)) if subject.feet else ():
             if limbs[0] != limbs[-1]:  # otherwise who jacks them all comes out on the right foot
                 change = next(at for at in range(1, len(rows)) if limbs[at] != limbs[at - 1])
-                said = f"footswitch or jack? the feet change in {len(rows)} quick steps on one panel"
-                yield Occurrence(rows[change], max(map(subject.pause, rows[1:])), said)
+                message = f"footswitch or jack? the feet change in {len(rows)} quick steps on one panel"
+                yield Occurrence(rows[change], max(map(subject.pause, rows[1:])), message)

@@ -113,13 +113,13 @@ class PackSync(PackRule):
 
     def check_pack(self, songs: Sequence[PackSong], ini: PackIni | None) -> str | None:
         """What it says and what the songs are."""
-        said = "" if ini is None else ini.sync.upper()
+        word = "" if ini is None else ini.sync.upper()
         decided = [one for one in songs if one.sync.kind in _KINDS_OF_INI.values()]
-        others = [one for one in decided if one.sync.kind != _KINDS_OF_INI.get(said)]
-        if said not in _KINDS_OF_INI or len(decided) < self.options["least"] or len(others) < _SHARE * len(decided):
+        others = [one for one in decided if one.sync.kind != _KINDS_OF_INI.get(word)]
+        if word not in _KINDS_OF_INI or len(decided) < self.options["least"] or len(others) < _SHARE * len(decided):
             return None
-        (is_said,) = (name for name in _KINDS_OF_INI if name != said)
-        return f"Pack.ini says SyncOffset={said}, but {len(others)} of {len(decided)} songs are {is_said}"
+        (is_said,) = (name for name in _KINDS_OF_INI if name != word)
+        return f"Pack.ini says SyncOffset={word}, but {len(others)} of {len(decided)} songs are {is_said}"
 
 
 class SyncBias(SyncRule):

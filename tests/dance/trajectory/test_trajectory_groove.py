@@ -38,8 +38,8 @@ def heard(groove: bool = True) -> Context:
 
 
 def groove(events: list[Event], tempo: float = 0.0, busy: float = 0.0, waits: float = 0.0) -> Groove:
-    engaged = Occupation(STILL + tempo, STILL + busy, STILL + waits)
-    return groove_of(plan_of(chart().timing, play(events), pad()), TIMES, engaged, heard())
+    occupation = Occupation(STILL + tempo, STILL + busy, STILL + waits)
+    return groove_of(plan_of(chart().timing, play(events), pad()), TIMES, occupation, heard())
 
 
 def test_what_is_tapped_again_is_found() -> None:

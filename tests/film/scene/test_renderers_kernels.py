@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import renderers_scene as rs
 
-from dancetutor_cli.character import dressed, load_character
+from dancetutor_cli.character import load_character, name_in_gait
 from dancetutor_cli.film.scene.cpu.floor import blur
 from dancetutor_cli.film.scene.cpu.raster import (
     BACK,
@@ -208,7 +208,7 @@ def test_outline_normals_agree_where_vertices_meet():
 @pytest.mark.parametrize("gait", ["flat", "heels"])
 def test_shoes_belong_to_the_feet_up_to_their_rim(gait):
     """The rim goes mostly with the shin; from above, where only feet are drawn, a shoe without it is a dark hole."""
-    dancer = load_character(dressed("dancer", gait))
+    dancer = load_character(name_in_gait("dancer", gait))
     packed = pack(dancer)
     drawn = packed.triangles[: packed.feet]
     for number, mesh in enumerate(dancer.meshes):
