@@ -15,19 +15,16 @@ from dancetutor_cli.chart.timing import FASTEST, SLOWEST, heard
 from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, default_name, into, warn
 from dancetutor_cli.commands.chart_options import (
     TABLE,
-    bar_option,
     character_option,
-    form_option,
-    gait_option,
-    motion_option,
+    dance_options,
+    jobs_option,
     number,
-    play_option,
     preset_option,
-    push_options,
+    ragdoll_options,
     report_option,
     section_option,
     selection_options,
-    style_option,
+    yes_option,
 )
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
@@ -88,7 +85,6 @@ class AnimateOptions:
     metavar="RATE",
     help="Speed of the music, 1 is normal.",
 )
-@play_option
 @report_option("Measure the motion, and print a table or write JSON.")
 @click.option(
     "--plot",
@@ -96,22 +92,11 @@ class AnimateOptions:
     metavar="FILE.svg|.png",
     help="Draw a diagram over time: errors, height and jerk of the motion.",
 )
-@bar_option
-@gait_option
-@form_option
-@motion_option
-@style_option
-@push_options
+@dance_options
+@ragdoll_options
 @click.option("--physics", is_flag=True, help="The same as --style neutral.")
-@click.option(
-    "--jobs",
-    type=click.IntRange(1, 256),
-    default=1,
-    show_default=True,
-    metavar="N",
-    help="Number of processes. More than one is faster for songs over two minutes.",
-)
-@click.option("--yes", is_flag=True, help="Do not ask, even if the song is very long.")
+@jobs_option("songs over two minutes")
+@yes_option
 @character_option
 @selection_options
 @preset_option

@@ -81,6 +81,8 @@ exclude_option = click.option(
     help="For a folder: skip files and folders with this name or path, such as Old, '*.sm' or 'Old/*'.",
 )
 
+yes_option = click.option("--yes", is_flag=True, help="Do not ask, even if the song is very long.")
+
 section_option = click.option(
     "--section",
     metavar="START:END",
@@ -97,52 +99,51 @@ character_option = click.option(
     help="Who moves: dancer, mannequin, or a humanoid from a .glb or .vrm file.",
 )
 
-gait_option = click.option(
-    "--gait",
-    shell_complete=named(folder("gaits")),
-    default="flat",
-    show_default=True,
-    metavar="NAME|FILE",
-    help="How the dancer walks on and off the pad: flat, heels, or a file like those in configs/gaits.",
+# How a chart is danced: fields of `dance.request.DanceRequest`.
+dance_options = combined(
+    click.option(
+        "--play",
+        type=GivenPath(),
+        metavar="FILE.json",
+        help="Take the feet from this JSON file of analyze, not from the solver.",
+    ),
+    click.option(
+        "--gait",
+        shell_complete=named(folder("gaits")),
+        default="flat",
+        show_default=True,
+        metavar="NAME|FILE",
+        help="How the dancer walks on and off the pad: flat, heels, or a file like those in configs/gaits.",
+    ),
+    click.option(
+        "--form",
+        shell_complete=named(folder("forms")),
+        default="usual",
+        show_default=True,
+        metavar="NAME|FILE",
+        help="Where the feet land and how the body turns: usual, middle, edge, heels-in, heels-out, screen, turning, "
+        "or a file like those in configs/forms.",
+    ),
+    click.option(
+        "--motion",
+        type=GivenPath(),
+        metavar="FILE",
+        help="How the dancer moves: a YAML file with the numbers of configs/motion.yaml that you change.",
+    ),
+    click.option(
+        "--bar", is_flag=True, help="Let the dancer hold the bar behind the pad, as players of hard charts do."
+    ),
 )
 
-form_option = click.option(
-    "--form",
-    shell_complete=named(folder("forms")),
-    default="usual",
-    show_default=True,
-    metavar="NAME|FILE",
-    help="Where the feet land and how the body turns: usual, middle, edge, heels-in, heels-out, screen, turning, or "
-    "a file like those in configs/forms.",
-)
-
-style_option = click.option(
-    "--style",
-    shell_complete=named(folder("styles")),
-    metavar="NAME[:WEIGHT],...",
-    help="Add physics: a ragdoll follows the motion in a style: neutral, lazy, fierce, heavy, feminine, or a file "
-    "like those in configs/styles; or in a blend: fierce:0.6,heavy:0.4.",
-)
-
-motion_option = click.option(
-    "--motion",
-    type=GivenPath(),
-    metavar="FILE",
-    help="How the dancer moves: a YAML file with the numbers of configs/motion.yaml that you change.",
-)
-
-play_option = click.option(
-    "--play",
-    type=GivenPath(),
-    metavar="FILE.json",
-    help="Take the feet from this JSON file of analyze, not from the solver.",
-)
-
-bar_option = click.option(
-    "--bar", is_flag=True, help="Let the dancer hold the bar behind the pad, as players of hard charts do."
-)
-
-push_options = combined(
+# The ragdoll that follows a dance or a capture, and what befalls it.
+ragdoll_options = combined(
+    click.option(
+        "--style",
+        shell_complete=named(folder("styles")),
+        metavar="NAME[:WEIGHT],...",
+        help="Add physics: a ragdoll follows the motion in a style: neutral, lazy, fierce, heavy, feminine, or a file "
+        "like those in configs/styles; or in a blend: fierce:0.6,heavy:0.4.",
+    ),
     click.option(
         "--push",
         multiple=True,
@@ -157,6 +158,18 @@ push_options = combined(
         help="Catch the foot that is in the air at this second of the song.",
     ),
 )
+
+
+def jobs_option(words: str) -> Callable[[_Command], _Command]:
+    """Adds --jobs of a command that usually runs in one process. words : for what more of them are faster"""
+    return click.option(
+        "--jobs",
+        type=click.IntRange(1, 256),
+        default=1,
+        show_default=True,
+        metavar="N",
+        help=f"Number of processes. More than one is faster for {words}.",
+    )
 
 
 def report_option(words: str) -> Callable[[_Command], _Command]:

@@ -11,18 +11,13 @@ import click
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.arguments import GivenPath, folder, named
 from dancetutor_cli.commands.chart_options import (
-    bar_option,
     character_option,
     combined,
-    form_option,
-    gait_option,
+    dance_options,
     language_option,
-    motion_option,
     number,
-    play_option,
-    push_options,
+    ragdoll_options,
     section_option,
-    style_option,
 )
 from dancetutor_cli.film.choices import LEAST_SIDE, MOST_SIDE, QUALITIES, RENDERERS, parse_ahead
 from dancetutor_cli.run.errors import UsageError
@@ -65,12 +60,8 @@ film_options = combined(
         "background with --background]",
     ),
     character_option,
-    bar_option,
-    gait_option,
-    form_option,
-    motion_option,
-    style_option,
-    push_options,
+    dance_options,
+    ragdoll_options,
     click.option(
         "--camera",
         metavar="NAME|POS/TARGET",
@@ -101,7 +92,6 @@ film_options = combined(
         show_default=True,
         help="Which H.264 encoder to use; auto: NVENC where it works, otherwise x264.",
     ),
-    play_option,
     click.option(
         "--rate",
         metavar="R[,R...]",

@@ -13,14 +13,11 @@ from dancetutor_cli.chart import one_song
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.arguments import GivenPath, into, warn
 from dancetutor_cli.commands.chart_options import (
-    bar_option,
     character_option,
+    dance_options,
     exclude_option,
-    form_option,
-    gait_option,
+    jobs_option,
     language_option,
-    motion_option,
-    play_option,
     preset_option,
     quiet_option,
     selection_options,
@@ -64,26 +61,15 @@ class PageOptions:
     help="Write the output here: an .html file, or a folder if PATH is one.  [default: SONG-difficulty.html, pages]",
 )
 @click.option("--music", is_flag=True, help="Put the music into the page; without it the page asks for the file.")
-@play_option
-@bar_option
+@dance_options
 @click.option(
     "--second",
     metavar="next|PRESET|FILE",
     help="Add a second dancer: next for the next best feet, or the feet of another preset or of a JSON file, or the "
     "motion of an .npz file.",
 )
-@gait_option
-@form_option
-@motion_option
 @language_option("Language of the words.  [default: the browser's]")
-@click.option(
-    "--jobs",
-    type=click.IntRange(1, 256),
-    default=1,
-    show_default=True,
-    metavar="N",
-    help="Number of processes. More than one is faster for folders and for songs over two minutes.",
-)
+@jobs_option("folders and for songs over two minutes")
 @quiet_option
 @exclude_option
 @verbose_option

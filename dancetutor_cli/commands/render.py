@@ -19,6 +19,7 @@ from dancetutor_cli.commands.chart_options import (
     quiet_option,
     selection_options,
     verbose_option,
+    yes_option,
 )
 from dancetutor_cli.commands.film_options import film_options, film_request
 from dancetutor_cli.commands.first_run import announce_compiling
@@ -60,7 +61,7 @@ _NO_BACKGROUND = ("poses", "section", "rate", "loop", "count_in", "metronome", "
     "--into-file", is_flag=True, help="Write into the chart file: with --background, add the film to #BGCHANGES."
 )
 @click.option("--jobs", type=click.IntRange(1, 256), metavar="N", help="Number of processes.  [default: one per core]")
-@click.option("--yes", is_flag=True, help="Do not ask, even if the song is very long.")
+@yes_option
 @quiet_option
 @exclude_option
 @verbose_option

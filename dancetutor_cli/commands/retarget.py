@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from dancetutor_cli.commands.arguments import GivenPath, into, warn
-from dancetutor_cli.commands.chart_options import TABLE, push_options, report_option, style_option
+from dancetutor_cli.commands.chart_options import TABLE, character_option, ragdoll_options, report_option
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.files import check_file, one_of, write_atomic
@@ -49,16 +49,9 @@ class RetargetOptions:
     metavar="FILE",
     help=f"Write the output here: a {one_of(SUFFIXES)} file; a .html page shows input and output.",
 )
-@click.option(
-    "--character",
-    default="dancer",
-    show_default=True,
-    metavar="NAME|FILE",
-    help="Who moves: dancer, mannequin, or a humanoid from a .glb or .vrm file.",
-)
+@character_option
 @click.option("--animation", metavar="NAME", help="Use this animation of a .glb.  [default: its first]")
-@style_option
-@push_options
+@ragdoll_options
 @click.option(
     "--correct",
     default=",".join(_CORRECTIONS),
