@@ -36,7 +36,6 @@ from dancetutor_cli.commands.settings import show_settings
 from dancetutor_cli.reports.formats import FORMATS, Tally, open_brief_report, open_report
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import check_file
-from dancetutor_cli.run.languages import ENGLISH
 from dancetutor_cli.run.trust import results_folder
 
 if TYPE_CHECKING:
@@ -312,7 +311,7 @@ def _lint(run: LintRun, files: list[Source], options: dict[str, Any], output: IO
     for line in pack.summary_lines(tally) if not options["quiet"] else ():
         click.echo(line, err=True)
     if options["sheet"] is not None and not tally.unreadable:
-        message = write_sheet(options["sheet"], tasks, options["language"] or ENGLISH)
+        message = write_sheet(options["sheet"], tasks, options["language"])
         if not options["quiet"]:
             click.echo(message, err=True)
     if options["plot"] is not None and not tally.unreadable:

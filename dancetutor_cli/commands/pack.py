@@ -12,14 +12,13 @@ import click
 from dancetutor_cli.commands.arguments import GivenPath
 from dancetutor_cli.commands.chart_options import combined, number
 from dancetutor_cli.lint.findings import AUTO, SCALES
-from dancetutor_cli.lint.results import FileResult
-from dancetutor_cli.lint.snapshots import of_path, snapshot_of
 from dancetutor_cli.reports.terminal import safe, safe_path
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import check_file, write_atomic
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.analysis import AnalyzeTask, Drawable
+    from dancetutor_cli.lint.results import FileResult
     from dancetutor_cli.reports.formats import Tally
     from dancetutor_cli.reports.pack import Pack
     from dancetutor_cli.reports.sheet_drawing import Sheet
@@ -138,6 +137,7 @@ def report_changes(options: Mapping[str, Any], output: IO[str]) -> int:
 
 def _changes(options: Mapping[str, Any], most_rows: int | None) -> Iterator[str]:
     """A line that says how much changed, and the changes. most_rows : of a chart, None: all"""
+    from dancetutor_cli.lint.snapshots import of_path, snapshot_of
     from dancetutor_cli.lint.versions import change_lines, compare
 
     path, exclude = options["paths"][0], options["exclude"]
@@ -185,18 +185,19 @@ def check_sheet(path: Path, files: int) -> None:
         raise UsageError("--sheet draws the charts of one file: name a file, not a folder")
 
 
-def write_sheet(path: Path, tasks: list[AnalyzeTask], language: str) -> str:
+def write_sheet(path: Path, tasks: list[AnalyzeTask], language: str | None) -> str:
     """Draw the charts of one file; returns a line about it. An .svg holds one chart, a page any number of them.
 
-    language : of the sheet's words, a name of configs/languages
+    language : of the sheet's words, a name of configs/languages; None: English
     """
     from dancetutor_cli.lint.analysis import drawable_charts
     from dancetutor_cli.reports.sheet import html_page, make_sheet, svg_sheet
+    from dancetutor_cli.run.languages import ENGLISH
 
     charts = list(drawable_charts(tasks[0]))
     if not charts:
         raise UsageError(f"{tasks[0].path}: no chart with notes is selected, so there is nothing to draw")
-    made = [make_sheet(chart.subject, chart.findings, language) for chart in charts]
+    made = [make_sheet(chart.subject, chart.findings, language or ENGLISH) for chart in charts]
     sheets = [(sheet, _facts(chart, sheet)) for chart, sheet in zip(charts, made, strict=True)]
     if path.suffix.lower() == ".svg":
         if len(sheets) > 1:

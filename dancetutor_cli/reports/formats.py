@@ -8,10 +8,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
-from typing import IO, Any, NamedTuple, Protocol
+from typing import IO, TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from dancetutor_cli.lint.findings import RANKS
-from dancetutor_cli.lint.results import FileResult
+
+if TYPE_CHECKING:
+    from dancetutor_cli.lint.results import FileResult
 
 # One object that owns the counts of a run and its exit status.
 

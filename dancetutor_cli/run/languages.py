@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, fields
 from functools import cache
+from typing import TYPE_CHECKING
 
 from dancetutor_cli.run.reading import named_file
-from dancetutor_cli.run.schema import MarkedYaml, convert
-from dancetutor_cli.run.yaml_files import read
+
+if TYPE_CHECKING:
+    from dancetutor_cli.run.schema import MarkedYaml
 
 ENGLISH = "en"  # says which labels there are; a language without one of them has the English words there
 _PLACE = re.compile(r"\{(\w+)\}")
@@ -50,6 +52,9 @@ class Language:
 @cache
 def load_language(name: str = ENGLISH) -> Language:
     """The words of a language; UsageError for a name that there is not, FileError for a file that is wrong."""
+    from dancetutor_cli.run.schema import convert
+    from dancetutor_cli.run.yaml_files import read
+
     source = read(named_file("languages", name))
     if name == ENGLISH:
         return convert(source, Language)
