@@ -15,7 +15,6 @@ from dancetutor_cli.dance.context import Context, bar_of, context_of, holding, p
 from dancetutor_cli.dance.face import add_face, mood_at, peeks_at, with_peeks
 from dancetutor_cli.dance.foot_path import Feet, both_feet
 from dancetutor_cli.dance.footwork.planner import plan_footwork
-from dancetutor_cli.dance.grips import grips_of
 from dancetutor_cli.dance.ik.ankles import ease_ankles, rolled_soles
 from dancetutor_cli.dance.ik.full_body import Poses, solve
 from dancetutor_cli.dance.ik.targets import free_hands, translated
@@ -129,7 +128,11 @@ def planned(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> t
 
     play, gone = without_unplayable(play, pad, manner.get("let_go", ()))
     plan = replace(plan_footwork(play, second, manner.get("gait", "flat"), context), let_go=gone)
-    return (plan if rail is None else grips_of(plan, _standing(plan, context.settings.walk), context)), context
+    if rail is None:
+        return plan, context
+    from dancetutor_cli.dance.grips import grips_of
+
+    return grips_of(plan, _standing(plan, context.settings.walk), context), context
 
 
 def _standing(plan: Plan, walk: WalkSettings) -> tuple[float, float]:

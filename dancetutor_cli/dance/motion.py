@@ -150,6 +150,32 @@ def _plus(place: tuple[float, float], x: float, z: float) -> tuple[float, float]
     return place[0] + x, place[1] + z
 
 
+@dataclass(frozen=True, slots=True)
+class Distances:
+    """How far a ragdoll is from what it follows: of p retargeting points, without the extra ones, over f moments.
+
+    names : (p,); times : (f,) seconds; values : (f, p) centimetres between input and ragdoll
+    """
+
+    names: tuple[str, ...]
+    times: NDArray[np.float64]
+    values: NDArray[np.float64]
+
+    def table(self) -> dict[str, tuple[float, float, float, float]]:
+        """Minimum, maximum, mean and standard deviation of every point, centimetres."""
+        v = self.values
+        columns = zip(v.min(axis=0), v.max(axis=0), v.mean(axis=0), v.std(axis=0), strict=True)
+        return {
+            n: (float(a), float(b), float(c), float(d)) for n, (a, b, c, d) in zip(self.names, columns, strict=True)
+        }
+
+    @property
+    def worst(self) -> tuple[float, float, float]:
+        """Largest mean, standard deviation and distance of any point, centimetres: what the goals are about."""
+        v = self.values
+        return float(v.mean(axis=0).max()), float(v.std(axis=0).max()), float(v.max())
+
+
 # A motion at any times: rotations slerped and the root moved straight between keys, as every viewer of a file does.
 
 Array = NDArray[np.float64]

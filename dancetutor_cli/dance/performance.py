@@ -18,7 +18,6 @@ from dancetutor_cli.dance.ends import (
     with_exit,
 )
 from dancetutor_cli.dance.motion import Cut, Motion
-from dancetutor_cli.dance.physics.blend import Blend, load_choice
 from dancetutor_cli.dance.pieces import BakedPiece, Each, Piece, RagdollStyle, in_turn, pieces_of, whole_span
 from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_request, no_pad, read_chart
 from dancetutor_cli.dance.settings import load_settings
@@ -33,6 +32,7 @@ from dancetutor_cli.run.pool import Task, open_workers
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
     from dancetutor_cli.dance.context import Context
+    from dancetutor_cli.dance.physics.blend import Blend
     from dancetutor_cli.dance.plan import Plan
     from dancetutor_cli.feet import Pad
     from dancetutor_cli.feet.play import Play
@@ -144,7 +144,11 @@ def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) 
     parts = [one.chart for one in solved]
     pad = pad_of(solved)
     sides = sides_of(parts) if len(parts) > 1 else (None,)
-    blend = None if request.style is None else load_choice(request.style).blend(timing)
+    blend = None
+    if request.style is not None:
+        from dancetutor_cli.dance.physics.blend import load_choice
+
+        blend = load_choice(request.style).blend(timing)
     dancers = []
     people = persons_of([(one.play, one.pad) for one in solved if one.play is not None and one.pad is not None])
     for one, side, person in zip(solved, sides, people, strict=True):

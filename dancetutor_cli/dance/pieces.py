@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context
-from dancetutor_cli.dance.motion import Contact, Grip, Ground, Motion, sample
-from dancetutor_cli.dance.physics.simulation import Distances
+from dancetutor_cli.dance.motion import Contact, Distances, Grip, Ground, Motion, sample
 from dancetutor_cli.dance.plan import FootTrack, Move, Plan, Swing, Walk
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import BodyPoint, palm_points, place, sole_points, world_transforms

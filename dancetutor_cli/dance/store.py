@@ -17,8 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from dancetutor_cli.dance.motion import Motion
-from dancetutor_cli.dance.physics.simulation import Distances
+from dancetutor_cli.dance.motion import Distances, Motion
 from dancetutor_cli.dance.pieces import BakedPiece, Each, Piece
 from dancetutor_cli.run.fingerprint import fingerprint, program_stamp
 from dancetutor_cli.run.trust import kept_folder

@@ -11,10 +11,9 @@ import pytest
 
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.bake import bake_plan, cut, planned
-from dancetutor_cli.dance.motion import Motion, sample
+from dancetutor_cli.dance.motion import Distances, Motion, sample
 from dancetutor_cli.dance.physics.blend import Blend, load_choice, mean_distances
 from dancetutor_cli.dance.physics.pipeline import Wishes, through_ragdoll
-from dancetutor_cli.dance.physics.simulation import Distances
 from dancetutor_cli.dance.physics.style import load_style
 from dancetutor_cli.dance.pieces import Piece, RagdollStyle, in_turn, pieces_of
 from dancetutor_cli.dance.quality.report import report

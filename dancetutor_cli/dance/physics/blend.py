@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE
-from dancetutor_cli.dance.physics.simulation import Distances
+from dancetutor_cli.dance.motion import Distances
 from dancetutor_cli.dance.physics.style import NEUTRAL, Style, load_style
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, Span, load_settings, state_weights

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.timing import heard
-from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.motion import Distances, Motion
 from dancetutor_cli.dance.physics.ankles import eased_ankles
 from dancetutor_cli.dance.physics.arms import clear_arms, push_arms_out
 from dancetutor_cli.dance.physics.blend import Blend, mean_distances, mean_poses
@@ -31,7 +31,7 @@ from dancetutor_cli.dance.physics.pushes import (
 )
 from dancetutor_cli.dance.physics.ragdoll import NOMINAL, bones_of, place_points, points_of
 from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, pin_hands, repinned, restrained
-from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN, Distances, Ragdoll, follow_all, simulate
+from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN, Ragdoll, follow_all, simulate
 from dancetutor_cli.dance.physics.stands import keep_feet_still
 from dancetutor_cli.dance.physics.style import PARTS, Spring, Style
 from dancetutor_cli.dance.rig import quaternion as quat

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.motion import Distances, Motion
 from dancetutor_cli.dance.physics.plants import PIVOT, Plants
 from dancetutor_cli.dance.physics.ragdoll import bend_and_twist, bones_of
-from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN, Distances
+from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN
 from dancetutor_cli.dance.physics.style import NEUTRAL
 from dancetutor_cli.dance.quality.contact import bar_figures, contact_figures, ground_figures
 from dancetutor_cli.dance.quality.dynamics import balance_figures, dynamics_figures, flight_figures
