@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.run import ffmpeg
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import MEGABYTE, read_bytes, read_ends
 
@@ -233,6 +232,8 @@ def decode(path: Path, head: AudioHead, seconds: float = LONGEST) -> Sound:
     ffmpeg takes off the samples by which encoders of MP3 delay their music; no game does, so it is set not to
     (`skip_manual`). A first frame that says Info is silence in the games and nothing in ffmpeg: the start is later.
     """
+    from dancetutor_cli.run import ffmpeg
+
     rate, channels = head.rate if head.rate in _NATIVE else _NATIVE[0], min(head.channels, 2)
     as_it_is = ("-flags2", "+skip_manual") if head.kind == "mp3" else ()
     source = (*ffmpeg.INPUT_GUARD, *MUSIC_ONLY, "-threads", "1", *as_it_is, "-i", ffmpeg.local(path))

@@ -32,7 +32,6 @@ from dancetutor_cli.commands.pack import (
     write_plot,
     write_sheet,
 )
-from dancetutor_cli.commands.settings import show_settings
 from dancetutor_cli.reports.formats import FORMATS, Tally, open_brief_report, open_report
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import check_file
@@ -215,6 +214,8 @@ def command(**options: Any) -> int:  # fmt: skip
         return _watch(request, options)
     files = sources(options["paths"], options["stdin_filename"], options["exclude"])
     if options["show_settings"]:
+        from dancetutor_cli.commands.settings import show_settings
+
         return show_settings(LintRun(request), files)
     return _run(LintRun(request), files, options)
 

@@ -15,7 +15,7 @@ from dancetutor_cli.chart.edits import Splice, apply, unchanged
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.msd import Tag, blanked, scan
 from dancetutor_cli.run.errors import FileError, UsageError
-from dancetutor_cli.run.files import UCS_SUFFIX, back_up, remove_leftovers, write_atomic
+from dancetutor_cli.run.files import UCS_SUFFIX, remove_leftovers, write_atomic
 
 # The entry of a film in `#BGCHANGES`, which the games play behind the notes: put in beside what is there, and out.
 #
@@ -161,15 +161,15 @@ def check_place(film: Path, files: Sequence[Path]) -> None:
             raise UsageError(f"{film}: with --into-file the film must be in the song's folder, beside {file.name}")
 
 
-def enter(film: Path, files: Sequence[Path], backup: bool = False) -> list[str]:
+def enter(film: Path, files: Sequence[Path]) -> list[str]:
     """Write the entry of a film into chart files, in place of one that is there; lines for people.
 
     Raises FileError for the first file that cannot be written; those before it are.
     """
-    return [line for file in files for line in _enter(film, file, backup)]
+    return [line for file in files for line in _enter(film, file)]
 
 
-def _enter(film: Path, file: Path, backup: bool) -> list[str]:
+def _enter(film: Path, file: Path) -> list[str]:
     remove_leftovers(file.parent)
     song = reader.load(file)
     without = reader.parse(apply(song.data, remove(song)), file)
@@ -179,8 +179,6 @@ def _enter(film: Path, file: Path, backup: bool) -> list[str]:
     if reader.parse(apply(new, remove(after)), file).data != without.data:
         raise FileError(file, "refused, nothing was written: the entry could not be removed again")
     if new != song.data:
-        if backup:
-            back_up(file)
         write_atomic(file, new, expect=song.data)
     told = [f"{file}: plays {film.name} behind the notes; `dancetutor annotate --strip` removes it"]
     if added.later:

@@ -32,10 +32,10 @@ class Dot:
     name: str
 
 
-def _begin(title: str, x_name: str, y_name: str) -> list[str]:
+def _begin(title: str, y_name: str) -> list[str]:
     return [
         f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{escape(title)}">',
-        f'<text x="{(WIDTH + _LEFT) / 2:.0f}" y="{HEIGHT - 4}" text-anchor="middle">{escape(x_name)}</text>',
+        f'<text x="{(WIDTH + _LEFT) / 2:.0f}" y="{HEIGHT - 4}" text-anchor="middle">meter</text>',
         f'<text x="12" y="{HEIGHT / 2:.0f}" transform="rotate(-90 12 {HEIGHT / 2:.0f})" text-anchor="middle">'
         f"{escape(y_name)}</text>",
         f'<path class="axis" d="M{_LEFT} {_TOP}V{HEIGHT - _BOTTOM}H{WIDTH - _RIGHT}"/>',
@@ -76,7 +76,7 @@ def bars(counts: Mapping[int, Mapping[str, int]], plays: Mapping[int, int]) -> s
     """Charts by meter, parted by difficulty; a line for how many play like that meter."""
     meters = range(min([*counts, *plays]), max([*counts, *plays]) + 1)
     most = max([sum(of.values()) for of in counts.values()] + list(plays.values()))
-    out = [*_begin("charts by meter", "meter", "charts"), *_grid(most)]
+    out = [*_begin("charts by meter", "charts"), *_grid(most)]
     wide = (WIDTH - _LEFT - _RIGHT) / len(meters)
     for n, meter in enumerate(meters):
         x, below = _LEFT + n * wide, 0
@@ -99,7 +99,7 @@ def dots(found: Sequence[Dot], title: str, y_name: str, *, diagonal: bool = Fals
     """Charts over their meters; several of one meter stand side by side."""
     last = max([one.x for one in found] + [1.0]) + 1
     most = max([one.y for one in found] + [last if diagonal else 0.0, 0.1]) * 1.05
-    out = [*_begin(title, "meter", y_name), *_grid(most)]
+    out = [*_begin(title, y_name), *_grid(most)]
     step = 1 if last <= 24 else 5
     for meter in range(0, int(last) + 1, step):
         out.append(f'<text x="{_x(meter, 0, last):.1f}" y="{HEIGHT - 18}" text-anchor="middle">{meter}</text>')
@@ -120,7 +120,7 @@ def dots(found: Sequence[Dot], title: str, y_name: str, *, diagonal: bool = Fals
 def facing(shares: Mapping[int, Sequence[int]]) -> str:
     """By meter, how many of the rows face where: the screen at the bottom, back to it at the top."""
     meters = sorted(shares)
-    out = _begin("where the dancer faces", "meter", "% of rows") + _grid(100)
+    out = _begin("where the dancer faces", "% of rows") + _grid(100)
     wide = (WIDTH - _LEFT - _RIGHT) / max(len(meters), 1)
     for n, meter in enumerate(meters):
         rows, below = shares[meter], 0.0

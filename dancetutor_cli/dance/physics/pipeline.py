@@ -351,8 +351,9 @@ def _densities(body: Skeleton) -> dict[str, float]:
     return {p: float(np.clip(NOMINAL * mass * wanted[p] / total / own[p], *DENSITIES)) for p in PARTS}
 
 
-def standard_clip(body: Skeleton, seconds: float = 2.4, fps: int = 60) -> Motion:
+def standard_clip(body: Skeleton) -> Motion:
     """Treading on the spot just over the floor: knees, arms, forearms, trunk and head swing at their own paces."""
+    fps, seconds = 60, 2.4
     t = np.arange(round(seconds * fps) + 1) / fps
     w = 2 * np.pi * t / (2 * _ROUND)
     rotations = np.zeros((len(t), len(body.names), 4))

@@ -40,22 +40,12 @@ def plate(lines: Sequence[str], size: float, colour: tuple[int, int, int], face:
     return out
 
 
-def lozenge(
-    height: int,
-    width: int,
-    radius: float,
-    colour: tuple[int, int, int],
-    words: Sprite | None = None,
-    opacity: float = 1,
-) -> Sprite:
-    """A box with round corners, words in its middle."""
+def lozenge(height: int, width: int, radius: float, colour: tuple[int, int, int], opacity: float = 1) -> Sprite:
+    """A box with round corners."""
     painter = shapes.Painter(height, width)
     d = shapes.rounded_box(painter.x, painter.y, width / 2 - 1, height / 2 - 1, radius)
     painter.paint(shapes.cover(d), colour, opacity)
-    out = painter.sprite()
-    if words is not None:
-        sprites.centre(out, words)
-    return out
+    return painter.sprite()
 
 
 class Legend:

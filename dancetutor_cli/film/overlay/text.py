@@ -201,9 +201,9 @@ class Typeface:
         kept = words if len(words) > 0.5 * low else kept
         return kept.rstrip(" ,;:-~/·&([") + "…"
 
-    def shrink(self, text: str, size: float, width: float, least: float = 0.8) -> tuple[str, float]:
-        """Text and size with which it is at most `width` wide: smaller, down to `least` of the size, then cut off."""
-        low = least * size
+    def shrink(self, text: str, size: float, width: float) -> tuple[str, float]:
+        """Text and size with which it is at most `width` wide: smaller, down to four fifths, then cut off."""
+        low = 0.8 * size
         while size > low and self.width(text[:LONGEST], size) > width:
             size = max(low, 0.98 * size)
         return self.fit(text, size, width), size
