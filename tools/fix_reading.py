@@ -20,8 +20,9 @@ from dancetutor_cli.chart.edits import apply
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.preset import PresetChoice, preset_for
 from dancetutor_cli.lint.check import check_chart
-from dancetutor_cli.lint.configuration import PresetChoice, load_configuration, preset_for
+from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.fix_edits import move_notes
 from dancetutor_cli.lint.rule import matching

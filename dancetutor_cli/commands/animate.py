@@ -112,9 +112,8 @@ def command(file: Path, selection: Selection, options: AnimateOptions, **dance: 
     from dancetutor_cli.character import DANCER, load_character, name_in_gait
     from dancetutor_cli.character.mesh import partner_of
     from dancetutor_cli.dance.performance import perform, pooled, solve
-    from dancetutor_cli.dance.request import DanceRequest, check_request, read_chart, with_style
+    from dancetutor_cli.dance.request import DanceRequest, check_request, choice_for, read_chart, with_style
     from dancetutor_cli.formats.animation import AnimatedDancer, Animation
-    from dancetutor_cli.lint.configuration import choice_for
 
     _check(options)
     output, character = options.output, options.character

@@ -95,7 +95,7 @@ def command(paths: tuple[Path, ...], selection: Selection, options: AnnotateOpti
 
     Exit status: 0 done, 1 feet are missing or stale (--check), 2 a file cannot be read or written.
     """
-    from dancetutor_cli.lint.configuration import choice_of
+    from dancetutor_cli.feet.preset import choice_of
     from dancetutor_cli.markers.annotate import AnnotateRequest
 
     if not given["strip"] and "background" in (options.styles or ()):

@@ -18,7 +18,7 @@ from dancetutor_cli.chart.selection import is_chart_name
 from dancetutor_cli.run.reading import charts_path
 
 if TYPE_CHECKING:
-    from dancetutor_cli.lint.configuration import PresetChoice
+    from dancetutor_cli.feet.preset import PresetChoice
 
 
 # A word before work: where kernels are kept if not in the usual place, and that a first run compiles for a minute.

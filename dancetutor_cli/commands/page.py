@@ -84,8 +84,7 @@ def command(path: Path, selection: Selection, options: PageOptions, **dance: Any
     A dancer plays the chart beside its notes: slower or faster, in loops, row by row, or waiting for your steps. The
     page lists the hardest passages. If PATH is a folder, make a page of every chart in it, and an index page.
     """
-    from dancetutor_cli.dance.request import DanceRequest
-    from dancetutor_cli.lint.configuration import choice_for
+    from dancetutor_cli.dance.request import DanceRequest, choice_for
     from dancetutor_cli.page.work import PageRequest
 
     output = options.output

@@ -168,8 +168,8 @@ def _one_film(path: Path, output: Path | None, options: dict[str, Any]) -> Path:
 def _render_one(
     path: Path, output: Path | None, folder: Path | None, yes: bool, quiet: bool, options: dict[str, Any]
 ) -> None:
+    from dancetutor_cli.dance.request import choice_for
     from dancetutor_cli.film.work.request import look_up
-    from dancetutor_cli.lint.configuration import choice_for
 
     kind = PICTURES if folder is not None else "mp4" if output is None else target_of(output)
     if output is not None:

@@ -58,7 +58,7 @@ def _lines(run: LintRun, path: Path, data: bytes | None) -> Iterator[str]:
 
 
 def _preset(run: LintRun, path: Path, chart: Chart) -> str:
-    from dancetutor_cli.lint.configuration import preset_for
+    from dancetutor_cli.feet.preset import preset_for
 
     return preset_for(chart, path, run.presets(path)).name
 

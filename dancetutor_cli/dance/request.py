@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dancetutor_cli import chart as charts
+from dancetutor_cli.chart.pack_files import find_settings_file
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.settings import USUAL, load_settings
+from dancetutor_cli.feet.preset import PresetChoice, choice_of, mismatch, preset_for
 from dancetutor_cli.lint.passages import check_part, part_of
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.fingerprint import NAMED
@@ -31,7 +33,7 @@ class DanceRequest:
     """What dance is wanted. Pickles, so that another process can do it.
 
     path : the chart file; selection : which chart
-    preset : name or file of the solver's costs, None: what `lint.configuration` finds for the chart
+    preset : name or file of the solver's costs, None: what `feet.preset` finds for the chart
     play : a JSON file of analyze whose feet hold instead of the solver's
     rates : speeds of the music, 1 is its own; notes that nobody plays at the fastest one are not danced at any
     fps : regular keys per second
@@ -105,13 +107,24 @@ def with_style(request: DanceRequest) -> DanceRequest:
     return replace(request, style="neutral") if request.style is None and (request.push or request.trip) else request
 
 
+def choice_for(path: Path, given: str | None) -> PresetChoice:
+    """The presets of the charts of a file, with the nearest dancetutor.yaml up the tree."""
+    if given is not None:
+        return choice_of(given)
+    settings = find_settings_file(path.absolute().parent)
+    if settings is None:
+        return choice_of(None)
+    from dancetutor_cli.lint.configuration import load_configuration
+
+    return choice_of(None, load_configuration(settings, found=True).presets)
+
+
 def read_chart(request: DanceRequest, section: str | None = None) -> ChartChoice:
     """Read the file and choose the chart. A DancetutorError of one line for all that is wrong with the request.
 
     section : looked at here, so that a slip is reported before a chart is read
     """
     from dancetutor_cli.dance.two import check_alone
-    from dancetutor_cli.lint.configuration import choice_for, mismatch, preset_for
 
     if section is not None:
         check_part(section)

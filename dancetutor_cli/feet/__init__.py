@@ -1,7 +1,7 @@
 """Who steps what: pads, limbs, what people said about them, cost presets, and the solver -> `Play`.
 
     solved.solve_song             the one way to feet for every command
-      |   pads, preset              where panels are; what each undesired thing costs
+      |   pads, preset              where panels are; what each undesired thing costs; which preset a chart gets
       |   song_feet                 what people laid down: annotations in the file, sme (SMEditor), dancetutor.yaml
       |   overrides                 the same for one chart, and what of it cannot be danced
       |   play.prepare_all          rows of notes

@@ -1,20 +1,24 @@
-"""Cost presets: which rules of play hold, what each undesired thing costs; why a note is not played."""
+"""Cost presets: which rules of play hold, what each undesired thing costs, which preset a chart gets; dropped notes."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from dancetutor_cli.chart.names import COLUMNS
+from dancetutor_cli.chart.pack_files import Condition
 from dancetutor_cli.feet.solver.vocabulary import MODELS, MOST_MS
 from dancetutor_cli.run.errors import did_you_mean
 from dancetutor_cli.run.reading import config_names, config_path, is_outside, is_regular, named_file, shown_key
 from dancetutor_cli.run.schema import Bounds, Entries, MarkedYaml, Meaning, Names, Parsed, Text, convert
 from dancetutor_cli.run.yaml_files import read
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart
 
 # Why no person plays a note, and how quick is too quick. Needs no numpy: the linter's rules name these.
 
@@ -206,3 +210,62 @@ def _values(
         if name not in values:
             raise source.error((group,), f"{group}.{name} is missing")
     return tuple((name, values[name]) for name in known)
+
+
+# Which cost preset a chart is solved with: the one place that decides it, for every command.
+#
+# Imports neither numpy nor numba: a kept result is reported without them.
+
+
+@dataclass(frozen=True, slots=True)
+class PresetChoice:
+    """What was said about presets. Pickles; its `repr` says all that a play depends on but the program itself.
+
+    override : what --preset names: it holds for every chart
+    ruled : (condition, preset) of the configuration: of those that hold for a chart the last one counts
+    """
+
+    override: Preset | None = None
+    ruled: tuple[tuple[Condition, Preset], ...] = ()
+
+    def candidates(self) -> Iterator[Preset]:
+        """Every preset that a chart may get, but those for other pads that nobody has named."""
+        if self.override is not None:
+            yield self.override
+            return
+        yield from (preset for _, preset in self.ruled)
+        if not any(condition == Condition() for condition, _ in self.ruled):
+            yield _default(DEFAULT_PRESET)
+
+
+def preset_for(chart: Chart, path: Path, choice: PresetChoice) -> Preset:
+    """The preset of a chart: the command line's, else the configuration's, else the one for its steps type.
+
+    path : the chart file, which conditions may be about
+    """
+    if choice.override is not None:
+        return choice.override
+    for when, preset in reversed(choice.ruled):
+        if when.holds_for_path(path) and when.holds_for_chart(chart.steps_type, chart.difficulty, chart.meter):
+            return preset
+    return _default(default_preset(chart.steps_type))
+
+
+_default = cache(load_preset)
+
+
+def choice_of(given: str | None, named: Sequence[tuple[Condition, str]] = ()) -> PresetChoice:
+    """The presets that --preset and a configuration name, loaded; UsageError or FileError if one cannot be.
+
+    named : the configuration's, with the condition of each
+    """
+    if given is not None:
+        return PresetChoice(load_preset(given))
+    return PresetChoice(None, tuple((when, load_preset(name, confined=True)) for when, name in named))
+
+
+def mismatch(preset: Preset, steps_type: str) -> str | None:
+    """A line for people where a preset was made for other pads than a chart's, else None."""
+    if preset.is_for(steps_type):
+        return None
+    return f"preset '{preset.name}' was made for {' and '.join(preset.pads)} pads, not for {steps_type}"

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 from dancetutor_cli import chart as reader
 from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.feet.preset import PresetChoice, mismatch, preset_for
 from dancetutor_cli.lint.check import check_chart, check_file, merged_by_foot
-from dancetutor_cli.lint.configuration import PresetChoice, mismatch, preset_for
 from dancetutor_cli.lint.findings import AUTO, AlternativeResult, Cause, Figures, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.lint.rule_settings import Settings

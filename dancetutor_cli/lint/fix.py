@@ -9,11 +9,10 @@ from dataclasses import dataclass, field
 from dancetutor_cli.chart.edits import apply, unchanged, unified
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Chart, Song
 from dancetutor_cli.chart.names import is_lights
-from dancetutor_cli.feet.preset import Preset
+from dancetutor_cli.feet.preset import Preset, preset_for
 from dancetutor_cli.lint import fix_edits
 from dancetutor_cli.lint.analysis import AnalyzeTask, load_song
 from dancetutor_cli.lint.check import check_chart
-from dancetutor_cli.lint.configuration import preset_for
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.fix_edits import Fix, move_notes, notes_of
 from dancetutor_cli.lint.rule import ReaderRule, all_rules

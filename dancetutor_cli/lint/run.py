@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli.chart.pack_files import find_settings_file, places_of_feet
 from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.feet.preset import PresetChoice, choice_of
 from dancetutor_cli.lint.analysis import AnalyzeTask, ResultOptions, analyze_files, failed
 from dancetutor_cli.lint.check import Baseline, Key, load_baseline
 from dancetutor_cli.lint.configuration import (
     Configuration,
-    PresetChoice,
-    choice_of,
     load_configuration,
     with_assignments,
     with_selection,
@@ -85,7 +84,7 @@ class LintRun:
         """What is said about the cost presets of a file's charts; UsageError or FileError if one cannot be loaded."""
         configuration = self.configuration(path)
         if id(configuration) not in self._choices:  # one object for all files of a source, see `_by_source`
-            self._choices[id(configuration)] = choice_of(self.request.preset, configuration)
+            self._choices[id(configuration)] = choice_of(self.request.preset, configuration.presets)
         return self._choices[id(configuration)]
 
     def needs(self, path: Path) -> Iterator[Path]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from dancetutor_cli import chart as reader
 from dancetutor_cli.chart.edits import apply, unified
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.lint.configuration import mismatch, preset_for
+from dancetutor_cli.feet.preset import mismatch, preset_for
 from dancetutor_cli.markers import background, edit
 from dancetutor_cli.markers.comments import (
     BACKGROUND,
@@ -41,7 +41,7 @@ class AnnotateRequest:
     """What is to be done with every file. Pickles.
 
     named : whether somebody asked for these styles; else files beside the song that are not ours are no error
-    preset : name or file of the cost preset; None: what `lint.configuration` finds for each chart
+    preset : name or file of the cost preset; None: what `feet.preset` finds for each chart
     write : whether files are written at all; diff : whether a diff is wanted; force : pinned measures too
     into_file : added charts instead of .edit files; backup : keep the old bytes beside a file that is changed
     """

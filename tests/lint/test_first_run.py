@@ -13,8 +13,8 @@ import pytest
 
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.feet import load_preset
+from dancetutor_cli.feet.preset import PresetChoice
 from dancetutor_cli.feet.solver import compiled
-from dancetutor_cli.lint.configuration import PresetChoice
 from dancetutor_cli.run.kernels.store import StoredCode, kernel_folder, source_digest, source_modules
 
 

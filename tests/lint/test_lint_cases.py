@@ -16,10 +16,11 @@ from PIL import Image
 
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet import Play, load_preset
+from dancetutor_cli.feet.preset import PresetChoice
 from dancetutor_cli.feet.solver import solve
 from dancetutor_cli.lint import song_sync
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
-from dancetutor_cli.lint.configuration import PresetChoice, load_configuration, with_assignments, with_selection
+from dancetutor_cli.lint.configuration import load_configuration, with_assignments, with_selection
 from dancetutor_cli.lint.findings import sync_of
 from dancetutor_cli.lint.rule import PackRule, all_rules
 from dancetutor_cli.lint.sync import Onsets

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.feet.preset import PresetChoice
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
-from dancetutor_cli.lint.configuration import PresetChoice, load_configuration
+from dancetutor_cli.lint.configuration import load_configuration
 
 ROWS = "1000000\n0x00000\n0001\n0010000\n1000000\n,\n" * 4  # letters that are no notes, short rows, rows off the grid
 

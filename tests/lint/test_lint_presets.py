@@ -18,8 +18,9 @@ from dance_requests import film_request, solved_one
 from dancetutor_cli import chart as charts
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.analyze import command as analyze
-from dancetutor_cli.dance.request import DanceRequest, read_chart
+from dancetutor_cli.dance.request import DanceRequest, choice_for, read_chart
 from dancetutor_cli.feet import Preset, load_preset, preset_names
+from dancetutor_cli.feet.preset import PresetChoice, choice_of, mismatch, preset_for
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.work.batch import BatchRequest, film_list
@@ -27,7 +28,6 @@ from dancetutor_cli.film.work.request import look_up
 from dancetutor_cli.lint import figures, suggest
 from dancetutor_cli.lint.analysis import solved
 from dancetutor_cli.lint.cache import ResultCache
-from dancetutor_cli.lint.configuration import PresetChoice, choice_for, choice_of, mismatch, preset_for
 from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.markers.annotate import AnnotateRequest, Item, _configured, annotate_song
 from dancetutor_cli.run.errors import DancetutorError

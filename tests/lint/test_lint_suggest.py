@@ -10,12 +10,13 @@ import pytest
 from dancetutor_cli.chart import load, parse
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet import load_pad, load_preset, solve_chart
+from dancetutor_cli.feet.preset import PresetChoice
 from dancetutor_cli.feet.solver.engine import engine_for
 from dancetutor_cli.feet.solver.store import BASE
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
 from dancetutor_cli.lint.check import check_chart
-from dancetutor_cli.lint.configuration import PresetChoice, load_configuration
+from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.results import FileResult
 from dancetutor_cli.lint.subject import solved_chart
 from dancetutor_cli.lint.suggest import _Edited, _taps

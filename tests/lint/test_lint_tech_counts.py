@@ -17,8 +17,9 @@ from dancetutor_cli.chart import load, parse
 from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet import Overrides, load_pad, load_preset, solve_chart
+from dancetutor_cli.feet.preset import PresetChoice
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
-from dancetutor_cli.lint.configuration import PresetChoice, load_configuration
+from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.figures import tech_counts
 from dancetutor_cli.lint.findings import TECH_COUNTS
 from dancetutor_cli.lint.subject import ChartSubject

@@ -14,8 +14,9 @@ from click.testing import CliRunner
 
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.analyze import command
+from dancetutor_cli.feet.preset import choice_of
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
-from dancetutor_cli.lint.configuration import choice_of, load_configuration
+from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.results import from_bytes, to_bytes
 from dancetutor_cli.run.reading import charts_path
 
@@ -108,7 +109,9 @@ def test_a_chart_plays_like_the_same_whatever_is_asked_for() -> None:
 
 def test_a_kept_result_has_its_estimates() -> None:
     configuration = load_configuration(None)
-    result = analyze_file(AnalyzeTask(DEMO, choice_of(None, configuration), Selection(), configuration.settings))
+    result = analyze_file(
+        AnalyzeTask(DEMO, choice_of(None, configuration.presets), Selection(), configuration.settings)
+    )
     assert all(chart.estimate is not None and chart.score is not None for chart in result.charts)
     assert from_bytes(to_bytes(result, "k"), "k") == result
 

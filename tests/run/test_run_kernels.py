@@ -16,7 +16,7 @@ from module_file import loaded
 
 from dancetutor_cli.commands.doctor import _cache
 from dancetutor_cli.commands.first_run import announce_compiling
-from dancetutor_cli.lint.configuration import PresetChoice
+from dancetutor_cli.feet.preset import PresetChoice
 from dancetutor_cli.run import trust
 from dancetutor_cli.run.kernels import compiling, store
 
