@@ -196,8 +196,6 @@ def _are_frames(data: bytes, at: int) -> bool:
 
 # The samples, as the games hear them.
 
-# What a song's music may be, whatever its name: a playlist in disguise would make ffmpeg open other files.
-MUSIC_ONLY = ("-format_whitelist", "ogg,mp3,wav,w64,flac,aiff")
 LONGEST = 900.0  # seconds that are decoded at most
 _NATIVE = (44100, 48000)  # Hz; what has another rate is resampled to the first
 _HALVED = 2  # samples whose mean is one of a `Sound`: onsets need no more than half the rate
@@ -236,7 +234,7 @@ def decode(path: Path, head: AudioHead, seconds: float = LONGEST) -> Sound:
 
     rate, channels = head.rate if head.rate in _NATIVE else _NATIVE[0], min(head.channels, 2)
     as_it_is = ("-flags2", "+skip_manual") if head.kind == "mp3" else ()
-    source = (*ffmpeg.INPUT_GUARD, *MUSIC_ONLY, "-threads", "1", *as_it_is, "-i", ffmpeg.local(path))
+    source = (*ffmpeg.INPUT_GUARD, *ffmpeg.MUSIC_ONLY, "-threads", "1", *as_it_is, "-i", ffmpeg.local(path))
     form = ("-map", "0:a:0", "-t", f"{min(seconds, LONGEST):g}", "-ac", str(channels), "-ar", str(rate), "-f", "s16le",
             "-c:a", "pcm_s16le", "pipe:1")  # fmt: skip
     parts, full, count = [], 0, 0

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
-from dancetutor_cli.dance.changes import mean_body, mean_feet, mean_of_states
 from dancetutor_cli.dance.context import Context, bar_of, context_of, holding, panels_on_ground
 from dancetutor_cli.dance.face import add_face, mood_at, peeks_at, with_peeks
 from dancetutor_cli.dance.foot_path import Feet, both_feet
@@ -175,7 +174,11 @@ def bake_piece(piece: Piece) -> BakedPiece:
     grid = np.arange(np.floor(piece.span[0] * rate), np.ceil(piece.span[1] * rate) + 1) / rate
     states, changes = context.states(*piece.span)
     bodies = [settle(plan, grid, both_feet(plan.feet, grid, one.settings), one).trajectory for one in states]
-    body = bodies[0] if len(bodies) == 1 else mean_body(bodies, changes)
+    body = bodies[0]
+    if len(bodies) > 1:
+        from dancetutor_cli.dance.changes import mean_body
+
+        body = mean_body(bodies, changes)
     # all keys ask for free hands, and each round of more keys
     bodies_by_state = tuple((replace(body, hands=free_hands(plan, body, one)), one) for one in states)
     at = key_times(plan, piece.fps, *piece.baked)
@@ -222,6 +225,8 @@ def _posed_in(plan: Plan, bodies: Sequence[tuple[Trajectory, Context]], at: Arra
     feet = [both_feet(plan.feet, at, context.settings) for _, context in bodies]
     if len(bodies) == 1:
         return posed(plan, bodies[0][0], (at, feet[0]), bodies[0][1])
+    from dancetutor_cli.dance.changes import mean_feet, mean_of_states
+
     weights = state_weights(changes, at)
     mean = mean_feet(feet, weights)
     poses = [posed(plan, body, (at, mean), context) for body, context in bodies]

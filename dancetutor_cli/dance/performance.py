@@ -24,7 +24,6 @@ from dancetutor_cli.dance.settings import load_settings
 from dancetutor_cli.dance.store import with_store
 from dancetutor_cli.dance.two import merge_plays, pad_of_both, persons_of, place_on, sides_of
 from dancetutor_cli.feet.play import without_unplayable
-from dancetutor_cli.feet.play_json import read_play
 from dancetutor_cli.feet.solved import Solved, solve_song
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.pool import Task, open_workers
@@ -133,6 +132,8 @@ def solve(request: DanceRequest, chart: ChartChoice | None = None) -> tuple[Solv
             raise no_pad(request, one.chart)
     if request.play is None:
         return solved
+    from dancetutor_cli.feet.play_json import read_play
+
     one = solved[0]
     assert one.play is not None and one.pad is not None
     return (replace(one, play=read_play(request.play, one.chart, one.play.rows, one.pad)),)

@@ -107,6 +107,8 @@ def _listed(program: Path, option: str) -> set[str]:
 
 # Only local files and pipes, whatever a file's content or name asks for.
 INPUT_GUARD = ("-protocol_whitelist", "file,pipe")
+# What a song's music may be, whatever its name: a playlist in disguise would make ffmpeg open other files.
+MUSIC_ONLY = ("-format_whitelist", "ogg,mp3,wav,w64,flac,aiff")
 PIPE = 1 << 20  # bytes that a pipe to ffmpeg must hold
 _START = ("-nostdin", "-hide_banner", "-loglevel", "error")
 

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.dance.physics.style import Style, engine
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.run.errors import UsageError, did_you_mean
+
+if TYPE_CHECKING:
+    from dancetutor_cli.dance.physics.style import Style
 
 # Retargeting points: where on the ragdoll springs and dampers pull, End, Center or Hybrid Center.
 #
@@ -236,6 +238,8 @@ def build(skeleton: Skeleton, bones: tuple[Bone, ...], points: tuple[Point, ...]
         f"{_body(skeleton, bones, 0, points, style)}</worldbody><equality>{more}</equality>"
         f"<actuator>{actuators}</actuator></mujoco>"
     )
+    from dancetutor_cli.dance.physics.style import engine
+
     return engine().MjModel.from_xml_string(text)
 
 

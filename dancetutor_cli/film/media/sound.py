@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.audio import MUSIC_ONLY
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.film.clock import Clock, Pass, Practice
 from dancetutor_cli.run import ffmpeg
@@ -56,7 +55,17 @@ def decode(music: Path, start: float, end: float) -> Samples:
     if end <= 0:
         return out
     cut = f"aresample={RATE}:async=0,atrim=start={max(0.0, start):.9f}:end={end:.9f}"
-    arguments = (*ffmpeg.INPUT_GUARD, *MUSIC_ONLY, "-i", ffmpeg.local(music), "-vn", "-sn", "-dn", "-map", "0:a:0")
+    arguments = (
+        *ffmpeg.INPUT_GUARD,
+        *ffmpeg.MUSIC_ONLY,
+        "-i",
+        ffmpeg.local(music),
+        "-vn",
+        "-sn",
+        "-dn",
+        "-map",
+        "0:a:0",
+    )
     raw = ("-af", cut, "-ac", "2", "-f", "f32le", "-c:a", "pcm_f32le", "pipe:1")
     with ffmpeg.Process((*arguments, *raw), f"reading {music.name}", read=True) as process:
         data = process.read()
@@ -71,7 +80,17 @@ def decode(music: Path, start: float, end: float) -> Samples:
 def seconds_of(music: Path) -> float:
     """How long a music file plays; EncoderError if it is no music."""
     rate = 1000
-    arguments = (*ffmpeg.INPUT_GUARD, *MUSIC_ONLY, "-i", ffmpeg.local(music), "-vn", "-sn", "-dn", "-map", "0:a:0")
+    arguments = (
+        *ffmpeg.INPUT_GUARD,
+        *ffmpeg.MUSIC_ONLY,
+        "-i",
+        ffmpeg.local(music),
+        "-vn",
+        "-sn",
+        "-dn",
+        "-map",
+        "0:a:0",
+    )
     raw = ("-ac", "1", "-ar", str(rate), "-f", "u8", "-c:a", "pcm_u8", "pipe:1")
     with ffmpeg.Process((*arguments, *raw), f"reading {music.name}", read=True) as process:
         data = process.read()
