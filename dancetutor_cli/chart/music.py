@@ -59,15 +59,15 @@ def named_file(folder: Path, name: str) -> Path:
 
 def other_case(folder: Path, name: str) -> str | None:
     """What a file is called that a tag names with other capitals, each part of its path; None where it is as named."""
-    current, told = folder, []
+    current, parts = folder, []
     for part in name.replace("\\", "/").split("/"):
         names = _names(current) if part not in ("", ".", "..") else [part]
         same = sorted(entry for entry in names if _plain(entry) == _plain(part))
         if not same:
             return None
-        told.append(part if part in same else same[0])
-        current = current / told[-1]
-    found = "/".join(told)
+        parts.append(part if part in same else same[0])
+        current = current / parts[-1]
+    found = "/".join(parts)
     return None if found == name.replace("\\", "/") else found
 
 

@@ -129,7 +129,7 @@ def moments(callouts: Sequence[Callout], passes: Sequence[Pass]) -> list[Moment]
     """Moments at which passages are called out, of one pass of each rate; at most `MOST_MOMENTS` of each."""
     found: list[Moment] = []
     for rate, one in {one.rate: one for one in passes}.items():
-        spans = [(max(told.begin, one.start), min(max(told.end, told.second), one.end)) for told in callouts]
+        spans = [(max(call.begin, one.start), min(max(call.end, call.second), one.end)) for call in callouts]
         spans = [(low, high) for low, high in spans if low < high]
         if spans:
             step = max(MOMENT_STEP, sum(high - low for low, high in spans) / MOST_MOMENTS)

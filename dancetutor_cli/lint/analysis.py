@@ -290,12 +290,13 @@ class _File:
         task = self._task
         for subject in _others(self._song, self._selected, task, self._meters):
             self._meters.add(subject, task.rate)
-        told = self._meters.reports(task.meter_scale)
-        return tuple(_with_report(chart, told[chart.index]) if chart.index in told else chart for chart in self._charts)
+        found = self._meters.reports(task.meter_scale)
+        return tuple(_with_report(one, found[one.index]) if one.index in found else one for one in self._charts)
 
 
-def _with_report(chart: ChartResult, told: MeterReport) -> ChartResult:
-    return replace(chart, estimate=told.estimate, score=told.score, findings=told.with_findings(chart.findings))
+def _with_report(chart: ChartResult, report: MeterReport) -> ChartResult:
+    findings = report.with_findings(chart.findings)
+    return replace(chart, estimate=report.estimate, score=report.score, findings=findings)
 
 
 def _others(song: Song, selected: tuple[Chart, ...], task: AnalyzeTask, meters: Meters) -> Iterator[ChartSubject]:

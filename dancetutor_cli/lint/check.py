@@ -51,10 +51,10 @@ def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...
         return ()
     rules = rules_of(subject, settings)
     findings = [finding for rule in rules.values() for finding in _run_rule(rule, subject)]
-    told = _as_sure_as_they_are(findings, subject, settings, rules.get(_AMBIGUITY))
+    results = _as_sure_as_they_are(findings, subject, settings, rules.get(_AMBIGUITY))
     if subject.play is None and subject.chart.written_type.startswith(_FINGERS) and _NO_PAD in rules:
-        told = (one for one in told if one.rule == _NO_PAD or one.severity == "error")
-    return _in_order(finding for finding in told if not _silenced(finding, subject))
+        results = (one for one in results if one.rule == _NO_PAD or one.severity == "error")
+    return _in_order(finding for finding in results if not _silenced(finding, subject))
 
 
 # Steps types that fingers play, of a chart of which one line says enough: what makes a dance is nothing to them.
@@ -81,8 +81,8 @@ _rules_cache: dict[int, tuple[Mapping[str, Options], Rules]] = {}
 
 def check_rule(code: str, rules: Rules, subject: ChartSubject, settings: Settings) -> tuple[Finding, ...]:
     """What one of the rules of a chart adds to `check_chart`; an ambiguity of other rules is reported again."""
-    told = _as_sure_as_they_are(_run_rule(rules[code], subject), subject, settings, rules.get(_AMBIGUITY))
-    return tuple(finding for finding in told if not _silenced(finding, subject))
+    results = _as_sure_as_they_are(_run_rule(rules[code], subject), subject, settings, rules.get(_AMBIGUITY))
+    return tuple(finding for finding in results if not _silenced(finding, subject))
 
 
 def _run_rule(rule: ChartRule | ReaderRule, subject: ChartSubject) -> list[Finding]:

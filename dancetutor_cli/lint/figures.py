@@ -82,15 +82,15 @@ def causes_of(subject: ChartSubject, preset: Preset) -> tuple[Cause, ...]:
 def with_causes(findings: Sequence[Finding], causes: Sequence[Cause], panels: Sequence[str]) -> tuple[Finding, ...]:
     """The findings, those about a doublestep with what makes it, where that is not the pattern itself."""
     by_beat = {cause.beat: cause for cause in causes if cause.at_beat is not None and cause.column is not None}
-    told = []
+    results = []
     for finding in findings:
         cause = by_beat.get(round(finding.beat, 6)) if finding.beat is not None else None
         if finding.rule == _DOUBLESTEP and cause is not None and cause.column is not None:
             where = f"on beat {round(cause.at_beat or 0.0, 3):g}"
             where += f" ({panels[cause.column]})" if cause.cause != "jump" else ""
             finding = replace(finding, message=f"{finding.message}, because of the {cause.cause} {where}")
-        told.append(finding)
-    return tuple(told)
+        results.append(finding)
+    return tuple(results)
 
 
 # Technical steps of a chart by the names and rules of ITGmania (see `techniques`), and how far the dancer faces away.

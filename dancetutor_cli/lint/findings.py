@@ -215,8 +215,8 @@ def _bill(
     meter: str, terms: Sequence[tuple[str, float]], digits: int, most: int | None = None, first: tuple[str, ...] = ()
 ) -> str:
     """A number, as text, and what adds up to it, without what rounds to nothing."""
-    told = [f"{name} {value:+.{digits}f}" for name, value in terms if round(abs(value), digits) > 0]
-    return f"{meter}: {', '.join([*first, *told][:most])}"
+    parts = [f"{name} {value:+.{digits}f}" for name, value in terms if round(abs(value), digits) > 0]
+    return f"{meter}: {', '.join([*first, *parts][:most])}"
 
 
 # Beats against the audio, as it is kept and shown.

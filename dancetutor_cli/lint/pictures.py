@@ -61,12 +61,12 @@ class PictureRule(FileRule):
 
     def _size_fault(self, size: tuple[int, int], name: str) -> str | None:
         sizes, proportions = self.options["sizes"], self.options["proportions"]
-        told = f"#{self.tag} is {size[0]}x{size[1]}, not"
+        start = f"#{self.tag} is {size[0]}x{size[1]}, not"
         if sizes and f"{size[0]}x{size[1]}" not in sizes:
-            return f"{told} {' or '.join(sizes)}: {name}"
+            return f"{start} {' or '.join(sizes)}: {name}"
         ratios = [int(a) / int(b) for a, b in (str(one).split("x") for one in proportions)]
         if ratios and all(abs(size[0] / size[1] / ratio - 1) > _ALIKE for ratio in ratios):
-            return f"{told} in the proportion of {' or '.join(proportions)}: {name}"
+            return f"{start} in the proportion of {' or '.join(proportions)}: {name}"
         return None
 
 

@@ -146,12 +146,12 @@ class ReaderRule(Rule):
         kinds: tuple[tuple[frozenset[str], dict[str, str]], ...]
         kinds = (self.codes - self.usual, {}), (self.usual, {"severity": "info"})
         for codes, least in kinds:
-            told: dict[int | None, tuple[list[str], dict[str, Any]]] = {}
+            by_line: dict[int | None, tuple[list[str], dict[str, Any]]] = {}
             for message, place in subject.warnings(codes):
-                messages, _ = told.setdefault(place["line"], ([], place))
+                messages, _ = by_line.setdefault(place["line"], ([], place))
                 if not any(known in message for known in messages):
                     messages.append(message)
-            for messages, place in told.values():
+            for messages, place in by_line.values():
                 yield self.finding("; also: ".join(messages), place, **least)
 
 

@@ -66,11 +66,11 @@ def with_suggestions(
     if subject.play is None or subject.pad is None:
         return tuple(findings)
     trial = _Trial(subject, _of_families(settings), preset, _places(findings))
-    told: list[Finding] = []
+    results: list[Finding] = []
     for finding in findings:
         best = next(trial.good(finding), None) if finding.rule in FIXED_BY_MOVES else None
-        told.append(finding if best is None else replace(finding, suggestion=_in_words(best, subject)))
-    return tuple(told)
+        results.append(finding if best is None else replace(finding, suggestion=_in_words(best, subject)))
+    return tuple(results)
 
 
 def move_edits(

@@ -180,7 +180,7 @@ def _enter(film: Path, file: Path) -> list[str]:
         raise FileError(file, "refused, nothing was written: the entry could not be removed again")
     if new != song.data:
         write_atomic(file, new, expect=song.data)
-    told = [f"{file}: plays {film.name} behind the notes; `dancetutor annotate --strip` removes it"]
+    lines = [f"{file}: plays {film.name} behind the notes; `dancetutor annotate --strip` removes it"]
     if added.later:
-        told.append(f"warning: {file}: a background change at beat {min(added.later):g} ends the film")
-    return told
+        lines.append(f"warning: {file}: a background change at beat {min(added.later):g} ends the film")
+    return lines

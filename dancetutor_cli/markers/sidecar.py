@@ -151,8 +151,8 @@ def write_feet_text(path: Path, old: bytes | None, song: Song, feet: Sequence[Ch
     for one in feet:
         columns = one.chart.columns
         for row, steps, letters in zip(one.rows.row.tolist(), one.rows.steps, one.letters, strict=True):
-            told = iter(letters.encode("ascii"))
-            cells = bytes(next(told) if step else ord(".") for step in steps[:columns].tolist())
+            letter = iter(letters.encode("ascii"))
+            cells = bytes(next(letter) if step else ord(".") for step in steps[:columns].tolist())
             at = int(one.chart.rows.line[row]) - 1
             lines[at] = lines[at].rstrip() + b"  " + cells
     preset = ", ".join(dict.fromkeys(one.play.preset for one in feet)).encode()

@@ -138,11 +138,11 @@ class BriefReport:
         kinds: dict[tuple[str, str], list[_Entry]] = defaultdict(list)
         for entry in sorted(self._entries, key=lambda one: one.order):
             kinds[entry.first.rule, entry.first.severity].append(entry)
-        told = [self._cut(line) for of_kind in kinds.values() for line in self._kind_lines(of_kind)]
-        if not told:
+        lines = [self._cut(line) for of_kind in kinds.values() for line in self._kind_lines(of_kind)]
+        if not lines:
             return []
-        shown = told[: max(4, room - 3)]
-        return ["", *shown, *_more(len(told) - len(shown), "such lines"), _HINT]
+        shown = lines[: max(4, room - 3)]
+        return ["", *shown, *_more(len(lines) - len(shown), "such lines"), _HINT]
 
     def _kind_lines(self, entries: Sequence[_Entry]) -> list[str]:
         """What is found of a rule in the charts of a song: a line for each, three and more in one."""

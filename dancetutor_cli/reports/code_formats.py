@@ -122,8 +122,8 @@ class GithubReport:
             finding = entry.finding
             properties = {"file": entry.path, "line": finding.line, "col": finding.column}
             properties["title"] = f"{finding.rule} {finding.name}"
-            told = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items() if value is not None)
-            write_command(self._stream, f"::{_COMMANDS[finding.severity]} {told}::{_data(entry.message)}\n")
+            text = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items() if value is not None)
+            write_command(self._stream, f"::{_COMMANDS[finding.severity]} {text}::{_data(entry.message)}\n")
 
     def end(self, tally: Tally) -> None:
         """Write the summary."""
@@ -217,9 +217,9 @@ class JunitReport:
             first = f"{failed[0].finding.rule} {safe(failed[0].finding.message)}"
             lines = "\n".join(escape(_line(entry)) for entry in failed)
             inside.append(f'  <failure type="{failed[0].finding.rule}" message={quoteattr(first)}>{lines}</failure>\n')
-        told = [_line(entry) for entry in found if entry.finding.severity == "info"]
-        if told:
-            text = "\n".join(escape(line) for line in told)
+        infos = [_line(entry) for entry in found if entry.finding.severity == "info"]
+        if infos:
+            text = "\n".join(escape(line) for line in infos)
             inside.append(f"  <system-out>{text}</system-out>\n")
         head = f" <testcase classname={quoteattr(path)} name={quoteattr(safe(name))}"
         return f"{head}>\n{''.join(inside)} </testcase>\n" if inside else f"{head}/>\n"

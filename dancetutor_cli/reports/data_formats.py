@@ -335,22 +335,22 @@ def _line(path: str, title: str, artist: str, chart: ChartResult | None) -> Mapp
 
 def _estimated(chart: ChartResult | None) -> Mapping[str, Any]:
     """How hard it plays; empty where the pad has no model of meters."""
-    told = chart.estimate if chart else None
+    estimate = chart.estimate if chart else None
     return {
-        "plays_like": round(told.meter, 2) if told else "",
-        "plays_low": round(told.low, 2) if told else "",
-        "plays_high": round(told.high, 2) if told else "",
-        "meter_scale": told.scale if told else "",
-        "bill": "; ".join(f"{name} {meters:.2f}" for name, meters in told.terms) if told else "",
+        "plays_like": round(estimate.meter, 2) if estimate else "",
+        "plays_low": round(estimate.low, 2) if estimate else "",
+        "plays_high": round(estimate.high, 2) if estimate else "",
+        "meter_scale": estimate.scale if estimate else "",
+        "bill": "; ".join(f"{name} {meters:.2f}" for name, meters in estimate.terms) if estimate else "",
     }
 
 
 def _scored(chart: ChartResult | None) -> Mapping[str, Any]:
     """How hard it is to score on; empty where nobody has rated charts of the pad."""
-    told = chart.score if chart else None
+    estimate = chart.score if chart else None
     return {
-        "scores_like": round(told.meter, 3) if told else "",
-        "scores_low": round(told.low, 3) if told else "",
-        "scores_high": round(told.high, 3) if told else "",
-        "score_bill": "; ".join(f"{name} {levels:.3f}" for name, levels in told.terms) if told else "",
+        "scores_like": round(estimate.meter, 3) if estimate else "",
+        "scores_low": round(estimate.low, 3) if estimate else "",
+        "scores_high": round(estimate.high, 3) if estimate else "",
+        "score_bill": "; ".join(f"{name} {levels:.3f}" for name, levels in estimate.terms) if estimate else "",
     }

@@ -188,9 +188,9 @@ class Pack:
         """Charts that stand out, a line each, the farthest first."""
         charts = self.charts()
         off = [
-            (abs(told.meter - one.result.meter), one, told.meter)
+            (abs(estimate.meter - one.result.meter), one, estimate.meter)
             for one in charts
-            if (told := one.result.estimate) is not None and told.is_scale_known and one.result.meter > 0
+            if (estimate := one.result.estimate) is not None and estimate.is_scale_known and one.result.meter > 0
         ]
         for how_far, one, meter in sorted(off, key=lambda x: -x[0]):
             if how_far >= _FEW:

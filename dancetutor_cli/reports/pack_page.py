@@ -192,10 +192,10 @@ def _figures(charts: Sequence[PackChart]) -> Iterable[str]:
     for one in charts:
         named = one.result.difficulty if one.result.difficulty in COLOURS else "Edit"
         labels[min(one.result.meter, 30)][named] += 1
-    told = [(one, one.result.estimate) for one in charts]
-    plays = Counter(min(round(estimate.meter), 30) for _, estimate in told if estimate)
+    pairs = [(one, one.result.estimate) for one in charts]
+    plays = Counter(min(round(estimate.meter), 30) for _, estimate in pairs if estimate)
     yield _figure("Charts by meter; dashed: by how they play", bars(labels, plays))
-    estimated = [_dot(one, estimate.meter) for one, estimate in told if estimate]
+    estimated = [_dot(one, estimate.meter) for one, estimate in pairs if estimate]
     if estimated:
         yield _figure("How they play against their meters", dots(estimated, "plays like", "plays like", diagonal=True))
     measured = [(one, one.result.figures) for one in charts if one.result.figures is not None]
@@ -267,9 +267,9 @@ def _table(charts: Iterable[PackChart]) -> str:
     head = '<th class="t">song</th><th class="t">chart</th>' + "".join(f"<th>{name}</th>" for name in names)
     rows = []
     for one in charts:
-        chart, figures, told = one.result, one.result.figures, one.result.estimate
-        off = told is not None and told.is_scale_known and abs(told.meter - chart.meter) >= _OFF
-        plays = f"<td{' class=off' if off else ''}>{told.meter:.1f}</td>" if told else "<td></td>"
+        chart, figures, estimate = one.result, one.result.figures, one.result.estimate
+        off = estimate is not None and estimate.is_scale_known and abs(estimate.meter - chart.meter) >= _OFF
+        plays = f"<td{' class=off' if off else ''}>{estimate.meter:.1f}</td>" if estimate else "<td></td>"
         scores = f"<td>{chart.score.meter:.2f}</td>" if chart.score else "<td></td>"
         cells = [str(chart.row_count), f"{figures.nps_mean:.1f}" if figures else ""]
         cells += [str(one.rows_of(technique) or "") for technique in TECHNIQUES]

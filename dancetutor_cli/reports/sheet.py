@@ -217,5 +217,5 @@ def _page_css(style: SheetStyle) -> str:
 
 def facts_of(counts: Sequence[tuple[str, int]], numbers: Sequence[str]) -> list[str]:
     """Lines under the name of a chart: its numbers, and how often each move happens."""
-    told = " · ".join(f"{name} {count}" for name, count in counts if count)
-    return [" · ".join(numbers), told] if told else [" · ".join(numbers)]
+    moves = " · ".join(f"{name} {count}" for name, count in counts if count)
+    return [" · ".join(numbers), moves] if moves else [" · ".join(numbers)]

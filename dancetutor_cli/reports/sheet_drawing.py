@@ -191,8 +191,8 @@ def _unsure_bands(sheet: Sheet, ticks: range) -> Iterator[str]:
     for _, tick, percent in unsure_rows(sheet):
         if tick in ticks:
             left, width = sheet.layout.left(tick // TICKS_PER_MEASURE), sheet.layout.lanes * sheet.style.lane
-            told = title(sheet.say("unsure", percent=f"{percent:.0f}"))
-            yield tag("rect", told, x=left, y=sheet.layout.y(tick) - 7, width=width, height=14, rx=4,
+            tooltip = title(sheet.say("unsure", percent=f"{percent:.0f}"))
+            yield tag("rect", tooltip, x=left, y=sheet.layout.y(tick) - 7, width=width, height=14, rx=4,
                       fill=sheet.style.colours["unsure"], fill_opacity=_BAND_OPACITY)  # fmt: skip
 
 

@@ -31,13 +31,13 @@ def number(value: float) -> str:
 
 def tag(name: str, inside: str = "", /, **attributes: object) -> str:
     """An element. Attributes: underscores stand for hyphens, floats are shortened, None is left out."""
-    told = []
+    texts = []
     for key, value in attributes.items():
         if value is None:
             continue
         text = number(value) if isinstance(value, float | int) else str(value)
-        told.append(f" {key.rstrip('_').replace('_', '-')}={quoteattr(text)}")
-    return f"<{name}{''.join(told)}>{inside}</{name}>" if inside else f"<{name}{''.join(told)}/>"
+        texts.append(f" {key.rstrip('_').replace('_', '-')}={quoteattr(text)}")
+    return f"<{name}{''.join(texts)}>{inside}</{name}>" if inside else f"<{name}{''.join(texts)}/>"
 
 
 def text(content: str, x: float, y: float, class_: str, **attributes: object) -> str:

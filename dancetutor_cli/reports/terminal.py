@@ -182,7 +182,7 @@ class FilmProgress:
         self.name, self.quiet = name, quiet
         self.terminal = sys.stderr.isatty() and not quiet
         self.frames = self.fps = self.done = 0
-        self.began = self.told = 0.0
+        self.began = self.last_report = 0.0
         self.early = 0  # frames that were drawn before the clock of the speed began
         self.bar: Progress | None = None
         self.task: TaskID | None = None
@@ -199,7 +199,7 @@ class FilmProgress:
     def begin(self, frames: int, fps: int) -> None:
         """The film has that many frames."""
         self.frames, self.fps = frames, fps
-        self.began = self.told = time.monotonic()
+        self.began = self.last_report = time.monotonic()
         if self.terminal:
             self._open_bar()
 
@@ -241,8 +241,8 @@ class FilmProgress:
         speed = self._speed(now)
         if self.bar is not None and self.task is not None:
             self.bar.update(self.task, advance=frames, speed="" if speed is None else f"{speed:.2f}x")
-        elif not self.quiet and self.fps and self.done and now - self.told >= EVERY:
-            self.told = now
+        elif not self.quiet and self.fps and self.done and now - self.last_report >= EVERY:
+            self.last_report = now
             line = f"{self.name}: {self.done / self.fps:.0f} of {self.frames / self.fps:.0f} s done"
             if speed is not None:
                 line += f", {speed:.2f}x, {(self.frames - self.done) / self.fps / speed:.0f} s left"

@@ -85,7 +85,7 @@ class Engine:
         )  # fmt: skip
 
     def cheapest(
-        self, rows: Rows, forced: NDArray[np.int64] | None = None, margins: bool = False, *, told: bool = False
+        self, rows: Rows, forced: NDArray[np.int64] | None = None, margins: bool = False, *, details: bool = False
     ) -> SolverPath:
         """The cheapest way through rows.
 
@@ -93,13 +93,13 @@ class Engine:
         ----------
         forced : limb codes of overrides for each row (n,), 3 bits for each column, 0 none
         margins : whether to look for the best way with other limbs, too
-        told : whether to say what each row costs and what happens in it
+        details : whether to say what each row costs and what happens in it
         """
         arrays, (n, c) = _arrays(rows, forced), rows.steps.shape
-        found, at_once = self._empty_path(n, c, margins=margins), told and _nodes_of(n, c) <= _NODES_KEPT
+        found, at_once = self._empty_path(n, c, margins=margins), details and _nodes_of(n, c) <= _NODES_KEPT
         found = self._with_detail_arrays(found) if at_once else found
         self._run(arrays, found)  # of a long chart the nodes are gone before there is room for what it costs
-        return self.with_details(rows, found) if told and not at_once else found
+        return self.with_details(rows, found) if details and not at_once else found
 
     def first_without(self, rows: Rows, edits: NDArray[np.int64]) -> int:
         """Which of some edits is the first after which the cheapest way has no doublestep in a row; else their number.
@@ -180,9 +180,9 @@ class Engine:
 
     def with_details(self, rows: Rows, found: SolverPath) -> SolverPath:
         """A way, and what it costs and what happens in each row."""
-        told = self._with_detail_arrays(found)
-        self._call(_arrays(rows, None), EXPLAIN, _nodes(0, self._node), told)
-        return told
+        details = self._with_detail_arrays(found)
+        self._call(_arrays(rows, None), EXPLAIN, _nodes(0, self._node), details)
+        return details
 
     def _with_detail_arrays(self, found: SolverPath) -> SolverPath:
         n = len(found.move)

@@ -41,7 +41,7 @@ def solve(rows: Rows, pad: Pad, preset: Preset, overrides: Overrides | None = No
     if rows.steps.shape[1] != len(pad):
         raise ValueError(f"rows have {rows.steps.shape[1]} columns, {pad.steps_type} has {len(pad)} panels")
     engine = engine_for(pad, preset)
-    return play_of(rows, engine, engine.cheapest(rows, forced_limbs(rows, overrides), margins, told=True))
+    return play_of(rows, engine, engine.cheapest(rows, forced_limbs(rows, overrides), margins, details=True))
 
 
 def solve_chart(

@@ -58,7 +58,7 @@ _SIGNS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], d
 class Silhouette:
     """A box around the vertices that follow each joint most, in that joint's own axes: it holds in every pose.
 
-    told : which of these are of heads and feet
+    named : which of these are of heads and feet
     """
 
     def __init__(self, character: Character) -> None:
@@ -74,7 +74,7 @@ class Silhouette:
         corners = [np.where(_SIGNS, part.max(0), part.min(0)) for part in parts]
         self.corners = np.array(corners).reshape(len(self.joints), 8, 3)
         names = [character.skeleton.names[joint] for joint in self.joints]
-        self.told = np.array([k for k, name in enumerate(names) if name.endswith(FACE_AND_FEET)], dtype=np.int64)
+        self.named = np.array([k for k, name in enumerate(names) if name.endswith(FACE_AND_FEET)], dtype=np.int64)
 
     def behind(
         self, boxes: Sequence[tuple[float, float, float, float]], joints: Array, camera: Camera, size: tuple[int, int]
@@ -91,7 +91,7 @@ class Silhouette:
 
     def heads_and_feet(self, joints: Array, camera: Camera, size: tuple[int, int]) -> Array:
         """Where these are: left, top, right and bottom of each part that is before the camera, (n, 4), pixels."""
-        return self._picture_boxes(self.told, joints, camera, size)
+        return self._picture_boxes(self.named, joints, camera, size)
 
     def _picture_boxes(self, parts: NDArray[np.int64], joints: Array, camera: Camera, size: tuple[int, int]) -> Array:
         """Boxes in the picture around `parts`, indices of `self.joints`."""

@@ -93,9 +93,9 @@ def film_dance(request: FilmRequest, subject: FilmSubject) -> FilmDance:
             motions[rate] = (
                 _file_motions(request, performance) if request.motions else _cut(request, performance, clock)
             )
-    told, on_mines = _mines(motions, list(zip(solved, plays, strict=True)), rates[-1])
+    results, on_mines = _mines(motions, list(zip(solved, plays, strict=True)), rates[-1])
     shown = play_without(play_without(play_of_all(solved, plays), quiet), after)  # rows of which nothing is left, too
-    return FilmDance(solved, plays, shown, pad_of(solved), told, on_mines)
+    return FilmDance(solved, plays, shown, pad_of(solved), results, on_mines)
 
 
 def _cut(request: FilmRequest, performance: Performance, clock: Clock) -> tuple[Motion, ...]:
@@ -124,17 +124,17 @@ def _mines(
     out: dict[float, tuple[Motion, ...]] = {}
     found: list[OnMine] = []
     for rate, some in motions.items():
-        told = []
+        results = []
         for motion, (one, play) in zip(some, plays, strict=True):
             assert one.pad is not None
             mines = mines_of(as_heard(play, one.chart.timing.at_rate(rate)), one.pad)
             if len(plays) > 1:
                 mines += [0.0, *place_on(pad, one.chart, one.pad)]
             under = feet_on_mines(motion, mines)
-            told.append(replace(motion, notes=(*motion.notes, *mine_messages(mines[under >= 0, 0]))))
+            results.append(replace(motion, notes=(*motion.notes, *mine_messages(mines[under >= 0, 0]))))
             if rate == fastest:
                 found += _on_mines(one, play, under, len(plays) > 1)
-        out[rate] = tuple(told)
+        out[rate] = tuple(results)
     return out, tuple(found)
 
 

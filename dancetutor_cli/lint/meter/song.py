@@ -79,9 +79,9 @@ class Meters:
             labels = label_scales_of(one_pad, tag, scale)
             for one, played, label_scale in zip(of_pad, here, labels, strict=True):
                 at_1 = played.estimate
-                told = at_1 if one.sized.rate == 1.0 else on_scale(one.sized, at_1.scale, at_1.is_scale_known)
+                own = at_1 if one.sized.rate == 1.0 else on_scale(one.sized, at_1.scale, at_1.is_scale_known)
                 findings = self._findings(played, sure) if at_1.is_scale_known else ()
-                out[one.index] = MeterReport(told, _score(steps_type, one, label_scale), findings)
+                out[one.index] = MeterReport(own, _score(steps_type, one, label_scale), findings)
         return out
 
     def _played(self, index: int, estimate: Estimate) -> RatedChart:
