@@ -163,7 +163,7 @@ def test_a_mat_that_calls_its_arrows_axes_plays_along_and_lets_go_when_it_is_pul
     browser.turn(0.1)
     browser.run("window.pad.axes[0] = -1")
     browser.turn(0.1)
-    assert said(browser) == "Nothing you step on is judged yet: choose Play along (p)."
+    assert said(browser) == "Nothing you press or step on is judged yet: choose Play along (p)."
     browser.run("window.pad.axes[0] = 0")
     browser.key("Home")
     browser.key("w", "KeyW")

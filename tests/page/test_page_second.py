@@ -178,7 +178,7 @@ def test_a_finger_on_the_lanes_is_told_that_nothing_is_judged_yet(opened: Browse
     for kind, points in (("touchStart", [{"x": xs[0], "y": y}]), ("touchEnd", [])):
         opened.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
     opened.drawn()
-    assert said(opened).startswith("Nothing you step on is judged yet")
+    assert said(opened).startswith("Nothing you press or step on is judged yet")
     assert opened.run("document.querySelector('[aria-selected=true]').id") == "tab-along"
     opened.key("p", "KeyP")
     assert not said(opened).startswith("Nothing")

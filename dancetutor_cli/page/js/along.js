@@ -22,12 +22,16 @@ export function alongPanel(app) {
   const keys = el("p", { class: "keys" });
   const pads = el("p", { class: "hint", role: "status" });
   const assign = el("button", { type: "button", id: "assign", onclick: () => assignDialog(app, show) }, t("assign"));
-  const calibrate = el("button", { type: "button", onclick: () => calibrateDialog(app) }, t("calibrate"));
+  const calibrate = el("button", { type: "button", id: "calibrate", onclick: () => calibrateDialog(app) }, t("calibrate"));
+  let listed = "";
   const show = () => {
+    const names = app.input.listed();
+    if (listed === (listed = JSON.stringify(names))) return;
     keys.replaceChildren(...app.doc.pad.names.map((/** @type {string} */ name, /** @type {number} */ k) =>
-      el("span", {}, `${panelName(app.t, name)} `, ...app.input.names()[k].flatMap((key) => [el("kbd", {}, key), " "]))));
+      el("span", {}, `${panelName(app.t, name)} `, ...names[k].flatMap((key) => [el("kbd", {}, key), " "]))));
   };
   const refresh = () => {
+    show();
     along.setAttribute("aria-pressed", String(app.practice.along));
     wait.setAttribute("aria-pressed", String(app.practice.wait));
     coach.setAttribute("aria-pressed", String(app.practice.coach.on));
@@ -39,26 +43,33 @@ export function alongPanel(app) {
     score.textContent = app.practice.along ? `${scoreText(app, tally)} ${meanText(app, tally)}` : "";
   };
   app.listeners.add((what) => { if (what !== "frame") refresh(); });
-  show();
   refresh();
   return el("div", {},
     el("div", { class: "modes" }, along, wait, coach), el("p", { class: "hint" }, t("alongHint")), score,
     keys, pads, el("div", { class: "modes two" }, assign, calibrate),
     el("p", { class: "field whole" }, el("label", { for: "foot" }, t("foot")), foot),
     el("p", { class: "field whole" }, el("label", { for: "feet-help" }, t("feetHelp")), help),
-    el("p", { class: "hint" }, t("windows", { good: 1000 * GOOD, wide: 1000 * WINDOW })), el("p", { class: "hint" }, t("padHint")));
+    el("details", { class: "hint" }, el("summary", {}, t("judging")), el("p", {}, t("windows", { good: 1000 * GOOD, wide: 1000 * WINDOW })),
+      ...t("padHint").split("\n").map((line) => el("p", {}, line))));
 }
 
-/** Press a key or button for each panel in turn. @param {import("./app.js").App} app @param {() => void} done */
+/** Press a key or button for each panel in turn; whoever stops before the last one keeps what there was. @param {import("./app.js").App} app @param {() => void} done */
 function assignDialog(app, done) {
-  const { t } = app;
+  const { t, settings } = app;
+  const before = structuredClone({ keys: settings.keys, pads: settings.pads, controls: settings.controls });
+  let all = false; // every panel has been given its key
   const text = el("p", { role: "status" });
   const dialog = el("dialog", { class: "assign", "aria-label": t("assign") }, el("h2", {}, t("assign")), text,
-    el("button", { type: "button", onclick: () => dialog.close() }, t("cancel")));
+    el("p", { class: "group" }, el("button", { type: "button", id: "assign-cancel", onclick: () => dialog.close() }, t("cancel")),
+      el("button", { type: "button", id: "assign-defaults", onclick: () => { app.input.forget(); end(); } }, t("assignDefaults"))));
   const panels = app.doc.pad.names;
   let column = 0;
   const ask = () => {
     text.textContent = column < panels.length ? t("pressFor", { panel: panelName(app.t, panels[column]) }) : t(`pressControl-${CONTROLS[column - panels.length]}`);
+  };
+  const end = () => {
+    all = true;
+    dialog.close();
   };
   app.input.learning = (name) => {
     if (name === "Escape") return dialog.close();
@@ -67,9 +78,15 @@ function assignDialog(app, done) {
     ++column;
     const last = panels.length + (name.includes("#") ? CONTROLS.length : 0); // a mat has Start and Select too
     if (column < last) ask();
-    else dialog.close();
+    else end();
   };
-  dialog.addEventListener("close", () => { app.input.learning = null; app.save(); done(); dialog.remove(); });
+  dialog.addEventListener("close", () => {
+    app.input.learning = null;
+    if (!all) Object.assign(settings, before);
+    app.save();
+    done();
+    dialog.remove();
+  });
   ask();
   document.body.append(dialog);
   dialog.showModal();

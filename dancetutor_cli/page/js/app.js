@@ -46,7 +46,7 @@ export class App {
     this.input.onControl = (name) => (name === "start" ? void this.padStart() : this.toStart());
     this.input.onPress = (press) => {
       this.fresh = true;
-      if (press.device === "pad" && !this.practice.along) this.notice = this.t("padIdle");
+      if (press.device === "pad" && !this.practice.along) this.practice.idle();
       this.practice.press(press.column, press.ago);
     };
     this.pace = scrollSpeed(this.chart.rowSeconds);

@@ -93,6 +93,7 @@ export function listenToKeys(app, actions) {
     }
     const name = event.shiftKey && (event.key.length > 1 || /[A-Z]/.test(event.key)) ? `Shift+${event.key}` : event.key;
     const action = actions.find((one) => one.keys.includes(name) || one.keys.includes(name.toLowerCase()));
+    if (!action && !app.practice.along && app.transport.playing && app.input.columnOf(event.code) >= 0) return app.practice.idle();
     if (!action) return event.key.length === 1 && app.practice.along ? app.practice.strayKey() : undefined;
     event.preventDefault();
     action.run();

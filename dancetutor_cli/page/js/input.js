@@ -34,8 +34,9 @@ export class Input {
    */
   constructor(panels, settings, ways = []) {
     this.ways = ways;
-    /** whether there are no keys to speak of: a phone or a mat, until one is pressed */
-    this.touched = typeof matchMedia === "function" && matchMedia("(pointer: coarse)").matches;
+    /** whether there are no keys to speak of: a phone, until one is pressed */
+    this.keyless = typeof matchMedia === "function" && matchMedia("(pointer: coarse)").matches;
+    this.touched = this.keyless; // whether lanes are named by arrows: on a phone, and after a mat's press
     this.panels = panels;
     this.settings = settings;
     /** @type {Map<string, boolean[]>} buttons that are down, by pad */
@@ -65,9 +66,27 @@ export class Input {
     return /** @type {Record<number, string[]>} */ (ARROWS)[this.panels.length] ?? [];
   }
 
-  /** What each panel is called: by its keys; by its arrow where there are none. @returns {string[][]} */
+  /** What each panel is called above its lane: by its keys; by its arrow where there are none. @returns {string[][]} */
   names() {
-    if (this.touched && this.ways.length) return this.ways.map((way) => [way === null ? "■" : SIGNS[Math.round(way / 45) & 7]]);
+    return this.called(this.touched);
+  }
+
+  /** All that presses each panel: keys, or arrows on a phone; then buttons (B) and axes (A) of the mats, as the browser numbers them. */
+  listed() {
+    const pads = this.pads();
+    return this.called(this.keyless).map((names, column) => [...names, ...new Set(pads.flatMap((pad) => this.buttonNames(pad, column)))]);
+  }
+
+  /** @param {Gamepad} pad @param {number} column */
+  buttonNames(pad, column) {
+    const own = this.settings.pads[this.padName(pad)];
+    const end = own || pad.mapping === "standard" ? undefined : ENDS[/** @type {keyof typeof ENDS} */ (this.panels[column])];
+    return [this.buttons(pad)[column], end].flatMap((number) => (typeof number !== "number" ? [] : [number < AXES ? `B${number}` : `A${(number - AXES) >> 1}${number % 2 ? "+" : "−"}`]));
+  }
+
+  /** @param {boolean} arrows @returns {string[][]} */
+  called(arrows) {
+    if (arrows && this.ways.length) return this.ways.map((way) => [way === null ? "■" : SIGNS[Math.round(way / 45) & 7]]);
     return this.panels.map((_, k) => [this.keys, this.arrows].filter((one) => one[k]).map((one) => keyName(one[k])));
   }
 
@@ -137,7 +156,7 @@ export class Input {
     }
     const column = this.columnOf(event.code);
     if (column < 0) return false;
-    this.touched = false;
+    this.touched = this.keyless = false;
     if (!event.repeat) this.press(column, "keys", event.timeStamp);
     return true;
   }
@@ -209,6 +228,14 @@ export class Input {
     this.changed = true;
     if (device === "pad") this.touched = true; // its panels have arrows on them, and no letters
     this.onPress({ column, device, ago: ago > 0 && ago < LONGEST ? ago : 0 });
+  }
+
+  /** Keys of so many panels, and buttons of every mat, are as at first. */
+  forget() {
+    const { keys, pads, controls } = this.settings;
+    delete keys[this.panels.length];
+    for (const name of Object.keys(pads)) if (name.endsWith(`/${this.panels.length}`)) delete pads[name];
+    for (const name of Object.keys(controls)) if (name.endsWith(`/${this.panels.length}`)) delete controls[name];
   }
 
   /**

@@ -2,6 +2,7 @@
 
 import { alongPanel } from "./along.js";
 import { authorPanel, noteText } from "./author.js";
+import { chips } from "./chips.js";
 import { makeBar, makeZoom } from "./controls.js";
 import { el } from "./dom.js";
 import { findingsPanel, passagesPanel, settingsPanel } from "./panels.js";
@@ -59,7 +60,7 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   const count = el("p", { class: "count", "aria-hidden": "true" }); // it is heard too
   const passed = el("p", { class: "passed", role: "status" });
   for (const old of stage.querySelectorAll(":scope > :not(canvas)")) old.remove();
-  stage.append(cameraButtons(app), count, passed, ...captions, standing(app), resultCard(app));
+  stage.append(cameraButtons(app), count, passed, ...captions, standing(app), chips(app), resultCard(app));
   const note = el("p", { class: "unseen", role: "status" });
   app.listeners.add((what) => { if (what === "feet") note.textContent = app.chosen >= 0 ? noteText(app, app.chosen) : ""; });
   const root = /** @type {HTMLElement} */ (document.getElementById("app"));

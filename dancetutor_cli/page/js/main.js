@@ -121,10 +121,8 @@ function listenToLanes(app, lanes, ui) {
   }
   lanes.addEventListener("click", (event) => {
     if (app.practice.along) return;
-    if (document.querySelector("#tab-along[aria-selected=true]")) { // who looks there means to play, not to choose a note
-      app.notice = app.t("padIdle");
-      return app.tell("along");
-    }
+    const finger = app.transport.playing && /** @type {PointerEvent} */ (event).pointerType === "touch";
+    if (finger || document.querySelector("#tab-along[aria-selected=true]")) return app.practice.idle(); // means to play, not to choose a note
     const box = lanes.getBoundingClientRect();
     const note = app.highway?.noteAt(event.clientX - box.left, event.clientY - box.top, app.highwayScene(app.second())) ?? -1;
     if (note >= 0) {

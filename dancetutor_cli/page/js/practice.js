@@ -35,6 +35,7 @@ export class Practice {
     /** @type {"" | "now" | "said"} whether a key was pressed that is no panel: once, the keys are said then */
     this.stray = "";
     this.strayAt = 0; // milliseconds
+    this.idleNotice = ""; // what was said of a press that nothing judged
     /** @type {Feedback | null} */
     this.feedback = null;
     this.run = 0; // notes in a row without a miss or a wrong press
@@ -121,7 +122,7 @@ export class Practice {
   setAlong(on) {
     this.keep();
     if (!on) this.coach.on = false;
-    if (on && this.app.notice === this.app.t("padIdle")) this.app.notice = "";
+    if (on && this.saysIdle) this.app.notice = "";
     this.along = on;
     this.before = null;
     this.stray = "";
@@ -206,6 +207,19 @@ export class Practice {
     return this.feedback;
   }
 
+  /** A panel was pressed while nobody plays along: that nothing is judged is said. */
+  idle() {
+    this.app.notice = this.app.t("padIdle", { key: this.app.input.keyless ? "" : " (p)" });
+    this.idleNotice = this.app.notice;
+    this.strayAt = performance.now();
+    this.app.tell("along");
+  }
+
+  /** Whether that is what is said now. */
+  get saysIdle() {
+    return this.idleNotice !== "" && this.app.notice === this.idleNotice;
+  }
+
   /** A key was pressed that is no panel. */
   strayKey() {
     if (this.stray) return;
@@ -214,10 +228,11 @@ export class Practice {
     this.app.tell("along");
   }
 
-  /** The keys have been said for long enough. */
+  /** The keys, or that nothing is judged, have been said for long enough. */
   fade() {
-    if (this.stray !== "now" || performance.now() - this.strayAt < STRAY) return;
-    this.stray = "said";
+    if ((this.stray !== "now" && !this.saysIdle) || performance.now() - this.strayAt < STRAY) return;
+    if (this.saysIdle) this.app.notice = "";
+    else this.stray = "said";
     this.app.tell("along");
   }
 

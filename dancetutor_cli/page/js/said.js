@@ -30,8 +30,7 @@ export function musicText(app) {
 
 /** Which keys are the panels. @param {import("./app.js").App} app */
 export function keysText(app) {
-  const { keys, arrows, touched } = app.input;
-  if (touched) return app.t("keysAre", { keys: app.input.names().map(([name]) => name).join(" ") });
+  const { keys, arrows } = app.input; // of whoever has pressed a key, a mat or not
   const names = [keys, arrows].filter((one) => one.length).map((one) => one.map(keyName).join(" "));
   return names.length > 1 ? app.t("keysOrArrows", { keys: names[0], arrows: names[1] }) : app.t("keysAre", { keys: names[0] });
 }
