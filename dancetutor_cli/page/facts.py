@@ -1,8 +1,8 @@
-"""What a page says of a song and a chart: words, places of notes, what the other foot would cost, sentences."""
+"""What a page says of a song and a chart: words, places of notes, what the other foot would cost, tags."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +15,6 @@ from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.film.overlay.text import clean
-from dancetutor_cli.page.document import languages
 
 if TYPE_CHECKING:
     from dancetutor_cli.feet.pads import Pad
@@ -111,48 +110,40 @@ def _flip(play: Play, row: int, total: int, given: tuple[Pad, Preset, Overrides]
     }
 
 
-# What the feet do in a passage, in a sentence of each of the page's languages.
+# What the feet do in a passage: tags, which the page words in its reader's language.
 
 _TURNED = 90.0  # degrees that are worth reporting
 
 
-def sentence(passage: Passage, labels: Mapping[str, str]) -> str:
-    """One sentence, the most important first."""
-    left, right = passage.crossovers
-    parts = [_filled(labels, "stream", passage.stream) if passage.stream else _filled(labels, "fast", passage.steps)]
-    for name, count in (
+def tags(passage: Passage) -> list[tuple[str, int]]:
+    """Names of what the feet do, with their counts (degrees of `turn`), the steps first, then the most important."""
+    counted = (
         ("spin", passage.spins),
-        ("crossover-left", left),
-        ("crossover-right", right),
+        ("crossover", sum(passage.crossovers)),
         ("bracket", passage.brackets),
         ("footswitch", passage.footswitches),
         ("doublestep", passage.doublesteps),
         ("jump", passage.jumps),
         ("hand", passage.hands),
         ("jack", passage.jacks),
-    ):
-        if count:
-            times = labels["once"] if count == 1 else labels["times"].replace("{count}", str(count))
-            parts.append(labels[f"sentence-{name}"].replace("{times}", times))
-    if passage.turn >= _TURNED and not passage.spins:
-        parts.append(labels["sentence-turn"].replace("{degrees}", f"{passage.turn:.0f}"))
-    if passage.unsure:
-        rows = labels["oneRow"] if passage.unsure == 1 else labels["rows"].replace("{count}", str(passage.unsure))
-        parts.append(labels["sentence-close"].replace("{rows}", rows))
-    text = labels["sentence-comma"].join(parts) + labels["sentence-end"]
-    return text[0].upper() + text[1:]
+        ("turn", round(passage.turn) if passage.turn >= _TURNED and not passage.spins else 0),
+        ("close", passage.unsure),
+    )
+    first = ("stream", passage.stream) if passage.stream else ("fast", passage.steps)
+    return [first, *((name, count) for name, count in counted if count)]
 
 
-def passage_object(passage: Passage) -> dict[str, Any]:
-    """A passage as the page has it."""
+def passage_object(passage: Passage, player: int = 0) -> dict[str, Any]:
+    """A passage as the page has it; player : whose it is where there are two, from 1."""
     return {
         "from": passage.first,
         "to": passage.last,
         "start": round(passage.start, 6),
         "end": round(passage.end, 6),
         "rate": round(passage.rate, 2),
-        "plain": passage.rate < _PLAIN and "," not in sentence(passage, languages()["en"]) and not passage.stream,
-        "sentence": {name: sentence(passage, {**languages()["en"], **labels}) for name, labels in languages().items()},
+        "plain": passage.rate < _PLAIN and len(tags(passage)) == 1 and not passage.stream,
+        "tags": [list(tag) for tag in tags(passage)],
+        "player": player,
     }
 
 
@@ -162,18 +153,14 @@ _PLAIN = 3.0  # steps a second below which steps alone make no passage
 def differing(passages: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """Passages as the page lists them, the hardest first.
 
-    `number` is the place among the hardest, as in `render --section hardest:3`. Those that are reported in the same
-    words are one, with the measures of the rest in `again`; a few slow steps and nothing else are none.
+    `number` is the place among the hardest, as in `render --section hardest:3`. Those with the same tags are one, with
+    the measures of the rest in `again`; a few slow steps and nothing else are none.
     """
     out: dict[str, dict[str, Any]] = {}
     for number, one in enumerate(passages, 1):
         if one["plain"]:
             continue
-        kept = out.setdefault(one["sentence"]["en"], {**one, "number": number, "again": []})
+        kept = out.setdefault(str((one["player"], one["tags"])), {**one, "number": number, "again": []})
         if kept["number"] != number:
             kept["again"].append([one["from"], one["to"]])
     return list(out.values())
-
-
-def _filled(labels: Mapping[str, str], name: str, count: int) -> str:
-    return labels[f"sentence-{name}"].replace("{count}", str(count))

@@ -269,11 +269,8 @@ def _passages(solved: tuple[Solved, ...]) -> list[dict[str, Any]]:
     pairs = [(found, one.chart) for one in solved if one.play for found in hardest(one.play, one.chart.timing)]
     if len(solved) == 1:
         return differing([passage_object(passage) for passage, _ in pairs])
-    out = []
-    for passage, chart in sorted(pairs, key=lambda one: -one[0].score):
-        data = passage_object(passage)
-        out.append({**data, "sentence": {name: f"P{chart.player}: {text}" for name, text in data["sentence"].items()}})
-    return differing(out)
+    pairs.sort(key=lambda one: -one[0].score)
+    return differing([passage_object(passage, chart.player) for passage, chart in pairs])
 
 
 def _music(song: Song, chart: Chart) -> tuple[tuple[str, bytes] | None, tuple[str, ...]]:

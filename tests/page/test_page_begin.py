@@ -68,13 +68,15 @@ def test_a_song_that_is_over_shows_its_result_and_what_to_practise(opened: Brows
     assert shown(opened, ".result") and not shown(opened, ".standing")
     result = text(opened, ".result")
     assert "1 hit" in result and "1 late" in result and "longest run: 2" in result
-    assert "a new best" in result
+    assert "a new best score" in result
     share = opened.run("Number(/(\\d+) %/.exec(document.querySelector('.result strong').textContent)[1])")
     notes = counted(opened)
     assert share == round(150 / (notes + 1))  # a hit, and half for the late one; the wrong press counts as a note
-    assert "right panel" in result and f"on time {round(100 / notes)} %" in result
+    assert f"of the notes: {round(200 / notes)} % pressed, {round(100 / notes)} % on time" in result
+    parts = opened.run("[...document.querySelectorAll('.result .parts span')].map(e => +e.style.flexGrow)")
+    assert parts == [1, 0, 1, notes - 2, 1]  # what the score is a share of: the wrong press too
     assert opened.run("document.querySelectorAll('.result .timing > *').length") == 19
-    assert "left foot: 1 press, +20 ms" in result and "right foot: 1 press, +90 ms" in result
+    assert "left foot: 1 press, on average 20 ms late" in result and "right foot: 1 press, on average 90 ms late" in result
     assert opened.run("document.querySelector('.result .main').id") == "again-missed"  # so many were missed
     opened.click("#again-missed")
     assert not shown(opened, ".result") and said(opened).startswith("loop measure")
@@ -82,7 +84,7 @@ def test_a_song_that_is_over_shows_its_result_and_what_to_practise(opened: Brows
     opened.click(".way.step")
     for _ in range(4):
         opened.turn(30)
-    assert f"your best: {share} %" in text(opened, ".result")
+    assert f"your best score: {share} %" in text(opened, ".result")
     opened.click("#again-play")
     assert not shown(opened, ".result") and shown(opened, ".standing") and text(opened, ".play") == "❚❚"
     for _ in range(4):
@@ -236,7 +238,7 @@ def test_the_pass_before_stands_in_the_count_in(opened: Browser) -> None:
     opened.wait("document.querySelector('.said').textContent.includes('loop')")
     opened.key("p", "KeyP")
     opened.key(" ", "Space")
-    for before, scores in (("", "50 %"), ("50 %", "50 % → 50 %")):  # four of the eight notes are hit
+    for before, scores in (("", "score 50 %"), ("score 50 %", "score 50 % → 50 %")):  # four of the eight notes are hit
         assert text(opened, ".passed") == before
         opened.turn(1.9 if before else 0.06 + 2.0)
         for number, column in enumerate((0, 1, 3, 1)):

@@ -109,7 +109,7 @@ def test_the_end_of_the_ramp_brings_the_chosen_speed_back(browser: Browser, page
     browser.key(" ", "Space")
     browser.turn(0.06 + 2.6)  # a pass of two seconds at 80 %
     assert browser.run("document.querySelector('.rate').value") == "0.85"
-    assert text(browser, ".rate-text") == "85 %" and "ramp: 80 % → 85 %" in said(browser)
+    assert text(browser, ".rate-text") == "85 %" and "ramp: speed 80 % → 85 %" in said(browser)
     assert browser.run("location.hash") == "#m1-1@0.8"
     browser.key("r", "KeyR")
     assert text(browser, ".rate-text") == "80 %" and "ramp" not in said(browser)

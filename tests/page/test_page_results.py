@@ -77,20 +77,20 @@ def test_a_pass_is_kept_by_foot_row_and_day_and_stays(opened: Browser, page_file
     assert sum(left) + sum(right) == 3 and left[9 + 4] + right[9 + 4] == 3  # 60 ms are the fourth bar of 15 ms
     assert [one["missed"] for one in record["rows"].values()] == [False] * 3 + [True] * 5
     shown = results(opened)
-    assert "Today: 8 notes, right panel 38 %, on time 0 %." in shown and "Days in a row: 1" in shown
+    assert "Today: 8 notes, score 19 %; 38 % pressed, 0 % on time." in shown and "Days in a row: 1" in shown
     assert (
-        "measure 170 %5 rows missed; not passed yet" in shown
+        "measure 1start at 70 % speed5 rows missed · not passed yet" in shown
     )  # and the speed to begin at: what was hit at 100 % does not make it passed
     assert opened.run("[...document.querySelectorAll('.rows tbody td:nth-child(3)')].map(e => e.textContent)") == (
         ["1 of 1"] * 5
     )
     about = opened.run("document.querySelector('.bars').getAttribute('aria-label')")
-    assert "left foot: " in about and "+60 ms on average" in about
+    assert "left foot: " in about and "on average 60 ms late" in about
     tall = opened.run("[...document.querySelectorAll('.bars')[0].children].map(e => Math.max(...[...e.children]"
                       ".map(b => b.getBoundingClientRect().height)) > 5)")  # fmt: skip
     assert tall == [k == 13 for k in range(19)]
     opened.open(page_file)
-    assert "Today: 8 notes, right panel 38 %, on time 0 %." in results(opened)
+    assert "Today: 8 notes, score 19 %; 38 % pressed, 0 % on time." in results(opened)
     opened.click(".missed")
     assert said(opened).startswith("loop measure 1") and text(opened, ".rate-text") == "70 %"
     assert opened.problems == []
@@ -119,8 +119,8 @@ def test_days_make_a_streak_and_a_clean_pass_is_remembered(opened: Browser, page
         "Nothing played today. Days in a row: 3, the most so far: 3." in shown
         and "How early or late, all days" in shown
     )
-    assert opened.run("document.querySelectorAll('.bars:not(.timing):not(.low) > *').length") == 3
-    assert "75 %" in opened.run("document.querySelector('.bars:not(.timing):not(.low)').getAttribute('aria-label')")
+    assert opened.run("document.querySelectorAll('.bars:not(.timing):not(.through) > *').length") == 3
+    assert "88 %" in opened.run("document.querySelector('.bars:not(.timing):not(.through)').getAttribute('aria-label')")
 
 
 def test_loops_are_kept_by_name_and_forgotten(opened: Browser, page_file: Path) -> None:
@@ -149,7 +149,7 @@ def test_a_file_takes_results_to_another_browser(opened: Browser, page_file: Pat
     before = opened.run(RECORD)
     assert before["days"][0]["hit"] == 8 and before["best"] == {"4-8": 100}
     opened.run(CATCH)
-    opened.click("#tab-results")
+    opened.click("#tab-settings")
     opened.click("#record-save")
     content = opened.run("window.caught.text()")
     opened.call("Storage.clearDataForOrigin", origin="file://", storageTypes="local_storage")
@@ -158,7 +158,7 @@ def test_a_file_takes_results_to_another_browser(opened: Browser, page_file: Pat
     for _ in range(2):  # twice is once
         assert load_file(opened, json.dumps(content)) == "Loaded 1 chart, this one among them."
         assert opened.run(RECORD) == before
-    assert "Today: 8 notes, right panel 100 %, on time 100 %." in text(opened, "#panel-results")
+    assert "Today: 8 notes, score 100 %; 100 % pressed, 100 % on time." in text(opened, "#panel-results")
     assert opened.requests[1:] == [] and opened.problems == []
 
 
@@ -241,7 +241,7 @@ def test_the_coach_loops_what_was_missed_and_raises_the_speed(opened: Browser) -
         opened.turn(0.25 / 0.7 if number else 0.0)
         press(opened, column)
     opened.turn(1.9)
-    assert "coach: 50 %, not passed yet; now 65 %" in said(opened) and text(opened, ".rate-text") == "65 %"
+    assert "coach: score 50 %, 95 % passes; speed now 65 %" in said(opened) and text(opened, ".rate-text") == "65 %"
     assert opened.run("document.querySelector('#panel-results .toggle').ariaPressed") == "true"
     opened.key("c", "KeyC")
     assert text(opened, ".rate-text") == "95 %"  # that was chosen before
@@ -314,7 +314,7 @@ def test_rows_that_go_well_are_not_listed(opened: Browser) -> None:
     results(opened)
     rows = opened.run("[...document.querySelectorAll('.rows tbody th')].map(e => e.textContent)")
     assert rows == ["measure 1, beat 4.5"]  # the one that was missed, by the beats of its measure
-    assert "1 row missed;" in text(opened, "#panel-results") and opened.problems == []
+    assert "1 row missed ·" in text(opened, "#panel-results") and opened.problems == []
 
 
 def test_the_strip_shows_a_part_and_goes_on_with_the_music(opened: Browser) -> None:

@@ -292,12 +292,12 @@ def test_passages_that_are_told_alike_are_one(tmp_path: Path) -> None:
     song = tmp_path / "song.ssc"
     song.write_text(head + "#NOTES:\n" + ",\n".join([stream] * 16 + [rest] * 16) + ";\n")
     doc = unpacked(make_page(PageRequest(DanceRequest(song, Selection(), fps=30.0))).html)
-    sentences = [one["sentence"]["en"] for one in doc["passages"]]
-    assert sentences and len(set(sentences)) == len(sentences)
+    told = [str(one["tags"]) for one in doc["passages"]]
+    assert told and len(set(told)) == len(told)
     assert doc["passages"][0]["again"] and doc["passages"][0]["number"] == 1
 
 
 def test_a_few_slow_steps_are_no_hard_passage() -> None:
-    told = {"from": 0, "to": 4, "plain": False}
-    one, two = {**told, "sentence": {"en": "A."}}, {**told, "plain": True, "sentence": {"en": "10 steps."}}
+    told = {"from": 0, "to": 4, "plain": False, "player": 0}
+    one, two = {**told, "tags": [["fast", 20], ["jump", 1]]}, {**told, "plain": True, "tags": [["fast", 10]]}
     assert [found["number"] for found in differing([two, one])] == [2]

@@ -79,7 +79,7 @@ export class App {
 
   /** Whether steps are clapped: as asked for, else where there is no music. */
   get claps() {
-    return this.settings.claps === "auto" ? !this.sound.music : this.settings.claps === "on";
+    return this.settings.claps === "auto" ? !this.sound.music && !this.musicLoading : this.settings.claps === "on";
   }
 
   /** @param {boolean} on */

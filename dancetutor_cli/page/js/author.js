@@ -29,6 +29,7 @@ export function authorPanel(app) {
       saved.textContent = t(`${label}Done`, { name, file: app.doc.words.file });
     },
   }, t(label)));
+  const take = el("section", {}, el("p", { class: "hint" }, t("approximate")), saved, el("p", { class: "group column" }, ...files));
   const show = () => {
     const row = app.chosen >= 0 ? redance.rowOf.get(app.chosen) : undefined;
     give.disabled = !row || !redance.can(app.chosen);
@@ -40,7 +41,7 @@ export function authorPanel(app) {
       return el("li", {}, el("button", { type: "button", class: "link", onclick: () => app.goTo(one.steps[0].note) }, text),
         ` ${costText(app, one, true)}`);
     }));
-    for (const button of files) button.disabled = !changed.length && button !== files[2];
+    take.hidden = !changed.length; // there is nothing to take home
   };
   app.listeners.add((what) => {
     if (what !== "feet") return;
@@ -48,8 +49,7 @@ export function authorPanel(app) {
     show();
   });
   show();
-  return el("div", {}, el("p", { class: "hint" }, t("authorHint")), about, el("p", { class: "group" }, give), list,
-    el("p", { class: "hint" }, t("approximate")), saved, el("p", { class: "group column" }, ...files));
+  return el("div", {}, el("p", { class: "hint" }, t("authorHint")), about, el("p", { class: "group" }, give), list, take);
 }
 
 /** A note in words: where it is, its panel and who steps it. @param {import("./app.js").App} app @param {number} note */

@@ -40,7 +40,7 @@ export function calibrateDialog(app) {
   const apply = el("button", { type: "button", id: "calibrate-apply", class: "main" }, t("calibrateApply"));
   const keep = el("button", { type: "button", id: "calibrate-keep" }, t("calibrateKeep"));
   const choice = el("p", { class: "group choice", hidden: true }, apply, keep);
-  const ear = el("button", { type: "button", id: "by-ear", class: "main", onclick: () => void begin("latency") }, t("byEar"));
+  const ear = el("button", { type: "button", id: "by-ear", onclick: () => void begin("latency") }, t("byEar"));
   const eye = el("button", { type: "button", id: "by-eye", onclick: () => void begin("sight") }, t("byEye"));
   const dialog = el("dialog", { class: "assign calibrate", "aria-label": t("calibrate") }, el("h2", {}, t("calibrate")), text,
     el("p", { class: "group" }, ear, eye), light, tap, scale, ends, choice, figures,

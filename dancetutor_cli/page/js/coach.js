@@ -64,7 +64,8 @@ export class Coach {
     const percent = Math.round(100 * share);
     if (share < PASSED || this.practice.judge.slowest < FULL) {
       transport.rate = coachRate(transport.rate, share, FULL);
-      this.said = app.t(share < PASSED ? "coachFailed" : "coachGoesOn", { percent, rate: Math.round(100 * transport.rate) });
+      const now = { percent, rate: Math.round(100 * transport.rate) };
+      this.said = share < PASSED ? app.t("coachFailed", { ...now, pass: 100 * PASSED }) : app.t("coachGoesOn", now);
       return;
     }
     const target = this.next();

@@ -237,11 +237,13 @@ export type Passage = {
   /** Steps a second. */
   rate: number;
   plain: boolean;
-  /** What the feet do, by language. */
-  sentence: Record<string, string>;
+  /** What the feet do, each with its count (`turn`: degrees). */
+  tags: [string, number][];
+  /** Whose it is where there are two, from 1; else 0. */
+  player: number;
   /** Its place among the hardest. */
   number: number;
-  /** Measures of passages in the same words. */
+  /** Measures of passages with the same tags. */
   again: [number, number][];
 };
 

@@ -123,7 +123,7 @@ export class Highway {
   drawFeedback({ verdict, at, run, error }, x, m) {
     const c = this.context;
     const top = m.receptor - 0.62 * m.lane;
-    const late = error === undefined || verdict === "hit" ? "" : `${error < 0 ? "−" : "+"}${Math.round(1000 * Math.abs(error))} ms`;
+    const late = error === undefined || verdict === "hit" ? "" : `${Math.round(1000 * Math.abs(error))} ms`;
     c.globalAlpha = clamp(2 - (2 * (performance.now() - at)) / SHOWN, 0, 1);
     drawWord(c, COLOURS[verdict], this.words[verdict], x, top - 41 * m.ratio, 24 * m.ratio);
     drawWord(c, "#fff", [late, run >= RUN ? `${run} ×` : ""].filter(Boolean).join("   "), x, top - 17 * m.ratio, 17 * m.ratio);

@@ -41,8 +41,8 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   for (const [element, name] of /** @type {[HTMLElement, string][]} */ ([[stage, "picture"], [lanes, "notesKeys"], [strip, "timeline"]])) {
     element.setAttribute("aria-label", t(name));
   }
-  const tabs = makeTabs(app, ui, [["passages", passagesPanel(app)], ["along", alongPanel(app)], ["results", resultsPanel(app)], ["findings", findingsPanel(app)],
-    ["author", authorPanel(app)], ["settings", settingsPanel(app, load)]]);
+  const tabs = makeTabs(app, ui, [["passages", passagesPanel(app)], ["along", alongPanel(app)], ["results", resultsPanel(app)],
+    ...(app.doc.findings.length ? [/** @type {[string, HTMLElement]} */ (["findings", findingsPanel(app)])] : []), ["author", authorPanel(app)], ["settings", settingsPanel(app, load)]]);
   const sheet = helpSheet(app, actions);
   ui.help = () => sheet.showModal();
   ui.tab = tabs.choose;
@@ -61,6 +61,8 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   const passed = el("p", { class: "passed", role: "status" });
   for (const old of stage.querySelectorAll(":scope > :not(canvas)")) old.remove();
   stage.append(cameraButtons(app), count, passed, ...captions, standing(app), chips(app), resultCard(app));
+  const flat = el("p", { class: "flat", hidden: true }, t("noWebgl"));
+  stage.append(flat);
   const note = el("p", { class: "unseen", role: "status" });
   app.listeners.add((what) => { if (what === "feet") note.textContent = app.chosen >= 0 ? noteText(app, app.chosen) : ""; });
   const root = /** @type {HTMLElement} */ (document.getElementById("app"));
@@ -82,9 +84,10 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
     count.textContent = countOf(app);
     const now = passedOf(app);
     if (passed.textContent !== now) passed.textContent = now;
-    pick.hidden = app.sound.music !== null;
+    pick.hidden = app.sound.music !== null || app.musicLoading;
     pick.title = musicText(app);
     pick.classList.toggle("small", app.played); // on a phone only its sign is left then
+    flat.hidden = !app.picture || app.picture.viewer !== null;
     for (const caption of captions) caption.hidden = !app.both;
     main.classList.toggle("along", app.practice.along);
   });
@@ -106,10 +109,9 @@ function helpSheet(app, actions) {
     el("td", {}, t(action.name))));
   const keys = [el("p", {}, t("helpIntro")), el("table", {}, el("tbody", {}, ...rows))];
   const hands = [el("h3", {}, t("helpTouchTitle")), ...t("helpTouch").split("\n").map((line) => el("p", {}, line)), el("p", {}, t("helpMouse"))];
-  const touched = matchMedia("(pointer: coarse)").matches; // a phone has no keys: what fingers do comes first there
   const dialog = el("dialog", { class: "sheet", "aria-label": t("helpSheet") },
     el("button", { type: "button", onclick: () => dialog.close() }, t("close")), el("h2", {}, t("helpSheet")),
-    ...(touched ? [...hands, ...keys] : [...keys, ...hands]));
+    ...(app.input.keyless ? [...hands, el("details", {}, el("summary", {}, t("helpKeys")), ...keys)] : [...keys, ...hands]));
   dialog.addEventListener("keydown", (event) => { if (event.key === "?") dialog.close(); });
   document.body.append(dialog);
   return dialog;
@@ -129,16 +131,24 @@ function makeTabs(app, ui, panels) {
     onclick: () => press(name),
     ...(name === "settings" ? { "aria-label": app.t("tab-settings"), title: app.t("tab-settings") } : {}),
   }, name === "settings" ? "⚙\ufe0e" : app.t(`tab-${name}`)));
+  let open = panels[0][0];
   const bodies = panels.map(([name, body], k) => el("div", { role: "tabpanel", id: `panel-${name}`, "aria-labelledby": `tab-${name}`, hidden: k !== 0, class: "panel", tabindex: 0 }, body));
   /** @param {string} name */
   function choose(name) {
     ui.fewer();
     side.classList.remove("folded");
+    open = name;
+    findUse();
     panels.forEach(([other], k) => {
       tabs[k].setAttribute("aria-selected", String(other === name));
       tabs[k].tabIndex = other === name ? 0 : -1;
       bodies[k].hidden = other !== name;
     });
+  }
+  /** Authors' tab is there once there is anything in it. */
+  function findUse() {
+    const author = panels.findIndex(([name]) => name === "author");
+    tabs[author].hidden = open !== "author" && app.chosen < 0 && !app.redance.changedRows().length;
   }
   /** On a phone the tab that is open folds its panel away, for a larger picture. @param {string} name */
   function press(name) {
@@ -158,10 +168,13 @@ function makeTabs(app, ui, panels) {
   row.addEventListener("keydown", (event) => {
     const by = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
     if (!by) return;
-    const k = (tabs.indexOf(/** @type {HTMLButtonElement} */ (document.activeElement)) + by + tabs.length) % tabs.length;
-    choose(panels[k][0]);
-    tabs[k].focus();
+    const seen = tabs.filter((tab) => !tab.hidden);
+    const next = seen[(seen.indexOf(/** @type {HTMLButtonElement} */ (document.activeElement)) + by + seen.length) % seen.length];
+    choose(next.id.slice(4));
+    next.focus();
   });
+  app.listeners.add((what) => { if (what === "feet") findUse(); });
+  findUse();
   const side = el("aside", { class: "side" }, row, ...bodies);
   return { side, choose, fold };
 }

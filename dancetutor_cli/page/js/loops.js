@@ -21,11 +21,11 @@ export function loopsPart(app) {
   const list = el("ul", { class: "cards loops" });
   const hint = el("p", { class: "hint", role: "status" });
   const show = () => {
-    keep.disabled = name.disabled = !app.transport.loop;
+    form.hidden = keep.disabled = !app.transport.loop; // there is nothing to keep
     hint.textContent = app.transport.loop ? "" : t("loopFirst");
     list.replaceChildren(...app.record.loops.map((loop) => el("li", { class: "kept" },
       el("button", { type: "button", class: "card", onclick: () => void app.loopBeats(loop.from, loop.to, loop.rate / 100) },
-        el("strong", {}, loop.name), el("span", { class: "figure" }, `${loop.rate} %`), el("span", { class: "text" }, stretch(t, loop.from / 4, loop.to / 4))),
+        el("strong", {}, loop.name), el("span", { class: "figure" }, t("atSpeed", { rate: loop.rate })), el("span", { class: "text" }, stretch(t, loop.from / 4, loop.to / 4))),
       el("button", { type: "button", class: "sign", "aria-label": t("loopDrop", { name: loop.name }), title: t("loopDrop", { name: loop.name }), onclick: () => dropLoop(app, loop) }, "✕"))));
   };
   app.listeners.add((what) => { if (what === "loop" || what === "record") show(); });

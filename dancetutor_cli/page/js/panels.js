@@ -4,18 +4,19 @@ import { el } from "./dom.js";
 import { loopsPart } from "./loops.js";
 import { findingFigures, findingWords } from "./labels.js";
 import { placeOf, stretch } from "./places.js";
-import { whereOf } from "./record.js";
+import { missedOf, scoreShare, whereOf } from "./record.js";
+import { recordPart } from "./results.js";
 import { musicText, scoreText } from "./said.js";
 
 /** The hardest passages; a click loops one. @param {import("./app.js").App} app */
 export function passagesPanel(app) {
-  const { t, doc, language } = app;
+  const { t, doc } = app;
   const list = el("ol", { class: "cards" });
   const buttons = doc.passages.map((passage, k) => {
     const button = el("button", { type: "button", class: "card", "aria-pressed": "false", onclick: () => void app.loopPassage(k) },
       el("strong", {}, el("span", { class: "number", title: `--section hardest:${passage.number}` }, `${k + 1}`), el("span", {}, stretch(t, passage.from, passage.to))),
       el("span", { class: "figure" }, t("rate", { rate: Math.round(10 * passage.rate) / 10 })),
-      el("span", { class: "text" }, passage.sentence[language] ?? passage.sentence.en),
+      el("span", { class: "tags" }, ...[passage.player ? [`P${passage.player}`] : [], passage.tags.map(([name, count]) => t(`tag-${name}`, { count }))].flat().flatMap((tag) => [el("span", {}, tag), " "])),
       passage.again.length ? el("span", { class: "text" }, t("again", { where: passage.again.map((/** @type {[number, number]} */ one) => stretch(t, ...one)).join("; ") })) : null,
       el("span", { class: "hits" }));
     list.append(el("li", {}, button));
@@ -36,7 +37,22 @@ export function passagesPanel(app) {
     });
   });
   const empty = doc.passages.length ? null : el("p", {}, t("noPassages"));
-  return el("div", {}, startPart(app), el("h3", {}, t("passagesTitle")), el("p", { class: "hint" }, t("passagesHint")), empty, list, loopsPart(app));
+  return el("div", {}, resumePart(app), startPart(app), el("h3", {}, t("passagesTitle")), el("p", { class: "hint" }, doc.passages.length ? t("passagesHint") : ""), empty, list, loopsPart(app));
+}
+
+/** How it went the last time, and a click to go on with what was missed. @param {import("./app.js").App} app */
+function resumePart(app) {
+  const { t, record, practice, language } = app;
+  const last = record.days[record.days.length - 1];
+  const box = el("section", { class: "resume", hidden: !last });
+  if (!last) return box;
+  const [missed] = missedOf(record, app.chart.rows);
+  const day = new Date(`${last.day}T12:00`).toLocaleDateString(language, { day: "numeric", month: "short" });
+  const where = missed ? stretch(t, missed.from / 4, missed.to / 4) : "";
+  box.append(el("p", {}, el("strong", {}, t("lastTime", { day })), ` · ${[t("lastScore", { percent: Math.round(100 * scoreShare(last)) }), where ? t("lastMissed", { where }) : t("nothingMissed")].join(" · ")}`));
+  if (missed) box.append(el("button", { type: "button", id: "go-on", class: "main", onclick: () => void practice.begin(missed) }, t("goOn", { where })));
+  app.listeners.add((what) => { if (what === "clock" && app.played) box.hidden = true; }); // from then on there is something newer
+  return box;
 }
 
 /** The three ways to begin. @param {import("./app.js").App} app */
@@ -121,5 +137,5 @@ export function settingsPanel(app, load) {
     el("p", { class: "field whole" }, el("span", {}, t("musicFile")), choose), file, music,
     slider("volume", 0, 1, 0.05), slider("speed", 0.3, 4, 0.05), slider("leadBeats", 1, 16, 1), slider("latency", -0.2, 0.4, 0.005), slider("sight", -0.2, 0.4, 0.005),
     el("p", { class: "field whole" }, el("label", { for: "language" }, t("languageLabel")), language),
-    el("p", { class: "hint" }, t("storedHint")));
+    el("p", { class: "hint" }, t("storedHint")), recordPart(app));
 }

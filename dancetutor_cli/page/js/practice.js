@@ -118,6 +118,12 @@ export class Practice {
     this.app.tell("along");
   }
 
+  /** Play along in a stretch that was missed, at its speed. @param {import("./record.js").Missed} missed */
+  async begin({ from, to, rate }) {
+    if (!this.along) this.setAlong(true);
+    await this.app.loopBeats(from, to, rate);
+  }
+
   /** Play along, or only watch. @param {boolean} on */
   setAlong(on) {
     this.keep();

@@ -2,11 +2,13 @@
 
 import { bars, download, el, toggle } from "./dom.js";
 import { placeInMeasure, stretch } from "./places.js";
-import { BIN, BINS, LARGEST, dayOf, fromFile, hitShare, missedOf, missesThrough, panelShare, streakOf, toFile } from "./record.js";
+import { BIN, BINS, LARGEST, dayOf, fromFile, hitShare, missedOf, missesThrough, panelShare, scoreShare, streakOf, toFile } from "./record.js";
+import { lateText } from "./said.js";
 import { allRecords, loadRecord, saveRecord, takeRecords } from "./settings.js";
 
 const DAYS = 14; // that are shown
 const ROWS = 5; // rows that are listed
+const TOPS = [10, 25, 50]; // percent at the top of the plot of misses, else 100
 const OFF = 30; // ms beside the note on average from which a row is listed that is never missed
 
 /** @param {import("./app.js").App} app */
@@ -15,6 +17,23 @@ export function resultsPanel(app) {
   const panel = el("div", { class: "results" });
   const coach = toggle(t("coach"), false, (on) => (on ? void practice.coach.start() : practice.coach.stop()), "c");
   const body = el("div");
+  const show = () => {
+    coach.setAttribute("aria-pressed", String(practice.coach.on));
+    const today = app.record.days.find(({ day }) => day === dayOf(new Date()));
+    const parts = app.record.days.length ? [summary(app), histogram(app, today), missed(app), through(app), rowsOf(app), days(app)] : [el("p", {}, t("noResults"))];
+    body.replaceChildren(...parts.filter((part) => part !== null));
+  };
+  app.listeners.add((what) => {
+    if (["record", "coach", "settings", "pass", "along"].includes(what)) show();
+  });
+  panel.append(el("p", { class: "group" }, coach), el("p", { class: "hint" }, t("coachHint")), body);
+  show();
+  return panel;
+}
+
+/** A file of the results of all charts, to save and to take in. @param {import("./app.js").App} app */
+export function recordPart(app) {
+  const { t, practice } = app;
   const file = el("input", { type: "file", accept: "application/json,.json", id: "record-file", hidden: true, "aria-label": t("recordLoad") });
   const said = el("p", { class: "hint", role: "status", id: "record-said" });
   const load = el("button", { type: "button", onclick: () => file.click() }, t("recordLoad"));
@@ -28,19 +47,7 @@ export function resultsPanel(app) {
     if (one) said.textContent = await takeFile(app, one);
     file.value = "";
   });
-  const show = () => {
-    coach.setAttribute("aria-pressed", String(practice.coach.on));
-    const today = app.record.days.find(({ day }) => day === dayOf(new Date()));
-    const parts = app.record.days.length ? [summary(app), histogram(app, today), missed(app), through(app), rowsOf(app), days(app)] : [el("p", {}, t("noResults"))];
-    body.replaceChildren(...parts.filter((part) => part !== null));
-  };
-  app.listeners.add((what) => {
-    if (["record", "coach", "settings", "pass", "along"].includes(what)) show();
-  });
-  panel.append(el("p", { class: "group" }, coach), el("p", { class: "hint" }, t("coachHint")), body, el("h3", {}, t("recordTitle")),
-    el("p", { class: "group" }, save, load), file, said, el("p", { class: "hint" }, t("recordHint")));
-  show();
-  return panel;
+  return el("section", {}, el("h3", {}, t("recordTitle")), el("p", { class: "group" }, save, load), file, said, el("p", { class: "hint" }, t("recordHint")));
 }
 
 /** Take in a file of records; what came of it, in words. @param {import("./app.js").App} app @param {File} file */
@@ -62,7 +69,7 @@ function summary({ t, record }) {
   const one = record.days.find(({ day }) => day === today);
   const streak = streakOf(record.days, today);
   const played = one ? one.hit + one.early + one.late + one.miss : 0;
-  return el("p", { class: "score" }, one ? t("today", { notes: played, panel: Math.round(100 * panelShare(one)), percent: Math.round(100 * hitShare(one)) }) : t("todayNone"), " ",
+  return el("p", { class: "score" }, one ? t("today", { notes: played, score: Math.round(100 * scoreShare(one)), panel: Math.round(100 * panelShare(one)), percent: Math.round(100 * hitShare(one)) }) : t("todayNone"), " ",
     streak.now ? t("streak", { days: streak.now, most: streak.most }) : "");
 }
 
@@ -77,11 +84,12 @@ function histogram(app, today) {
  * How early or late each foot was. @param {import("./app.js").App} app @param {number[][]} feet counts by bar @param {string} title
  * @param {number[]} [means] ms; else those of the bars
  */
-export function timing({ t, doc }, feet, title, means) {
+export function timing(app, feet, title, means) {
+  const { t, doc } = app;
   const about = feet.map((counts, foot) => {
     const all = counts.reduce((a, b) => a + b, 0);
-    const mean = Math.round(means?.[foot] ?? counts.reduce((sum, n, k) => sum + n * BIN * (k - (BINS >> 1)), 0) / Math.max(all, 1));
-    return t(foot ? "rightMean" : "leftMean", { count: all, mean: (mean > 0 ? "+" : "") + mean });
+    const mean = means?.[foot] ?? counts.reduce((sum, n, k) => sum + n * BIN * (k - (BINS >> 1)), 0) / Math.max(all, 1);
+    return [t(foot ? "rightMean" : "leftMean", { count: all }), all ? t("onAverage", { how: lateText(app, mean) }) : ""].filter(Boolean).join(", ");
   });
   const edge = BIN * (BINS >> 1);
   return el("figure", {}, el("figcaption", {}, title),
@@ -100,9 +108,9 @@ function missed(app) {
   const list = missedOf(record, chart.rows);
   if (!list.length) return el("p", {}, t("nothingMissed"));
   return el("section", {}, el("h3", {}, t("missedTitle")), el("ol", { class: "cards" }, ...list.map((one) => el("li", {},
-    el("button", { type: "button", class: "card missed", onclick: () => void app.loopBeats(one.from, one.to, one.rate) },
-      el("strong", {}, el("span", {}, stretch(t, one.from / 4, one.to / 4))), el("span", { class: "figure" }, `${Math.round(100 * one.rate)} %`),
-      el("span", { class: "text" }, `${t("missedRows", { count: one.misses })} ${t(one.passed ? "missedPassed" : "missedNew")}`))))));
+    el("button", { type: "button", class: "card missed", onclick: () => void app.practice.begin(one) },
+      el("strong", {}, el("span", {}, stretch(t, one.from / 4, one.to / 4))), el("span", { class: "figure" }, t("startsAt", { rate: Math.round(100 * one.rate) })),
+      el("span", { class: "text" }, `${t("missedRows", { count: one.misses })} · ${t(one.passed ? "missedPassed" : "missedNew")}`))))));
 }
 
 /** Where in the song notes were missed, by foot. @param {import("./app.js").App} app */
@@ -110,7 +118,9 @@ function through({ t, record, chart, doc }) {
   const shares = missesThrough(record, chart.rows);
   const last = Math.floor((chart.rows[chart.rows.length - 1]?.beat ?? 0) / 4 + 1e-6);
   const title = t("throughTitle");
-  return el("figure", {}, el("figcaption", {}, title), bars([0, 1].map((foot) => shares.map((one) => one[foot])), doc.style.limbs, title, 100, "low"),
+  const most = TOPS.find((top) => top >= Math.max(...shares.flat())) ?? 100;
+  return el("figure", {}, el("figcaption", {}, title), el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, `${most} %`)),
+    bars([0, 1].map((foot) => shares.map((one) => one[foot])), doc.style.limbs, title, most, "through"),
     el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, t("oneMeasure", { from: 0 })), el("span", {}, t("oneMeasure", { from: last }))));
 }
 
@@ -125,16 +135,17 @@ function rowsOf(app) {
   const cells = worst.map(({ row, own, mean }) => el("tr", {},
     el("th", { scope: "row" }, el("button", { type: "button", class: "link", onclick: () => app.goTo(row.steps[0].note) }, placeInMeasure(t, row.beat))),
     el("td", {}, row.steps.map(({ limb }) => (limb === 0 || limb === 1 ? t(limb ? "footR" : "footL") : "")).join("")),
-    el("td", {}, t("missedOf", { misses: own.misses, tries: own.tries })), el("td", {}, own.timed ? `${mean > 0 ? "+" : ""}${mean} ms` : "")));
+    el("td", {}, t("missedOf", { misses: own.misses, tries: own.tries })), el("td", {}, own.timed ? lateText(app, mean) : "")));
   return el("section", {}, el("h3", {}, t("rowsTitle")), el("table", { class: "rows" }, el("thead", {}, el("tr", {},
     ...["rowsPlace", "rowsFoot", "rowsMissed", "rowsMean"].map((name) => el("th", { scope: "col" }, t(name))))), el("tbody", {}, ...cells)));
 }
 
-/** Share of hits by day. @param {import("./app.js").App} app */
+/** The score by day, where there are days to compare. @param {import("./app.js").App} app */
 function days({ t, record }) {
   const some = record.days.slice(-DAYS);
-  const shares = some.map((day) => Math.round(100 * hitShare(day)));
+  if (some.length < 2) return null;
+  const shares = some.map((day) => Math.round(100 * scoreShare(day)));
   const about = some.map((one, k) => `${one.day}: ${shares[k]} %`).join("; ");
   return el("figure", {}, el("figcaption", {}, t("daysTitle")), bars([shares], ["#8f98d8"], about, 100),
-    el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, `${some[0].day}: ${shares[0]} %`), some.length > 1 ? el("span", {}, `${some[some.length - 1].day}: ${shares[shares.length - 1]} %`) : null));
+    el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, `${some[0].day}: ${shares[0]} %`), el("span", {}, `${some[some.length - 1].day}: ${shares[shares.length - 1]} %`)));
 }

@@ -14,7 +14,7 @@ export function saidOf(app) {
   if (transport.waiting) return t("waiting");
   const over = practice.along && practice.over ? overText(app, practice.over) : "";
   const parts = [over, practice.coach.on && practice.along ? practice.coach.said : "", loopText(app)].filter(Boolean).join(" · ");
-  return parts || (!app.played && !sound.music ? musicText(app) : "");
+  return parts || (app.musicLoading || (!app.played && !sound.music) ? musicText(app) : "");
 }
 
 /** Whether nothing happens that is worth a look: only that there is no music. @param {import("./app.js").App} app */
@@ -63,16 +63,23 @@ function loopText(app) {
   return [t("loopFrom", { where, passes: practice.passes }), ramped].filter(Boolean).join(" · ");
 }
 
+/** How late presses came on average, in words. @param {import("./app.js").App} app @param {number} ms */
+export function lateText({ t }, ms) {
+  const whole = Math.round(ms);
+  return whole ? t(whole < 0 ? "early" : "late", { ms: Math.abs(whole) }) : t("exact");
+}
+
 /** How it went: the counts that are not 0. @param {import("./app.js").App} app @param {import("./judge.js").Tally} tally */
 export function scoreText({ t }, tally) {
   const some = KINDS.filter((name) => tally[name] > 0);
   return (some.length ? some : [KINDS[0]]).map((name) => `${tally[name]} ${t(`verdict-${name}`)}`).join(", ");
 }
 
-/** The last passes of a loop, for its count-in: "80 % → 100 %"; "" while it plays. @param {import("./app.js").App} app */
-export function passedOf({ transport, practice }) {
+/** The last passes of a loop, for its count-in: "score 80 % → 100 %"; "" while it plays. @param {import("./app.js").App} app */
+export function passedOf({ t, transport, practice }) {
   if (!practice.along || !transport.counting) return "";
-  return practice.scores.slice(-2).map((share) => `${Math.round(100 * share)} %`).join(" → ");
+  const scores = practice.scores.slice(-2).map((share) => `${Math.round(100 * share)} %`).join(" → ");
+  return scores && t("passScores", { scores });
 }
 
 /** Who dances beside her, and where her feet differ, for her caption. @param {import("./app.js").App} app */

@@ -24,10 +24,10 @@ function countsRow({ t }) {
   return { row, show };
 }
 
-/** A line that is parted as the notes were judged. */
+/** A line that is parted as the score counts: notes by their verdicts, and wrong presses. */
 function countsBar() {
-  const parts = KINDS.slice(0, 4).map((name) => {
-    const part = el("span");
+  const parts = KINDS.map((name) => {
+    const part = el("span", { class: name });
     part.style.background = COLOURS[name];
     return part;
   });
@@ -39,8 +39,8 @@ function countsBar() {
 /** The score, large, in a colour by how good it is. @param {HTMLElement} element @param {import("./judge.js").Tally} tally */
 function showShare(element, tally) {
   const share = scoreShare(tally);
-  element.textContent = share || tally.miss ? `${Math.round(100 * share)} %` : "–";
-  element.style.color = share || tally.miss ? COLOURS[share >= GOOD ? "hit" : share >= FAIR ? "early" : "miss"] : "";
+  element.textContent = share || tally.miss || tally.wrong ? `${Math.round(100 * share)} %` : "–";
+  element.style.color = share || tally.miss || tally.wrong ? COLOURS[share >= GOOD ? "hit" : share >= FAIR ? "early" : "miss"] : "";
 }
 
 /** The score while it plays; the panel of playing along says it to readers. @param {import("./app.js").App} app */
@@ -49,7 +49,7 @@ export function standing(app) {
   const shares = el("p", { class: "shares" }, "");
   const { row, show } = countsRow(app);
   const line = countsBar();
-  const box = el("div", { class: "standing", "aria-hidden": "true" }, share, line.bar, shares, row);
+  const box = el("div", { class: "standing", "aria-hidden": "true" }, el("p", { class: "scored" }, share, el("span", {}, app.t("score"))), line.bar, shares, row);
   app.listeners.add((what) => {
     if (what === "frame") return;
     box.hidden = !app.practice.along || app.practice.over !== null;
@@ -78,12 +78,11 @@ export function resultCard(app) {
   const missed = () => missedOf(app.record, app.chart.rows)[0];
   const again = el("button", { type: "button", id: "again-play", onclick: () => void app.begin() }, t("again-play"));
   const slow = el("button", { type: "button", id: "again-missed", onclick: () => {
-    const one = missed();
     practice.over = null;
-    void app.loopBeats(one.from, one.to, one.rate);
+    void practice.begin(missed());
   } }, t("again-missed"));
   const close = el("button", { type: "button", class: "sign shut", "aria-label": t("close"), title: t("close"), onclick: () => { practice.over = null; app.tell("hits"); } }, "✕");
-  const card = el("section", { class: "result", "aria-label": t("tab-results"), hidden: true }, el("h2", {}, t("tab-results")), part, share, line.bar, shares, best, row, mean, feet, el("p", { class: "group" }, again, slow), close);
+  const card = el("section", { class: "result", "aria-label": t("tab-results"), hidden: true }, el("h2", {}, t("tab-results")), part, share, el("p", { class: "scored" }, t("score")), line.bar, shares, best, row, mean, feet, el("p", { class: "group" }, again, slow), close);
   app.listeners.add((what) => {
     if (what === "frame") return;
     const { over } = practice;

@@ -65,7 +65,7 @@ test("a wrong panel makes a pass unclean, and what was pressed is said in the ne
   }
   go(at, transport, 10);
   assert.equal(transport.rate, 0.95);
-  assert.equal(passedOf(app), "67 %"); // in the count-in: both notes hit, and a wrong press
+  assert.equal(passedOf(app), "passScores 67 %"); // in the count-in: both notes hit, and a wrong press
   go(at, transport, 8.5);
   assert.equal(passedOf(app), "");
 });
@@ -83,7 +83,7 @@ test("a pass in which nobody presses anything teaches neither the coach nor the 
     go(at, transport, 12.01);
     assert.equal(transport.rate, press ? 0.6 : 0.7); // a quarter hit: back by a tenth
   }
-  assert.equal(app.practice.coach.said, "coachFailed 25 60");
+  assert.equal(app.practice.coach.said, "coachFailed 25 60 95");
   app.practice.coach.stop();
   transport.setRate(0.7);
   app.practice.restart(8);
