@@ -76,7 +76,9 @@ def test_a_song_that_is_over_shows_its_result_and_what_to_practise(opened: Brows
     parts = opened.run("[...document.querySelectorAll('.result .parts span')].map(e => +e.style.flexGrow)")
     assert parts == [1, 0, 1, notes - 2, 1]  # what the score is a share of: the wrong press too
     assert opened.run("document.querySelectorAll('.result .timing > *').length") == 19
-    assert "left foot: 1 press, on average 20 ms late" in result and "right foot: 1 press, on average 90 ms late" in result
+    assert (
+        "left foot: 1 press, on average 20 ms late" in result and "right foot: 1 press, on average 90 ms late" in result
+    )
     assert opened.run("document.querySelector('.result .main').id") == "again-missed"  # so many were missed
     opened.click("#again-missed")
     assert not shown(opened, ".result") and said(opened).startswith("loop measure")

@@ -265,6 +265,9 @@ def test_tabs_stand_in_one_row_and_the_title_is_clamped(
 ) -> None:
     flat.size(width, height)
     flat.open(wide_file)
+    for key in ("ArrowRight", "o"):  # all of the tabs
+        flat.key(key)
+    assert flat.run("[...document.querySelectorAll('[role=tab]')].every(e => e.checkVisibility())")
     assert len(flat.run("[...new Set([...document.querySelectorAll('[role=tab]')].map(e => e.offsetTop))]")) == 1
     if width >= 1024:  # none is cut off; on narrower ones the row scrolls
         assert flat.run("(e => e.scrollWidth <= e.clientWidth)(document.querySelector('.tabs'))")

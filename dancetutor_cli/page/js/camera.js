@@ -6,6 +6,7 @@ const NEAR = 0.05;
 const FAR = 100;
 const WAIST = 0.85; // metres; where the free camera looks from afar
 const ARM = 0.42; // metres beside her middle that are to be seen of her
+const LEAST_ARMS = 0.2; // of the room for arms beside the pad that is kept in a picture half as wide as all of it: she would be tiny
 
 /**
  * @typedef {object} Camera
@@ -61,7 +62,9 @@ export function matrix(camera, width, height) {
  */
 export function preset(doc, name, width, height) {
   const about = doc.look.cameras[name];
-  const box = corners(doc, about);
+  const whole = (doc.stage.high[0] - doc.stage.low[0] + 2 * about.arms) / Math.max(about.height, doc.stage.tall); // by its height
+  const arms = about.feet_only ? about.arms : about.arms * clamp(1 - (2 * (1 - LEAST_ARMS) * (whole - width / height)) / whole, LEAST_ARMS, 1);
+  const box = corners(doc, { ...about, arms });
   /** @type {[number, number, number]} */
   const target = [0, 0, 0];
   for (let k = 0; k < 3; ++k) {

@@ -73,8 +73,8 @@ export class Highway {
     const lane = Math.min((width - numbers - words) / columns, 72 * ratio);
     const free = width - lane * columns;
     const left = clamp(0.5 * free, numbers, Math.max(numbers, free - words)); // in the middle, if words leave it room
-    const above = this.along ? VERDICT * ratio : 0;
-    return { ratio, width, height, lane, left, receptor: Math.max(0.11 * height, 0.62 * lane + above), size: 0.92 * lane };
+    const above = this.along ? Math.min(VERDICT * ratio, SHARE * height) : 0;
+    return { ratio, above, width, height, lane, left, receptor: Math.max(0.11 * height, 0.62 * lane + above), size: 0.92 * lane };
   }
 
   /** x of the middle of a lane. @param {number} column @param {{lane: number, left: number}} m @param {boolean} mirror */
@@ -115,18 +115,21 @@ export class Highway {
     }
     this.drawLabels(m, y, from, until);
     const x = m.left + 0.5 * m.lane * chart.columns;
-    if (scene.along) drawErrors(c, scene.errors, { x, y: m.receptor + 0.62 * m.lane + 10 * m.ratio, width: Math.min(0.8 * m.lane * chart.columns, 220 * m.ratio), ratio: m.ratio });
+    if (scene.along) drawErrors(c, scene.errors, { x, y: m.receptor - 0.62 * m.lane - 0.26 * m.above, width: Math.min(0.8 * m.lane * chart.columns, 220 * m.ratio), ratio: m.above / VERDICT });
     if (feedback) this.drawFeedback(feedback, x, m);
   }
 
-  /** The verdict of the last press, how early or late it was, and the notes in a row: above the receptors, where no note comes. @param {import("./practice.js").Feedback} feedback @param {number} x @param {ReturnType<Highway["measure"]>} m */
+  /** The verdict of the last press, the notes in a row left of it, and right how early or late it was: above the receptors, where no note comes. @param {import("./practice.js").Feedback} feedback @param {number} x @param {ReturnType<Highway["measure"]>} m */
   drawFeedback({ verdict, at, run, error }, x, m) {
     const c = this.context;
-    const top = m.receptor - 0.62 * m.lane;
+    const y = m.receptor - 0.62 * m.lane - 0.68 * m.above;
+    const edge = 0.5 * m.lane * this.chart.columns - 0.4 * m.above;
     const late = error === undefined || verdict === "hit" ? "" : `${Math.round(1000 * Math.abs(error))} ms`;
     c.globalAlpha = clamp(2 - (2 * (performance.now() - at)) / SHOWN, 0, 1);
-    drawWord(c, COLOURS[verdict], this.words[verdict], x, top - 41 * m.ratio, 24 * m.ratio);
-    drawWord(c, "#fff", [late, run >= RUN ? `${run} ×` : ""].filter(Boolean).join("   "), x, top - 17 * m.ratio, 17 * m.ratio);
+    drawWord(c, COLOURS[verdict], this.words[verdict], x, y, 0.36 * m.above);
+    const small = Math.max(0.2 * m.above, LEAST * m.ratio);
+    if (run >= RUN) drawWord(c, "#fff", `${run} ×`, x - edge, y, small);
+    drawWord(c, "#fff", late, x + edge, y, small);
     c.globalAlpha = 1;
   }
 
@@ -307,7 +310,8 @@ export function linesOf(text, fits) {
 
 const LEAST = 12; // pixels of the smallest words
 const NARROW = 860; // pixels of a phone's window, as in page.css
-const VERDICT = 58; // pixels above the receptors for a verdict
+const VERDICT = 68; // pixels above the receptors for a verdict and the scale of errors
+const SHARE = 0.15; // of a low canvas that they take at most
 const WORD = 42; // pixels of the shortest words
 const RUN = 4; // notes in a row from which their number is shown
 const ARROWS = "←↑→↓↖↗↘↙";

@@ -81,6 +81,7 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
     }
     said.textContent = said.title = saidOf(app);
     said.classList.toggle("quiet", quiet(app));
+    said.classList.toggle("shown", app.practice.along && app.practice.over !== null && !app.notice); // the card shows it
     count.textContent = countOf(app);
     const now = passedOf(app);
     if (passed.textContent !== now) passed.textContent = now;
@@ -108,10 +109,11 @@ function helpSheet(app, actions) {
   const rows = actions.map((action) => el("tr", {}, el("th", { scope: "row" }, ...action.keys.flatMap((key) => [el("kbd", {}, keyText(app, key)), " "])),
     el("td", {}, t(action.name))));
   const keys = [el("p", {}, t("helpIntro")), el("table", {}, el("tbody", {}, ...rows))];
-  const hands = [el("h3", {}, t("helpTouchTitle")), ...t("helpTouch").split("\n").map((line) => el("p", {}, line)), el("p", {}, t("helpMouse"))];
+  const hands = [el("h3", {}, t("helpTouchTitle")), ...t("helpTouch").split("\n").map((line) => el("p", {}, line))];
+  const mouse = el("p", {}, t("helpMouse"));
   const dialog = el("dialog", { class: "sheet", "aria-label": t("helpSheet") },
     el("button", { type: "button", onclick: () => dialog.close() }, t("close")), el("h2", {}, t("helpSheet")),
-    ...(app.input.keyless ? [...hands, el("details", {}, el("summary", {}, t("helpKeys")), ...keys)] : [...keys, ...hands]));
+    ...(app.input.keyless ? [...hands, el("details", {}, el("summary", {}, t("helpKeys")), mouse, ...keys)] : [...keys, ...hands, mouse]));
   dialog.addEventListener("keydown", (event) => { if (event.key === "?") dialog.close(); });
   document.body.append(dialog);
   return dialog;

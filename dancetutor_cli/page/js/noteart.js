@@ -205,7 +205,7 @@ export function drawErrors(c, errors, { x, y, width, ratio }) {
   const at = (/** @type {number} */ error) => x + (0.5 * width * Math.max(-WINDOW, Math.min(error, WINDOW))) / WINDOW;
   const colour = (/** @type {number} */ error) => COLOURS[Math.abs(error) <= GOOD ? "hit" : error < 0 ? "early" : "late"];
   c.globalAlpha = 0.6;
-  c.fillStyle = INK; // notes go by beneath it, and are still seen
+  c.fillStyle = INK; // what is left of a note that has gone by is beneath it
   c.fillRect(x - 0.5 * width - 4 * ratio, y - 7 * ratio, width + 8 * ratio, 14 * ratio);
   c.globalAlpha = 0.85;
   for (const [from, to, fill] of /** @type {[number, number, string][]} */ ([[-WINDOW, -GOOD, COLOURS.early], [-GOOD, GOOD, COLOURS.hit], [GOOD, WINDOW, COLOURS.late]])) {
@@ -223,8 +223,8 @@ export function drawErrors(c, errors, { x, y, width, ratio }) {
   if (!errors.length) return;
   const mean = at(errors.reduce((sum, error) => sum + error, 0) / errors.length);
   c.beginPath();
-  c.moveTo(mean, y + 7 * ratio);
-  c.lineTo(mean - 4 * ratio, y + 13 * ratio);
-  c.lineTo(mean + 4 * ratio, y + 13 * ratio);
+  c.moveTo(mean, y - 5 * ratio);
+  c.lineTo(mean - 4 * ratio, y - 11 * ratio);
+  c.lineTo(mean + 4 * ratio, y - 11 * ratio);
   c.fill();
 }
