@@ -94,6 +94,7 @@ def test_a_link_that_cannot_be_followed_says_so(flat: Browser, page_file: Path) 
 
 def test_the_free_camera_begins_anew(flat: Browser, page_file: Path) -> None:
     """What is stored is within bounds; chosen again, the free camera stands as at first."""
+    flat.open(page_file)
     flat.run("localStorage.setItem('dancetutor', JSON.stringify({camera: 'free', zoom: 99, pitch: -50, yaw: 1e9}))")
     flat.open(page_file)
     stored = "(s => [s.yaw, s.pitch, s.zoom])(JSON.parse(localStorage.dancetutor))"

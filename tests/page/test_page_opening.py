@@ -1,4 +1,4 @@
-"""What the page shows first: last time's result, tags of passages, tabs that hold something, what is missing or loads."""
+"""What it shows first: last time's result, tags of passages, tabs with something in them, what is missing or loads."""
 
 from __future__ import annotations
 
