@@ -25,8 +25,7 @@ from scipy.optimize import nnls
 from dancetutor_cli.lint.meter.estimate import label_scales_of, level_of, sized
 from dancetutor_cli.lint.meter.features import Feature
 from dancetutor_cli.lint.meter.model import model_for
-from dancetutor_cli.lint.meter.oddities import ODDITIES, TIMED, Oddities
-from dancetutor_cli.lint.meter.score import Level, ScoreModel, Weight
+from dancetutor_cli.lint.meter.score import ODDITIES, TIMED, Level, Oddities, ScoreModel, Weight
 from dancetutor_cli.run.reading import config_path
 
 Floats = NDArray[np.float64]
@@ -300,7 +299,7 @@ def report(charts: Sequence[Rated], level: Callable[[Rated], Level]) -> tuple[li
 
 HEAD = """\
 # How hard dance charts are to score on, see docs/meter.md. By research/fit_meter.py: {charts} charts of {songs} songs.
-# A tier is level + start + the sum of weight (x - usual). of: what is counted, see lint/meter/oddities.py; weight:
+# A tier is level + start + the sum of weight (x - usual). of: what is counted, see lint/meter/score.py; weight:
 # levels for each unit; from, to: what the fit has seen. usual: what charts have at each of the levels, of timing
 # nothing. interval: 80 of 100 tiers lie between the estimate less the first and plus the second.
 """

@@ -11,9 +11,8 @@ findings.Finding              what a rule reports
 
 suggest, edit_shape           small edits that would remove a finding, and what they leave of the chart's shape
 fix_edits, fix                fixes as edits of bytes; put into a file and proved, one by one
-sync, song_sync, pack_sync    music against beats: the method, a file, the songs of a pack
+sync, song_sync               music against beats: the method, a file, the songs of a pack
 meter                         how hard a chart is
 versions, snapshots           what changed between two versions of a pack, and where the older one comes from
 other_foot, techniques        ways with fewer crossed feet; technique counts beside the game's
-pictures                      what rules about banners and the like share
 """

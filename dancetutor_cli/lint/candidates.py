@@ -16,7 +16,7 @@ from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.solver.techniques import half_turned
 from dancetutor_cli.lint.findings import TECH_COUNTS
 from dancetutor_cli.lint.meter.features import Feature, features_of
-from dancetutor_cli.lint.meter.oddities import played_oddities
+from dancetutor_cli.lint.meter.score import played_oddities
 from dancetutor_cli.lint.plays import ALL_KINDS, Plays
 
 # Technical steps of plays, counted as ITGmania counts them, so that the numbers can be laid beside the game's.

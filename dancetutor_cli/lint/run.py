@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -9,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.chart.pack_files import find_settings_file, places_of_feet
+from dancetutor_cli.chart.pack_files import find_settings_file, pack_folder, places_of_feet, read_pack_ini
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.preset import PresetChoice, choice_of
 from dancetutor_cli.lint.analysis import AnalyzeTask, ResultOptions, analyze_files, failed
@@ -20,14 +21,15 @@ from dancetutor_cli.lint.configuration import (
     with_assignments,
     with_selection,
 )
-from dancetutor_cli.lint.pack_sync import PackSyncs
+from dancetutor_cli.lint.findings import Finding, Sync
 from dancetutor_cli.lint.results import ChartResult, FileResult
+from dancetutor_cli.lint.rule import PackRule, PackSong, all_rules
+from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.run.errors import DancetutorError
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.cache import ResultCache
     from dancetutor_cli.lint.findings import Finding
-
 
 # A run of `analyze`: which configuration holds for which file, the tasks, the baseline.
 
@@ -318,3 +320,50 @@ def _stamp(path: Path) -> Stamp:
     except OSError:
         return (-1, -1)
     return status.st_mtime_ns, status.st_size
+
+
+# What is wrong with the syncs of a pack's songs together: rules that need all of its results.
+
+_FEWEST = 2  # songs of a pack
+_STEADY = 6.0  # ms of drift; with more a song is neither null nor ITG
+
+
+class PackSyncs:
+    """Takes results as they come. A song that lies there as .sm and .ssc counts once, as .ssc."""
+
+    def __init__(self) -> None:
+        self._songs: dict[Path, dict[str, tuple[str, Sync]]] = {}
+        self._names: dict[Path, str] = {}  # of the folders, as their files were named
+
+    def add(self, result: FileResult) -> None:
+        """Take note of a file whose sync is sure and steady."""
+        sync = result.sync
+        if sync is None or not sync.is_sure or abs(sync.drift_ms or 0.0) > _STEADY:
+            return
+        path = Path(result.path)
+        folder = pack_folder(path.absolute())
+        self._names.setdefault(folder, os.fspath(folder) if path.is_absolute() else os.path.relpath(folder))
+        songs = self._songs.setdefault(folder, {})
+        key = os.fspath(path.absolute().with_suffix(""))
+        if key not in songs or path.suffix.lower() == ".ssc":
+            songs[key] = path.absolute().parent.name, sync
+
+    @property
+    def folders(self) -> Iterator[Path]:
+        """The folders of packs, those with songs enough to be one."""
+        return (folder for folder in sorted(self._songs) if len(self._songs[folder]) >= _FEWEST)
+
+    def result(self, folder: Path, settings: Settings) -> FileResult | None:
+        """What is found in the pack of a folder, as a result of that folder; None where nothing is."""
+        songs = [PackSong(*song) for _, song in sorted(self._songs[folder].items())]
+        ini = read_pack_ini(folder)
+        findings: list[Finding] = []
+        for code, options in settings.for_file(folder).items():
+            kind = all_rules()[code]
+            if issubclass(kind, PackRule):
+                rule = kind(options)
+                if message := rule.check_pack(songs, ini):
+                    findings.append(rule.finding(message, {}))
+        if not findings:
+            return None
+        return FileResult(self._names[folder], folder.name, "", None, (), tuple(findings), ())

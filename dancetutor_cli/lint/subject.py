@@ -22,7 +22,7 @@ from dancetutor_cli.feet.preset import LEAP, DropReason, Preset
 from dancetutor_cli.feet.solved import Solved, solve_song
 from dancetutor_cli.lint.candidates import Candidates
 from dancetutor_cli.lint.meter.estimate import size
-from dancetutor_cli.lint.meter.oddities import Oddities, timing_oddities
+from dancetutor_cli.lint.meter.score import Oddities, timing_oddities
 from dancetutor_cli.lint.note_facts import NoteFacts, PlacedChart
 from dancetutor_cli.lint.other_foot import Beginnings
 from dancetutor_cli.lint.play_facts import PlayFacts
@@ -31,7 +31,7 @@ from dancetutor_cli.run.errors import FileError
 if TYPE_CHECKING:
     from dancetutor_cli.chart.audio import AudioHead
     from dancetutor_cli.lint.meter.estimate import MeteredChart
-    from dancetutor_cli.lint.meter.oddities import Oddities
+    from dancetutor_cli.lint.meter.score import Oddities
     from dancetutor_cli.lint.song_sync import SongSync
 
 

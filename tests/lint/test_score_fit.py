@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from dancetutor_cli.lint.meter.oddities import ODDITIES, Oddities, TimingOddities
-from dancetutor_cli.lint.meter.score import load_score_model
+from dancetutor_cli.lint.meter.score import ODDITIES, Oddities, TimingOddities, load_score_model
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "research"))
 from meter_data import Labelled

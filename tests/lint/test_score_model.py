@@ -17,8 +17,16 @@ from hypothesis import strategies as st
 from module_file import tool
 
 from dancetutor_cli.commands.analyze import command
-from dancetutor_cli.lint.meter.oddities import ODDITIES, TIMED, Oddities, TimingOddities
-from dancetutor_cli.lint.meter.score import Level, ScoreModel, load_score_model, score_model_for
+from dancetutor_cli.lint.meter.score import (
+    ODDITIES,
+    TIMED,
+    Level,
+    Oddities,
+    ScoreModel,
+    TimingOddities,
+    load_score_model,
+    score_model_for,
+)
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import config_path
 

@@ -19,7 +19,7 @@ from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.feet import Play, load_preset
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.pads import load_pad
-from dancetutor_cli.lint.meter.oddities import ODDITIES, Oddities, timing_oddities
+from dancetutor_cli.lint.meter.score import ODDITIES, Oddities, timing_oddities
 from dancetutor_cli.lint.subject import ChartSubject, share_plays, solved_chart
 from dancetutor_cli.run.reading import charts_path
 

@@ -10,8 +10,7 @@ from functools import cache
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.lint.findings import AUTO, Estimate, Finding, ScoreEstimate
 from dancetutor_cli.lint.meter.estimate import MeteredChart, label_scales_of, level_of, on_scale, scales_of
-from dancetutor_cli.lint.meter.oddities import Oddities
-from dancetutor_cli.lint.meter.score import score_model_for
+from dancetutor_cli.lint.meter.score import Oddities, score_model_for
 from dancetutor_cli.lint.rule import RatedChart, SongRule, all_rules
 from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.lint.subject import ChartSubject

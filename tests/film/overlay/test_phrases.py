@@ -22,9 +22,11 @@ from dancetutor_cli.feet.solved import Solved
 from dancetutor_cli.feet.solver.techniques import half_turned
 from dancetutor_cli.film.choices import Ahead
 from dancetutor_cli.film.overlay.announce import _foot_colour
-from dancetutor_cli.film.overlay.callouts import CalloutSubject, CallStyle, callouts_of
-from dancetutor_cli.film.overlay.phrases import (
+from dancetutor_cli.film.overlay.callouts import (
+    CalloutSubject,
+    CallStyle,
     Phrase,
+    callouts_of,
     crossing_phrase,
     standing_tags,
     stepped_phrase,
@@ -120,7 +122,7 @@ def test_calls_say_which_foot_crosses_and_whether_in_front_as_the_feet_do(danced
         assert ahead is not None and abs(ahead) > 0.05
         said = crossing_phrase("crossover", (play, row), pad, ENGLISH)
         way = "in front" if ahead > 0 else "behind"
-        assert said.said == f"{('left', 'right')[foot]} foot crosses {way}"
+        assert said.text == f"{('left', 'right')[foot]} foot crosses {way}"
         assert said.tag == f"cross {way}"
         ways.add((foot, way))
     assert len(found) >= 4 and ways == {(foot, way) for foot in (0, 1) for way in ("in front", "behind")}
@@ -170,7 +172,7 @@ def test_calls_of_half_turns_say_which_foot_comes_down_where(tmp_path: Path) -> 
         screen = "face the screen" if abs(play.facing[row]) < 90 else "back to the screen"
         one = ("left", "right")[foot], "in front" if ahead > 0 else "behind"
         phrase = turning_phrase(f"half turn: {screen}", (play, row), pad, ENGLISH)
-        assert phrase.said == f"half turn: {screen}, {one[0]} foot {one[1]}"
+        assert phrase.text == f"half turn: {screen}, {one[0]} foot {one[1]}"
         assert phrase.why == f"{('right', 'left')[foot]} foot has just stepped"
         if (call := calls.get(round(float(second[row]), 3))) is not None:
             assert call.text.startswith(f"half turn: {screen}") and f"{one[0]} foot {one[1]}" in call.text
@@ -196,7 +198,7 @@ def rows(*some: tuple[tuple[str, ...], dict[int, int], tuple[int, int]], steps: 
 def test_a_jump_that_crosses_names_the_foot_in_front() -> None:
     half = ("crossover-half", "jump")
     play, pad = rows(((), {0: 0, 3: 1}, (0, 3)), (half, {3: 0, 1: 1}, (3, 1)))
-    assert crossing_phrase("crossover", (play, 1), pad, ENGLISH).said == "feet cross, left foot in front"
+    assert crossing_phrase("crossover", (play, 1), pad, ENGLISH).text == "feet cross, left foot in front"
     play, pad = rows(((), {0: 0, 3: 1}, (0, 3)), (half, {3: 0, 2: 1}, (3, 2)))
     assert crossing_phrase("crossover", (play, 1), pad, ENGLISH) == Phrase(
         "crossover", "feet cross, right foot in front", "feet cross", "", "{move} ×{count}: first {said}"
@@ -213,11 +215,11 @@ def test_every_language_names_the_one_foot_that_a_call_is_of(name: str) -> None:
     swap = stepped_phrase(language.moves["footswitch-up"], "footswitch-up", [-1, -1, 1, -1], language)
     away = turning_phrase(language.moves["half-turn-away"], (crossing, 1), pad, language)
     for phrase in (turn, swap, away):
-        assert own in phrase.said and other not in phrase.said and "{" not in "".join(phrase[:4])
-        assert _foot_colour(phrase.said, language) == limb_colours().by_limb[1]
+        assert own in phrase.text and other not in phrase.text and "{" not in "".join(phrase[:4])
+        assert _foot_colour(phrase.text, language) == limb_colours().by_limb[1]
         assert own not in phrase.tag
     assert other in turn.why and turn.tag in standing_tags(language)
-    assert swap.move == language.moves["footswitch-up"] != swap.said
+    assert swap.move == language.moves["footswitch-up"] != swap.text
 
 
 def test_a_foot_that_steps_twice_has_no_such_reason() -> None:
@@ -232,6 +234,6 @@ def test_a_foot_that_steps_twice_has_no_such_reason() -> None:
 
 def test_crossovers_of_both_feet_are_counted_and_the_first_is_told() -> None:
     left = Phrase("crossover", "left foot crosses in front", "cross in front", "", "{move} ×{count}: first {said}")
-    assert left.counted(1, True) == left.said
+    assert left.counted(1, True) == left.text
     assert left.counted(3, True) == "left foot crosses in front ×3"
     assert left.counted(3, False) == "crossover ×3: first left foot crosses in front"
