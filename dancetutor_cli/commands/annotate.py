@@ -74,7 +74,11 @@ class AnnotateOptions:
 @click.option("--diff", is_flag=True, help="Write nothing; print what would change.")
 @click.option("--dry-run", is_flag=True, help="Write nothing; print which files would change.")
 @click.option(
-    "-o", "--output", type=GivenPath(), metavar="DIR", help="Write the output here: a folder.  [default: into the files]"
+    "-o",
+    "--output",
+    type=GivenPath(),
+    metavar="DIR",
+    help="Write the output here: a folder.  [default: into the files]",
 )
 @click.option("--into-file", is_flag=True, help="Write into the chart file: with --markers edit, not into .edit files.")
 @click.option("--force", is_flag=True, help="Also overwrite or remove pinned measures, {dt1! ...}.")
