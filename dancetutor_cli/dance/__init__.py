@@ -1,4 +1,4 @@
-"""How a play becomes a motion: five stages, one type into each and one out of it. `Context` is what all of them know.
+"""How a play becomes a motion: five stages, each takes one type and returns one. All of them know the `Context`.
 
 In this package "she" is the dancer, whatever character is drawn.
 
@@ -16,9 +16,9 @@ In this package "she" is the dancer, whatever character is drawn.
       |   layers                      gaze, glances, breath, blinks, wrists, hands
     motion.Motion                   what files, films and the quality report get
 
-No stage calls a later one. `settle` repeats trajectory and inverse kinematics until both fit (its residuals say how
-well), `grips` lays hands on the bar by a rough bake, and hair (`physics.hair`) swings last.
+No stage calls a later one. `settle` repeats trajectory and inverse kinematics until both fit, and returns how well they
+do (its residuals). `grips` places hands on the bar after a rough bake. Hair (`physics.hair`) comes last.
 
-What is true of a play is true of its mirror image: where both sides are equal, the leading foot decides
+The mirror image of a play gives the mirror image of the motion: where both sides are equal, the leading foot decides
 (`Plan.lead`). Numbers are in `configs/motion.yaml` (`settings`) and `configs/gaits` (`gait`), or follow from the rig.
 """

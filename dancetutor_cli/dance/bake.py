@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.feet.play import Play
 
 Array = NDArray[np.float64]
-BEATS_AFTER = 16  # beats after the last row that she still hears
+BEATS_AFTER = 16  # beats after the last row for which the dancer still moves with the music
 CORRECTIONS = 6  # rounds of moving the body until its centre of mass is on its path
 REFINEMENTS = 2  # rounds of adding keys half-way between others
 
@@ -63,7 +63,7 @@ class Manner(TypedDict, total=False):
     bar : whether she holds the bar behind the pad; gait : how she walks on and off, a name or file as for `load_gait`
     sides : from which she comes and to which she goes, 0 left or 1 right, where another one dances beside her
     person : as in `Context`
-    let_go : why notes that no limb has in the play are not played, where the caller has decided that
+    let_go : the reason for each note that is not played because no limb is free, if the caller has decided it
     """
 
     settings: MotionSettings | SettingsCourse | None
@@ -205,9 +205,10 @@ def _motion(piece: Piece, keys: Keys, notes: tuple[str, ...]) -> Motion:
 
 
 def _followed(motion: Motion, piece: Piece, ragdoll: RagdollStyle) -> BakedPiece:
-    """The motion as a ragdoll follows it, and the braid again, for its head now moves otherwise.
+    """The motion that the ragdoll makes of it, with the braid once more, because its head now moves differently.
 
-    What befalls her beside the piece's end is reported by the piece in which it does: the other one sees less of it.
+    A push or trip near the end of a piece is reported by the piece in which it happens; the other piece sees less of
+    it.
     """
     from dancetutor_cli.dance.physics.pipeline import through_ragdoll
 
@@ -221,7 +222,7 @@ def _followed(motion: Motion, piece: Piece, ragdoll: RagdollStyle) -> BakedPiece
 
 
 def _posed_in(plan: Plan, bodies: Sequence[tuple[Trajectory, Context]], at: Array, changes: Sequence[Span]) -> Poses:
-    """The body at times `at` (f,), of each state with its context, which turn into each other as `changes` say."""
+    """The body at times `at` (f,). Each state has its context, and states turn into each other as `changes` says."""
     feet = [both_feet(plan.feet, at, context.settings) for _, context in bodies]
     if len(bodies) == 1:
         return posed(plan, bodies[0][0], (at, feet[0]), bodies[0][1])
@@ -234,7 +235,7 @@ def _posed_in(plan: Plan, bodies: Sequence[tuple[Trajectory, Context]], at: Arra
 
 
 def posed(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Context) -> Poses:
-    """Solve the body at times (f,), and move it so that its centre of mass, head and all, is where it must be.
+    """Solve the body at times (f,), and move it so that its centre of mass, with the head, is where it must be.
 
     sampled : the times, and the feet at them
     """

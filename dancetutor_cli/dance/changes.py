@@ -1,8 +1,8 @@
-"""Numbers of the motion that change over a song (`settings.SettingsCourse`): how a piece with such a change is danced.
+"""Numbers of the motion that change over a song (`settings.SettingsCourse`), and how such a piece is danced.
 
-Each step is planned with the numbers of its time. The body's path is planned with those of each state over the same
-steps, and the paths are mixed as one state turns into the next one, before any joint is turned: so what feet and palms
-touch is the same in all states. Poses are then solved with the numbers of each state, and mixed.
+Each step is planned with the numbers of its time. The body's path is planned over the same steps once for each state,
+and these paths are mixed while one state turns into the next one. No joint is turned before that, so feet and palms
+touch the same places in all states. Then poses are solved with the numbers of each state, and mixed.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A foot on its way: at which pace, and around the standing one, past which the path bends as little as it must."""
+"""How a foot moves in the air: its pace, and its path around the standing foot, which bends as little as possible."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def reduction(duration: ArrayLike, fast: float, longest: float) -> Array:
 
 
 def evenness(duration: ArrayLike, step: StepSettings) -> Array:
-    """How evenly a foot goes that has so many seconds for a step: 0 slow at both ends, 1 at one speed all the way."""
+    """How evenly a foot moves that has this many seconds for a step: 0 slow at both ends, 1 at one speed."""
     missing = step.even_slow - np.asarray(duration, dtype=np.float64)
     return np.asarray(np.clip(missing / max(step.even_slow - step.even_quick, 1e-9), 0.0, 1.0))
 
@@ -38,12 +38,12 @@ def evenness(duration: ArrayLike, step: StepSettings) -> Array:
 def travelled(s: ArrayLike, step: StepSettings, even: ArrayLike = 0.0, low: ArrayLike = 0.0) -> Array:
     """How far over the ground a swing has come at each part of its time.
 
-    Slow at both ends, a cubic: of the ways from rest to rest that were tried its quick parts throw the body aside
-    least. That holds for what lasts longer than a tenth of a second; steps as short as that are gone at one speed, and
-    what their ends do the body, which is heavy, does not feel.
+    A cubic, slow at both ends: of the curves from rest to rest that were tried, its quick parts throw the body aside
+    least. That holds for steps longer than a tenth of a second. Shorter ones go at one speed: the heavy body does not
+    react to what their ends do.
 
-    even : as of `evenness`; low : the last part of the time, in which it comes straight down, if that is longer than an
-    even step's
+    even : as of `evenness`; low : the last part of the time, in which the foot comes straight down, if that part is
+    longer than in an even step
     """
     share = np.asarray(even, dtype=np.float64)
     late = np.maximum(step.on_ground * share, low)
@@ -62,7 +62,8 @@ def _at_one_speed(s: Array, ends: float) -> Array:
 def risen(s: Array, step: StepSettings, even: ArrayLike = 0.0) -> Array:
     """How high a foot is in a step, 0 to 1, at each part of its time; it meets the ground at a definite speed.
 
-    The more evenly it goes the sooner it is up and the later down: what is near the ground must not slide.
+    The more evenly it moves, the sooner it is up and the later it is down, because a foot near the ground must not
+    slide.
     """
     shape = np.sin(np.pi * s**step.rising)
     return np.asarray(shape + step.even_up * np.asarray(even, dtype=np.float64) * (hovering(s) - shape))
@@ -80,25 +81,26 @@ def swung(s: ArrayLike, step: StepSettings) -> Array:
 
 # A swinging foot goes around the standing one: shoes are capsules, and the path bends as little as it must.
 
-LATE_PRICE = 1.0  # metres of a detour that being late by all of the way counts as
+LATE_PRICE = 1.0  # metres of detour that weigh as much as a foot that is late by the whole way
 
 
 def _ways(sides: ArrayLike, ahead: int, late: tuple[float, ...]) -> Array:
-    """Detours (k, 3), least first: metres beside a path's middle, and along it (so many steps of 6 cm to each side),
-    and how late they are, as in `Bulge`."""
+    """Detours (k, 3), smallest first: metres sideways at the middle of a path, metres along it (in steps of 6 cm to
+    each side), and how late they are, as in `Bulge`.
+    """
     grid = np.meshgrid(sides, np.arange(-ahead, ahead + 1) * 0.06, late)
     ways = np.column_stack([axis.ravel() for axis in grid])
     return np.asarray(ways[np.argsort(np.abs(ways) @ [1.0, 1.0, LATE_PRICE], kind="stable")])
 
 
-_WAYS = (  # far ones, and late ones, which are quick in between, are asked only where none of the others will do
+_WAYS = (  # far ones, and late ones, which are quick in between, are tried only if no other one works
     _ways(np.arange(-12, 13) * 0.03, 2, (0.0,)),
     _ways(np.arange(-16, 17) * 0.03, 5, (0.0,)),
     _ways(np.arange(-8, 9) * 0.06, 4, (0.08, 0.16, 0.24, 0.36)),
 )
 SHARES = np.linspace(0.05, 0.95, 37)  # of a swing's time, at which shoes are looked at
 ANKLE = ball_to_ankle(dancer_skeleton()) - BALL_AHEAD  # metres by which the ankle lies behind the middle of the shoe
-WRONG = 0.10  # metres of room that a radian of legs crossed too far counts as
+WRONG = 0.10  # metres of missing room that weigh as much as a radian by which the legs are crossed too far
 TOLERATED = 0.004, 0.006, 0.0  # metres of room that a way may lack before farther or later ones are tried
 SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on it
 
@@ -121,7 +123,8 @@ class Way:
 def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings, outward: float) -> Bulge:
     """What to add to a straight path, so that the shoes stay `step.apart` between their middle lines.
 
-    And so that legs do not go through each other: it leads around the other foot on the side on which the hips turn.
+    Legs must not go through each other either: the detour leads around the other foot on the side to which the hips
+    turn.
 
     Parameters
     ----------
@@ -166,10 +169,10 @@ def _by_share(step: StepSettings, even: float) -> tuple[Array, Array]:
 
 
 def wrung(way: Way, line: Array, step: StepSettings) -> Array:
-    """How much farther (...) than legs may cross they do on the way, radians, 0 for not at all.
+    """How much farther (...) the legs cross on the way than they may, radians; 0 if they do not.
 
-    line : (..., k, 2) from the right ankle to the left one at the `SHARES`. Its angle is followed from the start on:
-    who goes around the wrong side of the other foot has gone through the other leg, and is wrung ever more.
+    line : (..., k, 2) from the right ankle to the left one at the `SHARES`. Its angle is followed from the start: a leg
+    that goes around the wrong side of the other foot has gone through the other leg, and its angle grows.
     """
     if way.hips is None:
         return np.zeros(line.shape[:-2])
@@ -184,7 +187,9 @@ def wrung(way: Way, line: Array, step: StepSettings) -> Array:
 
 
 def enough(gaps: Array, e: Array, apart: float) -> Array:
-    """Room (k,) to ask for on a way: its ends are given, so it is no more than there is at both; e : how far it is."""
+    """Room (k,) that a way must have. Its ends are given, so it is at most what there is at both. e : how far it has
+    come
+    """
     return np.asarray(np.minimum(apart, gaps[0] + e * (gaps[-1] - gaps[0])))
 
 
@@ -199,7 +204,7 @@ def bend(share: Array) -> Array:
 
 
 def lag(share: Array) -> Array:
-    """How much of its being late a way has (...) at each share (...) of it."""
+    """How late a way is (...) at each share (...) of it."""
     return np.asarray(np.sin(2.0 * np.pi * share))
 
 

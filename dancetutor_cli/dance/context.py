@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 PANEL = 0.28  # metres, width of one panel
 HALF_PANEL = PANEL / 2
-PHASE = 1.9  # seconds; no whole part of any of the times that waves have
+PHASE = 1.9  # seconds; no divisor of any period of the waves
 HOLD_GRACE = 0.25  # seconds that a held note may be let go: StepMania's TimingWindowSecondsHold
 
 
@@ -61,7 +61,9 @@ def middle_of(ball: Array, yaw: float) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """Where a foot may be: a centre (2,), and how far (2,) along x and z its ball and its sole's middle may be off."""
+    """Where a foot may be: a centre (2,), and how far (2,) its ball and the middle of its sole may be off along x and
+    z.
+    """
 
     centre: Array
     room: Array
@@ -76,14 +78,14 @@ def room_on(panels: Array, column: int, step: StepSettings) -> Array:
 
 
 def on_panel(ball: Array, toes: float, spot: Spot) -> Array:
-    """The place of a ball (2,) near this one from which it and the middle of the sole are where they may be."""
+    """The place nearest to this ball (2,) at which it and the middle of the sole are where they may be."""
     centre, room, ahead = spot.centre, spot.room, BALL_AHEAD * heading(toes)
     ball = np.minimum(np.maximum(ball, centre - room), centre + room)  # np.clip takes three times as long
     low, high = centre - spot.middle_room, centre + spot.middle_room
     return np.asarray(np.minimum(np.maximum(ball - ahead, low), high) + ahead)
 
 
-# What does not change while a song is danced: handed on as one to every stage.
+# What does not change while a song is danced. Every stage gets it as one object.
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,12 +126,14 @@ class Context:
 
     @property
     def own(self) -> tuple[int, ...]:
-        """What is added to a seed of chance, so that two who dance the same notes are two people; () alone."""
+        """What is added to a random seed, so that two dancers with the same notes are two people; () for a single
+        dancer.
+        """
         return (self.person,) if self.person else ()
 
     @property
     def phase(self) -> float:
-        """Seconds that her breath, her blinks and what wanders slowly are ahead of those of who dances alone."""
+        """Seconds by which this dancer's breath, blinks and slow movements are ahead of those of a single dancer."""
         return PHASE * self.person
 
 
@@ -141,11 +145,11 @@ def context_of(pad: Pad, settings: MotionSettings, beats: tuple[float, ...] = ()
     return Context(dancer_skeleton(), settings, panels, squares_on_ground(pad), ground, beats, bar)
 
 
-# The bar behind the dancer: where it stands, how she stands who holds it, and when a hand is on it.
+# The bar behind the dancer: its place, how a dancer who holds it stands, and when each hand is on it.
 
 Flags = NDArray[np.bool_]
 SEED = 19981121
-ACROSS_SLOWER = 1.5  # as long a hand takes to the rail that crosses over
+ACROSS_SLOWER = 1.5  # a hand that crosses over takes this many times as long to the rail
 
 
 def bar_of(pad: Pad, settings: BarSettings) -> Bar:
@@ -156,10 +160,10 @@ def bar_of(pad: Pad, settings: BarSettings) -> Bar:
 
 
 def holding(settings: MotionSettings) -> MotionSettings:
-    """The settings for somebody who holds the bar: she stands a little lower, for her feet are far before her.
+    """The settings for a dancer who holds the bar: she stands a little lower, because her feet are far in front of her.
 
-    In streams she goes down a little, and her chest keeps more to the screen, for both hands hold it; and she goes down
-    half as far for jumps, for the bar bears a part of that.
+    In streams she goes down a little, and her chest faces the screen more, because both hands hold the bar. For jumps
+    she goes down half as far, because the bar carries a part of the weight.
     """
     body, jump, look, bar = settings.body, settings.jump, settings.look, settings.bar
     body = replace(body, leg=body.leg - bar.knees, soft_reach=body.soft_reach - bar.knees)
@@ -177,12 +181,11 @@ def on_rail(x: Array, bar: Bar, from_end: float) -> Array:
 
 
 def grip_phrases(plan: Plan, times: Array, yaw: Array, settings: BarSettings) -> tuple[Flags, Array]:
-    """Which hands (n, 2) may be on the rail at even times (n,), and how far (n,) each is beside the body then, metres.
+    """Which hands (n, 2) may be on the rail at even times (n,), and how far (n,) beside the body each is, metres.
 
-    A song has phrases of some seconds. In each she holds on with both hands, as mostly in quick ones, or with one:
-    where she is turned, with the one on the rail's side, else with either. Chance decides, always the same way for a
-    song.
-    yaw : (n,) radians that the chest is turned
+    A song is divided into phrases of some seconds. In each, she holds on with both hands, as mostly in quick ones, or
+    with one: when she is turned, with the hand on the rail's side, otherwise with either. Chance decides, always in the
+    same way for a song.
     """
     chance = chance_of(SEED, *plan.song)
     holds, apart = np.ones((len(times), 2), dtype=bool), np.full(len(times), settings.apart)
@@ -218,7 +221,7 @@ def around(grip: Grip, times: Array, reach: float) -> slice:
 
 
 def way_time(grip: Grip, reach: float) -> float:
-    """Seconds that the hand of a grip takes to the rail and from it: before her it has farther to go."""
+    """Seconds that the hand of a grip takes to the rail and from it; in front of the body its way is longer."""
     return ACROSS_SLOWER * reach if grip.across else reach
 
 
@@ -229,6 +232,6 @@ def grip_share(grip: Grip, times: Array, reach: float) -> Array:
 
 
 def held_at(motion: Motion, second: float) -> list[Contact]:
-    """The notes that feet hold at a second; they stay among the contacts, so that a report counts them as missed."""
+    """The notes that feet hold at a second. They stay among the contacts, so a report counts them as missed."""
     feet = (c for c in motion.contacts if c.limb < Limb.LEFT_HAND and c.kind == StepKind.HOLD)
     return [c for c in feet if c.start < second and c.end > second + HOLD_GRACE]

@@ -1,8 +1,8 @@
-"""The ends of a cut where the dancer does not play on: she waits for its first step, and comes to rest after its last.
+"""The ends of a cut in which the dancer does not play: she waits for its first step, and comes to rest after its last.
 
-Both are small dances of their own in which the feet step as in the dance itself, but none of the steps before the first
-one, or after the last: in place of these they go home, if there is time. Within a second the one becomes the other; the
-feet, which are the same there, stay where they are while the body moves over.
+Each end is a small dance of its own. The feet step as in the dance itself, but without the steps before the first one
+or after the last; instead they go home if there is time. Within a second, one motion turns into the other. The feet are
+the same in both and stay where they are while the body moves over.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ from dancetutor_cli.dance.smoothing import smooth
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-CROSSING = 1.0  # seconds in which an end becomes the dance
-OWN_FEET = 0.8  # share of the dance below which feet are where the end has them
+CROSSING = 1.0  # seconds of the blend between an end and the dance
+OWN_FEET = 0.8  # below this share of the dance, the feet are those of the end
 SAME_PLACE = 0.002  # metres
-LONG_AGO = 60.0  # seconds before a cut at which what has happened before it is put
+LONG_AGO = 60.0  # events before a cut get this many seconds before it
 NOW = 1e-6  # seconds
 
 
 def entrance_of(plan: Plan, cut: Cut) -> Plan | None:
-    """The plan of who stands until the first step of a cut; None where the dance itself does."""
+    """The plan of a dancer who stands until the first step of a cut; None if the dance itself begins that way."""
     begin = cut.steps_from
     if not any(cut.start < one.end and one.start < begin - NOW for one in plan.touches):
         return None
@@ -63,7 +63,7 @@ def _from(track: FootTrack, second: float) -> FootTrack:
 
 
 def rest_from(plan: Plan, cut: Cut, walks_off: bool) -> float | None:
-    """The second from which on she comes to rest at the end of a cut; None where she dances on to its end.
+    """The second from which on the dancer comes to rest at the end of a cut; None if she dances on to its end.
 
     walks_off : she may leave after the last note
     """
@@ -74,7 +74,7 @@ def rest_from(plan: Plan, cut: Cut, walks_off: bool) -> float | None:
 
 
 def exit_of(plan: Plan, span: Span, context: Context) -> Plan:
-    """The plan of who makes no step of the chart in a span, seconds, but goes home in it if there is time."""
+    """The plan of a dancer who makes no step of the chart in a span, seconds, but goes home in it if there is time."""
     until = span[0]
     touches = tuple(one for one in plan.touches if one.start < until - NOW)
     left, right = (
@@ -99,13 +99,13 @@ def exit_of(plan: Plan, span: Span, context: Context) -> Plan:
 
 
 def entrance_piece(plan: Plan, context: Context, fps: float, cut: Cut, ragdoll: RagdollStyle | None) -> Piece:
-    """The piece of an entrance: it stands before the cut, and dances on until it has become the dance."""
+    """The piece of an entrance: the dancer stands before the cut, and then the piece turns into the dance."""
     baked = (cut.start - MARGIN, min(cut.steps_from + CROSSING, cut.end) + MARGIN)
     return piece_of(plan, context, fps, (baked, baked, OVERLAP), ragdoll)
 
 
 def exit_piece(plan: Plan, context: Context, fps: float, span: Span, ragdoll: RagdollStyle | None = None) -> Piece:
-    """The piece of an exit. span : from which second on it is the exit, to the end of the cut"""
+    """The piece of an exit. span : the exit begins at its first second; it ends at the end of the cut"""
     baked = (span[0] - CROSSING - OVERLAP, span[1])
     return piece_of(plan, replace(context, stays=True), fps, (baked, baked, MARGIN), ragdoll)
 
@@ -140,7 +140,7 @@ def _merge_keys(first: Keys, second: Keys, motion: Motion) -> Motion:
 
 
 def _crossing(dance: Motion, which: Flags, other: Motion, share: Array) -> Keys:
-    """Some keys of the dance, of which only a share (f,) is the dance and the rest another motion of the same feet."""
+    """Some keys of the dance; a share (f,) of each is the dance, and the rest is another motion of the same feet."""
     times, rotations, root = _keys(dance, which)
     mixed = share < 1.0
     if mixed.any():
@@ -150,12 +150,13 @@ def _crossing(dance: Motion, which: Flags, other: Motion, share: Array) -> Keys:
 
 
 def _mixed(dance: Motion, poses: Sequence[Array], others: Sequence[Array], share: Array) -> tuple[Array, Array]:
-    """Poses that are a share of the dance's and else of others'. Their feet are the others', for they differ only where
-    a foot is on its way to a step that is left out; one that was on it already turns back."""
+    """Poses that mix the dance, by its share, with other poses. Their feet are those of the other poses: the two differ
+    only where a foot is on its way to a step that is left out, and a foot that was on its way already turns back.
+    """
     skeleton = dance.skeleton
     mine, theirs = feet_of(skeleton, poses[0], poses[1]), feet_of(skeleton, others[0], others[1])
     own = smooth((share - OWN_FEET) / (1.0 - OWN_FEET))
-    beside = int(np.argmax(share))  # the key beside the dance, where feet are elsewhere only on a long way
+    beside = int(np.argmax(share))  # beside the key of the dance: there the feet differ only on a long way
     away = np.linalg.norm(mine.places[beside] - theirs.places[beside], axis=1) > SAME_PLACE
     own = own[:, None] * away
     feet = AnkleTracks(

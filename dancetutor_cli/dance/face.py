@@ -1,9 +1,9 @@
-"""Her face goes with what happens: lids narrow in hard passages, a breath and a smile after them, smiles at easy ones,
-and eyes that go to where the next foot will step.
+"""The dancer's face: narrowed lids in hard passages, a breath and a smile after them, smiles in easy ones, and eyes
+that look to where the next foot will step.
 
-Hard is what has quick steps around it (`height.tempo_factor`, on the mean over some seconds). What is left of a hard
-passage dies away at an even rate, so relief is the largest of what has been, less what is now. The mesh has lids, a jaw
-and eyes that turn; brows are painted.
+A passage is hard if it has quick steps around it (`height.tempo_factor`, averaged over some seconds). After a hard
+passage its effect fades at an even rate, so relief is the largest value so far, minus the present one. The mesh has
+lids, a jaw and eyes that turn; brows are painted.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ BLINK_SEED, PEEK_SEED, SMILE_SALT = 20140513, 20260611, 3
 
 @dataclass(frozen=True, slots=True)
 class Mood:
-    """What her face shows at f times, (f,) 0 to 1 each.
+    """What the dancer's face shows at f times, (f,) 0 to 1 each.
 
     hard : she concentrates; relief : how much harder it was a moment ago; easy : it has been easy for a while
     """
@@ -67,9 +67,9 @@ def mood_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Mood:
 
 
 def peeks_at(plan: Plan, free: Array, at: Array, context: Context) -> Peeks:
-    """Peeks at times `at` (f,): before steps for which there is time, some of them, and all that end a wait.
+    """Peeks at times `at` (f,): before some of the steps for which there is time, and before all that end a wait.
 
-    free : (f,) 0 where hands are busy. Chance goes by the time of a step, so mirror images peek as mirror images.
+    free : (f,) 0 where hands are busy. Chance depends on the time of a step, so mirror images peek as mirror images.
     """
     numbers, song = context.settings.face, song_of(plan, context)
     out = Peeks(np.zeros(len(at)), np.zeros((len(at), 3)))
@@ -90,8 +90,9 @@ def peeks_at(plan: Plan, free: Array, at: Array, context: Context) -> Peeks:
 
 
 def with_peeks(glances: Glances, mood: Mood, peeks: Peeks, free: Array, numbers: FaceSettings) -> Glances:
-    """Glances whose head goes down for a look at a panel, and there leaves out what it would do else; it is carried
-    lower where it is hard, too. free : (f,) as in `peeks_at`"""
+    """Glances in which the head goes down to look at a panel and leaves out its other movements. In hard passages it is
+    lower, too. free : (f,) as in `peeks_at`
+    """
     rest = 1.0 - peeks.share
     low = np.radians(np.maximum(numbers.nod * peeks.share, numbers.bow * mood.hard * free))
     yaw, pitch, tilt, eyes = (rest * one for one in (glances.yaw, glances.pitch, glances.tilt, glances.eyes))
@@ -118,7 +119,7 @@ def add_face(skeleton: Skeleton, poses: Poses, at: Array, shown: tuple[Mood, Pee
 
 
 def _phrases(song: Song, at: Array, numbers: FaceSettings) -> Array:
-    """How far (f,) she would smile where it is easy, 0 to 1: for a while, then not, never twice alike."""
+    """How far (f,) she smiles in easy passages, 0 to 1: for a while, then not, never twice in the same way."""
     return numbers.easy * smooth(slowly(song, at, numbers.smile_time, SMILE_SALT) / 0.6)
 
 

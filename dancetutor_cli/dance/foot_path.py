@@ -31,7 +31,7 @@ from dancetutor_cli.dance.smoothing import smooth
 # The ways of both feet over the ground in a jump: half straight, half round each other, never through each other.
 
 Array = NDArray[np.float64]
-_ROUND = (0.75, 1.0)  # more of a way that goes round, where `jump.round` brings shoes together
+_ROUND = (0.75, 1.0)  # how much more of a way goes round, if `jump.round` brings the shoes together
 _SPREAD = np.arange(0.0, 0.15, 0.02)  # metres that each foot goes outward
 
 
@@ -95,8 +95,8 @@ HEEL_BACK, BALL_UP = dancer_foot()
 SHAKE_RAMPS = 2.8  # a leg that is shaken out goes back, and comes again, in one part of so many
 FLAPS_LATE = 1.2  # radians that a loose foot's flapping is behind the way of its leg
 LOW = 0.001  # metres over the ground at which a foot that comes down from a jump is on it, and must not slide
-SLOW = 0.02  # the last part of a way's time, in which a foot goes hardly any more
-MOST_LOW = 0.15  # of the time of a jump that is hardly off the ground
+SLOW = 0.02  # the last part of a way's time, in which a foot hardly moves
+MOST_LOW = 0.15  # part of the time of a jump in which the feet are hardly off the ground
 NO_JUMP = Jump(0.0, 0.0, (0.0, 0.0), 0.0, (0.0, 0.0, 0.0, 0.0), 0.0, round=0.0)  # a way that goes round nothing
 
 

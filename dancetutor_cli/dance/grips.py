@@ -28,13 +28,15 @@ from dancetutor_cli.dance.trajectory.posture import RoughBake, body_trajectory
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-RATE, BODY_RATE = 30.0, 60.0  # looks per second at whether the rail is within reach, and samples of the body's path
-PART, MARGIN = 60.0, 4.0  # seconds of a song that are looked at together, and beyond which they begin and end
+RATE, BODY_RATE = 30.0, 60.0  # checks per second whether the rail is within reach, and samples of the body's path
+# seconds of a song that are handled together, and how far beyond them the start and the end lie
+PART, MARGIN = 60.0, 4.0
 TRUNK_ASIDE, TRUNK_DEEP = 0.203, 0.163  # metres, half axes of the trunk with a forearm's thickness and some air
-ALONG = np.linspace(0.15, 1.0, 5)  # of the forearm and the hand, where they are looked at
+ALONG = np.linspace(0.15, 1.0, 5)  # points of the forearm and the hand that are checked
 ARMS_BACK = 0.022  # metres that the centre of mass lies farther back when the hands are on the rail
-MOST_INWARD = np.radians(145.0)  # a hand on its way that is farther from straight outward would go through the trunk
-# the same for one that crosses over before her: last part of its way, and between which angles the rail must be then
+# a hand on its way that is farther than this from straight outward would go through the trunk
+MOST_INWARD = np.radians(145.0)
+# the same for a hand that crosses over before the dancer: last part of its way, and the angles of the rail
 ACROSS = ((0.5, np.radians(60.0), np.radians(172.0)), (1.0, np.radians(60.0), np.radians(330.0)))
 HAND = 0.10  # metres that a hand reaches beyond its wrist
 
@@ -167,8 +169,9 @@ def runs(flags: Flags) -> list[tuple[int, int]]:
 
 SEED = 20011109
 JUMP = 0.08  # seconds; what is shorter is a quick step
-CROSSING_SHARE = 0.8  # of the way of a hand that crosses over, in which the other one is not where it comes to
-FARTHER_AHEAD = (0.0, -0.03, 0.03, -0.06)  # metres farther ahead where it may be better, as a hand stays there longer
+CROSSING_SHARE = 0.8  # part of the way of a hand that crosses over in which the other hand has left that place
+# metres to each side; a place there may be better because a hand can stay longer
+FARTHER_AHEAD = (0.0, -0.03, 0.03, -0.06)
 
 
 def turns(plan: Plan, times: Array, trunk: BarTrunk, busy: Flags, context: Context) -> tuple[Grip, ...]:
@@ -177,7 +180,7 @@ def turns(plan: Plan, times: Array, trunk: BarTrunk, busy: Flags, context: Conte
     She does not in all of them; chance decides, always the same way for a song.
     """
     out, numbers, reach = [], context.settings.across, context.settings.bar.reach_time
-    free = firm(~busy, (ACROSS_SLOWER - 1.0) * reach)  # nor is a hand on its way when it still has a panel
+    free = firm(~busy, (ACROSS_SLOWER - 1.0) * reach)  # a hand that still has to press a panel is not on its way
     for start, end in plan.flights:
         if end - start > JUMP:  # who jumps is upright
             free[_between(times, start - numbers.ease - numbers.early, end + numbers.ease + numbers.early)] = False
@@ -254,9 +257,10 @@ def _chance(plan: Plan, second: float) -> tuple[float, float]:
 
 # When each hand rests on the bar behind the dancer: as long as its arm gets there in comfort.
 
-GRIP_OFFSETS = (0.0, 0.05, -0.05, 0.1, -0.1)  # metres beside it where it may be better, as a hand stays there longer
-ROUNDS = 2  # of finding out how long a hand that crosses over may stay
-LOOK = 10.0  # seconds that are looked at together for how long a hand may stay
+# metres to each side; a place there may be better because a hand can stay longer
+GRIP_OFFSETS = (0.0, 0.05, -0.05, 0.1, -0.1)
+ROUNDS = 2  # rounds of finding out how long a hand that crosses over may stay
+LOOK = 10.0  # seconds that are checked together for how long a hand may stay
 
 
 def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
@@ -278,7 +282,7 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
     found: list[Grip] = []
     wanted = turns(plan, times, trunk, busy, context)
     for _ in range(ROUNDS):
-        if wanted:  # the body turns for those that were found in place of those that were looked for
+        if wanted:  # the body turns for the grips that were found, not for those that were wanted
             trunk = trunk_of(replace(plan, grips=(*leaning_back, *wanted)), times, context)
             found = list(crossings(wanted, times, trunk, busy, context))
             wanted = tuple(found)

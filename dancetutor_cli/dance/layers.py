@@ -37,10 +37,10 @@ def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
     chest = world[:, skeleton.index("vt4")]
     head_yaw, chest_yaw = (sample_path(yaw, body.times, at) for yaw in (body.head_yaw, body.chest_yaw))
     tilt = sample_path(body.tilt, body.times, at)
-    # who bends down to a panel looks at it: no neck turns so far back
+    # a head that bends down to a panel looks at it, because no neck turns so far back
     shallow, deep = np.radians(settings.look.bent_from), np.radians(settings.look.bent_to)
     bent = smooth((np.linalg.norm(tilt, axis=1) - shallow) / (deep - shallow))
-    most = np.radians(settings.look.head_limit)  # of a chest that turned against the legs meanwhile, too
+    most = np.radians(settings.look.head_limit)  # also of a chest that turned against the legs meanwhile
     turned = np.clip(head_yaw - chest_yaw, -most, most)
     head_yaw = chest_yaw + (1.0 + (settings.look.bent_yaw - 1.0) * bent) * turned
     lean = settings.look.head_tilt + (settings.look.bent_tilt - settings.look.head_tilt) * bent
@@ -54,7 +54,7 @@ def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
     limit = np.radians(np.sqrt(max(settings.look.eyes_limit**2 - settings.look.chin**2, 0.0)))
     gap = (screen_yaw(root[:, [0, 2]], settings) - head_yaw + np.pi) % (2 * np.pi) - np.pi
     beyond = (np.abs(gap) - np.radians(settings.look.eyes_limit)) / np.radians(settings.look.eyes_give_up)
-    seen = 1.0 - smooth(2.0 * beyond - 1.0)  # eyes in their corners for nothing show their white
+    seen = 1.0 - smooth(2.0 * beyond - 1.0)  # eyes that stay in their corners without reason show their white
     eyes = quat.from_axis_angle(UP, seen * np.clip(settings.look.eyes_weight * gap, -limit, limit))
     for side in "lr":
         rotations[:, skeleton.index(f"{side}_eyeball_joint")] = quat.multiply(quat.conjugate(chin), eyes)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.run.kernels.compiling import njit
 
 Array = NDArray[np.float64]
-_SMALL = 1e-12  # of a gradient, of what is new in a column
+_SMALL = 1e-12  # smallest part of a gradient, and of what a column adds, that counts
 
 
 def nonnegative_least_squares(columns: Array, target: Array) -> Array:

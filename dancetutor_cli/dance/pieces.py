@@ -128,8 +128,8 @@ LENGTH = 90.0  # seconds of a piece, about
 LONGEST = 135.0  # a song up to so long is one piece
 AFTER = 1.0  # seconds; heels rise for swings that begin so soon
 WITHIN = 20.0  # seconds around a piece's even end in which the best place to end it is looked for
-MARGIN = 1.0  # seconds planned and smoothed beyond both ends of what is baked
-OVERLAP = 5.0  # seconds that a piece is planned and baked beyond its ends: what differs has died away
+MARGIN = 1.0  # seconds beyond both ends of the baked part that are planned and smoothed
+OVERLAP = 5.0  # seconds beyond its ends for which a piece is planned and baked: differences have died away there
 BLEND = 0.5  # seconds before a piece's end in which it turns into the next one
 
 
@@ -188,7 +188,7 @@ def pieces_of(plan: Plan, context: Context, fps: float, ragdoll: RagdollStyle | 
     """All pieces of a dance, in order of time."""
     start, end = whole_span(plan, context)
     pieces = []
-    plan = replace(plan, touches=plan.contacts)  # each until the foot leaves: for all pieces at once
+    plan = replace(plan, touches=plan.contacts)  # each move lasts until the foot leaves, in all pieces alike
     for first, last in pairwise(piece_ends(plan, start, end)):
         before, after = (first if first == start else first - OVERLAP), (MARGIN if last == end else OVERLAP)
         pieces.append(piece_of(plan, context, fps, ((before, last), (first, last), after), ragdoll))

@@ -17,7 +17,7 @@ from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 # the song.
 
 Array = NDArray[np.float64]
-REACH = 4  # nodes that a term touches at most, if nothing else is said: third differences
+REACH = 4  # nodes that a term touches at most by default: third differences
 
 
 class BandedLeastSquares:
@@ -121,8 +121,8 @@ def _solve_one(factor: Array, right: Array) -> Array:
 # length of the song.
 
 TOLERANCE = 1e-6
-ROUNDS, MORE_ROUNDS = 60, 240  # of the method; and of the second try, with limits that give way more
-SOFTER, SOFT = 100.0, 0.01  # how much more they give way then, and how much those do that did not
+ROUNDS, MORE_ROUNDS = 60, 240  # of the method; and of its second try, with limits that give way more
+SOFTER, SOFT = 100.0, 0.01  # how much more these limits give way then, and how much hard limits do
 
 
 @dataclass(frozen=True, slots=True)
@@ -274,7 +274,7 @@ def _system(bands: Array, limits: _Rows, s: Array, z: Array) -> Array:
         w = z[r] / (s[r] + give[r] * z[r])
         for i in range(width[r]):
             weighted = w * rows[r, i]
-            if weighted != 0.0:  # in a programme of two coordinates every other one
+            if weighted != 0.0:  # in a programme of two coordinates every second weight is 0
                 for j in range(i, width[r]):
                     bands[start[r] + i, j - i] += weighted * rows[r, j]
     return _factor(bands)

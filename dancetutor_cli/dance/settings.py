@@ -38,7 +38,7 @@ from dancetutor_cli.run.yaml_files import load
 
 # Forms: how a player stands and turns, as files that name a few numbers of the motion; see `configs/forms`.
 
-USUAL = "usual"  # the form of who asks for none: the numbers of `configs/motion.yaml`
+USUAL = "usual"  # the form if the user asks for none: the numbers of `configs/motion.yaml`
 
 
 # The numbers of the motion: read from `configs/motion.yaml` and from a file of changes, checked, and given names.
@@ -126,7 +126,7 @@ _SECTIONS = tuple(f.name for f in fields(MotionSettings))
 
 Array = NDArray[np.float64]
 Span = tuple[float, float]
-WHOLE = 1.0 - 1e-9  # of a state beside which there is no other one
+WHOLE = 1.0 - 1e-9  # share from which on a state counts as the only one
 
 
 def state_weights(changes: Sequence[Span], times: Array) -> Array:

@@ -30,9 +30,9 @@ from dancetutor_cli.dance.waits import waiting_at
 from dancetutor_cli.feet.limbs import Limb, Part
 
 Array = NDArray[np.float64]
-ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # of rough baking before the path of the body is final
-TIGHTENED = 3  # rounds of tightening the limits of her balance in the last of those
-COARSE = 4  # every so many samples of the path are baked in a round
+ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # rounds of rough baking before the path of the body is final
+TIGHTENED = 3  # rounds of tightening the limits of balance in the last of those
+COARSE = 4  # a round bakes only every so many samples of the path
 OFFSET_SMOOTH = 0.010  # seconds over which the centre of mass is smoothed as seen from the pelvis
 GIVES_SPAN = 0.12  # seconds over which a knee turns for its ankle's sake
 AROUND_PRESS = 0.05  # seconds around a press in which its palm may draw the root
@@ -123,7 +123,7 @@ def _deeper(plan: Plan, deeper: Array, at: Array, drawn: Array, context: Context
     for k, press in enumerate(plan.presses):
         near = (at >= press.start - AROUND_PRESS) & (at <= press.end + AROUND_PRESS)
         more = deeper[k] - min(float(drawn[near].min(initial=0.0)), 0.0)
-        out[k] = min(more, most)  # where no palm reaches, nobody sinks
+        out[k] = min(more, most)  # if no palm reaches, the body does not sink
     return out
 
 

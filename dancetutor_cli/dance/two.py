@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.request import DanceRequest
     from dancetutor_cli.feet import Pad
 
-SIDE_NOTES = 8  # notes at either end that say where somebody stands
-# Steps type as it is written -> the pad on which both stand: of a couple each has half of it. Else it is its own.
+SIDE_NOTES = 8  # notes at either end that show where a player stands
+# Steps type as written -> the pad on which both stand: in couple charts each has half of it. Otherwise its own pad.
 _WHOLE = {**ONE_PAD, **{kind: f"{kind.partition('-')[0]}-double" for kind in OWN_PADS}}
 
 

@@ -18,8 +18,8 @@ from dancetutor_cli.dance.smoothing import smooth
 
 Array = NDArray[np.float64]
 SEED = 20190607
-EARLIEST = 0.3  # part of its time in which one thing begins: none runs into the next
-ENDS = 30.0  # seconds of beats that she still has in mind before the first and after the last one
+EARLIEST = 0.3  # part of its time in which an act begins, so that no act runs into the next
+ENDS = 30.0  # seconds of beats before the first and after the last one that the dancer still follows
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +68,7 @@ def waiting_at(plan: Plan, times: Array, context: Context) -> WaitMotion:
     song = song_of(plan, context)
     slow = [slowly(song, times, numbers.turn_time, salt) for salt in range(3)]
     out.turn[:] = plan.hand * out.share * np.radians(numbers.turn) * slow[0]
-    for hand in (0, 1):  # now and then one is held before her for a while
+    for hand in (0, 1):  # now and then one hand is held before the body for a while
         up = out.share * smooth((slow[1 + (hand ^ plan.lead)] - numbers.held_from) / (1.0 - numbers.held_from))
         out.hands[:, hand] += up[:, None] * [0.0, numbers.held_up, numbers.held_ahead]
     for number in range(int(np.floor(first / numbers.every)) - 1, int(np.floor(last / numbers.every)) + 1):

@@ -27,7 +27,7 @@ from dancetutor_cli.dance.settings_feet import JumpSettings
 # Both feet leave the ground at once and come down at once: what jumps, leaps and hops over mines have in common.
 
 Array = NDArray[np.float64]
-FARTHER = 1.5  # parts of `jump.far`; feet that travel farther are pulled up no more
+FARTHER = 1.5  # in units of `jump.far`; feet that travel farther are not pulled up more
 Goals = list[tuple[Array, float]]  # ball (2,) and yaw without toe-out, of the left and the right foot
 
 
@@ -61,7 +61,7 @@ def flown(footing: Footing, flight: Flight, goals: Goals, pitches: list[Pitches]
     for side, foot in enumerate(feet):
         lift = min(flight.first[side], flight.take_off)
         height = GRAVITY * (flight.land - lift) ** 2 / 8
-        # heels that have just come down do not get up so far again
+        # heels that have just come down do not rise as high again
         up = float(np.clip((lift - foot.landed) / jump.heel_time, 0.0, 1.0))
         leave, most, land_pitch, rest = pitches[side]
         rise = (up * leave, most, land_pitch, rest)

@@ -23,11 +23,11 @@ HALF_BALL = float(SHOE_OUTLINE[:, 1].max())  # metres from the middle of a shoe 
 _ACROSS = np.arange(-5, 6) / 5
 PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a left ball in its room on a panel
 TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
-LATEST = 4  # swings of a foot that are looked at to see where it is
-CROSSED_PRICE = 3e3  # of a radian that legs cross too far
-MIDDLE_PRICE = 1e2  # of a metre that the middle of a shoe is off its panel
-SURELY = 1e-9  # metres; as exact as it need be
-EDGE_PRICE = 4e2  # of a metre that a shoe would reach over the edge of the pad
+LATEST = 4  # last swings of a foot that are checked to find its place
+CROSSED_PRICE = 3e3  # weight of a radian by which the legs cross too far
+MIDDLE_PRICE = 1e2  # weight of a metre by which the middle of a shoe is off its panel
+SURELY = 1e-9  # metres; the search stops at this accuracy
+EDGE_PRICE = 4e2  # weight of a metre by which a shoe would reach over the edge of the pad
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,8 @@ def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple
         return _bracket(footing, foot, goal)
     panels, following = footing.context.panels, goal.following
     panel, room = panels[goal.columns[0]], room_on(panels, goal.columns[0], step)
-    hurry = goal.cut * (step.resting if following is None else 1.0)  # who stays a while stands on the panel's middle
+    # a foot that stays a while stands on the panel's middle
+    hurry = goal.cut * (step.resting if following is None else 1.0)
     far = float(np.linalg.norm(panel - other.middle))
     wide = min(max((far - step.wide) / max(step.wide_most - step.wide, 1e-9), 0.0), 1.0)
     wide *= far < step.leap + HALF_PANEL  # beyond, the other foot comes along

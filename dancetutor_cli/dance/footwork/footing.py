@@ -94,7 +94,7 @@ def pressed_by(play: Play, index: int) -> dict[int, list[int]]:
 #
 # Nothing here changes: a rule makes another footing of the one it is given, and the planner takes it or leaves it.
 
-SHORTEST = 0.02  # seconds; no swing is shorter
+SHORTEST = 0.02  # seconds; the shortest swing
 FREE_WINDOW = 0.001
 
 
@@ -331,7 +331,7 @@ def pair(v: Array) -> tuple[float, float]:
 
 # Holds: a foot that holds a panel may not leave it before the hold ends.
 
-FORGOTTEN = 1.0  # seconds after which a hold that has ended is of no account
+FORGOTTEN = 1.0  # seconds after which a hold that has ended no longer matters
 
 
 def hold(footing: Footing, limb: int, column: int, time: float, end: float) -> Proposal:

@@ -51,7 +51,7 @@ class Planner:
         self.homes = HomeSteps(play, context, self.footing.lead)
         self.facing = Facing(play, self.settings)
         self.previous: float | None = None
-        self.moves: tuple[list[Move], list[Move]] = ([], [])  # that no rule changes any more
+        self.moves: tuple[list[Move], list[Move]] = ([], [])  # moves that no rule changes any more
         self.turns: list[Turn] = []
         self.presses: list[Press] = []
         self.touches: list[Contact] = []
@@ -108,7 +108,7 @@ class Planner:
         turned = 0.0 if faces_as_at_home(row, self.footing) else self.facing.turn(row, self.footing)
         left, right = self.footing.resting
         self.footing = replace(self.footing, resting=(left and 0 not in row.feet, right and 1 not in row.feet))
-        # added to what it was, and taken off again: what is left is exactly how far it has turned
+        # it is added to the turn so far and subtracted again, so the rest is exactly how far the foot has turned
         before = self.footing.normal
         aim = float(np.radians(self.facing.aim(row, before + turned, self.footing.lead)))
         self.footing = replace(self.footing, normal=before + turned, aim=aim)

@@ -18,9 +18,9 @@ from dancetutor_cli.feet.play import Play
 Array = NDArray[np.float64]
 NO_WAY = 1e-6  # metres
 HALF_TURN = 1e-6  # degrees from half a turn
-ALL_ROUND = 180.0  # degrees; farther apart in time than the body takes for it, rows know nothing of each other
-SPIN = 1.1  # times as fast as the feet, on average, may a body go that spins
-ASIDE = 15.0  # degrees from the feet normal from which on it matters how the feet really stand
+ALL_ROUND = 180.0  # degrees; rows that are farther apart in time than the body takes for them do not affect each other
+SPIN = 1.1  # a body that spins may turn this many times as fast as the feet do on average
+ASIDE = 15.0  # degrees from the feet normal; from here on the feet's actual places matter
 
 
 def shorter(normal: float, facing: float) -> float:
@@ -89,7 +89,7 @@ class Facing:
         self._facing: list[float] = play.facing.tolist()
         feet = [(play.limb == side).any(axis=1) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
         self._alone: list[int] = np.where(feet[0] == feet[1], -1, feet[1]).tolist()  # the foot that steps alone, or -1
-        # Which way round she goes at rows that turn half around, as she saw it coming.
+        # the direction at rows that turn half around, chosen with a look ahead
         self.halves: dict[int, float] = {}
         self.past: list[tuple[float, float]] = []  # seconds and where it would face, degrees, row by row
         self.rounded = 0.0  # degrees that she has gone all the way round, 360 for each spin to the left
@@ -101,7 +101,7 @@ class Facing:
         self.past = [was for was in self.past if was[0] > row.time - ALL_ROUND / step.turn_rate]
         self.past.append((row.time, wanted))
         around = [*self.past, *self._coming(row, normal, lead)]
-        # who spins goes round evenly, as fast as the feet do on average: slower, she would only catch up in jerks
+        # in a spin the body turns evenly, as fast as the feet do on average: slower, it would only catch up in jerks
         spin = SPIN * abs(around[-1][1] - self.past[0][1]) * step.turn_rate / (2.0 * ALL_ROUND)
         slack = [max(step.turn_rate, spin) * abs(time - row.time) for time, _ in around]
         low = max(yaw - free for (_, yaw), free in zip(around, slack, strict=True))
@@ -114,10 +114,10 @@ class Facing:
         Rows are asked for in order, each before its aim.
         """
         j, normal = row.index, footing.normal
-        self.rounded = rounds(normal, 0.0, self.rounded)  # she may have gone home meanwhile
+        self.rounded = rounds(normal, 0.0, self.rounded)  # the dancer may have gone home meanwhile
         turn = shorter(normal, float(self.play.facing[j]))
         if is_half(turn):
-            # where the play leaves it open, how the feet stand decides, unless she saw it coming
+            # if the play leaves it open, the stance of the feet decides, unless the look ahead has decided
             stand = shorter(footing.normal, footing.line())
             first = float(np.sign(stand)) if ASIDE < abs(stand) < 180.0 - ASIDE else 0.0
             turn = self.halves.get(j, self._half(j, normal, self.rounded, first or self._side(j, footing.lead)))

@@ -200,7 +200,7 @@ def waits(plan: Plan, mines: Array, least: float) -> list[tuple[float, float]]:
 # A walk between the pads takes about three seconds. In a shorter wait dancers step aside, close, and step aside again;
 # so the notes are reached by a normal step and not by a leap. Nor do they wait with one foot on each pad.
 
-SPREAD_STEP = 0.04  # metres between the ways of stepping aside that are tried
+SPREAD_STEP = 0.04  # metres between the candidate places for stepping aside
 
 
 @dataclass(frozen=True, slots=True)

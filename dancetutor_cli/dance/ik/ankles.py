@@ -21,10 +21,11 @@ from dancetutor_cli.feet.limbs import Part
 
 Array = NDArray[np.float64]
 MARGIN = 0.5  # degrees inside the limit
-GIVES = np.radians([0.0, 4.0, -4.0, 8.0, -8.0, 12.0, -12.0, 16.0, -16.0, 20.0, -20.0, 24.0, -24.0])  # of a knee, tried
-NEAR, ROOM = 2.0, 1.0  # degrees from its limit at which an ankle is looked at, and that it has left then
-UNDER, HALVINGS = 2e-4, 6  # metres under the ground that a sole that turns may be; halvings to find how far it turns
-UP_FROM, UP_TO = 0.004, 0.030  # metres over the ground between which a foot gets free to turn: lower it would touch
+# angles of a knee that are tried
+GIVES = np.radians([0.0, 4.0, -4.0, 8.0, -8.0, 12.0, -12.0, 16.0, -16.0, 20.0, -20.0, 24.0, -24.0])
+NEAR, ROOM = 2.0, 1.0  # degrees from its limit at which an ankle is checked, and that it keeps afterwards
+UNDER, HALVINGS = 2e-4, 6  # metres under the ground that a turning sole may be; halvings to find how far it turns
+UP_FROM, UP_TO = 0.004, 0.030  # metres over the ground between which a foot becomes free to turn: lower, it would touch
 
 
 def ease_ankles(skeleton: Skeleton, poses: Poses, feet: tuple[FootPath, FootPath]) -> None:
@@ -117,7 +118,7 @@ def _least_give(skeleton: Skeleton, poses: Poses, inside: NDArray[np.bool_], nam
 # Soles that roll: a foot whose ankle would bend too far comes down on an edge, or with its heel up, and lies flat as
 # the body comes over it.
 
-ROUNDS = 4  # of turning a sole and seeing what is left
+ROUNDS = 4  # rounds of turning a sole and checking the result
 MOST = np.radians((18.0, 20.0))  # that a sole rolls, and that its heel rises
 PRESSED, FADE = 0.006, 0.04  # seconds around a note in which a sole does not roll off its panel, and in which it begins
 

@@ -236,7 +236,7 @@ def hip_clearance(wrists: Array, hips: Hips, arms: ArmSettings) -> Array:
 HAND = 0.10  # metres from the wrist to the end of the hand
 HALF_HAND = 0.026  # metres, half of how thick it is
 SOFT_AT_LEGS = 0.012  # metres over which a hand comes to its least distance
-ROUNDS, LEAST_GIVEN = 2, 1e-4  # of giving way; who gave way by fewer metres is left alone then
+ROUNDS, LEAST_GIVEN = 2, 1e-4  # rounds of giving way; a hand that gave way by fewer metres is left alone afterwards
 
 
 def leg_clearance(wrists: Array, shoulders: Array, elbows: Array, legs: Legs, skeleton: Skeleton, room: float) -> Array:

@@ -21,10 +21,10 @@ from dancetutor_cli.dance.smoothing import smooth
 
 Array = NDArray[np.float64]
 OUTSIDE = 0.002  # metres that a leg which does not lean lies outside its hip
-LOOKED = 0.03  # metres; legs farther apart are left alone
-TRIED = np.radians(1.5)  # how far a knee is turned to see what that does
-FLAT = 1e-4  # square metres per radian; where turning a knee does less it is no use
-ROUNDS, STEPS = 3, 10  # of giving way, and of looking how deep legs are in each other
+LOOKED = 0.03  # metres; legs farther apart are not changed
+TRIED = np.radians(1.5)  # radians that a knee is turned to measure the effect
+FLAT = 1e-4  # square metres per radian; a knee whose turn has a smaller effect is not turned
+ROUNDS, STEPS = 3, 10  # rounds of giving way, and of measuring how deep legs are in each other
 
 
 @dataclass(frozen=True, slots=True)

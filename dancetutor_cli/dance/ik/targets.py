@@ -49,18 +49,22 @@ from dancetutor_cli.dance.waits import waiting_at
 # Hands: hanging and swinging against the legs, or a palm going down to a panel.
 
 Array = NDArray[np.float64]
-FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))  # directions of the fingers that are tried, about the liked one
+# directions of the fingers that are tried, around the preferred one
+FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))
 POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest
-EASE, EASY = 15.0, 40.0  # degrees within its limits where a joint is at ease; how much turned fingers count
-WAVES = 1.3  # about the size of both waves together
-LEVEL = np.array([1.0, 0.5, 1.0])  # hands wander less up and down: how high they are shows effort
-ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # of both hands: one is a little lower and farther back
-HELD_BACK = 0.25  # part of a stretch in which a hand is too quick, from which on it is held back in all of it
+EASE, EASY = 15.0, 40.0  # degrees within its limits at which a joint is at ease; how much turned fingers count
+WAVES = 1.3  # about the size of the sum of both waves
+LEVEL = np.array([1.0, 0.5, 1.0])  # hands wander less up and down, because their height shows effort
+# differences of the hands: one is a little lower and farther back
+ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])
+# part of a stretch in which a hand is too quick; from this part on it is held back in the whole stretch
+HELD_BACK = 0.25
 ASIDE_SOFT = 0.02  # metres over which a hand comes to its least distance outward in a lean
 UP_SOFT = 0.06  # metres over which a hand begins to rise as it swings ahead or is raised aside
 LOOSE_SOFT = 0.015  # metres over which a forearm that is held up comes to sink
-SUNK = 1.8  # so much farther a hand sinks, for its elbow comes down with it
-ELBOWS_IN = 0.62  # part of their way by which elbows turn to the body for another dancer: wholly, they would be in it
+SUNK = 1.8  # a hand sinks so much farther, because its elbow comes down with it
+# part of their way by which elbows turn to the body for another dancer; the whole way would put them into the body
+ELBOWS_IN = 0.62
 GIVEN_WAY = 0.145  # metres that a hand gives way to another dancer with which its elbow turns to the body
 SIDEWAYS = np.array([[1.0, 1.0], [-1.0, 1.0]])  # outward and up, of both hands
 ASKEWED = 1.6  # about how far `_wandering` goes up and down
@@ -143,9 +147,9 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
     rate = 1.0 / float(body.times[1] - body.times[0])
     effort = lately(tempo_factor(plan, body.times, settings), rate, arms.effort)[:, None]
     wander, askew = _wandering(body.times + context.phase, arms), ASKEW
-    if plan.lead == 1:  # what one hand does if the left foot leads, the other one does if the right one leads
+    if plan.lead == 1:  # a song in which the right foot leads has left and right hand exchanged
         wander, askew = (ways[..., ::-1, :] * [-1.0, 1.0, 1.0] for ways in (wander, askew))
-    # none is ever quite as high, or swings quite as far, as the other one
+    # the two hands are never equally high and never swing equally far
     unlike = 1.0 + arms.unlike * (wander + askew)[..., 1] / ASKEWED
     swing = unlike * _swing(plan, body, settings)
     hang = np.empty((len(swing), 2, 3))

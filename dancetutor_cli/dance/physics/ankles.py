@@ -15,9 +15,9 @@ from dancetutor_cli.dance.smoothing import both_envelopes, upper_envelope
 Array = NDArray[np.float64]
 Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 ROUNDS = 3
-LEANS = 1.0  # degrees to a side from which a foot stands on an edge, and its sole is not held
+LEANS = 1.0  # degrees to a side; from here on a foot stands on its edge and its sole is not held
 MARGIN = 0.6  # degrees that are left to a limit
-SWIVELS = 0.25  # seconds in which a leg swivels about the line from hip to ankle, or a foot leans, and comes back
+SWIVELS = 0.25  # seconds in which a leg turns about the line from hip to ankle, or a foot leans, and comes back
 _AHEAD = np.array([0.0, 0.0, 1.0])
 _ASIDE = np.array([1.0, 0.0, 0.0])
 

@@ -19,11 +19,11 @@ Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 #
 # The input's arms are seen from the trunk, as local turns are: what was clear of the trunk there is clear of it here.
 
-ALLOWED = 0.003  # metres that an arm may be in something: clothes and skin give way
-DEEPER = 0.002  # metres by which it must be deeper than in the input to be a fault of the style
-APART_ROUNDS, APART_STEP = 10, 0.3  # of going back, and the part of the way in each
+ALLOWED = 0.003  # metres that an arm may be in something, because clothes and skin give way
+DEEPER = 0.002  # metres by which it must be deeper than in the input to count as a fault of the style
+APART_ROUNDS, APART_STEP = 10, 0.3  # rounds of going back, and the part of the way in each
 APART_SPAN = 0.4  # seconds around a touch in which an arm goes back and comes again
-OUT_ROUNDS, NUDGE, LEAST = 40, 0.02, 0.08  # of pushing out; radians, and metres; metres of depth per radian
+OUT_ROUNDS, NUDGE, LEAST = 40, 0.02, 0.08  # rounds of pushing out; radians, and metres; metres of depth per radian
 _ARM = ("sternoclavicular", "shoulder", "elbow", "radiocarpal")
 _RADII = (0.045, 0.036, 0.026)  # of shoulder, elbow and wrist, metres
 

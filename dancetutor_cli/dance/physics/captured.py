@@ -34,8 +34,9 @@ from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.run.errors import FileError
 
 Array = NDArray[np.float64]
-BENT, STRAIGHT = 0.30, 0.09  # sines of a limb's bend: from the first on it shows its plane, below the second not at all
-CLEAR = 0.7  # cosine between both axes from which the bend alone says what the plane is
+# sines of a limb's bend: from the first on the bend shows its plane, below the second it does not
+BENT, STRAIGHT = 0.30, 0.09
+CLEAR = 0.7  # cosine between both axes; from here on the bend alone gives the plane
 UNEVEN = 0.12  # metres; a floor that differs more has steps, and is left as it is
 _EXTENT = (("skullbase", "l_talocrural"), ("l_hip", "l_knee"), ("r_hip", "r_knee"))
 OFF = 12.0  # degrees between the segments of a capture and of what is made of it, on average, that are a fault

@@ -22,7 +22,7 @@ FROM, TO = np.radians(22.0), np.radians(7.0)  # bends of a knee: where the stret
 ROUND = 0.01  # metres over which a foot in the air begins to come nearer
 SLOWLY = 0.30  # seconds that the last of a stretch takes to come and to go
 SINK = 0.25  # seconds over which the pelvis sinks
-BENT = np.radians(20.0)  # of a knee that a rise leaves: straighter ones pop
+BENT = np.radians(20.0)  # bend of a knee that a rise must leave, because straighter knees pop
 RISES, RISE = 12, 0.0008  # rounds of rising, and metres in each for a degree that an ankle is past its limit
 
 
@@ -113,7 +113,7 @@ def _soft(leg: Leg, distance: Array, times: Array) -> Array:
 # parabola. To all sides the path is the input's; in height she may stand otherwise, but comes there slowly.
 
 Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
-ROUNDS = 4  # of moving the root: legs follow, and have mass
+ROUNDS = 4  # rounds of moving the root: legs follow, and have mass
 STANCE = 0.5  # Hz below which her height may be another one
 SINKS = 1.5  # seconds over which she stands lower than a style would have her
 RATE = 120.0  # at which height is filtered

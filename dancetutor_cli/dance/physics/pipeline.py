@@ -47,10 +47,10 @@ from dancetutor_cli.run.errors import DancetutorError
 Array = NDArray[np.float64]
 Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 CORRECTIONS = ("knees", "feet", "limits")
-GIVING_BACK = 8  # rounds of giving way less, where hips or ankles cannot
-AFTERMATH = 0.3  # seconds over which what befalls her begins to count, and ceases to 0.7 s later
+GIVING_BACK = 8  # rounds of giving way less where hips or ankles are at their limits
+AFTERMATH = 0.3  # seconds over which a push or a trip begins to count; it ceases to count 0.7 s later
 BEFORE = 1.0  # seconds of standing still before the first frame, in which springs come to rest
-PALM_EXACT = 0.06  # seconds around a pressing palm in which she is as in the input
+PALM_EXACT = 0.06  # seconds around a pressing palm in which the body is as in the input
 PALM_FADE = 0.45  # seconds around a pressing palm over which the input takes over: a palm is where its panel is
 
 

@@ -21,11 +21,11 @@ from dancetutor_cli.dance.smoothing import smooth
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-SHORTEST = 0.05  # seconds; a sole held for less time is not
+SHORTEST = 0.05  # seconds; a shorter contact of a sole is not a hold
 GAP = 0.07  # seconds between two holds of one point that are one
 PIVOT = np.radians(25.0)  # a foot that turns more than this while it lies flat does so on purpose, on its ball
 SURELY = 1.15  # times that; what is in doubt stays
-STEEPEST = np.radians(58.0)  # of a foot on its ball: its toes bend no further
+STEEPEST = np.radians(58.0)  # pitch of a foot on its ball: its toes bend no further
 FADE = 14.0  # frames within which a foot takes up the pace of its own way again
 NEARLY = 0.999  # how far a foot is held in the frames before and after
 ROLLED = 0.015  # metres that the end of a foot which stands on it alone may be away from where it lay

@@ -25,7 +25,7 @@ from dancetutor_cli.dance.smoothing import both_envelopes, smooth, upper_envelop
 Array = NDArray[np.float64]
 Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 STRAIGHTEST = np.radians(6.0)  # a knee stays bent by so much
-REACH_ROUNDS = 40  # of pulling the pelvis until both legs reach
+REACH_ROUNDS = 40  # rounds of pulling the pelvis until both legs reach
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +118,7 @@ def _pull(skeleton: Skeleton, pelvis: Array, root: Array, legs: list[Leg], goals
 
 MARGIN = 0.5  # degrees inside the limits
 SLOWLY = 0.25  # seconds over which a joint is brought back, before and after it would be past a limit
-MOST = np.radians(20.0)  # of what comes back early; what is further past is stopped there
+MOST = np.radians(20.0)  # the excess that is brought back early; what is further past its limit is stopped there
 ELBOW = np.radians(-5.0)  # bend of an elbow at its stretch
 _LEGS = ("l_hip", "l_knee", "l_talocrural")  # these are closed by IK afterwards
 
@@ -173,7 +173,7 @@ def _forward(bone: Bone, turns: Array) -> Array:
 
 REACH = 0.35  # seconds in which a hand comes to where the input has it, and goes again
 LONGEST = 0.995  # of an arm's length that it stretches
-HOLD_ROUNDS, HOLD_STEP = 12, 0.25  # of giving way, and the part of the way in each
+HOLD_ROUNDS, HOLD_STEP = 12, 0.25  # rounds of giving way, and the part of the way in each
 HOLD_SPAN = 0.5  # seconds over which she gives way, and comes back
 DEEP = 0.003  # metres that a forearm may be in the trunk
 _BODY = ("HumanoidRoot", "vl5", "vt10", "vt4", *(f"{s}_{n}" for s in "lr" for n in ("sternoclavicular", "shoulder")))

@@ -95,7 +95,7 @@ def _followed(turns: Array, rate: float, follower: Follower) -> Array:
 # Forces are actuators of the engine (implicitfast), which sees the place that a point has in this very step: forces set
 # from outside before a plain step are one step old, and that explodes at 240 Hz.
 
-PIECE = 2400  # steps whose targets are held at once
+PIECE = 2400  # steps whose targets are in memory at once
 
 
 @dataclass(frozen=True, slots=True)

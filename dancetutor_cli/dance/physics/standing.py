@@ -247,7 +247,8 @@ def _axes(first: Array, second: Array) -> Array:
 # What converters write before the motion.
 
 _SEARCHED = 3.0  # seconds at the beginning of a clip in which a rest pose may stand
-JUMP, JUMP_LEAST = 8.0, 0.12  # times what comes next, and parts of a leg's length, that joints jump from a rest pose
+# a rest pose: joints jump from it by this many times the next step, and by this part of a leg's length
+JUMP, JUMP_LEAST = 8.0, 0.12
 JUMP_ZERO, ALIKE = 2.0, np.radians(0.5)  # of a pose that is the file's zero pose: times what comes next; to be it
 
 

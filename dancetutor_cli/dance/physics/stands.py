@@ -22,9 +22,10 @@ from dancetutor_cli.dance.smoothing import smooth
 
 Array = NDArray[np.float64]
 ROUNDS = 4
-MARGIN = 1.05  # times an eye's limits within which feet are held: the give of legs moves them across those limits later
+# times the visible limits within which feet are held: legs that give move the feet across these limits later
+MARGIN = 1.05
 ON_FLOOR = 0.015  # metres over the floor up to which the end of a foot that stands is put on it
-FLAT = np.radians(8.0)  # of pitch up to which a foot that stands lies flat
+FLAT = np.radians(8.0)  # pitch up to which a foot that stands lies flat
 TURNS = np.radians(45.0)  # a foot that turns more while it stands pivots on purpose
 SHUFFLE = 0.03  # metres between two places of one stand from which it is two, and a quick step between them
 STEP = 1.2  # m/s of that step

@@ -137,7 +137,7 @@ PIVOT = np.radians(2.0)  # a planted foot that turns more is pivoting on purpose
 CUT_PIVOT = np.radians(0.2)  # and so is one that turns so much at a section's edge, where only a part of it is seen
 BALL = slice(2, 4)  # of a sole's points, those of the ball
 MINE_CLEARANCE = 0.03  # metres that a foot over a mine is up
-MAX_LISTED_MINES = 6  # moments at which a foot is on mines, at most, that a note names
+MAX_LISTED_MINES = 6  # moments at which a foot is on mines that a note names at most
 
 
 def ground_figures(motion: Motion, body: Body, mines: Array | None) -> tuple[tuple[Figure, ...], tuple[str, ...]]:

@@ -21,7 +21,7 @@ from dancetutor_cli.feet.limbs import Limb
 # weights, and body weights times metres. As residuals are given for captured motion (Hicks and others, 2015).
 
 Array = NDArray[np.float64]
-CUT = 10.0  # Hz: accelerations of what trembles faster are of frames, not of bodies
+CUT = 10.0  # Hz; accelerations above it come from single frames, not from the body
 FRICTION = 0.8  # of a sole on a pad
 CONTACT = GROUND + 0.004  # metres over the ground up to which a sole point can push
 MOST = 3000  # frames that are looked at
@@ -113,7 +113,7 @@ def dumbbells(skeleton: Skeleton, body: Body) -> tuple[Array, Array]:
 
 # Jumps: does the centre of mass fall as things fall, and does the ground push no harder than legs can.
 
-SHORTEST = 5  # frames; fewer say nothing about a parabola
+SHORTEST = 5  # frames; fewer do not determine a parabola
 FIT = 0.12  # seconds; the arc of a shorter flight is so flat (under 2 cm) that a fit of g says nothing
 
 
