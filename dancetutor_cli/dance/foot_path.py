@@ -1,4 +1,6 @@
-"""Where each foot is at any time, from its swings; in jumps half round each other, never through each other."""
+"""Where each foot is at any time, from its swings. In jumps the feet go half around each other, never through each
+other.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,7 @@ from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_feet import StepSettings, WalkSettings
 from dancetutor_cli.dance.smoothing import smooth
 
-# The ways of both feet over the ground in a jump: half straight, half round each other, never through each other.
+# The paths of both feet over the ground in a jump: half straight, half around each other, never through each other.
 
 Array = NDArray[np.float64]
 _ROUND = (0.75, 1.0)  # how much more of a way goes round, if `jump.round` brings the shoes together
@@ -53,13 +55,14 @@ def turning(start: Array, end: Array, middles: tuple[Array, Array], turn: Array,
 def jump_ways(
     starts: Array, start_yaws: Array, ends: Array, end_yaws: Array, turn: float, settings: MotionSettings
 ) -> tuple[float, Array]:
-    """How much of a jump's way goes round, and (2, 2) x and z that each foot goes aside, so that shoes stay apart.
+    """How much of a jump's path goes around the middle, and (2, 2) how far each foot goes aside along x and z to keep
+    the shoes apart.
 
     Parameters
     ----------
     starts, ends : (2, 2) balls of the left and the right foot before and after; yaws : (2,) of their toes, radians
     turn : radians that the line between the feet turns
-    settings : of them `step.apart`; where it cannot be had, the most that can
+    settings : `step.apart` is used; where it is not possible, the largest distance that is
     """
     step, least = settings.step, settings.jump.round
     e, turned = travelled(SHARES, step), swung(SHARES, step)
@@ -204,13 +207,17 @@ def _shaken(move: Move, times: Array, ball: Array, pitch: Array) -> tuple[Array,
 
 
 def _climb(before: Array, after: Array, s: Array, walk: WalkSettings) -> Array:
-    """Height of the ground under a swing: up at once, down late, for between levels there is an edge."""
+    """Height of the ground under a swing: the foot rises at once and comes down late, because there is an edge between
+    levels.
+    """
     up, down = smooth(s / walk.edge_up), smooth((s - 1.0 + walk.edge_down) / walk.edge_down)
     return np.asarray(before + np.where(after > before, up, down) * (after - before))
 
 
 def _rocked(ball: Array, yaw: Array, pitch: Array) -> Array:
-    """The ball (f, 3) of a foot whose toes are up (pitch below 0): the heel's edge is where it would be if flat."""
+    """The ball (f, 3) of a foot whose toes are up (pitch below 0). The edge of its heel is where it would be if the
+    foot were flat.
+    """
     up = -np.minimum(pitch, 0.0)
     back = HEEL_BACK * (1.0 - np.cos(up)) + BALL_UP * np.sin(up)
     out = ball.copy()
@@ -226,7 +233,7 @@ def _are(track: FootTrack, *kinds: type[Move]) -> NDArray[np.bool_]:
 
 
 def _low(track: FootTrack) -> Array:
-    """The last part of each move's time in which a foot that jumps comes straight down, as it would slide otherwise."""
+    """The last part of each move's time, in which a foot that jumps comes straight down; otherwise it would slide."""
     heights = np.array([m.height if isinstance(m, Jump) else np.inf for m in track.moves])
     return np.asarray(np.clip(LOW / np.maximum(4.0 * heights, 1e-9) - SLOW, 0.0, MOST_LOW))
 

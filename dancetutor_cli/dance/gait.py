@@ -1,8 +1,9 @@
 """Gaits: how pelvis, chest and hands go with the steps of a walk, and how two gaits are blended.
 
-A gait's curves are over normalised time: 0 is a landing of the left foot, 0.5 one of the right foot, 1 the left foot
-again. Two gaits are blended pose by pose at the same normalised time, and the blend's cycle takes  (T2 - T1) a + T1
-seconds (the blog of the project's sources), so feet that land at one normalised time in both land there in the blend.
+A gait's curves use normalised time: 0 is a landing of the left foot, 0.5 one of the right foot, 1 the next one of the
+left foot. Two gaits are blended pose by pose at the same normalised time, and the blend's cycle takes (T2 - T1) a + T1
+seconds (the blog of the project's sources). So feet that land at one normalised time in both gaits land at that time in
+the blend.
 """
 
 from __future__ import annotations
@@ -118,7 +119,7 @@ def load_gait(name: str) -> tuple[Gait, Gait]:
 
 
 def walking(walks: tuple[Route, ...], times: Array, settings: WalkSettings) -> GaitPose | None:
-    """What all walks add at `times` (f,), fading in and out; None where nobody walks."""
+    """What all walks add at `times` (f,), fading in and out; None if nobody walks."""
     total: GaitPose | None = None
     for walk in walks:
         first_at, end_at = np.searchsorted(times, (walk.start, walk.end))
@@ -139,7 +140,7 @@ def walking(walks: tuple[Route, ...], times: Array, settings: WalkSettings) -> G
 
 
 def gaze_ahead(plan: Plan, times: Array, settings: WalkSettings) -> Array:
-    """How much (f,) of her look is where she goes and not at the screen: on her way to the pad and from it."""
+    """How much (f,) the dancer looks where she goes and not at the screen: on her way to the pad and from it."""
     walks = tuple(w for w in plan.walks if w.end <= plan.first or w.start >= plan.last)
     gait = walking(walks, times + settings.gaze_ahead, settings)
     return np.zeros(len(times)) if gait is None else gait.own

@@ -1,4 +1,4 @@
-"""Hands on the bar behind the dancer: what an arm reaches in comfort, where the far hand crosses over, when."""
+"""Hands on the bar behind the dancer: what an arm reaches comfortably, when, and where the far hand crosses over."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from dancetutor_cli.dance.settings_arms import BarSettings
 from dancetutor_cli.dance.trajectory.facing import wrapped
 from dancetutor_cli.dance.trajectory.posture import RoughBake, body_trajectory
 
-# An arm beside the bar behind the dancer: where on the rail its hand may rest, at which times, by a rough bake.
+# An arm beside the bar behind the dancer: where and when its hand may rest on the rail, found with a rough bake.
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -56,7 +56,7 @@ class BarTrunk:
 
 
 def trunk_of(plan: Plan, times: Array, context: Context) -> BarTrunk:
-    """Where the upper body will be, found in parts so that an hour needs little memory."""
+    """Where the upper body will be, computed in parts so that an hour needs little memory."""
     parts = []
     for first in np.arange(times[0], times[-1] + 1e-9, PART):
         parts.append(_part(plan, times[(times >= first) & (times < first + PART)], context))
@@ -86,7 +86,7 @@ def _part(plan: Plan, at: Array, context: Context) -> BarTrunk:
 class Arm:
     """One arm, and where on the rail its hand can be at which of the n times.
 
-    apart : (n,) metres beside the pelvis, outward, where it would like to be; across : it crosses over before her
+    apart : (n,) metres beside the pelvis, outward, of its preferred place; across : it crosses over before her
     """
 
     def __init__(
@@ -120,8 +120,9 @@ class Arm:
         return np.asarray(near & ~self._in_trunk(joint, wrist, when) & ~self.busy[when])
 
     def reached(self, x: float, start: int, stop: int) -> tuple[int, int]:
-        """From which look on until which one the hand may rest at x of those from `start` to `stop`, so that it gets
-        there and away beside the trunk: while she turns quickly it comes later, or leaves earlier."""
+        """From which check until which one, of those from `start` to `stop`, the hand may rest at x, so that it gets
+        there and away beside the trunk. While the dancer turns quickly it comes later, or leaves earlier.
+        """
         wrist, _ = rest_on_bar(self.bar, self.side, x, self.skeleton, self.settings.bar, self.across)
         middle, begin, end = (start + stop) // 2, start, stop
         for part, least, most in ACROSS if self.across else ((1.0, 0.0, MOST_INWARD),):
@@ -135,8 +136,9 @@ class Arm:
         return begin, end
 
     def _in_trunk(self, elbow: Array, wrist: Array, when: slice) -> Flags:
-        """Whether a forearm from elbow to wrist (k, 3), or its hand, is in the trunk, an upright cylinder that is wrung
-        from the hips to the chest."""
+        """Whether a forearm from elbow to wrist (k, 3), or its hand, is in the trunk: an upright cylinder that is
+        twisted from the hips to the chest.
+        """
         trunk = self.trunk
         top = trunk.shoulders[when].mean(axis=1)
         along = (wrist - elbow) / np.linalg.norm(wrist - elbow, axis=1, keepdims=True)
@@ -153,7 +155,7 @@ class Arm:
 
 
 def firm(free: Flags, early: float) -> Flags:
-    """Free also so many seconds before and after."""
+    """Where the hand is free now and also so many seconds before and after."""
     width = max(1, round(early * RATE))
     held = np.concatenate((np.repeat(free[:1], width), free, np.repeat(free[-1:], width)))
     return np.asarray(np.convolve(~held, np.ones(2 * width + 1), "valid") < 0.5)
@@ -165,7 +167,7 @@ def runs(flags: Flags) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in edges]
 
 
-# Turns on the bar in which the far hand crosses over before her: which, from when to when, and where on the rail.
+# Turns on the bar in which the far hand crosses over in front of the dancer: which turns, when, and where on the rail.
 
 SEED = 20011109
 JUMP = 0.08  # seconds; what is shorter is a quick step
@@ -177,7 +179,7 @@ FARTHER_AHEAD = (0.0, -0.03, 0.03, -0.06)
 def turns(plan: Plan, times: Array, trunk: BarTrunk, busy: Flags, context: Context) -> tuple[Grip, ...]:
     """Grips as long as the turns in which a hand may cross over, for a body that turns and leans for them.
 
-    She does not in all of them; chance decides, always the same way for a song.
+    The hand does not cross in all of them; chance decides, always in the same way for a song.
     """
     out, numbers, reach = [], context.settings.across, context.settings.bar.reach_time
     free = firm(~busy, (ACROSS_SLOWER - 1.0) * reach)  # a hand that still has to press a panel is not on its way
@@ -194,8 +196,9 @@ def turns(plan: Plan, times: Array, trunk: BarTrunk, busy: Flags, context: Conte
 
 
 def crossings(wanted: tuple[Grip, ...], times: Array, trunk: BarTrunk, busy: Flags, context: Context) -> Iterator[Grip]:
-    """Of the grips that are `wanted`, in order of time, those, or as much of each, that an arm reaches from a body that
-    turned for all of them; with their places on the rail. A hand has gone before the next one comes."""
+    """The part of each `wanted` grip that an arm reaches from a body that has turned for all of them, with its place on
+    the rail. A hand has gone before the next one comes. Grips are in order of time.
+    """
     numbers, reach = context.settings.across, context.settings.bar.reach_time
     apart = np.full(len(times), -numbers.ahead)
     arms = [Arm(side, trunk, busy, apart, context, across=True) for side in (0, 1)]
@@ -210,7 +213,7 @@ def crossings(wanted: tuple[Grip, ...], times: Array, trunk: BarTrunk, busy: Fla
 
 
 def _longest_crossing(arm: Arm, a: int, b: int) -> tuple[int, int, float]:
-    """From which look of those from a to b until which one a hand may stay longest, and where on the rail."""
+    """From which check, of those from a to b, until which one a hand may stay longest, and where on the rail."""
     best, bar = (a, a, 0.0), arm.settings.bar
     for farther in FARTHER_AHEAD:
         middle = float(np.median(arm.place[a:b])) + (-1.0, 1.0)[arm.side] * farther
@@ -225,11 +228,10 @@ def _longest_crossing(arm: Arm, a: int, b: int) -> tuple[int, int, float]:
 def around_crossings(
     plan: Plan, times: Array, grips: tuple[Grip, ...], places: tuple[Flags, Array], context: Context
 ) -> tuple[Flags, Array]:
-    """Which hands (n, 2) may be on the rail on their own side, and how far (n, 2) each is beside the body there, when
+    """Which hands (n, 2) may be on the rail on their own side, and how far (n, 2) beside the body each is there, while
     others cross over.
 
-    The far hand is away before and after. The near one holds on behind it, or lets go, by chance.
-    places : both without crossings
+    The far hand is away before and after. The near hand holds on behind the far one or leaves the rail, by chance.
     """
     numbers, reach = context.settings.across, context.settings.bar.reach_time
     holds, apart = places[0].copy(), places[1].copy()
@@ -255,7 +257,7 @@ def _chance(plan: Plan, second: float) -> tuple[float, float]:
     return float(one), float(other)
 
 
-# When each hand rests on the bar behind the dancer: as long as its arm gets there in comfort.
+# When each hand rests on the bar behind the dancer: as long as its arm gets there comfortably.
 
 # metres to each side; a place there may be better because a hand can stay longer
 GRIP_OFFSETS = (0.0, 0.05, -0.05, 0.1, -0.1)
@@ -266,10 +268,10 @@ LOOK = 10.0  # seconds that are checked together for how long a hand may stay
 def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
     """The plan with when each hand rests on the bar between the seconds of `span`, in order of start.
 
-    She holds it with both hands or with one, by turns as `bar.grip_phrases` says. A hand lets go before the body goes
-    or turns so far that its arm would not reach, would bend beyond its joints' limits or go through the trunk, and
-    whenever a hand goes to a panel; it takes the rail again, farther on, when the body has travelled along. In turns
-    that are long enough the far hand may cross over before her.
+    She holds it with both hands or with one, in turn as `bar.grip_phrases` says. A hand leaves the rail before the body
+    goes or turns so far that its arm would not reach, would bend beyond the limits of its joints or go through the
+    trunk. It also leaves when it goes to a panel. It takes the rail again, farther on, when the body has travelled
+    along. In turns that are long enough, the far hand may cross over in front of her.
     """
     times = np.arange(span[0], span[1], 1.0 / RATE)
     if len(times) < 2:
@@ -294,7 +296,7 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
 
 
 def _busy(plan: Plan, times: Array, settings: MotionSettings) -> Flags:
-    """Whether a hand is at a panel or on its way to or from it, or she walks; then both are off the bar."""
+    """Whether a hand is at a panel, or on its way to or from it, or the dancer walks; then both hands are off the bar."""
     out = np.zeros(len(times), dtype=bool)
     down, reach = settings.hands.reach_down, settings.bar.reach_time
     for press in plan.presses:
@@ -306,7 +308,7 @@ def _busy(plan: Plan, times: Array, settings: MotionSettings) -> Flags:
 
 
 def _pieces(times: Array, arm: Arm, bar: BarSettings) -> Iterator[Grip]:
-    """Grips in the stretches in which the rail is within reach, divided where the body has gone on along it."""
+    """Grips in the stretches in which the rail is within reach, divided where the body has moved on along it."""
     least, pause = max(1, round(bar.shortest * RATE)), max(1, round(bar.reach_time * RATE))
     last = 0
     for first, end in runs(firm(arm.fits(arm.place, slice(None)), bar.early)):
@@ -322,7 +324,7 @@ def _pieces(times: Array, arm: Arm, bar: BarSettings) -> Iterator[Grip]:
 
 
 def _longest(arm: Arm, start: int, end: int) -> tuple[float, int]:
-    """Where a hand that takes the rail at look `start` may stay longest, and the look at which it must have gone."""
+    """Where a hand that takes the rail at check `start` may stay longest, and the check at which it must have gone."""
     soon = arm.place[start : min(start + round(arm.settings.bar.place_time * RATE), end)].mean()
     best, stop = float(soon), start
     for aside in GRIP_OFFSETS:

@@ -119,21 +119,21 @@ def take_off_for(footing: Footing, time: float, flight: float) -> float:
 
 
 def tuck_for(distance: float, seconds: float, jump: JumpSettings) -> float:
-    """How much more feet are pulled up that go so far in a flight of so many seconds: not in short, low ones.
+    """How much more feet are pulled up that travel so far in a flight of so many seconds; not in short, low flights.
 
-    Knees that fold and open again within a tenth of a second throw the body. In the shortest of all feet rise a little
-    more than the body does, or nobody could say when they come down.
+    Knees that fold and open again within a tenth of a second throw the body. In the shortest flights, feet rise only a
+    little more than the body, just enough that their landing can be seen.
     """
     share = float(np.clip((seconds - jump.tuck_from) / max(jump.tuck_full - jump.tuck_from, 1e-3), 0.0, 1.0))
     more = share * jump.tuck * (1.0 + jump.tuck_far * min(distance / jump.far, FARTHER) ** 2)
     return max(more, jump.least - GRAVITY * seconds**2 / 8)
 
 
-# Leaps: a step too far for a straddle, or to where the other foot is in the way, takes the other foot along.
+# Leaps: if a step is too far for a straddle, or the other foot is in its way, the other foot comes along.
 
 
 def leap(row: Row, foot: FootState, goal: tuple[Array, float], columns: list[int], footing: Footing) -> Proposal | None:
-    """Both feet leave the ground, and the other one lands beside; None where a step will do.
+    """Both feet leave the ground, and the other foot lands beside the one that steps; None if a step is enough.
 
     foot : that steps; goal : ball (2,) and yaw with which it lands; columns : that it stands over then
     """
@@ -162,7 +162,7 @@ def leap(row: Row, foot: FootState, goal: tuple[Array, float], columns: list[int
     return hop(row, footing, take_off, goals, [columns, columns])
 
 
-# Gallops: a step after a wait, and soon after it one of the other foot, are one jump whose second foot lands later.
+# Gallops: a step after a wait and, soon after it, one of the other foot are one jump whose second foot lands later.
 
 
 def galloping(row: Row, side: int, footing: Footing) -> Footing:

@@ -1,4 +1,6 @@
-"""Footsteps: from one stand to another, at a pace that arrives in time, each foot on one level and past the other."""
+"""Footsteps from one stand to another, at a pace that arrives in time. Each foot lands on one level and passes the
+other.
+"""
 
 from __future__ import annotations
 
@@ -82,9 +84,9 @@ class Trip:
 
 
 def footsteps(trip: Trip, gait: str, lead: int, context: Context) -> WalkSteps | None:
-    """Footsteps from one stand to another, at the slowest pace that arrives in time; None if none does.
+    """Footsteps from one stand to another, at the slowest pace that arrives in time; None if no pace does.
 
-    lead : the foot that goes first where both have the same room
+    lead : the foot that goes first if both have the same room
     """
     slow, quick = load_gait(gait)
     begin, goal, most = trip.begin, trip.goal, context.settings.walk.turn
@@ -163,7 +165,7 @@ def _ways(trip: Trip, count: int, most: float) -> list[float]:
 
 
 def _on_one_level(middle: Array, yaw: float, ground: Ground) -> Array:
-    """A place for a foot at which all of it is on the pad, or all of it beside it."""
+    """A place for a foot at which the whole foot is on the pad, or the whole foot is beside it."""
     need = ALONG * np.abs([np.sin(yaw), np.cos(yaw)]) + ACROSS * np.abs([np.cos(yaw), np.sin(yaw)])
     out = middle.copy()
     inside = np.array(ground.low) - need < out

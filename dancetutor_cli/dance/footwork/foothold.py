@@ -50,7 +50,7 @@ def pose(footing: Footing, foot: FootState) -> Pose:
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What a foot is asked for at a row.
+    """What a row demands of a foot.
 
     columns : those that it presses; parts : (c,) which part of a foot presses each column
     yaw : wanted, without toe-out; cut : 0 for the panel's centre to 1 for its inner edge
@@ -70,7 +70,8 @@ class Goal:
 class Heel:
     """How far a heel is raised in a slow move: as the toes leave, at most, at landing, degrees.
 
-    flat : by which parts the first two are less in fast ones; rest : degrees while the foot stands in fast ones
+    flat : the parts by which the first two are smaller in fast moves; rest : degrees while the foot stands in fast
+    moves
     """
 
     degrees: tuple[float, float, float]
@@ -79,7 +80,9 @@ class Heel:
 
 
 def heel_of_step(step: StepSettings, haste: float = 0.0) -> Heel:
-    """Of a step; in haste, 0 to 1 as in `Row`, a foot that rocks would throw the body."""
+    """The heel of a step. With haste, 0 to 1 as in `Row`, it rises less, because a foot that rocks would throw the
+    body.
+    """
     land = step.land_pitch + haste * (step.land_hasty - step.land_pitch)
     swing = step.swing_flat + haste * (step.swing_flat_hasty - step.swing_flat)
     rest = step.stream_pitch + haste * (step.stream_pitch_hasty - step.stream_pitch)
@@ -106,7 +109,8 @@ def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple
     inside = step.middle_inside + hard * (step.middle_inside_hasty - step.middle_inside)
     spot = Spot(panel, room, np.maximum(room, room + hurry * (HALF_PANEL - inside - room)))
     ball = landing_ball(spot, toes, other.middle, cut, step.edge_margin)
-    # in a stream a foot goes the shortest way: it lands where its panel is nearest to its last place and its next one
+    # in a stream a foot takes the shortest way: it lands on its panel at the place nearest to its last and its next
+    # panel
     way = (foot.ball + (foot.ball if following is None else following)) / 2
     ball = ball + step.on_the_way * hurry * (on_panel(way, toes, spot) - ball)
     if (np.abs(foot.ball - panel) <= room).all() and following is not None:  # a jack need not move
@@ -136,9 +140,9 @@ def landing_ball(spot: Spot, yaw: float, other: Array, cut: float, edge_margin: 
 def resolve_overlap(
     footing: Footing, foot: FootState, spot: Spot, ball: Array, yaw: float, other: Pose
 ) -> tuple[Array, float]:
-    """The place on the panel nearest to the wanted one, and the yaw, that leave the other shoe its room.
+    """The place on the panel nearest to the wanted one, and the yaw, that leave room for the other shoe.
 
-    Nor do the legs cross there farther than they must.
+    At this place the legs do not cross farther than they must.
     """
     step, air = footing.settings.step, footing.settings.mines.keep_off
     apart, still = step.apart, other.toes + foot.outward * footing.toe_out
@@ -165,20 +169,21 @@ def resolve_overlap(
 
 
 def beyond_the_edge(ground: Ground, balls: Array) -> Array:
-    """How much nearer (k,) balls (k, 2) are to the edge of the pad than half a shoe, metres; what is beyond it carries
-    nothing."""
+    """How much nearer (k,) balls (k, 2) are to the edge of the pad than half a shoe, metres; the part beyond the edge
+    carries nothing.
+    """
     near = np.maximum(np.array(ground.low) + HALF_BALL - balls, balls - np.array(ground.high) + HALF_BALL)
     return np.asarray(np.maximum(near, 0.0).sum(axis=1))
 
 
 def off_the_middle(spot: Spot, balls: Array, toes: Array) -> Array:
-    """How far (k,) the middles of shoes, balls (k, 2) and toes (k,), are out of where they may be, metres."""
+    """How far (k,) the middles of shoes, balls (k, 2) and toes (k,), are outside their allowed places, metres."""
     middles = balls - BALL_AHEAD * headings(toes)
     return np.asarray(np.maximum(np.abs(middles - spot.centre) - spot.middle_room, 0.0).sum(axis=1))
 
 
 def legs_crossed(outward: float, balls: Array, toes: Array, other: Pose, body: float, step: StepSettings) -> Array:
-    """How much farther (k,) legs cross than they may, radians, as a foot stands at balls (k, 2) with its toes (k,) so.
+    """How much farther (k,) the legs cross than they may, radians, if a foot stands at balls (k, 2) with toes (k,).
 
     outward : as of the foot; body : yaw of the hips
     """
@@ -190,7 +195,9 @@ def legs_crossed(outward: float, balls: Array, toes: Array, other: Pose, body: f
 
 
 def _bracket(footing: Footing, foot: FootState, goal: Goal) -> tuple[Array, float]:
-    """Heel on one panel, toes on the other; a foot that lies across her turns a little back to where hips allow."""
+    """Heel on one panel, toes on the other. A foot that lies across the body turns back a little, as far as the hips
+    need.
+    """
     step, body = footing.settings.step, footing.body_yaw()
     panels, parts, columns = footing.context.panels, goal.parts, goal.columns
     toe = next((c for c in columns if parts[c] == Part.TOE), None)

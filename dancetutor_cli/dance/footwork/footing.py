@@ -1,4 +1,4 @@
-"""Both feet as a song is planned row by row, the row as rules are asked about it, holds, and palms on panels."""
+"""Both feet while a song is planned row by row: the row as rules see it, holds, and palms on panels."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from dancetutor_cli.dance.settings_feet import StepSettings
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play
 
-# A row of a play as rules are asked about it, and what comes before and after it.
+# A row of a play as rules see it, with what comes before and after it.
 
 Array = NDArray[np.float64]
 
@@ -48,13 +48,13 @@ class Row:
 
     @property
     def cut(self) -> float:
-        """How much the move is cut for lack of time, 0 to 1."""
+        """How much the move is shortened because time is short, 0 to 1."""
         step = self.context.settings.step
         return float(reduction(self.duration, step.fast, step.longest))
 
     @property
     def jump_cut(self) -> float:
-        """The same of a jump, which is quick sooner: both legs throw the body at once."""
+        """The same for a jump, which counts as quick sooner, because both legs throw the body at once."""
         jump = self.context.settings.jump
         missing = (jump.inward_slow - self.duration) / max(jump.inward_slow - jump.inward_quick, 1e-9)
         return max(self.cut, float(np.clip(missing, 0.0, 1.0)))
@@ -90,9 +90,9 @@ def pressed_by(play: Play, index: int) -> dict[int, list[int]]:
     return out
 
 
-# Both feet as a song is planned row by row: where they stand, until when they must, which way the body faces.
+# Both feet while a song is planned row by row: where they stand, until when they must stand, which way the body faces.
 #
-# Nothing here changes: a rule makes another footing of the one it is given, and the planner takes it or leaves it.
+# Nothing here changes: a rule makes a new footing from the one that it gets, and the planner uses it or does not.
 
 SHORTEST = 0.02  # seconds; the shortest swing
 FREE_WINDOW = 0.001
@@ -161,7 +161,7 @@ class FootState:
         return old, replace(self, moves=self.moves[-newest:], start=old[-1].target, start_toes=old[-1].yaw)
 
     def track(self, newest: int | None = None) -> FootTrack:
-        """What the foot has done, as far as it knows, or only its newest moves."""
+        """The moves of the foot, as far as it knows them, or only its newest ones."""
         foot = self if newest is None else self.split_moves(newest)[1]
         return FootTrack(foot.start, foot.start_toes, foot.moves)
 
@@ -170,7 +170,7 @@ class FootState:
         return any(end > time + FREE_WINDOW for _, end in self.holds)
 
     def latest(self, time: float, let_go: float) -> float:
-        """When the foot leaves at the latest for a note: a hold that ends too late is let go a little early."""
+        """When the foot leaves for a note at the latest; a hold that ends too late is released a little early."""
         late = max(time - SHORTEST, self.rested(time))
         early = max(time - let_go, self.rested(time))
         return min(early, late) if self.free > early else late
@@ -180,7 +180,7 @@ class FootState:
         return max(self.free, self.rested(time))
 
     def rested(self, time: float) -> float:
-        """When the foot has come to rest after its last landing, as far as the next one leaves it the time."""
+        """When the foot has come to rest after its last landing, as far as the next landing leaves time for it."""
         gap = time - self.landed
         stand = self.step.stand + self.step.stand_slow * max(gap - self.step.stand_quick, 0.0)
         return max(self.landed + min(stand, gap / 3), self.turned + FREE_WINDOW)
@@ -196,12 +196,11 @@ class TakeOff:
 
 @dataclass(frozen=True, slots=True)
 class Footing:
-    """Both feet and the unwrapped feet normal, degrees; what the body and the toes make of it.
+    """Both feet and the unwrapped feet normal, degrees, and how body and toes follow from them.
 
     lead : the foot that leads, as in `Plan`; aim : which way the body would face; faced : which way it faced after the
     last row, radians
-    resting : feet that stand where she went home, until each steps again
-    mined : (m, 2) panels beside which feet land that mines pass soon; take_offs : of the last gallop, left and right
+    resting : feet that stand where the dancer went home, until each steps again
     """
 
     context: Context
@@ -274,9 +273,9 @@ class Footing:
         return float(np.clip(yaw, body - limit, body + limit))
 
     def pivot_yaw(self, foot: FootState, body: float, other: Array, other_toes: float) -> float:
-        """How a standing foot is turned after it gave way to the body's yaw, as far as the other shoe leaves it room.
+        """How a standing foot is turned after it has followed the body's yaw, as far as the other shoe leaves room.
 
-        Nor does it turn over a panel with a mine, or for a few degrees.
+        It does not turn over a panel with a mine, nor for only a few degrees.
 
         other, other_toes : ball and toes of the other foot after its step
         """
@@ -307,7 +306,7 @@ class Footing:
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """What a rule would have her do: both feet as they would be then.
+    """What a rule proposes: both feet as they would be then.
 
     leaves : when a foot leaves the ground for it, seconds; turn : how the body turns for it, if the rule says so
     """
@@ -343,7 +342,7 @@ def hold(footing: Footing, limb: int, column: int, time: float, end: float) -> P
     return Proposal(footing.with_foot(replace(foot, free=max(foot.free, end), holds=tuple(holds.items()))))
 
 
-# Palms that come down on panels: how long they press, and how far the body turns for a panel that is not before it.
+# Palms that come down on panels: how long they press, and how far the body turns if the panel is not in front of it.
 
 
 def press(

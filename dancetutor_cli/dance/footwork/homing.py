@@ -1,4 +1,4 @@
-"""Waits of the feet: steps back to where one rests, also at the end, and legs shaken out."""
+"""What feet do in waits: they step back home, also at the end, and legs are shaken out."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from dancetutor_cli.dance.plan import Bulge, Move, Plan, Press, Shake, Turn, cha
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_feet import HomeSettings, StepSettings
 
-# Home: in a long wait she steps back to where one rests: on the pad's middle, feet at hip width, facing the screen.
+# Home: in a long wait the dancer steps back to the middle of the pad, feet at hip width, facing the screen.
 
 Array = NDArray[np.float64]
 Falls = list[tuple[int, Footfall]]  # the foot of each, 0 left
@@ -45,9 +45,10 @@ class HomeSteps(StepsInWaits):
     """Proposes the way home before a row that comes after a long wait."""
 
     def before(self, row: Row, presses: Sequence[Press], footing: Footing) -> Proposal | None:
-        """Both feet step home in the wait before a row, the body turns with them; or None: she stays as she stands.
+        """Both feet step home in the wait before a row, and the body turns with them; None if the dancer stays as she
+        stands.
 
-        At the bar she stays, and so she does for a walk to the other pad. presses : of palms, so far
+        She stays at the bar, and if she will walk to the other pad. presses : of palms, so far
         """
         settings, home = self.settings, self.settings.home
         if row.context.bar is not None or row.hands:
@@ -88,10 +89,10 @@ class HomeSteps(StepsInWaits):
 
 
 def _falls(begin: Stand, goal: Stand, lead: int, following: Sequence[int], settings: MotionSettings) -> Falls:
-    """The fewest steps home in which no foot turns too far or meets the other; none if she is there, or none do.
+    """The fewest steps home in which no foot turns too far or meets the other; none if she is there already or no steps
+    fit.
 
-    Of two ways it is that on which legs cross less, then that which does not end with the foot of the next note.
-    lead : the foot that is tried first; following : feet of the next note
+    Of two ways, the one on which legs cross less; then the one that does not end with the foot of the next note.
     """
     home = settings.home
     off = np.linalg.norm(begin.balls - goal.balls, axis=1).max()
@@ -135,8 +136,9 @@ def _bulge(places: list[tuple[Array, float]], side: int, fall: Footfall, step: S
 
 
 def _pace(time: float, count: int, home: HomeSettings) -> tuple[float, float]:
-    """How long she stands before so many steps, and how long each takes, seconds: where there is little `time` she
-    stands less, and where there is less than that her steps are quicker."""
+    """How long she stands before so many steps, and how long each step takes, seconds. If there is little `time` she
+    stands less; if there is still less, her steps are quicker.
+    """
     pause = float(np.clip(time - count * home.step - home.rest, home.pause_least, home.pause))
     step = float(np.clip((time - pause) / max(count, 1), home.step_least, home.step))
     return pause, step
@@ -148,7 +150,7 @@ def _nearest(places: Array, begin: Stand) -> float:
 
 
 def homeward(plan: Plan, span: tuple[float, float], context: Context) -> tuple[list[list[Move]], Turn] | None:
-    """Steps home of each foot, with a turn, for feet that stand from the first second of a span on, until its last one.
+    """Steps home of each foot, with a turn, within a span; the feet stand from its first second on.
 
     Returns the moves of the left and of the right foot, and the turn; None at the bar, where she is at home already, or
     where there is too little time: she stands `home.settle` before the end.
@@ -178,8 +180,9 @@ def homeward(plan: Plan, span: tuple[float, float], context: Context) -> tuple[l
 
 
 def faces_as_at_home(row: Row, footing: Footing) -> bool:
-    """Whether a foot steps on its own side of the one that still rests: the play, which has that one on a panel, would
-    turn her for nothing."""
+    """Whether a foot steps on its own side of the foot that still rests. The play has that foot on a panel and would
+    turn the dancer without a reason.
+    """
     if len(row.feet) != 1 or not footing.resting[1 - row.feet[0]]:
         return False
     side = row.feet[0]
@@ -188,8 +191,8 @@ def faces_as_at_home(row: Row, footing: Footing) -> bool:
     return bool(foot.outward * across >= 0.0)
 
 
-# Legs shaken out in waits: a foot hangs loosely in the air behind her for a moment, the weight on the other one. Ahead
-# of her it would look like a step.
+# Legs shaken out in waits: for a moment, a foot hangs loosely in the air behind the dancer, with the weight on the
+# other leg. In front of her it would look like a step.
 
 SEED = 20210423
 LEAST = 0.3  # seconds of a shake, and from one to the next
@@ -224,7 +227,7 @@ def leg_shakes(plan: Plan, mines: Array, context: Context) -> list[tuple[int, Sh
 
 
 def _shake(foot: int, lift: float, stand: Stand, chance: np.random.Generator, context: Context) -> Shake:
-    """One leg's, from `lift` on: never twice as long, as high or as quick."""
+    """The shake of one leg, from `lift` on: never twice as long, as high or as quick."""
     loose, step = context.settings.loose, context.settings.step
     long = max(loose.up + chance.uniform(loose.shortest, loose.longest), LEAST)
     ball, yaw = stand.balls[foot], float(stand.yaws[foot])

@@ -1,7 +1,7 @@
-"""Mines: a foot goes up in time and comes down behind them; both at once hop (docs/motion.md).
+"""Mines: a foot goes up in time and comes down after they have passed; both feet at once hop (docs/motion.md).
 
-Where the other foot steps at the same time, a foot goes up later and comes down sooner, so that one of both stands as
-long as it can.
+If the other foot steps at the same time, a foot goes up later and comes down sooner, so that one foot stands as long as
+possible.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ Array = NDArray[np.float64]
 def avoid_mines(row: Row, footing: Footing) -> Proposal:
     """Lift the feet that stand where mines of the row pass, unless they step at that row anyway.
 
-    Where a foot stands is asked of the plan, not of the play: it may reach over a neighbour panel, and who has gone
-    to the middle of the pad already may stay there.
+    The plan, not the play, knows where a foot stands: it may reach over a neighbouring panel, and a foot that has gone
+    to the middle of the pad may stay there.
     """
     mined, time = row.context.panels[row.play.rows.mines[row.index]], row.time
     if not len(mined):
@@ -111,7 +111,7 @@ def _lifted(footing: Footing, foot: FootState, time: float, column: int) -> Foot
 
 
 def _place_clear_of_mines(footing: Footing, foot: FootState, column: int) -> tuple[Array, float]:
-    """Where a foot comes down that is up over a mine on a column, -1 for none, and its yaw."""
+    """Where a foot that is up over a mine comes down, and its yaw; column : of the mine, -1 for none."""
     panels, other, mines = footing.context.panels, footing.other(foot), footing.settings.mines
     there = panels[column] if column >= 0 else None
     if there is None or (len(footing.mined) and (np.abs(footing.mined - there).max(axis=1) < HALF_PANEL).any()):
@@ -153,9 +153,9 @@ def _hurried(foot: FootState, settings: MotionSettings, lift: float, land: float
 def wait_for_other_foot(
     other: FootState, settings: MotionSettings, lift: float, time: float
 ) -> tuple[FootState, float]:
-    """When a foot leaves for its step at `time`, at `lift` or later: when the other one is down again from a mine.
+    """When a foot leaves for its step at `time`, at `lift` or later: when the other foot is down again from a mine.
 
-    And what that other foot does for it.
+    The result also has what the other foot does for it.
     """
     if other.evading is None or other.landed <= lift or not isinstance(other.moves[-1], Hover):
         return other, lift
@@ -167,10 +167,10 @@ def wait_for_other_foot(
 
 
 def resumed(foot: FootState, other: FootState, time: float, settings: MotionSettings) -> tuple[FootState, float | None]:
-    """A step soon after a mine: the foot stays up and goes straight to it, unless the other one stepped meanwhile.
+    """A step soon after a mine: the foot stays up and goes straight to it, unless the other foot has stepped meanwhile.
 
-    Even then it does so if it would be down for no time at all. So does a foot whose hop with the other one would not
-    be over by then.
+    It also does so if it would be down for no time at all, and if its hop with the other foot would not be over by
+    then.
 
     Returns the foot, evading nothing any more, and when it left the ground.
     """
@@ -188,7 +188,7 @@ def _hopping(foot: FootState) -> bool:
 
 
 def flown_on(footing: Footing, time: float) -> tuple[Footing, float]:
-    """A jump at `time` so soon after a hop over a mine that there is no time to push off: one flight is both.
+    """A jump at `time` so soon after a hop over a mine that there is no time to push off: both are one flight.
 
     Returns the footing without that hop, and when both feet take off for the jump at the latest.
     """
@@ -205,7 +205,7 @@ def flown_on(footing: Footing, time: float) -> tuple[Footing, float]:
 
 
 def landed_early(foot: FootState, settings: MotionSettings, time: float) -> tuple[FootState, float]:
-    """Before a jump at `time` a foot that hovers over a mine comes down in time to push off, or flies from there on.
+    """Before a jump at `time`, a foot that hovers over a mine comes down in time to push off, or flies from there.
 
     Returns the foot, and when both take off at the latest.
     """
@@ -222,8 +222,8 @@ def landed_early(foot: FootState, settings: MotionSettings, time: float) -> tupl
 
 
 def stayed_up(before: Footing, after: Footing, until: list[float], take_off: float) -> Footing:
-    """The footing `after` a jump in which a foot that must be up over a mine before both can take off, for the other
-    one was up itself, stays up and comes down at its note.
+    """The footing `after` a jump in which a foot stays up and comes down at its note. It must be up over a mine before
+    both feet can take off, because the other foot was up itself.
 
     until : when each foot must be up at the latest, seconds
     """

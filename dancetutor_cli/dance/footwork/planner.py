@@ -1,4 +1,4 @@
-"""From a play to a plan: rules are asked row by row, walks and shakes put in; the only place that applies proposals."""
+"""From a play to a plan: rules look at each row, walks and shakes are inserted. Only this module applies proposals."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.run.errors import DancetutorError
 
-# From a play to moves, row by row: asks the rules what they propose, and is the only one that applies it.
+# From a play to moves, row by row. The planner asks the rules for proposals, and only the planner applies them.
 
 Array = NDArray[np.float64]
 NEWEST = 8  # moves of a foot that rules may still look at or change
@@ -90,7 +90,7 @@ class Planner:
                 self._touch(row, limb, column)
 
     def _stays(self, i: int, time: float) -> float:
-        """Until when mines matter to the feet that land at row i: for a while, and as long as they hold."""
+        """Until when mines matter to the feet that land at row i: for a while, and as long as the feet hold."""
         held = self.play.rows.hold_end[i][self.play.limb[i] >= 0]
         return max([time + self.settings.mines.ahead, *(self.second(int(tick)) for tick in held if tick >= 0)])
 
@@ -136,7 +136,7 @@ class Planner:
         self.touches.append(Contact(row.time, end, limb, column, kind, part, row.index, panel))
 
     def _apply(self, proposal: Proposal) -> None:
-        """Take over what a rule proposes; moves that are so old that no rule asks for them are put aside."""
+        """Apply a proposal of a rule. Moves that are so old that no rule asks for them are put aside."""
         for done, foot in zip(self.moves, proposal.footing.feet, strict=True):
             if len(foot.moves) > 2 * NEWEST:
                 old, foot = foot.split_moves(NEWEST)
@@ -147,7 +147,9 @@ class Planner:
             self.turns.append(proposal.turn)
 
     def _ended(self, moves: tuple[tuple[Move, ...], tuple[Move, ...]]) -> tuple[Contact, ...]:
-        """All touches, in order, each until it must end; a foot that is not needed any more stays a while."""
+        """All touches, in order, each with the time at which it must end; a foot that is not needed any more stays a
+        while.
+        """
         self.touches.sort(key=lambda c: (c.start, c.limb, c.column))
         lifts = [[m.lift for m in of_foot if isinstance(m, Swing)][-1:] for of_foot in moves]
         stays = self.settings.step.longest
@@ -159,11 +161,11 @@ class Planner:
         return tuple(ended(touch) for touch in self.touches)
 
 
-# Walks put into a plan: what follows one starts from where she has walked to, around where the other foot is now.
+# Walks in a plan: what follows a walk starts from where the dancer has walked to, around where the other foot is now.
 
 
 def with_walks(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
-    """The plan with walks wherever there is time for one. mines : (m,) seconds at which mines pass; gait : its name"""
+    """The plan with walks where there is time for one. mines : (m,) seconds at which mines pass; gait : its name"""
     for wait in waits(plan, mines, context.settings.walk.wait):
         plan = inserted(plan, walk_over(plan, wait, gait, context), context)
     plan = inserted(plan, walk_on(plan, mines, gait, context), context)
@@ -185,7 +187,8 @@ def with_shakes(plan: Plan, shakes: list[tuple[int, Shake]]) -> Plan:
 def inserted(plan: Plan, walk: WalkProposal | None, context: Context) -> Plan:
     """The plan with a walk in it, if one was proposed.
 
-    Until both feet have stepped after it, one of them is not where the play has it, so she faces as she arrived.
+    Until both feet have stepped after it, one foot is not where the play has it, so the dancer keeps the direction in
+    which she arrived.
     """
     if walk is None:
         return plan
@@ -214,13 +217,13 @@ def inserted(plan: Plan, walk: WalkProposal | None, context: Context) -> Plan:
 
 
 def _begun(track: FootTrack, begin: Stand, side: int, level: float) -> FootTrack:
-    """A foot's track that begins elsewhere."""
+    """A foot's track with another beginning."""
     x, z = begin.balls[side]
     return replace(track, start=(float(x), float(z)), start_yaw=float(begin.yaws[side]), start_level=level)
 
 
 def _from_there(moves: tuple[Move, ...], goal: Stand, side: int, context: Context) -> tuple[Move, ...]:
-    """What a foot does after a walk, planned as if it came from elsewhere: its pivots and its first step are new."""
+    """What a foot does after a walk, planned from its new place: its pivots and its first step are new."""
     step = context.settings.step
     most = np.radians(step.foot_turn + step.toe_out)
     here = (float(goal.balls[side][0]), float(goal.balls[side][1]))
@@ -240,8 +243,9 @@ def _from_there(moves: tuple[Move, ...], goal: Stand, side: int, context: Contex
 
 
 def _gone_around(feet: tuple[FootTrack, FootTrack], walked: float, context: Context) -> tuple[FootTrack, FootTrack]:
-    """Both feet after a walk, from which they come from elsewhere: their steps go around where the other foot is now,
-    until both have stepped."""
+    """Both feet after a walk, which ends at another place: until both have stepped, their steps go around where the
+    other foot is now.
+    """
     firsts = [next_step(track, walked) for track in feet]
     until = max((s.land for s in firsts if s is not None), default=walked)
     out = []
@@ -264,9 +268,8 @@ def _bulge(feet: tuple[FootTrack, FootTrack], side: int, step: Swing, context: C
 
 # From a play to a plan: when each foot leaves and lands, where, and how it is turned. One rule to a module.
 #
-# A rule is asked about a row (or a wait) and the footing as it is, changes neither, and returns what it proposes:
-# another footing (`footing.Proposal`) or a walk (`walks.WalkProposal`). Only `planner` and `insertion` apply a
-# proposal.
+# A rule gets a row (or a wait) and the footing, changes neither, and returns its proposal: another footing
+# (`footing.Proposal`) or a walk (`walks.WalkProposal`). Only `planner` applies proposals.
 
 
 def plan_footwork(play: Play, second: Callable[[int], float], gait: str, context: Context) -> Plan:

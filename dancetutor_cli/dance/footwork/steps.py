@@ -1,4 +1,4 @@
-"""Steps, brackets and jumps: feet go to their notes, when they leave, how high they go and where they land."""
+"""Steps, brackets and jumps: when feet leave for their notes, how high they go and where they land."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NEIGHBOURS = 1.6 * PANEL  # metres between panels that one foot can press togeth
 def under_the_foot(row: Row, foot: FootState) -> list[int]:
     """The columns that a foot stands over after a row: those that it presses, and one that its other end holds.
 
-    A heel or toe that taps alone does so beside a panel that the rest of the foot holds: a bracket.
+    A heel or toe that taps alone, beside a panel that the rest of the foot holds, is a bracket.
     """
     columns, panels = row.pressed[foot.side], row.context.panels
     if len(columns) != 1 or row.play.part[row.index, columns[0]] == Part.WHOLE:
@@ -84,7 +84,7 @@ def _goals(row: Row, footing: Footing, columns: list[list[int]]) -> Goals:
     share = footing.settings.jump.yaw_to_normal
     yaws = [footing.limited(f.yaw + share * (body - f.yaw), body) for f in footing.feet]
     goals: dict[int, tuple[Array, float]] = {}
-    # brackets have no choice: they are first
+    # a bracket has no choice of its place, so it is first
     for foot in sorted(footing.feet, key=lambda f: (-len(columns[f.side]), f.side != footing.lead)):
         side = 1 - foot.side
         ball, yaw = goals.get(side, (panels[columns[side]].mean(axis=0), yaws[side]))
@@ -94,11 +94,11 @@ def _goals(row: Row, footing: Footing, columns: list[list[int]]) -> Goals:
     return [goals[0], goals[1]]
 
 
-# Steps: one foot goes to its note, when it leaves, how high it goes and where it lands (thesis 5.5, 5.6).
+# Steps: when one foot leaves for its note, how high it goes and where it lands (thesis 5.5, 5.6).
 
 
 def step(row: Row, side: int, footing: Footing) -> Proposal:
-    """One foot steps at a row: from the ground, out of the air over a mine, or as a part of a gallop."""
+    """One foot steps at a row: from the ground, from the air over a mine, or as a part of a gallop."""
     numbers, time = footing.settings.step, row.time
     footing = galloping(row, side, footing)
     resuming, up = resumed(footing.feet[side], footing.feet[1 - side], time, footing.settings)
@@ -143,9 +143,10 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
 
 
 def _make_room(row: Row, side: int, footing: Footing) -> Footing:
-    """The footing in which the other foot turns with the body, if this one comes to stay beside it on its panel.
+    """The footing in which the other foot turns with the body, if this foot comes to stand beside it on its panel.
 
-    One that lies across the panel would leave room for half a shoe, and the rest would hang over the pad's edge.
+    A foot that lies across the panel would leave room for half a shoe, and the rest would hang over the edge of the
+    pad.
     """
     foot, other = footing.feet[side], footing.feet[1 - side]
     panel = row.context.panels[row.pressed[side]].mean(axis=0)
@@ -156,7 +157,7 @@ def _make_room(row: Row, side: int, footing: Footing) -> Footing:
 
 
 def _taps_again(row: Row, foot: FootState, columns: list[int]) -> bool:
-    """Whether a foot has come down on the row's panel so shortly before that there is no time to shift it."""
+    """Whether a foot came down on the row's panel so shortly before that there is no time to move it."""
     on = (np.abs(foot.ball - row.context.panels[columns]) <= HALF_PANEL).all(axis=1).any()
     return bool(on) and row.time - foot.landed < row.context.settings.step.again
 
@@ -168,8 +169,9 @@ def _gallop(row: Row, side: int, footing: Footing) -> TakeOff | None:
 
 
 def _lift(row: Row, footing: Footing, far: float) -> float:
-    """When a foot would leave for its note, so far away, metres: it has a least time, and both feet stand for a part of
-    what there is, of a fast step the less the farther it is."""
+    """When a foot would leave for its note, so many metres away. It has a least time, and both feet stand for a part of
+    the available time; of a fast step this part is smaller the farther it is.
+    """
     numbers = footing.settings.step
     least = numbers.double_support_near * max(1.0 - far / numbers.double_support_far, 0.0)
     fast = numbers.double_support_fast + row.haste * (least - numbers.double_support_fast)

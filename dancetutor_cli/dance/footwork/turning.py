@@ -1,4 +1,4 @@
-"""How the body turns with the feet: by how much at a row, from when on, and which foot decides where both could."""
+"""How the body turns with the feet: by how much at a row, from when on, and which foot decides if both could."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ASIDE = 15.0  # degrees from the feet normal; from here on the feet's actual pla
 
 
 def shorter(normal: float, facing: float) -> float:
-    """By how many degrees, positive left, from one to the other the shorter way; half a turn is negative."""
+    """Degrees from one to the other by the shorter way, positive left; half a turn is negative."""
     return float((facing - normal + 180.0) % 360.0 - 180.0)
 
 
@@ -34,9 +34,9 @@ def is_half(turn: float) -> bool:
 
 
 def rounds(normal: float, turn: float, rounded: float) -> float:
-    """How far all the way round, a multiple of 360 degrees, she has gone after a turn from a feet normal.
+    """How far all the way round, a multiple of 360 degrees, the dancer has gone after a turn from a feet normal.
 
-    rounded : before the turn. Her back to the screen she is in the round that she came from.
+    rounded : before the turn. With her back to the screen, she is in the round that she came from
     """
     after = normal + turn
     if is_half(shorter(0.0, after)):
@@ -45,7 +45,7 @@ def rounds(normal: float, turn: float, rounded: float) -> float:
 
 
 def passing(turn: float, normal: float, foot: int, seconds: float, step: StepSettings) -> float:
-    """The way round, degrees, on which one foot passes the other one on the side that the form likes, if it can.
+    """The turn, degrees, in which one foot passes the other one on the side that the form prefers, if it can.
 
     turn : the way it goes without a form; normal : of the feet before; foot : that steps, 0 left; seconds : it has
     """
@@ -53,13 +53,13 @@ def passing(turn: float, normal: float, foot: int, seconds: float, step: StepSet
     enough = max(180.0 + HALF_TURN, step.turn_rate * seconds)
     if step.crossing == 0.0 or abs(turn) < step.crossing_from or abs(other) > enough:
         return turn
-    # Half-way the line from the standing foot to this one points to the screen, or away from it.
+    # Half-way, the line from the standing foot to this one points to the screen, or away from it.
     ahead = float(np.sin(np.radians(normal + turn / 2))) * (2 * foot - 1)
     return turn if ahead * (1.5 - step.crossing) >= -NO_WAY else other
 
 
 def body_yaw(normal: float, settings: MotionSettings) -> float:
-    """Which way the body faces for a feet normal, degrees both: crossed feet turn it less."""
+    """Which way the body faces for a feet normal, both in degrees: crossed feet turn it less."""
     whole = 360.0 * round(normal / 360.0)
     rest = abs(normal - whole)
     step = settings.step
@@ -75,9 +75,10 @@ def body_yaw(normal: float, settings: MotionSettings) -> float:
 class Facing:
     """Which way the body faces at each row: with the feet, but no faster than people turn who know what is coming.
 
-    Where feet turn faster than the body likes to, it begins earlier and ends later, and of a turn that is undone at
-    once it makes less; meanwhile the legs cross, at most as far as legs like to. Of all ways that slow, the one that is
-    least far from the feet at worst is half-way between the lowest over them and the highest under them.
+    If the feet turn faster than the body should, it begins earlier and ends later, and of a turn that is undone at once
+    it makes only a part. Meanwhile the legs cross, at most as far as legs do. Of all paths that are slow enough, the
+    one whose largest distance from the feet is smallest lies half-way between the lowest path over them and the highest
+    path under them.
     """
 
     def __init__(self, play: Play, settings: MotionSettings) -> None:
@@ -109,7 +110,8 @@ class Facing:
         return float(min(max((low + high) / 2, normal - step.turn_crossed), normal + step.turn_crossed))
 
     def turn(self, row: Row, footing: Footing) -> float:
-        """By how many degrees the feet normal turns at a row, positive left: a form's way, the play's or the shorter.
+        """Degrees by which the feet normal turns at a row, positive left: the form's way, the play's or the shorter
+        one.
 
         Rows are asked for in order, each before its aim.
         """
@@ -126,9 +128,9 @@ class Facing:
         return turn
 
     def _half(self, j: int, normal: float, rounded: float, side: float) -> float:
-        """The way of half a turn at row `j`: not on round the back, for in the play that were a spin.
+        """The way of half a turn at row `j`: not on around the back, because in the play that would be a spin.
 
-        side : 1 left, -1 right, where she turns her back to the screen straight from it and not aside from there
+        side : 1 left, -1 right if the dancer turns her back to the screen straight from there; not if she stood aside
         """
         facing = self.play.facing[self.rows[self.rows >= j]]
         if not is_half(float(facing[0])):
@@ -137,7 +139,7 @@ class Facing:
         return 180.0 * float(np.sign(aside[0]) if len(aside) and abs(aside[0]) > ASIDE else side)
 
     def _as_formed(self, j: int, turn: float, normal: float) -> float:
-        """The turn at row `j` of the play as the form has it, where one foot steps."""
+        """The turn at row `j` of the play as the form has it, if one foot steps."""
         k, alone = bisect_left(self._steps, j), self._alone[j]
         if alone < 0 or k == 0:
             return turn
@@ -149,11 +151,11 @@ class Facing:
         return 2.0 * (self._alone[j] if self._alone[j] >= 0 else lead) - 1.0
 
     def begin_anew(self) -> None:
-        """What was before a stand is of no account: she has turned to the screen."""
+        """Forget what was before a stand: the dancer has turned to the screen."""
         self.past = []
 
     def _coming(self, row: Row, normal: float, lead: int) -> Iterator[tuple[float, float]]:
-        """The rows to come, as far as they matter."""
+        """The coming rows, as far as they matter."""
         latest, rounded = row.time + ALL_ROUND / self.settings.step.turn_rate, self.rounded
         for k in range(bisect_right(self._steps, row.index), len(self._steps)):
             j = self._steps[k]
@@ -168,8 +170,8 @@ class Facing:
 
 
 def turn_start(move: tuple[float, float], leaves: float, far: float, step: StepSettings) -> float:
-    """When the body begins to turn `far` degrees for a move: as that begins, but not so long before the foot leaves the
-    ground that body and foot would ever be turned much farther from each other than they are anyway.
+    """When the body begins to turn `far` degrees for a move: when the move begins, but not so long before the foot
+    leaves the ground that body and foot would be turned much farther from each other than they are anyway.
 
     move : when it lands, and how long it lasts; leaves : when a foot does, seconds
     """
@@ -182,10 +184,9 @@ def turn_start(move: tuple[float, float], leaves: float, far: float, step: StepS
 
 
 def leading_foot(play: Play, panels: Array) -> int:
-    """The foot that steps first alone, 0 left or 1 right; else the first lopsided jump decides.
+    """The foot that steps first alone, 0 left or 1 right; if there is none, the first asymmetric jump decides.
 
-    It leads: wherever both sides are equal, what it asks for is done, so a mirrored play is danced mirrored.
-    panels : (c, 2) on the ground. A play that is its own mirror image is led by the left foot.
+    This foot leads: if both sides are equal, it decides, so a mirrored play is danced mirrored.
     """
     feet = [(play.limb == side).any(axis=1) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
     alone = np.flatnonzero(feet[0] != feet[1])

@@ -29,18 +29,18 @@ from dancetutor_cli.dance.settings_feet import AsideSettings, StepSettings
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind
 
-# Walking: when, and from where to where she walks onto the pad before the song, off it afterwards, between pads.
+# Walking: when and from where to where the dancer walks onto the pad, off it, and between pads.
 #
-# What is proposed here are footsteps; `insertion` puts them into a plan. They are swings like all others, so feet stand
-# as exactly, the body's path keeps its balance over them, and what the gait adds to pelvis, chest and hands
-# (`dance.gait`) comes on top.
+# This part proposes footsteps; `planner` puts them into a plan. They are swings like all others, so feet stand as
+# exactly, and the body's path keeps its balance over them. What the gait adds to pelvis, chest and hands (`dance.gait`)
+# comes on top.
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class WalkProposal:
-    """A walk that a rule would put into a plan.
+    """A walk that a rule proposes.
 
     goal : how she stands after it; begin : where she stands before it, if the plan begins with it
     """
@@ -51,7 +51,7 @@ class WalkProposal:
 
 
 def walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> WalkProposal | None:
-    """She comes from one side as the song begins, if there is time before the first note."""
+    """The dancer comes from one side as the song begins, if there is time before the first note."""
     ground, settings, walk = context.ground, context.settings, context.settings.walk
     busy = min(plan.first, *(s.lift + walk.settle for t in plan.feet for s in t.moves[:1]))
     if busy < walk.least or (mines < busy).any():
@@ -67,7 +67,7 @@ def walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropos
 
 
 def walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> WalkProposal | None:
-    """After the last note she goes on to the other side, or back if her feet would be in each other's way.
+    """After the last note the dancer goes on to the other side, or back if her feet would be in each other's way.
 
     Beside another dancer she goes to her own side, or stays.
     """
@@ -95,10 +95,10 @@ def walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropo
 
 
 def side_of(plan: Plan, context: Context) -> int:
-    """The side from which she comes, 0 left or 1 right: by chance, but always the same one for the same notes.
+    """The side from which the dancer comes, 0 left or 1 right: by chance, but always the same one for the same notes.
 
-    For the mirror image of a play it is the other one. On two pads it is the side of the foot that leads; beside
-    another dancer her own (`Context.sides`).
+    For the mirror image of a play it is the other side. On two pads it is the side of the foot that leads; beside
+    another dancer it is her own (`Context.sides`).
     """
     if context.sides is not None:
         return context.sides[0]
@@ -114,7 +114,7 @@ def _place_off_pad(ground: Ground, side: int, far: float) -> float:
 
 
 def walk_over(plan: Plan, wait: tuple[float, float], gait: str, context: Context) -> WalkProposal | None:
-    """Where a long wait ends with steps of both feet on the other pad she walks there, rather than stretch.
+    """If a long wait ends with steps of both feet on the other pad, the dancer walks there instead of stretching.
 
     wait : one of `waits`, seconds
     """
@@ -151,10 +151,10 @@ def next_step(track: FootTrack, time: float) -> Swing | None:
 
 
 def first_place(play: Play, context: Context, lead: int) -> float:
-    """Where along x she waits for the first note: of the places for that the nearest to both feet's first panels.
+    """Where along x the dancer waits for the first note: the place nearest to the first panels of both feet.
 
-    The pad's middle on a single pad, and where only one foot ever steps. Steps are planned from there: those planned
-    from elsewhere would come down on the foot that waits. lead : as in `Plan`
+    On a single pad, and if only one foot ever steps, it is the pad's middle. Steps are planned from there: steps
+    planned from another place would come down on the foot that waits. lead : as in `Plan`
     """
     places = places_along(context.squares, lead)
     own = [np.flatnonzero((play.limb == side).any(axis=1)) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
@@ -170,7 +170,8 @@ def _nearest(places: Array, targets: Array) -> float:
 
 
 def places_along(squares: Array, lead: int) -> Array:
-    """Places (k,) along x where she may wait: the middle of each square of panels (s, 2), and between two of them.
+    """Places (k,) along x where the dancer may wait: the middle of each square of panels (s, 2), and between two of
+    them.
 
     lead : as in `Plan`; that foot's side is last, and so second choice
     """
@@ -180,7 +181,7 @@ def places_along(squares: Array, lead: int) -> Array:
 
 
 def waits(plan: Plan, mines: Array, least: float) -> list[tuple[float, float]]:
-    """Stretches from when both feet are free to when one lifts, at least so long, without mines and hands."""
+    """Stretches of a minimum length, from when both feet are free to when one lifts, without mines and hands."""
     lifts = sorted((s.lift, s.land) for t in plan.feet for s in t.moves if isinstance(s, Swing))
     held = [(c.start, c.end) for c in plan.contacts if c.kind == StepKind.HOLD]
     busy = [(p.start - p.lead, p.end + 1.0) for p in plan.presses]
@@ -195,10 +196,10 @@ def waits(plan: Plan, mines: Array, least: float) -> list[tuple[float, float]]:
     return out
 
 
-# Side-steps: in a short wait before notes of the other pad she goes there step by step, the near foot first.
+# Side-steps: in a short wait before notes of the other pad, the dancer goes there step by step, the near foot first.
 #
-# A walk between the pads takes about three seconds. In a shorter wait dancers step aside, close, and step aside again;
-# so the notes are reached by a normal step and not by a leap. Nor do they wait with one foot on each pad.
+# A walk between the pads takes about three seconds. In a shorter wait dancers step aside, close, and step aside again,
+# so a normal step reaches the notes and not a leap. They do not wait with one foot on each pad, either.
 
 SPREAD_STEP = 0.04  # metres between the candidate places for stepping aside
 
@@ -213,7 +214,7 @@ class _Next:
 
 
 class StepsInWaits:
-    """What is asked of a play by who steps where no note is: places to stand, mines, rows of each foot."""
+    """What side-steps need to know about a play: places to stand, mines, rows of each foot."""
 
     def __init__(self, play: Play, context: Context, lead: int) -> None:
         self.play, self.panels, self.settings = play, context.panels, context.settings
@@ -223,10 +224,10 @@ class StepsInWaits:
 
 
 class SideSteps(StepsInWaits):
-    """Proposes side-steps before a row whose notes are far from where she stands."""
+    """Proposes side-steps before a row whose notes are far from where the dancer stands."""
 
     def before(self, row: Row, presses: Sequence[Press], footing: Footing) -> Proposal | None:
-        """Step aside before a row if that helps and there is time, and the body's turn meanwhile; or None.
+        """Step aside before a row if that helps and there is time, and turn the body meanwhile; None if not.
 
         presses : of palms, so far
         """
@@ -269,8 +270,9 @@ class SideSteps(StepsInWaits):
         return _Next(times, places, tuple(row.feet))
 
     def _far(self, balls: Array, following: _Next) -> float:
-        """How far she would stretch: between the feet now, and for the next row, in a step from the other foot, in a
-        jump from either foot's place."""
+        """How far the dancer would stretch: between the feet now, and for the next row (in a step from the other foot,
+        in a jump from the place of either foot).
+        """
         if len(following.first) == 2:
             far = np.linalg.norm(following.places - balls, axis=1).max()
         else:
@@ -294,7 +296,7 @@ class SideSteps(StepsInWaits):
         return best
 
     def _falls(self, begin: Stand, goal: Stand, time: float) -> tuple[list[tuple[int, Footfall]], float] | None:
-        """Footfalls no farther than is comfortable, if there is time; otherwise the smallest that there is time for."""
+        """Footfalls that are comfortable, if there is time; otherwise the smallest number for which there is time."""
         aside = self.settings.aside
         few = len(footfalls(begin, goal, aside.comfortable, aside)) or aside.most
         for spread in np.arange(aside.narrow, aside.wide + 1e-6, SPREAD_STEP):
@@ -320,7 +322,7 @@ def stand_of(footing: Footing) -> Stand:
 
 
 def walks_there(begin: Stand, targets: Array, wait: tuple[float, float], footing: Footing) -> bool:
-    """Whether there is time to walk, and reason to; wait : from when feet are free to the row, seconds."""
+    """Whether there is time and a reason to walk; wait : from when feet are free to the row, seconds."""
     if np.isnan(targets).any():
         return False
     step = footing.settings.step
