@@ -186,6 +186,8 @@ def grip_phrases(plan: Plan, times: Array, yaw: Array, settings: BarSettings) ->
     A song is divided into phrases of some seconds. In each, she holds on with both hands, as mostly in quick ones, or
     with one: when she is turned, with the hand on the rail's side, otherwise with either. Chance decides, always in the
     same way for a song.
+
+    yaw : (n,) radians that the chest is turned
     """
     chance = chance_of(SEED, *plan.song)
     holds, apart = np.ones((len(times), 2), dtype=bool), np.full(len(times), settings.apart)

@@ -232,6 +232,8 @@ def around_crossings(
     others cross over.
 
     The far hand is away before and after. The near hand holds on behind the far one or leaves the rail, by chance.
+
+    places : both without crossings
     """
     numbers, reach = context.settings.across, context.settings.bar.reach_time
     holds, apart = places[0].copy(), places[1].copy()
@@ -296,7 +298,7 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
 
 
 def _busy(plan: Plan, times: Array, settings: MotionSettings) -> Flags:
-    """Whether a hand is at a panel, or on its way to or from it, or the dancer walks; then both hands are off the bar."""
+    """Whether a hand is at a panel, or on its way to or from it, or the dancer walks; then both are off the bar."""
     out = np.zeros(len(times), dtype=bool)
     down, reach = settings.hands.reach_down, settings.bar.reach_time
     for press in plan.presses:

@@ -60,7 +60,7 @@ def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
         rotations[:, skeleton.index(f"{side}_eyeball_joint")] = quat.multiply(quat.conjugate(chin), eyes)
 
 
-# Glances: where steps are slow and while she waits she looks about, never at the same times or to the same places.
+# Glances: where steps are slow, and in waits, the dancer looks about, never at the same times or to the same places.
 
 GLANCE_SEED = 19980926
 # parts of yaw, pitch and tilt of each kind: aside, up, with the head leant
@@ -83,8 +83,8 @@ class Glances:
 def glances_at(plan: Plan, body: Trajectory, times: Array, context: Context) -> Glances:
     """Glances at `times` (f,), seconds. Mirror images of a plan have mirror images of them.
 
-    Chance says when and whereto; it is one only where no note is nearer to another than `numbers.slow`, and the less of
-    one the nearer they are.
+    Chance decides when and where to. There is a glance only where no note is nearer to another than `numbers.slow`, and
+    it is smaller the nearer they are.
     """
     numbers = context.settings.glance
     out = Glances(*(np.zeros(len(times)) for _ in range(4)))
@@ -120,7 +120,7 @@ def _notes(plan: Plan) -> Array:
 
 
 def _calm(notes: Array, start: float, end: float, numbers: GlanceSettings) -> float:
-    """How much of a glance there is time for, 0 to 1: by the least time between two notes about it."""
+    """How much of a glance there is time for, 0 to 1, by the least time between two notes near it."""
     first, last = np.searchsorted(notes, (start - numbers.around, end + numbers.around))
     about = notes[max(first - 1, 0) : last + 1]
     least = min((b - a for a, b in pairwise(about.tolist())), default=np.inf)
@@ -128,7 +128,7 @@ def _calm(notes: Array, start: float, end: float, numbers: GlanceSettings) -> fl
 
 
 def _room(body: Trajectory, times: Array, context: Context) -> Array:
-    """How free (f,) head and eyes are, 0 to 1: not where they must turn far for the screen."""
+    """How free (f,) head and eyes are, 0 to 1: not if they must turn far to see the screen."""
     numbers = context.settings.glance
     head, chest = (sample_path(yaw, body.times, times) for yaw in (body.head_yaw, body.chest_yaw))
     screen = screen_yaw(sample_path(body.ground, body.times, times), context.settings)
@@ -144,15 +144,15 @@ def _there(times: Array, start: float, end: float, turn: float) -> Array:
 
 # Small movements on top of all others, multiplied in each joint's own space: breath, wrists, glances.
 #
-# Additive layers as in the blog of the project's sources: the main rotation first, then the layer. They touch no joint
-# between the root and a foot, so no contact moves; while a palm is on the floor they are off.
+# Additive layers as in the blog of the project's sources: the main rotation first, then the layer. They change no joint
+# between the root and a foot, so no contact moves. They are off while a palm is on the floor.
 
 ACROSS, FRONT = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True)
 class Activity:
-    """What she does at f times, as far as layers go by it.
+    """What the dancer does at f times, as far as the layers need it.
 
     stepping : (f,) -1 to 1, the left foot (positive) or the right one is in the air
     free : (f,) 0 where a palm is on the floor or the bar, else 1; lead : as in `Plan`
@@ -255,8 +255,7 @@ def hand_use(plan: Plan, body: Trajectory, at: Array, waiting: WaitMotion, conte
 def curls(times: Array, use: HandUse, numbers: FingerSettings) -> Array:
     """How far (f, 2, 2) the fingers of each hand are bent at the knuckles and at their middle joints, radians.
 
-    Each hand opens and closes a little by itself, slowly; what the left one does if the left foot leads, the right one
-    does if the right foot leads.
+    Each hand opens and closes a little by itself, slowly. If the right foot leads, left and right hand are exchanged.
     """
     rest, fist = (np.array([numbers.rest, numbers.rest_middle]), np.array([numbers.fist, numbers.fist_middle]))
     bar, flat = (np.array([numbers.bar, numbers.bar_middle]), -np.array([numbers.flat, numbers.flat_middle]))

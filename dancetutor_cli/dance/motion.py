@@ -50,7 +50,7 @@ class Bar:
 class Grip:
     """A hand that rests on the bar from `start` to `end` seconds, its palm over `x`; side 0 left, 1 right.
 
-    across : it has come there before her, for she is turned with its side away from the bar
+    across : it has come there in front of her, because she is turned with its side away from the bar
     """
 
     start: float
@@ -88,9 +88,9 @@ class Motion:
     root : float64 (f, 3), position of joint 0 in the world, metres
     fps : nominal frames per second; contacts : sorted by start
     bar : what she holds on to, None for no bar; grips : when and where she does, sorted by start
-    notes : what there is to say of the bake, for people: where limits of the body had to give way
-    ground : pad and floor, None where she stays on the pad and the ground has the height 0 everywhere
-    let_go : notes that she does not play, sorted by second
+    notes : remarks on the bake, for people: where limits of the body had to give way
+    ground : pad and floor, None if the dancer stays on the pad and the ground has the height 0 everywhere
+    let_go : notes that the dancer does not play, sorted by second
     """
 
     skeleton: Skeleton
@@ -120,7 +120,7 @@ class Cut:
 
 
 def shifted(motion: Motion, x: float, z: float) -> Motion:
-    """A motion and all that stands where it is, moved along the ground, metres."""
+    """A motion, and everything with a place in it, moved along the ground, metres."""
     if x == z == 0.0:
         return motion
     bar, ground = motion.bar, motion.ground
@@ -135,7 +135,9 @@ def shifted(motion: Motion, x: float, z: float) -> Motion:
 
 
 def padded_from(motion: Motion, second: float) -> Motion:
-    """A motion that begins at a second of the music, if it begins later: until then she stands as she will begin."""
+    """A motion that begins at this second of the music, if it begins later: until then the dancer stands in its first
+    pose.
+    """
     if second >= motion.times[0]:
         return motion
     return replace(

@@ -1,4 +1,4 @@
-"""Least squares with unknowns that are not negative: what pushes, which cannot pull, can do of a wanted wrench."""
+"""Least squares with unknowns that are not negative: how much of a wanted wrench pushes can supply."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The performance of a chart: who dances it, and how; every section, film, page and file is cut out of the same one."""
+"""The performance of a chart: who dances it, and how. Every section, film, page and file is a part of the same one."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Performer:
-    """One of those who dance: whose part she plays, and what she does on her own pad.
+    """One of the dancers: the part that she plays, and her motion on her own pad.
 
     play, plan : at seconds of the music as it is heard, without notes that nobody plays
     place : where the middle of her pad is from that of all, (x, z) in metres
@@ -118,7 +118,7 @@ def _one(each: Each, piece: Piece) -> Motion:
 
 
 def solve(request: DanceRequest, chart: ChartChoice | None = None) -> tuple[Solved, ...]:
-    """The feet of each who dances. Raises a DancetutorError of one line for all that is wrong with the request.
+    """The feet of each dancer. Raises a DancetutorError of one line for everything that is wrong with the request.
 
     chart : of the request, where it has been read
     """
@@ -140,7 +140,7 @@ def solve(request: DanceRequest, chart: ChartChoice | None = None) -> tuple[Solv
 
 
 def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) -> Performance:
-    """How all who dance do so at one of the request's rates. DancetutorError if a chart has no steps."""
+    """How all dancers dance at one of the request's rates. DancetutorError if a chart has no steps."""
     timing = solved[0].chart.timing.at_rate(rate)
     parts = [one.chart for one in solved]
     pad = pad_of(solved)
@@ -171,14 +171,14 @@ def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) 
 
 
 def pad_of(solved: Sequence[Solved]) -> Pad:
-    """The pad under all who dance."""
+    """The pad under all dancers."""
     pad = solved[0].pad if len(solved) == 1 else pad_of_both(solved[0].chart.written_type)
     assert pad is not None
     return pad
 
 
 def play_of_all(solved: Sequence[Solved], plays: Sequence[Play]) -> Play:
-    """What all step as one play, on the pad under all. plays : of each"""
+    """The steps of all dancers as one play, on the pad under all. plays : of each"""
     if len(solved) == 1:
         return plays[0]
     return merge_plays(solved[0].song.charts[solved[0].chart.index], plays, pad_of(solved))
@@ -197,7 +197,7 @@ def as_heard(play: Play, timing: Timing) -> Play:
 
 
 def pooled(jobs: int = 1) -> Each:
-    """Does pieces of work in up to so many processes, but those that are kept; results come in the pieces' order."""
+    """Does pieces of work in up to so many processes, except kept pieces; results come in the order of the pieces."""
     return with_store(in_turn if jobs <= 1 else partial(_pooled, jobs))
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.physics.pipeline import Wishes
 
 
-# The keys of a bake: which times get one, so that what a viewer draws between them holds every contact too.
+# The keys of a bake: which times get one, so that every contact is right in what a viewer draws between them, too.
 
 Array = NDArray[np.float64]
 Keys = tuple[Array, Array, Array]  # times (f,), local rotations (f, j, 4), root (f, 3)
@@ -37,8 +37,8 @@ KEY_TOLERANCE = 0.0003  # metres that a standing sole may be off between keys
 def key_times(plan: Plan, fps: float, start: float, end: float) -> Array:
     """Regular times at `fps`, counted from second 0 of the music, plus the moments at which feet lift and land.
 
-    And the middles of swings so short that a foot might seem to have stood all the time. A stretch too short for two of
-    them has its own start and end.
+    It also has the middles of swings that are so short that a foot might seem to have stood all the time. A stretch too
+    short for two keys has its own start and end.
     """
     regular = np.arange(np.ceil(start * fps - 1e-9), np.floor(end * fps + 1e-9) + 1) / fps
     extra = [t for foot in plan.feet for m in foot.moves for t in (m.lift, m.land)]
@@ -117,11 +117,12 @@ def refined(skeleton: Skeleton, keys: Keys, between: Keys, grips: tuple[Grip, ..
     return merged[0], merged[1], merged[2]
 
 
-# The dance of a chart in pieces: always the same ones, whichever part of it is wanted, so every cut shows one dance.
+# The dance of a chart in pieces: always the same ones, whichever part of it is wanted, so every cut shows the same
+# dance.
 #
-# A piece knows nothing of other pieces. It is planned and baked beyond both ends by as much as its dancer remembers,
-# and where two meet the earlier one turns into the later one. Memory and time per second stay as they are in a short
-# song.
+# A piece knows nothing of other pieces. It is planned and baked beyond both ends, as far as the past affects the
+# dancer. Where two pieces meet, the earlier one turns into the later one. Memory and time per second stay as they are
+# in a short song.
 
 Span = tuple[float, float]  # first and last second
 LENGTH = 90.0  # seconds of a piece, about
@@ -163,7 +164,7 @@ class Piece:
 
 @dataclass(frozen=True, slots=True)
 class BakedPiece:
-    """What a piece of work gives, also of its overlap; distances : of the ragdoll from what it followed, if any."""
+    """The result of a piece of work, with its overlap; distances : of the ragdoll from what it followed, if any."""
 
     motion: Motion
     distances: Distances | None = None
@@ -208,7 +209,7 @@ def piece_of(
 
 
 def piece_ends(plan: Plan, start: float, end: float) -> list[float]:
-    """Where pieces begin and end, from `start` to `end`: in the middle of the longest stand around every so often."""
+    """Where pieces begin and end, from `start` to `end`: in the middle of the longest stand near each regular time."""
     if end - start <= LONGEST:
         return [start, end]
     moving = sorted((m.lift, m.land) for track in plan.feet for m in track.moves)
@@ -231,7 +232,7 @@ def _longest_stand(lands: Array, lifts: Array, around: float) -> float:
 
 
 def trimmed(plan: Plan, start: float, end: float) -> Plan:
-    """The plan with only what matters between two seconds: there it says the same."""
+    """The plan with only what matters between two seconds, where it is the same as the whole plan."""
     turns = plan.turns
     first = max(int(np.searchsorted([t.start for t in turns], start)) - 2, 0)
     return replace(
@@ -303,7 +304,7 @@ def joined(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, en
 
 
 def _between(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, end: float) -> Motion:
-    """The first piece's motion with all that lies between two seconds but the keys."""
+    """The first piece's motion with everything between two seconds except the keys."""
     gone = tuple(one for one in pieces[0].plan.let_go if start <= one.second <= end)
     notes = dict.fromkeys(note for one in done for note in one.motion.notes)
     grips = dict.fromkeys(g for one in done for g in one.motion.grips if g.end > start and g.start < end)

@@ -20,8 +20,8 @@ Place = tuple[float, float]
 class Bulge(NamedTuple):
     """How a way goes around the other foot. x, z : metres added at its middle
 
-    late : part of the straight way by which it is behind that at a quarter, and ahead of it at three quarters: first
-    aside, then past, then in
+    late : part of the straight way by which the foot is behind at a quarter and ahead at three quarters: first aside,
+    then past, then in
     """
 
     x: float = 0.0
@@ -85,7 +85,7 @@ class Gallop(Swing):
 
 @dataclass(frozen=True, slots=True)
 class Shake(Swing):
-    """In a wait, and back to where it was: up behind her for a while, loosely shaken.
+    """In a wait, and back to its place: for a while the foot is up behind the dancer, loosely shaken.
 
     behind : metres that the foot goes back; hangs : radians that it hangs with its toes down meanwhile
     rate : per second; far : metres to and fro along `heading` (radians), and half as far up and down
@@ -131,7 +131,7 @@ LEAST_FLIGHT = 0.0166
 
 @dataclass(frozen=True, slots=True)
 class FootTrack:
-    """All moves of a foot in order of time, never overlapping, and where it stood before the first: on what level."""
+    """All moves of a foot in order of time, never overlapping; where it stood before the first, and on what level."""
 
     start: tuple[float, float]
     start_yaw: float
@@ -180,7 +180,7 @@ class Route:
 
 
 def chance_of(*numbers: int) -> np.random.Generator:
-    """Random draws that are always the same for the same whole numbers, of which some may be negative."""
+    """Random numbers that are always the same for the same whole numbers, some of which may be negative."""
     return np.random.default_rng([number & 0xFFFFFFFF for number in numbers])
 
 
@@ -188,12 +188,12 @@ def chance_of(*numbers: int) -> np.random.Generator:
 class Plan:
     """Everything that the chart asks of the dancer.
 
-    touches : what presses which panel from when on, until when at the latest, in order
+    touches : what presses which panel from when on, and until when at the latest, in order
     first, last : seconds at which the first contact of the song begins and the last one ends
     grips : when her hands rest on the bar behind her, as in `Motion`; walks : in order of time
-    lead : the foot that leads, 0 left or 1 right: it decides where both sides are equal, so that the mirror image of a
-        play is danced as the mirror image
-    let_go : notes that she does not play, in order of time
+    lead : the foot that leads, 0 left or 1 right. It decides where both sides are equal, so that the mirror image of a
+    play is danced as the mirror image
+    let_go : notes that the dancer does not play, in order of time
     """
 
     feet: tuple[FootTrack, FootTrack]
@@ -209,17 +209,19 @@ class Plan:
 
     @property
     def song(self) -> tuple[int, int]:
-        """Milliseconds of the first and the last contact: chance knows a song by them, mirrored or in pieces."""
+        """Milliseconds of the first and the last contact: they identify a song for random choices, mirrored or in
+        pieces.
+        """
         return round(1000 * self.first), round(1000 * self.last)
 
     @property
     def hand(self) -> float:
-        """1 for a plan that the left foot leads, -1 for its mirror image: the sign of what is chosen for variety."""
+        """1 for a plan that the left foot leads, -1 for its mirror image: the sign of random choices."""
         return 1.0 - 2.0 * self.lead
 
     @property
     def contacts(self) -> tuple[Contact, ...]:
-        """What presses which panel, and how long: until the foot leaves, at the latest until its touch ends."""
+        """What presses which panel, and how long: until the foot leaves, or at the latest until its touch ends."""
         lifts = [[move.lift for move in track.moves if isinstance(move, Swing)] for track in self.feet]
         return tuple(_ended(touch, lifts[touch.limb]) if touch.limb < len(lifts) else touch for touch in self.touches)
 

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
-# Least squares over long sequences: every term touches a few neighbouring nodes, so the normal matrix is a band.
+# Least squares over long sequences: every term involves a few neighbouring nodes, so the normal matrix is a band.
 #
-# Paths of the body are made with it: "stay near these targets, with little jerk". The cost is linear in the length of
-# the song.
+# Paths of the body are computed with it: "stay near these targets, with little jerk". The cost is linear in the length
+# of the song.
 
 Array = NDArray[np.float64]
 REACH = 4  # nodes that a term touches at most by default: third differences
@@ -116,8 +116,8 @@ def _solve_one(factor: Array, right: Array) -> Array:
 
 # Quadratic programmes over long sequences: least squares as in `banded`, with limits on sums of neighbouring nodes.
 #
-# Limits may give way at a price, so that one impossible place in a song does not leave it without a solution.
-# Solved by an interior-point method (Mehrotra 1992); every step solves one banded system, so the cost is linear in the
+# Limits may give way at a cost, so that one impossible place in a song does not leave it without a solution. An
+# interior-point method (Mehrotra 1992) solves them; every step solves one banded system, so the cost is linear in the
 # length of the song.
 
 TOLERANCE = 1e-6
@@ -144,7 +144,7 @@ class Limits:
 class Solution:
     """x : (n,); is_feasible : the hard limits hold and x is the minimum, to the tolerance; rounds : steps taken.
 
-    softened : whether the limits had to give way more than was asked for, for there was no convergence without
+    softened : whether the limits had to give way more than was asked for, because it did not converge otherwise
     """
 
     x: Array
@@ -158,7 +158,7 @@ class ConvergenceError(DancetutorError):
 
 
 def solve_surely(problem: BandedLeastSquares, limits: list[Limits], what: str) -> Solution:
-    """As `solve`, but what it returns is a minimum: once more with softer limits where the first try did not converge.
+    """As `solve`, but it returns a minimum: if the first try does not converge, it tries again with softer limits.
 
     what : for people, the path that is looked for. ConvergenceError if the second try did not converge either
     """
@@ -246,7 +246,7 @@ def _slack(limits: _Rows, x: Array, least: float) -> Array:
 
 @njit(cache=True)
 def _residuals(bands: Array, right: Array, limits: _Rows, x: Array, s: Array, z: Array) -> tuple[Array, Array]:
-    """What is missing from the sum's derivative to nothing (n,), and from the limits with their slack (m,)."""
+    """The residuals: the derivative of the sum (n,), and the limits with their slack (m,)."""
     start, width, rows, high, give = limits.start, limits.width, limits.rows, limits.high, limits.give
     n, reach = bands.shape
     dual = np.zeros(n)

@@ -1,4 +1,4 @@
-"""What dance is wanted, and the chart that it is about: read and checked, before anything slow is done."""
+"""The dance that the user wants, and its chart: read and checked before anything slow is done."""
 
 from __future__ import annotations
 
@@ -30,19 +30,19 @@ def _style_sources(style: str) -> object:
 
 @dataclass(frozen=True, slots=True)
 class DanceRequest:
-    """What dance is wanted. Pickles, so that another process can do it.
+    """The dance that the user wants. Pickles, so that another process can do it.
 
     path : the chart file; selection : which chart
     preset : name or file of the solver's costs, None: what `feet.preset` finds for the chart
-    play : a JSON file of analyze whose feet hold instead of the solver's
+    play : a JSON file of analyze whose feet replace the solver's
     rates : speeds of the music, 1 is its own; notes that nobody plays at the fastest one are not danced at any
     fps : regular keys per second
     bar : the dancer holds the bar behind the pad; gait : name or file of how she walks on and off
     form : name or file of how she stands and turns
-    motion : file with numbers of the motion that are other than those of configs/motion.yaml
+    motion : file with numbers that replace those of configs/motion.yaml
     style : name or file of the style in which a ragdoll follows the dancer, or a blend, as
     `dance.physics.blend.load_choice` takes it; None: no ragdoll
-    push, trip : what befalls her, as `dance.physics.pushes.parse_push` takes it, and seconds of the song; only with a
+    push, trip : what disturbs her, as `dance.physics.pushes.parse_push` takes it, and seconds of the song; only with a
     style
     """
 
@@ -76,12 +76,12 @@ class ChartChoice:
 
     @property
     def dancer_chart(self) -> Chart:
-        """The part of the one dancer; of two who dance the chart as it is written."""
+        """The part of the one dancer; for two dancers, the chart as it is written."""
         return self.parts[0] if len(self.parts) == 1 else self.chart
 
 
 def check_request(request: DanceRequest) -> None:
-    """Say what is wrong with the files and names of a request: FileError or UsageError, before the work.
+    """Check the files and names of a request: FileError or UsageError, before the work.
 
     UnavailableError if a style is wanted and there is no engine for it.
     """
@@ -103,7 +103,7 @@ def check_request(request: DanceRequest) -> None:
 
 
 def with_style(request: DanceRequest) -> DanceRequest:
-    """The request with the style neutral where none is named, but something befalls her."""
+    """The request with the style `neutral` if it names no style but has a push or trip."""
     return replace(request, style="neutral") if request.style is None and (request.push or request.trip) else request
 
 
@@ -120,9 +120,9 @@ def choice_for(path: Path, given: str | None) -> PresetChoice:
 
 
 def read_chart(request: DanceRequest, section: str | None = None) -> ChartChoice:
-    """Read the file and choose the chart. A DancetutorError of one line for all that is wrong with the request.
+    """Read the file and choose the chart. DancetutorError of one line for everything that is wrong with the request.
 
-    section : looked at here, so that a slip is reported before a chart is read
+    section : checked here, so that a slip is reported before a chart is read
     """
     from dancetutor_cli.dance.two import check_alone
 

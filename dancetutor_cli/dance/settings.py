@@ -76,7 +76,7 @@ class MotionSettings:
 def load_settings(
     path: Path | None = None, form: str = USUAL, styles: Sequence[tuple[MotionSettings, float]] = ()
 ) -> MotionSettings:
-    """The numbers of `configs/motion.yaml`, with those on top that a form names, then styles, then another file.
+    """The numbers of `configs/motion.yaml`, replaced first by those of a form, then of styles, then of another file.
 
     styles : the numbers of each of them, and how much of it there is, 0 to 1
     Raises FileError naming the file, the line and the names that exist, UsageError for a form that there is not.
@@ -109,7 +109,7 @@ def mean_settings(parts: Sequence[tuple[MotionSettings, float]]) -> MotionSettin
 
 
 def _with_numbers_of(settings: MotionSettings, other: MotionSettings) -> MotionSettings:
-    """The settings with those numbers of another one that are not the program's own."""
+    """The settings, with those numbers of other settings that differ from the program's own."""
     sections = {}
     for section in _SECTIONS:
         usual, new = getattr(default_settings(), section), getattr(other, section)
@@ -155,7 +155,7 @@ class SettingsCourse:
         return self.states[largest] if weights[largest] >= WHOLE else _mean_of(self.states, weights)
 
     def within(self, start: float, end: float) -> SettingsCourse:
-        """The same with only the states that there are between two seconds."""
+        """The same with only the states between two seconds."""
         weights = state_weights(self.changes, np.array([start, end]))
         first, last = int(np.argmax(weights[0] > 0.0)), int(np.max(np.flatnonzero(weights[1] > 0.0)))
         return SettingsCourse(self.states[first : last + 1], self.changes[first:last])

@@ -1,8 +1,8 @@
-"""The fixed point of a bake: the body's path needs to know how she is bent, and how she bends needs her path.
+"""The fixed point of a bake: the path of the body depends on how the body is bent, and that depends on the path.
 
-Each round bakes roughly, sees where the centre of mass is over the root, how far pinned palms drew it down and which
-ankles bend too far, and plans the path again with that. Two rounds are enough without palms: what is left is
-corrected frame by frame (`dance.bake`).
+Each round bakes roughly, measures where the centre of mass is over the root, how far pinned palms pulled it down and
+which ankles bend too far, and plans the path again. Without palms two rounds are enough; the rest is corrected frame by
+frame (`dance.bake`).
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class SettledTrajectory:
 
 
 def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> SettledTrajectory:
-    """Bake roughly, see what the path did not know, and plan it again; times (n,) even, feet sampled there."""
+    """Bake roughly, measure what the path did not know, and plan it again; times (n,) even, feet sampled there."""
     settings, rate = context.settings, context.settings.sampling.work_rate
     body = body_trajectory(plan, times, feet, context)
     coarse, ones = times[::COARSE], np.ones(len(times))
@@ -100,7 +100,7 @@ def _around(coarse: Array, gives: Array, times: Array) -> Array:
 
 
 def targets_at(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Context) -> Targets:
-    """What the IK is asked for at times (f,) at which feet are sampled, heels raised as the trajectory says."""
+    """The targets of the IK at times (f,) at which feet are sampled, with heels raised as the trajectory demands."""
     at, feet = sampled
     up = sample_path(body.heels, body.times, at) + waiting_at(plan, at, context).heels
     return ik_targets(plan, body, raised(feet, up), at, context)
@@ -118,7 +118,9 @@ def hips_of(skeleton: Skeleton, poses: Poses) -> Array:
 
 
 def _deeper(plan: Plan, deeper: Array, at: Array, drawn: Array, context: Context) -> Array:
-    """How much deeper (p,) she bends for each press, after palms have drawn the root by (f,) metres at times `at`."""
+    """How much deeper (p,) the body bends for each press, after palms have pulled the root by (f,) metres at times
+    `at`.
+    """
     out, most = deeper.copy(), max(context.settings.hands.pelvis - context.settings.hands.lowest, 0.0)
     for k, press in enumerate(plan.presses):
         near = (at >= press.start - AROUND_PRESS) & (at <= press.end + AROUND_PRESS)
@@ -128,7 +130,7 @@ def _deeper(plan: Plan, deeper: Array, at: Array, drawn: Array, context: Context
 
 
 def _heels_up(rotations: Array, context: Context) -> tuple[Array, Array]:
-    """How far (f,) each heel must rise so that its ankle does not bend beyond what ankles can, radians."""
+    """How far (f,) each heel must rise so that its ankle stays within its limits, radians."""
     limit, most = np.radians((context.settings.step.ankle_limit, context.settings.step.ankle_most))
     out = []
     for side in "lr":

@@ -1,4 +1,4 @@
-"""Paths over time: easing, smooth ways through targets, and a controller that overshoots."""
+"""Paths over time: easing, smooth paths through targets, and a controller that overshoots."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def upper_envelope(times: Array, values: Array, span: float) -> Array:
 
 
 def both_envelopes(times: Array, values: Array, span: float) -> Array:
-    """Values (f, d) of either sign, each spread as by `upper_envelope`: they come before their time, and go after it.
+    """Values (f, d) of either sign, each spread as by `upper_envelope`: they begin before their time and end after it.
 
     times : (f,) seconds; span : seconds
     """
@@ -116,7 +116,8 @@ def both_envelopes(times: Array, values: Array, span: float) -> Array:
 def no_faster(values: Array, rate: float, most: float) -> Array:
     """The path (n,) that changes by at most `most` per second and is least far from `values` (n,), `rate` per second.
 
-    Half-way between the lowest one over them and the highest one under them; where they are slow enough, it is theirs.
+    It lies half-way between the lowest path over the values and the highest path under them; where the values are slow
+    enough, it is equal to them.
     """
     drop = most / rate * np.arange(len(values))
 

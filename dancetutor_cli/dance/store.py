@@ -28,7 +28,7 @@ Function = Callable[[Piece], BakedPiece]
 
 
 def with_store(each: Each) -> Each:
-    """Does pieces of work as `each` does, but those that are kept already; keeps the others."""
+    """Does pieces of work as `each` does, except those that are kept already; keeps the others."""
     folder = kept_folder("dances")
     return each if folder is None else partial(_each_with_store, folder, each)
 
@@ -67,7 +67,7 @@ def _read(path: Path, piece: Piece) -> BakedPiece | None:
 
 
 def _write(path: Path, one: BakedPiece, piece: Piece) -> None:
-    """Keep a piece; where that cannot be done, it is made again the next time."""
+    """Keep a piece; if that is not possible, it is made again the next time."""
     motion, distances = one.motion, one.distances
     still = set(motion.contacts)
     words: dict[str, Any] = {

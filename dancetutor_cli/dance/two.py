@@ -1,4 +1,4 @@
-"""Charts for two who dance: the pad under both, and where on it each of them stands."""
+"""Charts for two dancers: the pad under both, and where on it each of them stands."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ _WHOLE = {**ONE_PAD, **{kind: f"{kind.partition('-')[0]}-double" for kind in OWN
 
 
 def check_alone(request: DanceRequest, chart: Chart) -> None:
-    """UsageError of a request that cannot be met for all who dance a chart: each of them can dance alone.
+    """UsageError if a request cannot be met for all dancers of a chart: each of them can dance alone.
 
-    No picture has a third dancer, and what a request lays down for one is not for two.
+    No picture has a third dancer, and what a request sets for one dancer does not hold for two.
     """
     count = len(chart.players)
     if count > 2:
@@ -41,14 +41,14 @@ def check_alone(request: DanceRequest, chart: Chart) -> None:
 
 
 def pad_of_both(steps_type: str) -> Pad:
-    """The pad under both who dance a chart for two. steps_type : as the chart is written"""
+    """The pad under both dancers of a chart for two. steps_type : as the chart is written"""
     pad = load_pad(_WHOLE.get(steps_type, steps_type))
     assert pad is not None
     return pad
 
 
 def place_on(whole: Pad, part: Chart, pad: Pad) -> tuple[float, float]:
-    """How far a player's own pad stands from the middle of that of both: (x, z) in metres of the world.
+    """The place of a player's own pad from the middle of the pad of both: (x, z) in metres of the world.
 
     Panels' x goes to her right, the world's to her left.
     """
@@ -57,9 +57,10 @@ def place_on(whole: Pad, part: Chart, pad: Pad) -> tuple[float, float]:
 
 
 def sides_of(parts: Sequence[Chart]) -> tuple[tuple[int, int], ...]:
-    """From which side each of those who dance together comes and to which each goes, 0 left or 1 right: the outer ones.
+    """From which side each dancer comes and to which each goes, 0 left or 1 right: the outer ones.
 
-    On one pad they may change places: then each goes to the other side, and nobody through another.
+    On one pad they may change places; then each goes to the other side, so that nobody walks through another.
+
     parts : the players' parts of a chart, in their order
     """
     whole = pad_of_both(parts[0].written_type)
@@ -69,11 +70,12 @@ def sides_of(parts: Sequence[Chart]) -> tuple[tuple[int, int], ...]:
 
 
 def persons_of(plays: Sequence[tuple[Play, Pad]]) -> tuple[int, ...]:
-    """Who each of those is who dance together, as `Context.person`: 0 alone, else 0 and 1.
+    """The person of each dancer, as `Context.person`: 0 alone, otherwise 0 and 1.
 
-    In the mirror image of a chart each stays who she was: who is who goes by side and leading foot, both of which
-    change, else by when and how far ahead notes are, which do not. Only of two plays that are each other's mirror
-    image the left one comes first, so that they are not twins.
+    In the mirror image of a chart each stays who she was. Side and leading foot decide who is who; both change in the
+    mirror. If they do not decide, the times of notes and how far ahead they are do; these do not change. Only if two
+    plays are each other's mirror image is the left one first, so that the two are not twins.
+
     plays : of each, from the left, with her own pad
     """
     if len(plays) < 2:
@@ -95,7 +97,7 @@ def _ahead(one: tuple[Play, Pad], other: tuple[Play, Pad]) -> int:
 
 
 def _on_the_right(parts: Sequence[Chart], whole: Pad, ends: slice) -> list[int]:
-    """Who stands on the right, 1, by some of their notes: the latter half of them, from the left one on."""
+    """The player who stands on the right, 1, by some of their notes: the latter half of them, from the left one on."""
     columns = [part.first_column + part.notes.column[ends] for part in parts]
     places = [float(whole.panels[own, 0].mean()) if len(own) else 0.0 for own in columns]
     ranks = np.argsort(np.argsort(places, kind="stable"))
@@ -103,7 +105,7 @@ def _on_the_right(parts: Sequence[Chart], whole: Pad, ends: slice) -> list[int]:
 
 
 def merge_plays(chart: Chart, plays: Sequence[Play], whole: Pad) -> Play:
-    """What both step as one play of the chart as it is written: who steps what, and what happens; no costs."""
+    """The steps of both as one play of the chart as it is written: who steps what, and what happens; no costs."""
     rows = prepare(chart, whole)
     limb = np.full(rows.steps.shape, int(Limb.NONE), dtype=np.int8)
     part = np.zeros(rows.steps.shape, dtype=np.uint8)

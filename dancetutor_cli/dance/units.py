@@ -1,6 +1,7 @@
-"""Units of the numbers of the motion, as types of their fields; apart, since all modules with settings import it.
+"""Units of the numbers of the motion, as types of their fields; a separate module, because all modules with settings
+import it.
 
-A number of a file outside its bounds is refused: they keep slips out ("90" seconds for "0.90"), not styles.
+A number of a file outside its bounds is refused: bounds catch slips ("90" seconds for "0.90"), not styles.
 """
 
 from __future__ import annotations

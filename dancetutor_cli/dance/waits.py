@@ -1,5 +1,6 @@
-"""What she does while she waits: her weight goes from foot to foot with the beat, she shakes out her arms, rolls her
-shoulders, taps a heel. Never twice the same: chance decides, always in the same way for the same song."""
+"""What the dancer does while she waits: her weight goes from foot to foot with the beat, she shakes out her arms, rolls
+her shoulders, taps a heel. It is never twice the same: chance decides, always in the same way for the same song.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +54,7 @@ class WaitMotion:
 
 
 def waiting_at(plan: Plan, times: Array, context: Context) -> WaitMotion:
-    """What she does at `times` (n,) seconds besides standing. Mirror images of a plan wait as mirror images."""
+    """What the dancer does at `times` (n,) seconds besides standing. Mirror images of a plan wait as mirror images."""
     numbers, out = context.settings.wait, WaitMotion.none(len(times))
     spans = list(_waits(plan, context))
     for start, end in spans:
@@ -88,17 +89,17 @@ Song = tuple[int, ...]
 
 
 def song_of(plan: Plan, context: Context) -> Song:
-    """What chance knows a song, and who dances it, by; the same for its mirror image, and for a piece of it."""
+    """The seed of random choices for a song and a dancer; the same for the mirror image and for a piece of the song."""
     return *plan.song, *context.own
 
 
 def _chance(song: Song, *numbers: int) -> np.random.Generator:
-    """What chance says of something in this song."""
+    """A random number for something in this song."""
     return chance_of(SEED, *song, *numbers)
 
 
 class _Draw(NamedTuple):
-    """What chance says of one thing: when it begins and how long it lasts, as parts of their times; side; kind."""
+    """The random choices for one act: when it begins and how long it lasts, as parts of their times; side; kind."""
 
     late: float
     long: float
@@ -108,7 +109,7 @@ class _Draw(NamedTuple):
 
 @lru_cache(maxsize=1024)
 def _draw(song: Song, number: int) -> _Draw:
-    """The thing of this number, for which each round of a bake asks; all kinds come by turns, in ever other orders."""
+    """The act of this number, which each round of a bake asks for; all kinds come in turn, in ever different orders."""
     chance = _chance(song, number)
     turn, place = divmod(number, len(_KINDS))
     kind = int(_chance(song, turn, 1).permutation(len(_KINDS))[place])
@@ -130,8 +131,9 @@ def _waits(plan: Plan, context: Context) -> Iterator[tuple[float, float]]:
 
 
 def _shift(times: Array, context: Context) -> Array:
-    """Where the weight is (n,), metres, positive over the left foot: there or over the other one on a beat, and on its
-    way between beats. Some are danced farther than others, and sometimes she stays where she is."""
+    """Where the weight is (n,), metres, positive over the left foot: over one foot on a beat, and on its way between
+    beats. Some beats are danced farther than others, and sometimes the dancer stays where she is.
+    """
     numbers, beats = context.settings.wait, np.asarray(context.beats)
     if len(beats) < 2:
         beats = np.array([0.0, numbers.shift_time])
@@ -152,7 +154,7 @@ def _shift(times: Array, context: Context) -> Array:
 
 
 def slowly(song: Song, times: Array, every: float, salt: int) -> Array:
-    """Something (n,) from -1 to 1 that stays for a while and then is otherwise; salt : another number, another thing"""
+    """A value (n,) from -1 to 1 that stays for a while and then changes; salt : another number gives another value"""
     cell = times / every + salt / 3
     knots = np.arange(np.floor(cell.min()), np.floor(cell.max()) + 2)
     place = np.array([_knot(song, int(knot), salt) for knot in knots])
@@ -169,7 +171,7 @@ def _knot(song: Song, number: int, salt: int) -> float:
 
 @dataclass(frozen=True, slots=True)
 class _Act:
-    """One thing that she does. times : (m,) seconds since it began; long : seconds that it lasts; side : 0 left"""
+    """One act of the dancer. times : (m,) seconds since it began; long : seconds that it lasts; side : 0 left"""
 
     times: Array
     long: float
@@ -215,7 +217,7 @@ def _loosen(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> N
 
 
 def _tap(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
-    """The heel that does not bear her comes up."""
+    """The heel without weight comes up."""
     for side, sign in ((0, -1.0), (1, 1.0)):
         light = smooth(sign * out.shift[near] / numbers.shift - 0.2)
         out.heels[near, side] += np.radians(numbers.heel) * light * act.fade

@@ -201,6 +201,7 @@ class Footing:
     lead : the foot that leads, as in `Plan`; aim : which way the body would face; faced : which way it faced after the
     last row, radians
     resting : feet that stand where the dancer went home, until each steps again
+    mined : (m, 2) panels beside which feet land that mines pass soon; take_offs : of the last gallop, left and right
     """
 
     context: Context

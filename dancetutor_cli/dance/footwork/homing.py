@@ -93,6 +93,8 @@ def _falls(begin: Stand, goal: Stand, lead: int, following: Sequence[int], setti
     fit.
 
     Of two ways, the one on which legs cross less; then the one that does not end with the foot of the next note.
+
+    lead : the foot that is tried first; following : feet of the next note
     """
     home = settings.home
     off = np.linalg.norm(begin.balls - goal.balls, axis=1).max()

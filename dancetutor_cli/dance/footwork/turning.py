@@ -187,6 +187,8 @@ def leading_foot(play: Play, panels: Array) -> int:
     """The foot that steps first alone, 0 left or 1 right; if there is none, the first asymmetric jump decides.
 
     This foot leads: if both sides are equal, it decides, so a mirrored play is danced mirrored.
+
+    panels : (c, 2) on the ground. A play that is its own mirror image is led by the left foot.
     """
     feet = [(play.limb == side).any(axis=1) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
     alone = np.flatnonzero(feet[0] != feet[1])

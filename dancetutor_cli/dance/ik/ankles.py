@@ -1,4 +1,4 @@
-"""Ankles within their limits, and soles that roll where an ankle would bend too far."""
+"""Ankles within their limits, and soles that roll if an ankle would bend too far."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond, within
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.feet.limbs import Part
 
-# Ankles within their limits: feet in the air follow their shanks, and knees give way over feet that stand.
+# Ankles within their limits: feet in the air follow their shanks, and over feet that stand the knees turn.
 
 Array = NDArray[np.float64]
 MARGIN = 0.5  # degrees inside the limit
@@ -66,16 +66,17 @@ def _lowest(skeleton: Skeleton, poses: Poses, side: int) -> Array:
 
 
 def freedom(foot: FootPath) -> Array:
-    """How free (f,) a foot is to turn as its shank does, 0 to 1: not on the ground, nor where it would touch it."""
+    """How free (f,) a foot is to turn with its shank, 0 to 1: not on the ground, nor where it would touch it."""
     up = np.clip((foot.ball[:, 1] - UP_FROM) / (UP_TO - UP_FROM), 0.0, 1.0)
     return np.where(foot.down, 0.0, up)
 
 
 def giving_knees(skeleton: Skeleton, poses: Poses, around: int) -> Array:
-    """How far (f, 2) knees would have to turn outward about the lines from hips to ankles, radians, for ankles of feet
-    that stand, or nearly, to be within their limits: as little as it takes, and the same in each stretch of frames.
+    """How far (f, 2) knees have to turn outward about the lines from hips to ankles, radians, so that ankles of feet
+    that stand, or nearly stand, are within their limits. The turn is as small as possible, and the same in each stretch
+    of frames.
 
-    around : frames before and after a stretch in which they turn and turn back: there, too, it must do no harm
+    around : frames before and after a stretch in which they turn and turn back; it must do no harm there either
     """
     out = np.zeros((len(poses.root), 2))
     for side, name in enumerate("lr"):
@@ -92,8 +93,9 @@ def giving_knees(skeleton: Skeleton, poses: Poses, around: int) -> Array:
 
 
 def _least_give(skeleton: Skeleton, poses: Poses, inside: NDArray[np.bool_], name: str) -> float:
-    """How far one knee turns outward; 0 where no way brings ankle and hip within their limits in the frames `inside`
-    in which the foot is low, and no farther beyond them in any."""
+    """How far one knee turns outward. It is 0 if no turn brings ankle and hip within their limits in the frames
+    `inside`, in which the foot is low, without making any other frame worse.
+    """
     hip, knee, ankle, ball = (skeleton.index(f"{name}_{n}") for n in ("hip", "knee", "talocrural", "metatarsal"))
     places, world = world_transforms(skeleton, poses.rotations, poses.root)
     low = inside & (places[:, ball, 1] < skeleton.rest[ball][1] + UP_TO)
@@ -125,7 +127,7 @@ PRESSED, FADE = 0.006, 0.04  # seconds around a note in which a sole does not ro
 
 @dataclass(frozen=True, slots=True)
 class Edges:
-    """Of a sole that lies flat, seen from the joint of its ball: its edges at smaller and at larger x.
+    """The edges, at smaller and at larger x, of a sole that lies flat, as seen from the joint of its ball.
 
     balls : (2, 3) where they are beside the ball; lines : (2, 3) unit vectors along them; ankle : (3,)
     """
@@ -162,9 +164,9 @@ def edges_of(skeleton: Skeleton, side: int) -> Edges:
 def rolled_soles(
     skeleton: Skeleton, plan: Plan, posed: tuple[Array, Feet, Targets, Poses], rises: Array
 ) -> Targets | None:
-    """Other targets, with which ankles of feet on the ground, or little over it, are within their limits.
+    """Targets with which the ankles of feet on the ground, or a little over it, are within their limits.
 
-    Where a foot touches the ground, or would, it stays. None where nothing is to be done.
+    A foot that touches the ground, or would touch it, stays. None if nothing has to change.
 
     posed : times (f,), feet, targets and poses there; rises : (f, 2) how much heels may rise, 0 to 1
     """
@@ -207,8 +209,9 @@ def may_roll(plan: Plan, side: int, at: Array) -> Array:
 
 
 def _pressing(plan: Plan, side: int, edge: Array, at: Array) -> Array:
-    """How much (f,) a sole may roll onto an edge that is at (f, 3), 0 to 1: not as it presses a panel beside that, or
-    two panels."""
+    """How much (f,) a sole may roll onto an edge that is at (f, 3), 0 to 1. It may not while it presses a panel beside
+    that edge, or two panels.
+    """
     out = np.ones(len(at))
     for contact in (c for c in plan.contacts if c.limb == side):
         away = np.abs(at - contact.start) - PRESSED
@@ -224,7 +227,7 @@ def _down(angles: Array) -> NDArray[np.int64]:
 
 
 def _turns(angles: Array, straight: Array, edges: Edges) -> tuple[Array, Array]:
-    """World rotations (m, 4) of toes and of the foot, which the heel's rise turns before it rolls.
+    """World rotations (m, 4) of toes and of the foot. The rise of the heel turns the foot before it rolls.
 
     angles : (m, 2) radians that the sole rolls, its larger x up, and that its heel rises
     """

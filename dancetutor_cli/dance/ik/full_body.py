@@ -30,7 +30,7 @@ from dancetutor_cli.dance.rig.limbs import (
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
-# The kernels of the full-body inverse kinematics: on plain arrays, grouped by what they are about.
+# The kernels of the full-body inverse kinematics, on plain arrays, grouped by subject.
 
 Array = NDArray[np.float64]
 ARM_REACH = 0.990  # part of the arm's length that a hand is led to at most
@@ -144,7 +144,7 @@ def _pull_root(root: Vec, pelvis: Quat, hips: tuple[Vec, Vec], ankles: tuple[Vec
         far_a, far_b = length(a) - reach, length(b) - reach
         if far_a < 1e-6 and far_b < 1e-6:
             break
-        # where both legs are too short each draws half: neither comes first
+        # if both legs are too short each pulls half: neither comes first
         share = 0.5 if far_a > 0.0 and far_b > 0.0 else 1.0
         if far_a > 0.0:
             root = add(root, scale(a, share * far_a / length(a)))
@@ -192,7 +192,7 @@ def _torso(
     rest_mid = scale(add(lo, ro), 0.5)
     p1 = add(root, qrot(pelvis, _vec(offsets[joints[VL5]])))
     q1, q2 = qlerp(pelvis, chest, LOW), qlerp(pelvis, chest, HIGH)
-    # a back that is pushed together always rounds backward: without this it would snap from side to side
+    # a back that is pushed together always rounds backward; otherwise it would snap from side to side
     p2 = add(p1, add(qrot(q1, o10), qrot(q1, (0.0, 0.0, -ROUNDING))))
     p3 = add(p2, add(qrot(q2, o4), qrot(q2, (0.0, 0.0, -0.5 * ROUNDING))))
     middle = scale(add(left, right), 0.5)
@@ -270,8 +270,9 @@ def _arm(at: tuple[int, int], shoulder: Vec, chest: Quat, rig: Rig, hands: ArmTa
 
 @inner_kernel
 def _turned_share(half_cosine: float, pinned: float) -> float:
-    """How far a hand that is pinned by a part has turned from its forearm to lie as it must: less where it has to turn
-    by more than 106 degrees, for at 180 it would have to change from one way round to the other in a moment."""
+    """How far a hand that is partly pinned has turned from its forearm to lie as it must. It turns less if it would
+    have to turn by more than 106 degrees, because at 180 it would have to jump from one way round to the other.
+    """
     near = min(abs(half_cosine) / 0.6, 1.0)
     return pinned * (1.0 - (1.0 - pinned**4) * (1.0 - near * near * (3.0 - 2.0 * near)))
 

@@ -1,4 +1,4 @@
-"""Hands: how palms lie, on the bar and on the way to it; those that hang keep off hips, thighs and knees."""
+"""Hands: how palms lie on the bar and on the way to it; hanging hands keep off hips, thighs and knees."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.settings_arms import ArmSettings, BarSettings
 from dancetutor_cli.dance.smoothing import smooth
 
-# What hands are asked for, and the upper body that they hang from.
+# Targets of the hands, and the upper body that they hang from.
 
 Array = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ class HandTargets:
     elbows: Array
 
 
-# Which way a hand is turned whose palm lies on something: on a panel, or on the rail behind the dancer.
+# Which way a hand is turned if its palm lies on a panel, or on the rail behind the dancer.
 
 BACKWARD = np.array([[0.57, 0.0, -0.8216], [-0.57, 0.0, -0.8216]])  # where the fingers of a hand on the bar point
 STRAIGHT_BACK = np.array([0.0, 0.0, -1.0])  # and those of one that has crossed over before her
@@ -92,7 +92,7 @@ def rest_on_bar(
 def elbows_on_bar(chest: Array, settings: BarSettings) -> Array:
     """Where elbows of hands on the bar point (f, 2, 3), for chests turned by (f, 4): back, and a little inward.
 
-    Otherwise forearms would turn past their limit.
+    Otherwise forearms would turn past their limits.
     """
     inward = settings.elbows_in
     upright = quat.swing_twist(chest, UP)[1]
@@ -138,10 +138,10 @@ def hold(grips: tuple[Grip, ...], at: Array, hands: HandTargets, torso: Torso, c
 
 
 def _around(wrists: Array, goal: Array, weight: Array, torso: Torso, across: Flags) -> Array:
-    """How far (f, 2, 3) wrists have come to the rail, a share `weight` (f, 2) of the way: around the trunk, each on its
-    own side of it or, where `across` (f, 2), before it to the other one.
+    """How far (f, 2, 3) wrists have come to the rail, a share `weight` (f, 2) of the way. They go around the trunk,
+    each on its own side, or, where `across` (f, 2), in front of it to the other side.
 
-    In the ellipse's measure they go evenly about its middle and outward or inward; both ends are where they are.
+    Measured in the ellipse, they go evenly about its middle and outward or inward; both ends are given.
     """
     going = (weight > 0.0) & (weight < 1.0)
     upright, middle = _trunk_of(torso)
@@ -162,7 +162,8 @@ def _around(wrists: Array, goal: Array, weight: Array, torso: Torso, across: Fla
 
 
 def inward(place: Array, side: int, torso: Torso, across: bool = False) -> Array:
-    """How far (f,) a place (f, 3) for a hand is from straight outward of the trunk, radians: pi is straight inward.
+    """How far (f,) a place (f, 3) for a hand is turned from straight outward of the trunk, radians; pi is straight
+    inward.
 
     across : by the way before her, from `LEAST` on; else by the shorter way
     """
@@ -178,8 +179,9 @@ def _distance(off: Array) -> Array:
 
 
 def _bearing(off: Array, across: Flags, least: float) -> Array:
-    """How far (f, 2) places (f, 2, 3) of the left and right hand are ahead of where is straight outward, radians; what
-    is straight inward counts as behind the back, but of hands that cross over, for which it is from `least` on."""
+    """How far (f, 2) places (f, 2, 3) of the left and right hand are turned ahead from straight outward, radians.
+    Straight inward counts as behind the back, except for hands that cross over: for these it counts from `least` on.
+    """
     turned = np.arctan2(off[..., 2], off[..., 0] * [1.0, -1.0])
     before = (turned - least) % (2 * np.pi) + least
     return np.where(across, before, np.where(turned > np.pi - INWARD, turned - 2 * np.pi, turned))
@@ -203,7 +205,7 @@ def trunk_clearance(wrists: Array, torso: Torso, axes: tuple[float, float]) -> A
     return quat.rotate(upright, off / far * beyond * [axes[0], 0.0, axes[1]])
 
 
-# Hands that hang keep beside the hips: the trunk leans and turns over them, and takes the shoulders along.
+# Hanging hands keep beside the hips: the trunk leans and turns over the hips, and takes the shoulders along.
 
 SOFT_AT_HIPS = 0.015  # metres over which a hand comes to its least distance
 
@@ -217,8 +219,8 @@ class Hips:
 
 
 def hip_clearance(wrists: Array, hips: Hips, arms: ArmSettings) -> Array:
-    """How wrists (f, 2, 3) give way to the hips, (f, 2, 3) level: softly, away from the nearest place of a line across
-    them; one that is raised does not.
+    """How wrists (f, 2, 3) give way to the hips, (f, 2, 3), level: softly, away from the nearest place of a line across
+    the hips. A raised hand does not give way.
     """
     upright = quat.swing_twist(hips.rotation, UP)[1][:, None]
     off = quat.rotate(quat.conjugate(upright), wrists - hips.place[:, None])
@@ -231,7 +233,7 @@ def hip_clearance(wrists: Array, hips: Hips, arms: ArmSettings) -> Array:
     return np.asarray(quat.rotate(upright, way * (missing / np.maximum(far, 1e-3))[..., None]))
 
 
-# Hands that hang keep off thighs and knees: in a wide stand these come up and aside to where hands hang.
+# Hanging hands keep off thighs and knees: in a wide stand these come up and aside to where hands hang.
 
 HAND = 0.10  # metres from the wrist to the end of the hand
 HALF_HAND = 0.026  # metres, half of how thick it is
@@ -258,7 +260,7 @@ def leg_clearance(wrists: Array, shoulders: Array, elbows: Array, legs: Legs, sk
 
 
 def _hand_ends(wrists: Array, shoulders: Array, elbows: Array, skeleton: Skeleton) -> Array:
-    """Where hands end (f, 2, 3) that go on as their forearms do; elbows : (f, 2, 3) where they point."""
+    """Where hands end (f, 2, 3) that continue their forearms; elbows : (f, 2, 3) where they point."""
     upper, lower = (float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("elbow", "radiocarpal"))
     reach = wrists - shoulders
     forearm = reach - middle_joint(reach, square_to(reach, elbows), (upper, lower))

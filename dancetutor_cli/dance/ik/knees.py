@@ -29,7 +29,7 @@ ROUNDS, STEPS = 3, 10  # rounds of giving way, and of measuring how deep legs ar
 
 @dataclass(frozen=True, slots=True)
 class Hung:
-    """What legs hang between: pelvis (f, 3) and its rotation (f, 4), ankles (f, 2, 3)."""
+    """What legs hang from: pelvis (f, 3) and its rotation (f, 4); and where they end: ankles (f, 2, 3)."""
 
     pelvis: Array
     rotation: Array
@@ -69,7 +69,7 @@ def knee_poles(yaw: Array, feet: Feet, legs: Array, hips: float, knees: KneeSett
 def part_knees(skeleton: Skeleton, hung: Hung, poles: Array, knees: KneeSettings) -> Array:
     """Poles (f, 2, 3) turned about the lines from hips to ankles, as little as it takes to part legs that meet.
 
-    Each frame is parted by itself, and smoothly: the same at whichever times it is asked.
+    Each frame is handled alone, and smoothly: the result does not depend on the times that are asked for.
     """
     both = hung.legs(skeleton, poles)
     near, most = np.arange(len(poles)), np.radians(knees.give)
@@ -175,7 +175,8 @@ def torso_rotations(trunk: TrunkPose, settings: BodySettings) -> tuple[Array, Ar
 def shoulders_over(skeleton: Skeleton, pelvis: Array, pelvis_rotation: Array, chest: Array, bent: Array) -> Array:
     """Where shoulders must be (f, 2, 3) over a pelvis (f, 3): turned about it with the chest.
 
-    As far as it is `bent` (f,) they are where a spine that bends evenly brings them; else its lowest joint took it all.
+    As far as the trunk is `bent` (f,), the shoulders are where an evenly bent spine brings them; otherwise its lowest
+    joint took the whole bend.
     """
     place, offset = pelvis, skeleton.offsets
     for name, share in zip(("vl5", "vt10", "vt4"), SPINE, strict=True):

@@ -72,7 +72,7 @@ ASKEWED = 1.6  # about how far `_wandering` goes up and down
 
 @dataclass(frozen=True, slots=True)
 class Below:
-    """What hands that hang must not meet, at the times that are asked for."""
+    """What hanging hands must not meet, at the times that are asked for."""
 
     hips: Hips
     legs: Legs
@@ -83,7 +83,7 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, below: Be
     lean, upright = quat.swing_twist(torso.chest, UP)
     hang, lag, held = (sample_path(p, body.times, at) for p in body.hands or free_hands(plan, body, context))
     arms = context.settings.arms
-    # in a deep bend the other arm goes some way with the chest, its hand to the knees
+    # in a deep bend the other arm goes some of the way with the chest, its hand to the knees
     first, last = np.radians((arms.bend_from, arms.bend_full))
     bent = smooth((2.0 * np.arccos(np.clip(np.abs(lean[:, 0]), 0.0, 1.0)) - first) / (last - first))
     along = quat.multiply(quat.slerp(np.broadcast_to(quat.IDENTITY, lean.shape), lean, arms.bend_hang * bent), upright)
@@ -115,8 +115,9 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, below: Be
 
 
 def _out_from_a_lean(wrists: Array, torso: Torso, upright: Array, arms: ArmSettings) -> Array:
-    """How wrists (f, 2, 3) give way, (f, 2, 3), to a trunk that leans to the other side: softly outward of the
-    shoulder, which is over the trunk then; as one does for balance."""
+    """How wrists (f, 2, 3) give way, (f, 2, 3), to a trunk that leans to the other side: softly, outward from the
+    shoulder, which is then over the trunk, as people do for balance.
+    """
     across = torso.shoulders[:, 0] - torso.shoulders[:, 1]
     higher = np.degrees(np.arcsin(np.clip(across[:, 1] / np.linalg.norm(across, axis=1), -1.0, 1.0)))
     outward = np.array([1.0, -1.0])
@@ -141,7 +142,7 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
     """Where free hands hang from the shoulders, in the chest's upright axes, and how far inertia takes them from there.
 
     Both (n, 2, 3) at the body's times, the second in the world; and (n, 2), 0 to 1, how much they must keep clear of
-    the trunk: as far as they are held back, and all the time where there is a bar.
+    the trunk: as far as they are held back, and always if there is a bar.
     """
     settings, skeleton, arms = context.settings, context.skeleton, context.settings.arms
     rate = 1.0 / float(body.times[1] - body.times[0])
@@ -202,8 +203,9 @@ def _upward(x: Array) -> Array:
 
 
 def _hung(hang: Array, rate: float, context: Context) -> Array:
-    """How far hands (n, 2, 3) sink, (n, 2): a forearm that is up hangs from its elbow, and is level only as it swings
-    through."""
+    """How far hands (n, 2, 3) sink, (n, 2): a raised forearm hangs from its elbow, and is level only as it swings
+    through.
+    """
     arms, skeleton = context.settings.arms, context.skeleton
     lengths = tuple(float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("elbow", "radiocarpal"))
     poles = np.array([[s * arms.elbow_out, -arms.elbow_down, -arms.elbow_back] for s in (1.0, -1.0)])
@@ -220,8 +222,9 @@ def _at_most(way: Array, most: float) -> Array:
 
 
 def _speed_limit_offset(path: Array, rate: float, arms: ArmSettings) -> tuple[Array, Array]:
-    """How a hand on a path (n, 3) in the world leaves it, (n, 3): where it is too quick it takes a shorter way; and how
-    much (n,) it is held back, 0 to 1."""
+    """How a hand leaves its path (n, 3) in the world, (n, 3): where it is too quick it takes a shorter way. And how
+    much (n,) it is held back, 0 to 1.
+    """
     ones = np.ones(len(path))
     quick = np.linalg.norm(np.gradient(path, axis=0), axis=1) * rate
     if quick.max() <= arms.quick:
@@ -232,7 +235,7 @@ def _speed_limit_offset(path: Array, rate: float, arms: ArmSettings) -> tuple[Ar
 
 
 def lately(tempo: Array, rate: float, around: float) -> Array:
-    """Mean (n,) of the tempo over so many seconds around: effort, by which hands rise slowly."""
+    """Mean (n,) of the tempo over so many seconds around: the effort, with which hands rise slowly."""
     width = max(1, round(around * rate))
     summed = np.cumsum(np.concatenate((np.repeat(tempo[:1], width), tempo, np.repeat(tempo[-1:], width))))
     return np.asarray((summed[2 * width :] - summed[: -2 * width]) / (2 * width))
@@ -256,7 +259,7 @@ def _behind_the_chest(hands: tuple[Array, Array], yaw: Array, rate: float, arms:
 
 
 def _wandering(times: Array, arms: ArmSettings) -> Array:
-    """Slow ways (n, 2, 3) of both hands, each its own, about 1 far: nobody's arms are one the other's mirror image."""
+    """Slow movements (n, 2, 3) of both hands, about 1 far, different for each: nobody's arms mirror each other."""
     hands = np.arange(6).reshape(2, 3)
     waves = ((arms.wander_slow, arms.wander_behind), (arms.wander_quick, arms.wander_quick_behind))
     slow, fast = (np.sin(2 * np.pi * (times[:, None, None] / every + share * hands)) for every, share in waves)
@@ -264,7 +267,9 @@ def _wandering(times: Array, arms: ArmSettings) -> Array:
 
 
 def _swing(plan: Plan, body: Trajectory, settings: MotionSettings) -> Array:
-    """How far forward each hand (n, 2) is at the body's times: as the legs' momentum asks, or as she walks."""
+    """How far forward each hand (n, 2) is at the body's times: as the momentum of the legs demands, or as the dancer
+    walks.
+    """
     both = np.outer(body.arms[:, 0], (-1.0, 1.0))
     gait = walking(plan.walks, body.times, settings.walk)
     return both if gait is None else np.asarray((1.0 - gait.own[:, None]) * both + gait.hands)
@@ -303,8 +308,8 @@ def _press(press: Press, at: Array, hands: HandTargets, body: Trajectory, contex
 def _lay_down(press: Press, body: Trajectory, context: Context) -> tuple[Array, Array]:
     """How a palm lies on its panel: the hand's rotation (4,) and where its elbow points (3,).
 
-    Of many ways the one that is easiest for shoulder and wrist as the body is at the note and as the palm leaves, and
-    then the one whose fingers point most from the body to the panel.
+    Of many directions, the one that is easiest for shoulder and wrist as the body is at the note and as the palm
+    leaves; and among these the one whose fingers point most from the body to the panel.
     """
     when, side, skeleton = (
         np.array([press.start, min(press.end, press.start + context.settings.hands.held)]),
@@ -330,7 +335,7 @@ def _lay_down(press: Press, body: Trajectory, context: Context) -> tuple[Array, 
     wrists = panel - quat.rotate(laid, palm_points(skeleton)[side].offset)
     strain = np.zeros(len(wrists))
     for shoulder, turned in zip(shoulders[:, side], chest, strict=True):
-        # the body is drawn on until the arm reaches
+        # the body is pulled until the arm reaches
         goal = ArmGoal(np.tile(shoulder, (len(wrists), 1)), np.tile(turned, (len(wrists), 1)), wrists, laid, poles)
         joints = arm_rotations(skeleton, side, goal)
         past = (

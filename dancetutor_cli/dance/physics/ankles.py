@@ -1,4 +1,6 @@
-"""Ankles within their limits over feet that are held: legs swivel, feet in the air turn, feet that stand lean."""
+"""Ankles within their limits over feet that are held: legs turn about their own axis, feet in the air turn, standing
+feet lean.
+"""
 
 from __future__ import annotations
 
@@ -25,10 +27,10 @@ _ASIDE = np.array([1.0, 0.0, 0.0])
 def eased_ankles(
     skeleton: Skeleton, poses: Poses, feet: AnkleTracks, plants: Plants, held: Array, times: Array
 ) -> tuple[Poses, AnkleTracks, Plants]:
-    """Poses and feet whose ankles are within their limits, and where soles still lie on the floor.
+    """Poses and feet whose ankles are within their limits, and the places where soles still lie on the floor.
 
-    What an ankle is twisted too far its leg swivels, knee aside, between hip and foot. Feet in the air, or on one end,
-    turn; a foot that lies flat leans on an edge as far as the leg over it leans too far.
+    If an ankle is twisted too far, the leg turns by the excess between hip and foot, knee aside. Feet in the air, or on
+    one end, turn; a foot that lies flat leans on an edge as far as the leg over it leans too far.
 
     poses : with legs that end in `feet`; held : (f, 2) how far feet stand
     """
@@ -49,7 +51,7 @@ def eased_ankles(
 
 
 def _swivelled(skeleton: Skeleton, poses: Poses, feet: AnkleTracks, times: Array) -> Poses:
-    """Poses whose legs have swivelled by what ankles would be twisted too far, as far as hips let them."""
+    """Poses whose legs have turned by the excess of their ankles, as far as the hips allow."""
     rotations = poses[0].copy()
     places, world = world_transforms(skeleton, *poses)
     for side in "lr":
@@ -71,7 +73,7 @@ def _swivelled(skeleton: Skeleton, poses: Poses, feet: AnkleTracks, times: Array
 
 
 def _twisted(turns: Array) -> Array:
-    """Radians (f,) that ankles, turned locally by (f, 4), are twisted past their limit; 0 within."""
+    """Radians (f,) by which ankles, turned locally by (f, 4), are twisted past their limit; 0 within."""
     twist = quat.to_vector(quat.swing_twist(turns, quat.UP)[1])[:, 1]
     most = np.radians(LIMITS["l_talocrural"].twist[1] - MARGIN)
     return np.asarray(np.sign(twist) * np.maximum(np.abs(twist) - most, 0.0))
@@ -117,7 +119,7 @@ def _pitched(turns: Array, wanted: Array, ball: NDArray[np.bool_]) -> Array:
 def _leaning(
     skeleton: Skeleton, rotations: Array, feet: AnkleTracks, held: Array, times: Array
 ) -> tuple[AnkleTracks, bool]:
-    """Feet that lean by what their ankles are past their limits, balls in place; whether any had to."""
+    """Feet that lean by the excess of their ankles, balls in place; and whether any had to."""
     places, turns, changed = feet.places.copy(), feet.turns.copy(), False
     world = world_transforms(skeleton, rotations, np.zeros((len(rotations), 3)))[1]
     low = lowest(skeleton, feet)

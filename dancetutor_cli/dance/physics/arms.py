@@ -1,4 +1,4 @@
-"""Arms out of trunk, legs and each other: back to where the input has them, or, where that is wrong, pushed out."""
+"""Arms out of trunk, legs and each other: back to their place in the input or, if that is wrong, pushed out."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ from dancetutor_cli.dance.smoothing import both_envelopes, upper_envelope
 Array = NDArray[np.float64]
 Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 
-# Arms out of trunk, legs and each other: where a style sends them there, they go back to where the input has them.
+# Arms out of trunk, legs and each other: if a style sends them there, they go back to their place in the input.
 #
-# The input's arms are seen from the trunk, as local turns are: what was clear of the trunk there is clear of it here.
+# The arms of the input are taken in the trunk's frame, as local turns: what was clear of the trunk there is clear of it
+# here.
 
 ALLOWED = 0.003  # metres that an arm may be in something, because clothes and skin give way
 DEEPER = 0.002  # metres by which it must be deeper than in the input to count as a fault of the style
@@ -51,8 +52,9 @@ def clear_arms(skeleton: Skeleton, given: Array, poses: Poses, feet: AnkleTracks
 def push_arms_out(skeleton: Skeleton, poses: Poses, times: Array) -> Array:
     """Local rotations (f, j, 4) of poses whose forearms and hands are out of trunk and legs.
 
-    For captured motion on another body, whose input is no better. Each shoulder turns the way in which its arm comes
-    out soonest, by d g / |g|^2 in rounds: d the depth, g its derivative by the turn; it comes and goes smoothly.
+    For captured motion on another body, whose input has the same fault. Each shoulder turns in the direction in which
+    its arm comes out soonest, by d g / |g|^2 in rounds: d the depth, g its derivative by the turn; the turn comes and
+    goes smoothly.
     """
     rotations = poses[0].copy()
     for _ in range(OUT_ROUNDS):

@@ -1,4 +1,6 @@
-"""How much of which style there is: one, a blend as `fierce:0.6,heavy:0.4`, and what changes by measures of a song."""
+"""How much of which style there is: one style, a blend such as `fierce:0.6,heavy:0.4`, or changes by measures of a
+song.
+"""
 
 from __future__ import annotations
 
@@ -52,14 +54,16 @@ class Blend:
         return np.asarray(state_weights(self.changes, times) @ np.array(self.states))
 
     def within(self, times: Array) -> tuple[list[Style], Array]:
-        """The styles that there are at some of the times (f,), the one with most first, and their shares (f, s)."""
+        """The styles that are used at any of the times (f,), the one with the largest share first, and their shares (f,
+        s).
+        """
         shares = self.shares(times)
         total = shares.sum(axis=0)
         order = [int(k) for k in np.argsort(-total, kind="stable") if total[k] > 0.0]
         return [self.styles[k] for k in order], shares[:, order]
 
     def settings(self, motion: Path | None, form: str) -> MotionSettings | SettingsCourse:
-        """The numbers of the motion that it makes of a form and a file of changes, as `load_settings` takes them."""
+        """The numbers of the motion that follow from a form and a file of changes, as `load_settings` takes them."""
         numbers = [style.motion for style in self.styles]
         states = tuple(load_settings(motion, form, tuple(zip(numbers, state, strict=True))) for state in self.states)
         return states[0] if len(set(states)) == 1 else SettingsCourse(states, self.changes)
@@ -75,7 +79,7 @@ class StyleChoice:
     measures: tuple[int, ...] = ()
 
     def blend(self, timing: Timing | None = None) -> Blend:
-        """The blend in a song, which takes the measure before each change for it; UsageError where there is no song."""
+        """The blend in a song; each change takes place in the measure before it. UsageError if there is no song."""
         if self.measures and timing is None:
             raise UsageError(
                 f"style {self.text} changes by measures, and captured motion has none; name a style without 'measures'"
@@ -94,8 +98,7 @@ class StyleChoice:
 def load_choice(text: str) -> StyleChoice:
     """What a `--style` names: NAME or FILE, or NAME:WEIGHT,NAME:WEIGHT; a file may change by measures.
 
-    Raises UsageError for what is no such text and for names that there are not, FileError with the line for a file that
-    is wrong.
+    Raises UsageError for a text in another form and for unknown names, FileError with the line for a wrong file.
     """
     weights = weights_of(text)
     parts = _parts(text, weights)
@@ -121,7 +124,7 @@ def load_choice(text: str) -> StyleChoice:
 
 
 def style_sources(text: str) -> tuple[tuple[str | Path, float], ...]:
-    """What a `--style` is made of, for fingerprints: names of `configs/styles` and files, with their weights."""
+    """The parts of a `--style`, for fingerprints: names of `configs/styles` and files, with their weights."""
     out: list[tuple[str | Path, float]] = []
     for name, weight in weights_of(text):
         is_file = name not in config_names("styles")
@@ -136,7 +139,7 @@ def style_sources(text: str) -> tuple[tuple[str | Path, float], ...]:
 def weights_of(text: str, folder: Path = Path()) -> list[tuple[str, float]]:
     """Names of styles and their weights, above 0 to 1, in a `--style`; one alone has 1. folder : where files lie
 
-    Raises UsageError for what is no such text.
+    Raises UsageError for a text in another form.
     """
     parts = [part.strip() for part in text.split(",")]
     if len(parts) == 1 or is_one_name(text, folder):
@@ -211,7 +214,7 @@ def _states(blends: list[list[tuple[Style, float]]]) -> tuple[tuple[Style, ...],
     return tuple(styles), states
 
 
-# What the ragdolls of several styles make of one motion.
+# How the results of the ragdolls of several styles are mixed.
 
 
 def mean_poses(poses: Sequence[Poses], shares: Array) -> Poses:

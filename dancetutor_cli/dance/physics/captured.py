@@ -1,8 +1,8 @@
 """A captured motion of any humanoid on a body with the rig's joints: world deltas, the body's own proportions.
 
 Trunk, head, hands and feet turn in the world as the captured ones turn from their rest pose. Limbs take the directions
-of the captured bones; knees and elbows become pure hinges, which the rest of a forearm's turn does not disturb: it goes
-to the wrist. Legs end, in closed form, where the captured feet stood, all lengths in proportion to the legs'.
+of the captured bones. Knees and elbows become pure hinges; the rest of a forearm's turn goes to the wrist. Legs end, in
+closed form, where the captured feet stood, with all lengths in proportion to the legs.
 """
 
 from __future__ import annotations
@@ -125,7 +125,7 @@ def upright(captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton)
 
 
 def _check(given: _Upright, body: Skeleton, poses: tuple[Array, Array]) -> None:
-    """Raise FileError where the body's segments do not point where the captured ones do."""
+    """Raise FileError if the body's segments do not point where the captured ones do."""
     places, _ = world_transforms(body, *poses)
     paths = _paths(given.captured, given.joints)
     upright = replace(paths, places={name: given.place(name) for name in given.joints})
@@ -140,7 +140,7 @@ def _check(given: _Upright, body: Skeleton, poses: tuple[Array, Array]) -> None:
 
 
 def _without_reference(captured: CapturedMotion, joints: Mapping[str, int]) -> CapturedMotion:
-    """Without the rest pose that some converters put before the motion: from it everything would jump."""
+    """The motion without the rest pose that some converters put before it, and from which everything would jump."""
     first = first_frame(_paths(captured, joints))
     if not first or len(captured.times) - first < 2:
         return captured
@@ -198,7 +198,7 @@ def _leg(places: Mapping[str, Array]) -> float:
 
 
 def _level(pelvis: Array, given: _Upright) -> Array:
-    """Turns (f, 4) of a pelvis wider than the captured one, leaning aside so much less that its hips rise no more."""
+    """Turns (f, 4) of a pelvis wider than the captured one: it leans aside less, so that its hips rise no more."""
     if given.wider <= 0.0:
         return pelvis
     line = quat.rotate(pelvis, np.array([1.0, 0.0, 0.0]))
@@ -242,8 +242,9 @@ def _limb(body: Skeleton, given: _Upright, side: str, chain: tuple[str, str, str
 def _plane(u: Array, v: Array, axis: Array) -> tuple[Array, Array]:
     """The hinge's axis (f, 3) in the world, and the bend (f,) about it, of two bones along u and v.
 
-    axis : (f, 3) where the captured upper bone has it, but for a turn about the bone, which differs from rig to rig and
-    is found over the whole clip: most people bend the right way most of the time. It decides where a limb is straight.
+    axis : (f, 3) of the captured upper bone. It may be turned about the bone, which differs from rig to rig; this turn
+    is found over the whole clip, because people bend the right way most of the time. The axis decides where a limb is
+    straight.
     """
     normal = np.cross(u, v)
     sine = np.linalg.norm(normal, axis=1)
@@ -285,7 +286,8 @@ class _Feet:
 def _feet(body: Skeleton, given: _Upright, world: Array) -> _Feet:
     """Feet flat where they stand, their balls over the places of the captured ones; writes feet and toes of `world`.
 
-    As far aside as the body's hips are wider: legs that slanted to a narrow stance would need ankles that nobody has.
+    They stand as much farther apart as the body's hips are wider; legs that slanted to a narrow stance would need
+    impossible ankles.
     """
     places, turns, stands, raised = [], [], [], []
     for side in "lr":

@@ -175,7 +175,7 @@ class _Braid(NamedTuple):
 
 @inner_kernel
 def _rub(p: Array, state: Array, anchors: Anchors, now: int, radii: tuple[float, ...], share: float) -> None:
-    """Take a share of their speed along it off points (n, 3) that touch something, as seen from what they touch.
+    """Points (n, 3) that touch something lose a share of their speed along it, as seen from what they touch.
 
     state : (2, n, 3), where they were, and where they were to have come from
     """
@@ -225,7 +225,7 @@ def _limited(
     most: tuple[float, float, float],
     segment: tuple[float, tuple[float, ...], Array],
 ) -> tuple[Vec, Vec]:
-    """The lower end of a segment that turns and rises no further than it may, and where it is pushed from there.
+    """The lower end of a segment that turns and rises no farther than it may, and where it is pushed from there.
 
     was : its direction a step ago; most : radians from hanging down, of turning, and of turning where it is pushed
     segment : its length, the capsules' radii and ends

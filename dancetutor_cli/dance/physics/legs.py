@@ -12,10 +12,10 @@ from dancetutor_cli.dance.rig.body import centre_of_mass, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond
 from dancetutor_cli.dance.smoothing import cubic, low_pass, upper_envelope
 
-# Legs that do not pop: near the full stretch a leg comes to its end slower and slower, and the body gives the rest.
+# Legs that do not pop: near the full stretch a leg comes to its end ever more slowly, and the body gives the rest.
 #
 # Popping is a question of millimetres: a leg at 170 degrees is 0.4 % shorter than a straight one. A foot in the air
-# comes nearer by them; over a foot that stands the pelvis sinks, early and smoothly.
+# comes nearer by these millimetres; over a foot that stands the pelvis sinks by them, early and smoothly.
 
 Array = NDArray[np.float64]
 FROM, TO = np.radians(22.0), np.radians(7.0)  # bends of a knee: where the stretch grows slower, and where it ends
@@ -58,9 +58,9 @@ def soft_legs(
 
 
 def risen(skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks, plants: Plants, times: Array) -> Array:
-    """Root (f, 3), so high that ankles of feet whose heels are held are within their limits, as far as legs reach.
+    """Root (f, 3), so high that ankles of feet with held heels are within their limits, as far as legs reach.
 
-    Where thighs are long and shanks short a captured squat would bend ankles too far.
+    On a body with long thighs and short shanks, a captured squat would bend the ankles too far.
     """
     rotations, root = poses
     for _ in range(RISES):
@@ -96,7 +96,7 @@ def too_high(skeleton: Skeleton, pelvis: tuple[Array, Array], feet: AnkleTracks,
 def _soft(leg: Leg, distance: Array, times: Array) -> Array:
     """How far (f,) hip and ankle must be apart that are `distance` (f,) metres apart.
 
-    Never so far as a straight leg; and what is left of the stretch comes and goes slowly, so that a pop is none.
+    It is never as far as a straight leg, and the last of the stretch comes and goes slowly, so there is no pop.
     """
     start, end = leg.length(FROM), leg.length(TO)
     over = np.maximum(distance - start, 0.0)
@@ -107,10 +107,10 @@ def _soft(leg: Leg, distance: Array, times: Array) -> Array:
     return np.asarray(np.where(distance > start, leg.lengths(FROM - np.maximum(slow, 0.0)), distance))
 
 
-# Weight where it was: a style moves limbs, and the body answers so that the centre of mass keeps its path.
+# The weight keeps its place: a style moves limbs, and the body answers so that the centre of mass keeps its path.
 #
-# Without this the arms and trunk of a ragdoll would throw the mass about, and she would fall over, or fly on no
-# parabola. To all sides the path is the input's; in height she may stand otherwise, but comes there slowly.
+# Without this, the arms and trunk of a ragdoll would throw the mass about, and the dancer would fall over, or fly on no
+# parabola. The horizontal path is the input's; in height the dancer may stand lower or higher, but changes slowly.
 
 Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 ROUNDS = 4  # rounds of moving the root: legs follow, and have mass
@@ -150,7 +150,7 @@ def restore_mass_path(
 
 
 def _slowly(times: Array, values: Array) -> Array:
-    """What of values (f,) changes slowly."""
+    """The slow part of values (f,)."""
     grid = np.arange(times[0], times[-1] + 1 / RATE, 1 / RATE)
     slow = low_pass(cubic(times, values[:, None], grid), RATE, STANCE)
     return np.asarray(cubic(grid, slow, times)[:, 0])

@@ -42,7 +42,7 @@ from dancetutor_cli.dance.smoothing import cubic, smooth, upper_envelope
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.run.errors import DancetutorError
 
-# Input skeleton -> ragdoll -> output skeleton: a motion in, the motion that the ragdoll makes of it out.
+# Input skeleton -> ragdoll -> output skeleton: a motion goes in, and the motion that the ragdoll makes of it comes out.
 
 Array = NDArray[np.float64]
 Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
@@ -68,7 +68,7 @@ class RagdollResult:
 
 @dataclass(frozen=True, slots=True)
 class Wishes:
-    """What is to happen to a motion beside its style.
+    """What is to happen to a motion besides its style.
 
     corrections : of `CORRECTIONS`, for captured motion: knees that pop, feet that skate
     pushes, trips : what befalls her
@@ -81,13 +81,13 @@ class Wishes:
     own_legs: bool = False
 
     def within(self, start: float, end: float) -> Wishes:
-        """The same with only what befalls her between two seconds."""
+        """The same with only the pushes and trips between two seconds."""
         pushes = tuple(push for push in self.pushes if start <= push.second <= end)
         return replace(self, pushes=pushes, trips=tuple(trip for trip in self.trips if start <= trip.second <= end))
 
 
 def wishes_of(push: Sequence[str], trip: Sequence[float], rate: float = 1.0) -> Wishes:
-    """Pushes and trips as on the command line, at seconds of the song, as what befalls her in music at a rate.
+    """Pushes and trips from the command line, in seconds of the song, as pushes and trips in music at a rate.
 
     UsageError for a push that is none.
     """
@@ -163,7 +163,7 @@ def through_ragdoll(motion: Motion, blend: Blend, wishes: Wishes = Wishes()) -> 
 
 
 def _undisturbed(motion: Motion, wishes: Wishes) -> Array:
-    """How far (f,) nothing has befallen her lately, 0 to 1."""
+    """How undisturbed (f,) the motion is, 0 to 1: less during a push or trip, and for a while after it."""
     out = np.ones(len(motion.times))
     for second in (*(p.second for p in wishes.pushes), *(t.second for t in wishes.trips)):
         since = motion.times - second
@@ -172,7 +172,7 @@ def _undisturbed(motion: Motion, wishes: Wishes) -> Array:
 
 
 def _possible(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
-    """Poses that give way only so far that hips and ankles of feet which stay stay within their limits."""
+    """Poses that give way only as far as hips and ankles of feet which stay are within their limits."""
     for _ in range(GIVING_BACK):
         past = np.zeros(len(motion.times))
         for name in (f"{s}_{n}" for s in "lr" for n in ("hip", "talocrural")):
@@ -186,7 +186,7 @@ def _possible(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
 
 
 class _Run(NamedTuple):
-    """What a ragdoll made of its input, how far from it that is, the seconds (f,) of its steps, and its soles then."""
+    """The result of a ragdoll, its distance from the input, the seconds (f,) of its steps, and its soles then."""
 
     made: Poses
     distances: Distances
@@ -244,7 +244,7 @@ def _resampled(motion: Motion, at: Array, sample_rate: float) -> tuple[Array, Ar
 
 
 def _pressing(motion: Motion) -> Array:
-    """How much (f,) of each key must be as in the input, because a palm presses a panel then: 0 to 1."""
+    """How much (f,) each key must be as in the input because a palm presses a panel then: 0 to 1."""
     out = np.zeros(len(motion.times))
     for contact in motion.contacts:
         if contact.limb >= Limb.LEFT_HAND:
@@ -255,8 +255,9 @@ def _pressing(motion: Motion) -> Array:
 
 # Springs and densities for a body not seen before: a short search on a standard clip.
 #
-# Densities give each part the share of the body's mass that it has of a person's; then the frequency and the damping of
-# all springs are searched with which the ragdoll follows the clip most closely, in the goals of one-on-one simulation.
+# Densities give each part the share of the body's mass that it has in a person. Then the search finds the frequency and
+# the damping of all springs with which the ragdoll follows the clip most closely, by the goals of one-on-one
+# simulation.
 
 FREQUENCIES, DAMPINGS = (24.0, 28.0, 32.0, 36.0, 40.0), (0.4, 0.5, 0.65)
 STURDY = 22.0  # kg/m^2: a body's mass is this times the square of its height

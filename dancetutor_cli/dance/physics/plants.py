@@ -14,10 +14,11 @@ from dancetutor_cli.dance.rig.body import sole_points
 from dancetutor_cli.dance.rig.skeleton import Skeleton, within
 from dancetutor_cli.dance.smoothing import smooth
 
-# Feet that do not skate: where a sole was held to the floor it stays to the hair, and the way between is made to fit.
+# Feet that do not skate: a sole that was held to the floor stays exactly in its place, and the way between is fitted to
+# that.
 #
 # A foot is held at its heel, at its ball, or at both and then lies flat. While it is held its heading does not change,
-# unless it pivots on its ball; from hold to hold, what holding has changed fades smoothly into what the next one needs.
+# unless it pivots on its ball. From hold to hold, the changes of one hold fade smoothly into those of the next.
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -53,7 +54,7 @@ def runs(flags: Flags) -> NDArray[np.int64]:
 
 
 def tidied(plants: Plants, rate: float) -> Plants:
-    """Without holds too short to be any, and without gaps too short to be steps."""
+    """The holds without those that are too short, and without gaps that are too short to be steps."""
     out = []
     for flags in (plants.heel, plants.ball):
         new = flags.copy()
@@ -69,7 +70,7 @@ def tidied(plants: Plants, rate: float) -> Plants:
 
 
 def let_go(skeleton: Skeleton, feet: AnkleTracks, plants: Plants) -> Plants:
-    """Without the beginnings and ends of plants in which a foot on one end alone is far from where it will be, or was.
+    """The holds without the beginnings and ends in which a foot on one end alone is far from where it will be, or was.
 
     Feet come down and leave over heel and toe tips, and roll on: holding them longer would drag the body after them.
     """
@@ -136,7 +137,7 @@ def lowest(skeleton: Skeleton, feet: AnkleTracks) -> Array:
 
 
 def _between(spans: list[tuple[int, int]], feet: AnkleTracks, made: tuple[Array, Array, Array], side: int) -> None:
-    """Let what holding has changed at both ends of each way through the air fade into each other."""
+    """Let the changes at both ends of each way through the air fade into each other."""
     places, turns, held = made
     frames = len(places)
     for (_, left), (right, _) in pairwise([(0, 0), *spans, (frames, frames)]):

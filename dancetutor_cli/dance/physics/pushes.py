@@ -124,9 +124,9 @@ class BreakableSoles(Actor):
 
 # Pushes and trips: a shove against the chest, or an obstacle that catches a foot; springs soften while they act.
 #
-# She gives way as a body does, and the springs bring her back within a second. Feet go on as the play says, unless the
-# shove is too strong to stand: then she staggers, and misses the notes of that time. A foot that was caught is late,
-# and misses the notes that it cannot reach any more.
+# The dancer gives way as a body does, and the springs bring her back within a second. Feet step as planned, unless the
+# push is too strong to stand: then she staggers, and misses the notes of that time. A foot that was caught is late, and
+# misses the notes that it cannot reach any more.
 
 Blow = tuple[float, Array]  # second, and force (3,) in newtons, world
 LASTS = 0.15  # seconds that a push acts, and that an obstacle holds a foot
@@ -289,7 +289,7 @@ def missed_by_trip(motion: Motion, second: float, side: int) -> list[Contact]:
 
 
 def staggering(motion: Motion, feet: AnkleTracks, second: float, gave: Array) -> AnkleTracks:
-    """Feet of somebody who cannot stay: both step after the body, one after the other, and come back.
+    """Feet of a dancer who cannot stay in place: both step after the body, one after the other, and come back.
 
     gave : (3,) metres of the body from where it should be
     """

@@ -1,4 +1,4 @@
-"""What physics leaves a little off, closed afterwards: feet, joint limits, hands on the bar."""
+"""Small errors of the simulation, corrected afterwards: feet, joint limits, hands on the bar."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from dancetutor_cli.dance.rig.limbs import arm_in_torso
 from dancetutor_cli.dance.rig.skeleton import LIMITS, Skeleton, beyond, within
 from dancetutor_cli.dance.smoothing import both_envelopes, smooth, upper_envelope
 
-# Feet back where they were: physics alone lets them slide by half a centimetre, so legs are closed by IK afterwards.
+# Feet back in their places: physics alone lets them slide by half a centimetre, so legs are closed by IK afterwards.
 #
-# Ankles get the place and the feet the turn that they have in the input, exactly; thighs keep the plane in which the
-# ragdoll bent them. Where a leg would have to be longer than it is, the pelvis gives way.
+# Ankles get exactly the place, and feet exactly the turn, that they have in the input. Thighs keep the plane in which
+# the ragdoll bent them. If a leg would have to be longer than it is, the pelvis gives way.
 
 Array = NDArray[np.float64]
 Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
@@ -114,7 +114,8 @@ def _pull(skeleton: Skeleton, pelvis: Array, root: Array, legs: list[Leg], goals
     return by
 
 
-# Joint limits to the degree: the engine's are cones and give way a little, as springs do; what is past comes back.
+# Exact joint limits: those of the engine are cones and give way a little, as springs do; what is past a limit comes
+# back.
 
 MARGIN = 0.5  # degrees inside the limits
 SLOWLY = 0.25  # seconds over which a joint is brought back, before and after it would be past a limit
@@ -167,9 +168,9 @@ def _forward(bone: Bone, turns: Array) -> Array:
     return out
 
 
-# Hands that stay on the bar: a style moves her body, and arms are closed by IK to where the palms lie.
+# Hands that stay on the bar: a style moves the body, and IK closes the arms to where the palms lie.
 #
-# Where an arm would be too short, trunk and pelvis give way towards the input's, whose hands are there.
+# If an arm would be too short, trunk and pelvis give way towards the input, whose hands are there.
 
 REACH = 0.35  # seconds in which a hand comes to where the input has it, and goes again
 LONGEST = 0.995  # of an arm's length that it stretches

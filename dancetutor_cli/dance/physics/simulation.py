@@ -1,4 +1,6 @@
-"""The simulation: springs and dampers draw the ragdoll after its points, a second-order follower; how far off it is."""
+"""The simulation: springs and dampers pull the ragdoll after its points; a second-order follower; the remaining
+distances.
+"""
 
 from __future__ import annotations
 
@@ -71,7 +73,8 @@ def follow_all(skeleton: Skeleton, rotations: Array, root: Array, style: Style) 
 
 
 def _arms(skeleton: Skeleton, given: Array, rotations: Array, rate: float, follower: Follower) -> None:
-    """Arms as seen by who turns with her, in place: they make up for what the trunk does in the same moment.
+    """Filter arms in the frame of the turning body, in place, because they make up for what the trunk does in that
+    moment.
 
     Shoulders that did so some frames later or earlier would throw the hands about.
     """
@@ -92,8 +95,8 @@ def _followed(turns: Array, rate: float, follower: Follower) -> Array:
 
 # The simulation: springs and dampers draw the ragdoll after the points of the input, step by step.
 #
-# Forces are actuators of the engine (implicitfast), which sees the place that a point has in this very step: forces set
-# from outside before a plain step are one step old, and that explodes at 240 Hz.
+# Forces are actuators of the engine (implicitfast), which uses the place of a point in the present step. Forces that
+# are set from outside before a plain step are one step old, and that explodes at 240 Hz.
 
 PIECE = 2400  # steps whose targets are in memory at once
 

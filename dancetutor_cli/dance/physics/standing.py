@@ -1,9 +1,8 @@
-"""How somebody captured stands: which way is up, where the clip begins, and the pose from which joints turn.
+"""How a captured person stands: which way is up, where the clip begins, and the pose from which joints turn.
 
-The pose that a file has with all channels at 0 serves where it is a person who stands. Where it is not (bones along one
-axis, as many studios export them), the pose is found from the motion: joints of a person move, but each keeps
-directions of its own, to the next joint, to the left, to the floor while a foot stands, which are known for a body
-that stands.
+The pose of a file with all channels at 0 is used if it is a standing person. Otherwise (bones along one axis, as many
+studios export them) the pose is found from the motion: joints of a person move, but each keeps directions of its own
+(to the next joint, to the left, to the floor while a foot stands) that are known for a standing body.
 """
 
 from __future__ import annotations
@@ -76,7 +75,7 @@ def standing_pose(given: JointPaths, body: Skeleton) -> StandingPose:
 
 
 def standing_frames(path: Array, fps: float) -> NDArray[np.bool_]:
-    """In which frames (f,) an ankle (f, 3) may stand: low and slow, or the lowest ones if it never rests."""
+    """The frames (f,) in which an ankle (f, 3) may stand: low and slow, or the lowest ones if it never rests."""
     if len(path) < 3:
         return np.ones(len(path), dtype=bool)
     speed = np.linalg.norm(np.gradient(path, 1.0 / fps, axis=0), axis=1)
@@ -143,7 +142,7 @@ def _to_upright(left: Array, up: Array) -> Array:
 
 
 def _facing(given: JointPaths, turn: Array) -> Array:
-    """The turn to upright, half around for somebody who would show the camera the back nearly all the time."""
+    """The turn to upright, and half around if the person would show the camera the back nearly all the time."""
     left = quat.rotate(turn, _unit(_left(given.places))) * [1.0, 0.0, 1.0]
     mean = left.mean(axis=0)
     if float(np.linalg.norm(mean)) < TOWARDS or mean[0] > 0:
@@ -244,7 +243,7 @@ def _axes(first: Array, second: Array) -> Array:
     return np.asarray(quat.from_matrix(np.stack([x, y, np.cross(x, y)], axis=1)))
 
 
-# What converters write before the motion.
+# Rest poses that converters write before the motion.
 
 _SEARCHED = 3.0  # seconds at the beginning of a clip in which a rest pose may stand
 # a rest pose: joints jump from it by this many times the next step, and by this part of a leg's length

@@ -1,9 +1,9 @@
-"""Feet that stand where an eye sees them stand: still over each stand that the outside detector finds on them.
+"""Feet that stand where people see them stand: still in each stand that an independent measure finds.
 
-The joints of the soles hold what touches the floor; an eye also sees ankles that roll slowly, toes that leave slowly,
-and feet that creep a centimetre over the floor. In rounds: stands are found by height and speed, as the report finds
-them; in each the foot keeps one place and, while its ankle is in it, one turn; between stands what that has changed
-fades. What moves between stands is faster afterwards, so each round finds them shorter and stiller.
+The joints of the soles hold what touches the floor. People also see ankles that roll slowly, toes that leave slowly,
+and feet that creep a centimetre over the floor. So stands are found by height and speed, as the report finds them, in
+rounds. In each stand the foot keeps one place and, while its ankle stands, one turn. Between stands the changes fade.
+What moves between stands is faster afterwards, so each round finds the stands shorter and stiller.
 """
 
 from __future__ import annotations
@@ -130,8 +130,8 @@ class _Foot:
     def _turns(self, turn: Array, stand: _Stand, ball: Array, low: bool) -> tuple[Array, Flags]:
         """Turns (n, 4) of the foot in a stand, level across, and where (n,) it lies flat; ball : (n, 3), held.
 
-        It keeps its heading, and in each stand of the ankle its pitch, but where the leg is too short: there the heel
-        rises as it does without.
+        It keeps its heading and, in each stand of the ankle, its pitch. If the leg is too short, the heel rises as it
+        does without a hold.
         """
         part = slice(stand.first, stand.end)
         heading, own = _heading_and_pitch(turn[part])
@@ -152,7 +152,7 @@ class _Foot:
         return _level_turns(heading, pitch), rigid & (pitch == 0.0)
 
     def _pivoted(self, heading: Array, stand: _Stand) -> Array:
-        """Headings (n,) of a foot that pivots: one in each stand of the ankle, but where it is turned far from it."""
+        """Headings (n,) of a foot that pivots: one in each stand of the ankle, unless it is turned far from it."""
         wanted, near = heading.copy(), np.zeros(len(heading), dtype=bool)
         for first, end in stand.ankle:
             wanted[first:end] = np.median(heading[first:end])
@@ -177,7 +177,7 @@ def _level_turns(heading: Array, pitch: Array) -> Array:
 
 
 def _unshuffled(times: Array, path: Array) -> list[tuple[int, int]]:
-    """Stands of a joint; where it goes from one place to another in a stand, there are two."""
+    """Stands of a joint; if it goes from one place to another within a stand, there are two."""
     out: list[tuple[int, int]] = []
     rate = (len(times) - 1) / float(times[-1] - times[0])
     rest = [(int(first), int(end)) for first, end in stand_frames(times, path, MARGIN)]
@@ -200,7 +200,7 @@ def _unshuffled(times: Array, path: Array) -> list[tuple[int, int]]:
 
 
 def _faded(times: Array, values: Array, fixed: Flags) -> Array:
-    """Values (f, d) that hold where they are fixed; between, those before and after fade."""
+    """Values (f, d) that stay where they are fixed; between, the values before and after fade."""
     out = values.copy()
     last = len(times) - 1
     for first, end in runs(~fixed).tolist():

@@ -1,4 +1,6 @@
-"""A style: how a ragdoll follows the dancer, from `configs/styles` or a file; the engine, imported only for one."""
+"""A style: how a ragdoll follows the dancer, from `configs/styles` or a file. The engine is imported only if one is
+used.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,7 @@ from dancetutor_cli.run.reading import config_path, named_file
 from dancetutor_cli.run.schema import NOT_IN_FILES, THREE, Bounds, Names, Text
 from dancetutor_cli.run.yaml_files import load
 
-# The physics engine, imported only when a ragdoll is asked for: plain bakes never wait for it.
+# The physics engine, imported only if a ragdoll is used: plain bakes never wait for it.
 
 
 def engine() -> Any:
@@ -34,7 +36,9 @@ def is_installed() -> bool:
 
 
 def _silent(_: str) -> None:
-    """The engine writes its warnings to the terminal and to a log in the current folder; we ask it for them instead."""
+    """The engine writes its warnings to the terminal and to a log in the current folder; the program reads them itself
+    instead.
+    """
 
 
 # A style: how a ragdoll follows the dancer. Read from `configs/styles` or a file, checked, and given names.

@@ -51,8 +51,9 @@ def contact_figures(motion: Motion) -> tuple[tuple[Figure, ...], Array]:
 
 
 def soles_inside(motion: Motion) -> Array:
-    """How far (k,) the middle of the sole is inside the panel that a whole foot comes down on, metres; below 0
-    outside."""
+    """How far (k,) the middle of the sole is inside the panel on which a whole foot comes down, metres; below 0
+    outside.
+    """
     whole = [c for c in motion.contacts if c.limb < Limb.LEFT_HAND and c.part == Part.WHOLE]
     if not whole:
         return np.zeros(0)
@@ -69,9 +70,9 @@ def contact_errors(motion: Motion) -> Array:
     """When sole or palm reaches the panel minus the note's time, milliseconds (c,), nan where it misses the panel, or
     leaves it while the note is held.
 
-    The motion is resampled at 1 kHz within 50 ms of the note. A contact begins when the lowest point comes within
-    0.2 mm of the surface, after having been higher; a limb that has stood there all the time is on time if it is
-    down at the note. At the note the touching point must be inside the panel.
+    The motion is resampled at 1 kHz within 50 ms of the note. A contact begins when the lowest point comes within 0.2
+    mm of the surface, after having been higher. A limb that has stood there all the time is on time if it is down at
+    the note. At the note the touching point must be inside the panel.
     """
     out = np.full(len(motion.contacts), np.nan)
     for start in range(0, len(motion.contacts), 100):  # in pieces: a long chart has thousands of contacts
@@ -207,7 +208,9 @@ def feet_on_mines(motion: Motion, mines: Array) -> NDArray[np.int8]:
 
 
 def mine_messages(seconds: Array) -> tuple[str, ...]:
-    """On which mines her feet are as these pass, in one line for people; none if on none. seconds : of these mines"""
+    """One line for people that lists the mines on which a foot is as they pass; none if there are none. seconds : of
+    these mines
+    """
     if not len(seconds):
         return ()
     at = [f"{second:.2f} s" for second in np.unique(seconds.round(2)).tolist()]
@@ -216,7 +219,7 @@ def mine_messages(seconds: Array) -> tuple[str, ...]:
     return (f"a foot is on {what}, or less than {100 * MINE_CLEARANCE:g} cm over: {when}",)
 
 
-# Hands on the bar: do the palms lie on the rail while they hold it.
+# Hands on the bar: whether the palms lie on the rail while they hold it.
 
 PIECE = 2000  # samples worked on at once
 RATE = 120.0  # of the samples, per second

@@ -1,4 +1,4 @@
-"""Mechanics: forces that no contact can supply, jumps that fall as things fall, balance over the feet."""
+"""Mechanics: forces that no contact can supply, free fall in jumps, balance over the feet."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from dancetutor_cli.feet.limbs import Limb
 
 # Inverse dynamics: the force and the moment at the root that no contact can supply, the residual.
 #
-# The path of the mass and the momentum about it say which force and moment the world must exert. Sole points on the
-# ground can push (friction up to `FRICTION`), nothing else can; what they cannot supply of it is the residual, in body
-# weights, and body weights times metres. As residuals are given for captured motion (Hicks and others, 2015).
+# The path of the mass and the momentum about it give the force and the moment that the world must exert. Sole points on
+# the ground can push (friction up to `FRICTION`); nothing else can. The residual is what they cannot supply, in body
+# weights, and body weights times metres, as it is given for captured motion (Hicks and others, 2015).
 
 Array = NDArray[np.float64]
 CUT = 10.0  # Hz; accelerations above it come from single frames, not from the body
@@ -75,7 +75,9 @@ def residuals(motion: Motion, body: Body) -> Array:
 
 
 def _looked_at(motion: Motion, body: Body) -> NDArray[np.int64]:
-    """Frames evenly chosen, without the ends, where filters see too little, and without those in which hands push."""
+    """Frames that are evenly chosen, without the ends, where filters have too little input, and without those in which
+    hands push.
+    """
     free = np.ones(len(body.times), dtype=bool)
     free[:3] = free[-3:] = False
     spans = [(c.start, c.end) for c in motion.contacts if c.limb >= Limb.LEFT_HAND]
@@ -86,7 +88,9 @@ def _looked_at(motion: Motion, body: Body) -> NDArray[np.int64]:
 
 
 def _near(down: NDArray[np.bool_], rate: float) -> NDArray[np.bool_]:
-    """Where (f, s) a sole point is down within half a period of the cut: force and moment are known no finer."""
+    """Where (f, s) a sole point is down within half a period of the cut, because force and moment have no finer
+    resolution.
+    """
     half = round(rate / (2.0 * CUT))
     padded = np.pad(down, ((half, half), (0, 0)))
     return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1, axis=0).any(axis=-1))
@@ -111,7 +115,7 @@ def dumbbells(skeleton: Skeleton, body: Body) -> tuple[Array, Array]:
     return np.asarray(places), np.concatenate((masses, masses)) / 2
 
 
-# Jumps: does the centre of mass fall as things fall, and does the ground push no harder than legs can.
+# Jumps: whether the centre of mass falls freely, and whether the ground pushes no harder than legs can.
 
 SHORTEST = 5  # frames; fewer do not determine a parabola
 FIT = 0.12  # seconds; the arc of a shorter flight is so flat (under 2 cm) that a fit of g says nothing
@@ -159,9 +163,10 @@ GROWN = 0.02  # metres by which the hull of the soles is grown
 def balance_figures(body: Body, bar: bool = False) -> tuple[Figure, ...]:
     """Share of the frames on the ground in which the zero-moment point is inside the hull, in percent.
 
-    Twice: of the centre of mass as it is, which is what the goal is for, and without what trembles above 10 Hz. In
-    streams of more than 10 steps a second the latter has lost part of the way of the weight from foot to foot.
-    bar : her hands may hold her, so there is no goal
+    It is measured twice: of the centre of mass as it is, for which the goal is, and without movement above 10 Hz. In
+    streams of more than 10 steps a second, the second figure lacks a part of the way of the weight from foot to foot.
+
+    bar : hands may hold the body, so there is no goal
     """
     return (
         Figure("balance", _share(zmp_margin(body)), "%", None if bar else 98.0, at_least=True),

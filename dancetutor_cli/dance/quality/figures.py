@@ -1,4 +1,4 @@
-"""What a quality report holds, the motion it is measured on, and measures that others publish."""
+"""The contents of a quality report, the motion on which it is measured, and published measures of other authors."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def intervals(flags: NDArray[np.bool_]) -> NDArray[np.int64]:
     return edges.reshape(-1, 2)
 
 
-# Measures of motion that others publish, computed as their authors do, so that figures can stand side by side.
+# Measures of motion that others publish, computed as their authors do, so that figures can be compared.
 #
 # Sources: docs/references.md. Skating ratio: Karunratanakul and others 2023 (GMD). PFC: Tseng and others 2023 (EDGE).
 # Penetration: Yuan and others 2023 (PhysDiff), of the soles, which are the lowest of a body that stands.
@@ -148,7 +148,7 @@ def published_figures(motion: Motion, body: Body) -> tuple[Figure, ...]:
 
 
 def skating_ratio(motion: Motion) -> float:
-    """Part of the frames, 20 a second, in which a foot that is down goes faster than 0.5 m/s, now and on average.
+    """Part of the frames, 20 a second, in which a foot that is down moves faster than 0.5 m/s, now and on average.
 
     Down: below 5 cm in this frame and the next. Average: over five frames, those beyond the ends count as 0.
     """

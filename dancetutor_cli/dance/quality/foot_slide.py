@@ -1,4 +1,4 @@
-"""How far feet slide while they stand, seen from outside: by height and speed of ankles and balls, nothing else.
+"""How far feet slide while they stand, measured only by height and speed of ankles and balls.
 
 Sources: J. Lee and others, *Interactive control of avatars animated with human motion data*, SIGGRAPH 2002, whose
 contacts are where a joint is low and slow; the limits are those of the skating ratio (K. Karunratanakul and others,
@@ -81,7 +81,7 @@ def stands(motion: Motion) -> list[StandingSpan]:
 
 
 def slide_figures(motion: Motion, words: str, goals: bool) -> tuple[Figure, ...]:
-    """Median and worst slide in millimetres. words : put behind the names; goals : whether they are held to them"""
+    """Median and worst slide in millimetres. words : put behind the names; goals : whether the figures have goals"""
     slides = [1000.0 * one.slide for one in stands(motion)]
     median, worst = (float(np.median(slides)), max(slides)) if slides else (float("nan"), float("nan"))
     return (

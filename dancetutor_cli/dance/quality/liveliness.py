@@ -27,7 +27,7 @@ HAND_TURN = 2000.0  # degrees per second that a hand turns on its forearm at mos
 
 
 def liveliness_figures(body: Body, motion: Motion) -> tuple[Figure, ...]:
-    """Figures of the frames from the first step to the last one; nan, and no goal missed, where they are too few."""
+    """Figures of the frames from the first step to the last one; nan, and no goal missed, if there are too few."""
     skeleton, contacts = motion.skeleton, motion.contacts
     stepping = _stepping(body.times, contacts)
     seconds = float(stepping.sum()) / body.rate
@@ -120,8 +120,9 @@ def _band(x: Array, rate: float) -> Array:
 
 
 def landings(body: Body, skeleton: Skeleton, stepping: NDArray[np.bool_]) -> tuple[Array, Array]:
-    """Of each landing of a foot while she steps, how far its knee bends on after it and how far the foot rolls about
-    it, degrees."""
+    """For each landing of a foot during the steps: how far its knee bends on after it, and how far the foot rolls about
+    it, degrees.
+    """
     knees, gives, rolls = 180.0 - knee_angles(body, skeleton), [], []
     first, last = (int(i) for i in (np.argmax(stepping), len(stepping) - np.argmax(stepping[::-1])))
     before, rests, within, back, on = (round(s * body.rate) for s in (BEFORE, RESTS, GIVES, *ROLL))

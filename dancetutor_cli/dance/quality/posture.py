@@ -1,4 +1,4 @@
-"""Poses that are possible and look right: joint limits, limbs in limbs, smoothness, how she stands and jumps."""
+"""Poses that are possible and look right: joint limits, limbs in limbs, smoothness, stance and jumps."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def hair_depth(body: Body, skeleton: Skeleton) -> Array:
     return out
 
 
-# Limbs through limbs: legs and arms as tapered capsules, which are what the eye takes them for.
+# Limbs through limbs: legs and arms as tapered capsules, which is how people see them.
 
 DEEP = 0.01  # metres; what is less deep is clothes and skin that give way
 LEG = (("hip", THIGH), ("knee", KNEE), ("talocrural", ANKLE))  # joints and radii, metres
@@ -191,7 +191,7 @@ def jerk(path: Array, rate: float) -> Array:
     return np.asarray(np.linalg.norm(np.diff(low_pass(path, rate), n=3, axis=0), axis=1) * rate**3)
 
 
-# How she stands, jumps and waits, in the numbers that an eye judges by; most of them have no goal.
+# How the dancer stands, jumps and waits, in the figures by which people judge; most of them have no goal.
 
 WRIST, TURN = 4.0, 650.0  # metres per second that a wrist goes at most; degrees per second that the pelvis turns
 NECK = 80.0  # degrees that a neck turns the head from the chest
@@ -283,8 +283,7 @@ def neck_yaw(body: Body, skeleton: Skeleton) -> Array:
 
 
 def weight_shifts(body: Body, contacts: tuple[Contact, ...]) -> Array:
-    """How far (w,) in metres the pelvis goes to and fro over the ground in each wait between notes, its ends left
-    out."""
+    """How far (w,), metres, the pelvis moves to and fro over the ground in each wait between notes, without its ends."""
     ends = [c.end if c.kind == StepKind.HOLD else c.start for c in contacts]  # a foot may stay after a tap
     busy = sorted({(c.start, float(min(end, body.times[-1]))) for c, end in zip(contacts, ends, strict=True)})
     out, free = [], -np.inf

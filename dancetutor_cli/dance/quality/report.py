@@ -32,8 +32,7 @@ from dancetutor_cli.run.errors import DancetutorError
 # The quality report: what the program itself measures about a motion, by forward kinematics from its rotations.
 #
 # Every figure is of the motion as any viewer of its file shows it: rotations slerped and the root moved straight
-# between keys. Definitions and goals are those of the project's page on the dancer's motion; one module per family of
-# figures.
+# between keys. Definitions and goals are those of docs/motion.md; there is one module for each family of figures.
 
 SHORTEST = 0.05  # seconds; of less there are no accelerations to measure
 Curve = tuple[NDArray[np.float64], NDArray[np.float64]]
@@ -89,7 +88,7 @@ def _curves(motion: Motion, body: Body, errors: NDArray[np.float64]) -> dict[str
     }
 
 
-# Faults of captured motion before and after: knees that pop, feet that skate, joints past what people can.
+# Faults of captured motion before and after: knees that pop, feet that skate, joints past human limits.
 
 Array = NDArray[np.float64]
 BACKWARD = -8.0  # degrees of an elbow's bend: further backward than any bends

@@ -156,7 +156,7 @@ def limb(upper: Vec, lower: Vec, hinge: Vec, reach: Vec, pole: Vec, most: float)
     return qmul(world, qconj(rest)), qaxis(hinge, angle - bent)
 
 
-# Limbs as tapered capsules, which are what the eye takes them for: how deep one is in another one.
+# Limbs as tapered capsules, which is how people see them: how deep one is in another one.
 
 Array = NDArray[np.float64]
 THIGH, KNEE, ANKLE = 0.068, 0.048, 0.035  # radii of a leg, metres
@@ -185,8 +185,8 @@ def _deepest(
 ) -> None:
     """Raise out (f,) to how deep a round cone is in another one, ends (f, 3) of both.
 
-    From a place on the one the other's nearest is known in closed form, and what is left of it is convex along the one:
-    a golden section finds the least.
+    For a place on the first cone, the nearest place of the second is known in closed form. The remaining function is
+    convex along the first cone, so a golden section finds its minimum.
     """
     a, b, c, d = ends
     for f in range(len(out)):
