@@ -133,8 +133,9 @@ class Moments(Clock):
 # The runs of a film: which stretch of the music, how often and how fast, with what helps to learn.
 
 LEAD_IN, LEAD_OUT = 2.0, 3.0  # seconds before the first and after the last note
-REST = 2.2  # seconds of a film of a passage that follow it: time for her to step home, stand and smile
-COUNTABLE = (0.3, 1.6)  # seconds as heard between the numbers of a count-in; songs of gimmicks are at 19 beats a minute
+REST = 2.2  # seconds of film after a passage: time for the dancer to step home, stand and smile
+# seconds as heard between the numbers of a count-in, at least and at most; some gimmick songs have 19 BPM
+COUNTABLE = (0.3, 1.6)
 
 
 @dataclass(frozen=True, slots=True)

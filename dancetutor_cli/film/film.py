@@ -44,8 +44,8 @@ if TYPE_CHECKING:
 # A film: the drawing of any one frame of its plan.
 
 BACKGROUND = (12, 14, 26)
-LANES, WIDE_LANES = 0.74, 0.78  # of the highway's width that lanes may take, of wide pads; words stand beside them
-ALL_LANES = 0.87  # where none do, but the measures' numbers
+LANES, WIDE_LANES = 0.74, 0.78  # part of the highway's width that lanes may take, and lanes of wide pads
+ALL_LANES = 0.87  # the same if there are no words, only numbers of measures
 SQUARE = 2.5  # panel widths between the outer columns of a pad of one square, at most
 LEGEND_OFF = 14.0  # pixels between the song's words and a legend below them
 
@@ -65,7 +65,7 @@ class Film:
         self.lights = PanelLights(lighting(plan.notes, plan.presses), self.columns, self.style.panel_seconds)
         self.base = np.zeros((self.size[1], self.size[0], 3), dtype=np.uint8)
         self.base[...] = BACKGROUND
-        if (strip := self.layout.progress) is not None:  # to the picture's edge, where its graph ends before that
+        if (strip := self.layout.progress) is not None:  # up to the picture's edge, if the graph of it ends before that
             left, top, _, bottom = self._box("progress")
             captions.strip_ground(self.base[top:bottom, left:], self.scale * strip.text)
         self.highway = self._highway() if self.layout.highway else None
@@ -134,7 +134,7 @@ class Film:
         box = self._below(self._box("legend"), LEGEND_OFF * self.scale * part.text)
         if (pads := self._feet_box) is not None and overlap(pads, box):
             under = lowered(box, pads[3] + LEGEND_OFF * self.scale)
-            box = under if under[3] <= self.size[1] else box  # a layout of one's own may leave no room there
+            box = under if under[3] <= self.size[1] else box  # a user's own layout may leave no room there
         return captions.Legend(
             {limb: self.language.limbs[LIMBS[limb]] for limb in shown},
             box,

@@ -214,7 +214,7 @@ def beat_lines(chart: Chart, scrolls: ScrollSegments, end: float) -> BeatLines:
 #
 # A note that nobody plays lights nothing.
 
-HOLD_BRIGHTNESS = 0.62  # brightness while held, after the flash of the start
+HOLD_BRIGHTNESS = 0.62  # brightness while held, after the flash at the start
 EPSILON = 1e-6  # seconds; a frame that falls on a note shows it
 
 

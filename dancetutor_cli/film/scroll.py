@@ -37,7 +37,7 @@ class Scroll:
         return self.value if self.mode == "X" else self.value / max(scroll_bpm, 1.0)
 
 
-READ = 0.9  # of the time in which notes come: so much of it is at most as fast as what an M mod takes for the fastest
+READ = 0.9  # part of the time with notes that is at most as fast as what an M mod takes for the fastest part
 REST = 1.0  # seconds until the next note that count at most
 
 

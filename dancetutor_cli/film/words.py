@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 HOLD, MINE = "hold", "mine"  # a note held, a mine that a foot is on: no `EVENTS`, as half turns are none
 LIMBS = ("left-foot", "right-foot", "left-hand", "right-hand")  # labels of a language, by `feet.play.Limb`
-IMPLIED_BY_BRACKET = {"doublestep", "forced-doublestep"}  # which foot it is, it says itself
+IMPLIED_BY_BRACKET = {"doublestep", "forced-doublestep"}  # the words of a bracket already say which foot it is
 _OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up"}
 
 
@@ -180,7 +180,7 @@ def _heights(box: PixelBox, taken: NDArray[np.float64], edge: float) -> list[int
 
 FADE = 0.3  # seconds of the film in which words come and go
 PASSING_STEP = 1 / 15  # seconds of the film between the moments that are looked at
-MOST_PASSING = 3000  # of these moments
+MOST_PASSING = 3000  # number of these moments
 Covered = Callable[[NDArray[np.float64], float], NDArray[np.bool_]]
 
 

@@ -283,7 +283,7 @@ def neck_yaw(body: Body, skeleton: Skeleton) -> Array:
 
 
 def weight_shifts(body: Body, contacts: tuple[Contact, ...]) -> Array:
-    """How far (w,), metres, the pelvis moves to and fro over the ground in each wait between notes, without its ends."""
+    """How far (w,), metres, the pelvis moves to and fro in each wait between notes, without its ends."""
     ends = [c.end if c.kind == StepKind.HOLD else c.start for c in contacts]  # a foot may stay after a tap
     busy = sorted({(c.start, float(min(end, body.times[-1]))) for c, end in zip(contacts, ends, strict=True)})
     out, free = [], -np.inf

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 # What the subtitles of a film name: the moves of a play with the foot that does them, from begin to end.
 
 _CROSSED = ("crossover-half", "crossover-full")
-_WAYS = ("crossover-front", "crossover-back")  # say more than crossover-half, which they come with
+_WAYS = ("crossover-front", "crossover-back")  # these say more than crossover-half, which comes with them
 _RUNS = ("stream", "drill")
 
 
@@ -113,7 +113,7 @@ def _stretches(play: Play, names: tuple[str, ...]) -> list[tuple[int, int]]:
 
 # Subtitles that name the moves, as an .srt file beside the film.
 
-_GAP = 0.1  # seconds; the same words again so soon are left standing, without a flicker
+_GAP = 0.1  # seconds; if the same words come again so soon, they stay without a flicker
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,7 +201,7 @@ def _merge_close_moves(cues: Sequence[Cue], one: Pass, begin: float, style: Subt
         if not max(one.start, one.sound_from) <= cue.second < one.end:
             continue
         first, last = (begin + one.film_seconds(min(s, one.end)) for s in (cue.second, cue.end))
-        first = max(begin, min(first, begin + one.seconds - style.stays))  # what comes last can be read, too
+        first = max(begin, min(first, begin + one.seconds - style.stays))  # so that the last words can be read, too
         if not lines or first >= lines[-1].first + style.shortest:
             lines.append(_Line(first, first, last))
         lines[-1].add(cue, first, last)
@@ -210,7 +210,7 @@ def _merge_close_moves(cues: Sequence[Cue], one: Pass, begin: float, style: Subt
 
 def _timed(lines: list[_Line], begin: float, over: float, style: SubtitleStyle) -> list[_Line]:
     """Give the lines of a run their times on the screen; none stands with another, or beyond the run."""
-    least = style.shortest - style.stays  # seconds that words stand before their move even in a hurry
+    least = style.shortest - style.stays  # seconds that words stand before their move, even in a hurry
     before: _Line | None = None
     for line in lines:
         line.start = max(begin, line.first - style.before)

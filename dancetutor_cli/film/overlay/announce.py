@@ -21,10 +21,11 @@ from dancetutor_cli.film.words import LIMBS
 from dancetutor_cli.run.languages import Language
 from dancetutor_cli.run.schema import RGB
 
-CALL_LEAST = 0.75  # size of a call's letters that is preferred to fewer words,
-CALL_SMALL = 0.5  # and to more than two lines
-SHARES = np.arange(1.0, CALL_LEAST - 0.01, -0.05)  # of their size that are tried
-CALL_STAYS, CALL_FADES = 0.2, 0.06  # seconds that a call stays after its note; in which it goes: no ghost of it stands
+CALL_LEAST = 0.75  # letters of a call have at least this size, before words are left out
+CALL_SMALL = 0.5  # and before it takes more than two lines
+SHARES = np.arange(1.0, CALL_LEAST - 0.01, -0.05)  # sizes of letters that are tried
+# seconds that a call stays after its note; seconds in which it fades, without a ghost
+CALL_STAYS, CALL_FADES = 0.2, 0.06
 
 
 class Runs:
@@ -185,7 +186,7 @@ class Calls:
         for one in self._current_calls(second):
             label = self._sprite(one.text, one.severity, one.tag, one.why)
             if y > self.box[1] and y + label.shape[0] > self.box[3]:
-                break  # it would cover what stands below; the tag beside the notes says it, too
+                break  # the call would cover what stands below it; the tag beside the notes says the same
             x = self.box[2] - label.shape[1]
             over = max(one.end, one.second) + CALL_STAYS
             fade = min(1.0, (second - one.begin) / 0.12, (over - second) / CALL_FADES)

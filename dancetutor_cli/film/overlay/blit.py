@@ -125,7 +125,7 @@ def _blit(frame: Any, sprite: Any, at: Any, shown: Any, ink: Any) -> None:  # pr
             alpha = sprite[lower, i, 3] * of_here + sprite[upper, i, 3] * of_above  # 0..255 * 256
             if alpha == 0:
                 continue
-            if plain and alpha == 255 * 256:  # what the last line comes to where nothing shows through
+            if plain and alpha == 255 * 256:  # value of the last line where nothing shows through
                 for k in range(3):
                     frame[row, j, k] = (sprite[lower, i, k] * of_here + sprite[upper, i, k] * of_above + 128) >> 8
                 continue

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 FRONT, BACK, JUMP = "crossover-front", "crossover-back", "crossover-jump"
 TURN_FRONT, TURN_BEHIND, TURN_ROUND = "half-turn-front", "half-turn-behind", "half-turn-round"
-JUST = 2.0  # seconds ago at most, that a foot "has just stepped"
+JUST = 2.0  # seconds; the longest time since a foot "has just stepped"
 
 
 class Phrase(NamedTuple):
@@ -145,7 +145,7 @@ KINDS, LETTERS = 2, 42  # different moves in one call at most, and letters of th
 _ORDER = ("move", "info", "warning", "error")
 _OF_PASSAGES, _PASSAGE = ("DT305", "DT301"), 8 * TICKS_PER_BEAT  # one finding for so long (lint/rules)
 _OF_MINES = "DT303"  # the rule about such a mine
-_CROSSED = ("crossover-full", "crossover-half")  # go on over several rows; named where they begin
+_CROSSED = ("crossover-full", "crossover-half")  # these go on over several rows and are named where they begin
 
 
 @dataclass(frozen=True, slots=True)

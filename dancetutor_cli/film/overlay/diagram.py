@@ -29,8 +29,9 @@ NAMES = (170, 177, 203)  # colour of a small pad's name
 PANEL, PANEL_EDGE = (46, 51, 74), (88, 95, 130)
 NEXT_LEAST = 90.0  # pixels of the shorter side of a pad with a next row, at the layout's default size
 NEXT_TEXT = 16.0  # of their names' letters
-IN_TURN, AGAIN = ("next", "then", "and-then"), "again"  # labels of the rows; of one that is as the one before it
-STEPPED, RESTING = 0.94, 0.6  # size of the marks on those, in panels: who steps one, and who stands on one
+# labels of the rows; and of a row that is equal to the one before it
+IN_TURN, AGAIN = ("next", "then", "and-then"), "again"
+STEPPED, RESTING = 0.94, 0.6  # size of the marks on those pads, in panels: of a foot that steps, and of one that stands
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,15 +24,17 @@ from dancetutor_cli.run.languages import Language
 # The song's words at the top left of the picture: title, artist, difficulty, who made the steps.
 
 SHOULDER_SHARE = (
-    0.75  # of the room that a line lower down takes at most where she stands next to it: her shoulders are wider
+    0.75  # part of the room that a lower line takes at most beside the dancer, because her shoulders are wider
 )
 LINE = 1.25  # height of a line, in sizes of its letters
-NARROWEST, LEAST = 0.45, 0.2  # of the room that lines have at least, wherever she is; of their box, if that is less
-SUBTITLE = 0.68  # size of a subtitle that stands below its title, in the title's
-TIGHT = 0.2  # of a line's size that the next one of a title is nearer than the font has it
+# part of the room that lines have at least, wherever the dancer is; or of their box, if that is less
+NARROWEST, LEAST = 0.45, 0.2
+SUBTITLE = 0.68  # size of a subtitle below its title, in sizes of the title
+TIGHT = 0.2  # part of a line's height by which the next line of a title is nearer than in the font
 _BRACKETED = re.compile(r"(.*?\S)(?:\s+(?=[(\[~～〜])|\s*(?=[（【「]))(.*[)\]~～〜）】」])")
-TITLE_FITS = ((0.8, 1), (0.7, 2), (0.7, 3), (0.55, 4))  # least size and number of lines of a title, the first that fits
-SUBTITLE_FITS = ((0.78, 1), (0.75, 2))  # likewise of a subtitle
+# least size and number of lines of a title; the first pair that fits is used
+TITLE_FITS = ((0.8, 1), (0.7, 2), (0.7, 3), (0.55, 4))
+SUBTITLE_FITS = ((0.78, 1), (0.75, 2))  # the same for a subtitle
 ARTIST_FITS = ((0.85, 1), (0.675, 2))
 
 
@@ -141,7 +143,7 @@ class Header:
         else:
             rest = ""
         lower = 0.97 * self._width(len(lines) * LINE * fits)
-        if len(lines) > 1 and lower < width:  # these are beside her head
+        if len(lines) > 1 and lower < width:  # these stand beside her head
             lines, fits = _fits(name, size, lower, face, TITLE_FITS)
         for number, line in enumerate(lines):
             ink = face.sprite(line, fits, WHITE, weight=fits / 60, shadow=2 * self._scale)

@@ -22,10 +22,11 @@ from dancetutor_cli.film.scroll import Scroll
 from dancetutor_cli.run.schema import RGB
 
 BEATS_PER_MEASURE = 4
-NUMBER_SHARE = 0.019  # of the box's height that a measure's number is at least high
-LET_GO = 0.25  # opacity of holds and rolls from where on nobody plays them
+NUMBER_SHARE = 0.019  # part of the box's height that the number of a measure has at least
+LET_GO = 0.25  # opacity of holds and rolls after nobody plays them any more
 TAGS_APART = 2.0  # pixels between two tags
-FLAG_LEAST, FLAG_SHARE = 10.0, 0.026  # a label's letters: pixels, for smaller ones are not read; share of that height
+# letters of a label: pixels, because smaller ones cannot be read; share of that height
+FLAG_LEAST, FLAG_SHARE = 10.0, 0.026
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,7 +190,8 @@ class Highway:
             middle = max(way * y[i], free + flag.shape[0] / 2)
             free = middle + flag.shape[0] / 2 + TAGS_APART
             at, (top, bottom) = way * middle - flag.shape[0] / 2, self._rows
-            if self._tag_seconds[i] > now.second and top <= at and at + flag.shape[0] <= bottom:  # whole, or not yet
+            # a mark is drawn whole or not at all
+            if self._tag_seconds[i] > now.second and top <= at and at + flag.shape[0] <= bottom:
                 blit(frame, flag, x, at, 1.0, self._rows)
 
     def _draw_flag(self, text: str, severity: str) -> Sprite:

@@ -23,11 +23,12 @@ from dancetutor_cli.film.words import short_words
 
 # Where the lanes of a highway lie in the picture.
 
-NUMBER_EDGE, NUMBER_ROOM = 0.009, 0.045  # heights of the box beside a measure's number, and that three digits take
-NUMBERS = 0.26  # of the width that lanes leave, the part on their left, where numbers stand
+# heights of the box beside the number of a measure, and heights that three digits take
+NUMBER_EDGE, NUMBER_ROOM = 0.009, 0.045
+NUMBERS = 0.26  # part of the free width that is on the left of the lanes, where numbers stand
 NUMBER_OFF, EDGE = 0.2, 0.14  # lane widths from numbers to the first lane, and from the last one to its frame
 TAG_LEFT, TAG_EDGE = 3, 0.0105  # pixels on the left of words beside the notes; heights of the box on their right
-LEAST_LANES = 0.7  # of their usual width that lanes have at least, whatever words stand beside them
+LEAST_LANES = 0.7  # part of their usual width that lanes keep at least, whatever words stand beside them
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,14 +95,14 @@ def lane_width_for_words(words: float, lane: float, box: tuple[int, int, int, in
 # right, and of one foot's only as many are drawn as can be read; on diagonals they keep to the tail's side as long as
 # they can. A cross, of a note that is not played, stays in the middle, where it covers neither side's.
 
-MARK_SHARE, MARK_MOST = 0.04, 0.58  # an L or R is at least so many heights of the box, but at most so many lanes
-READ, READ_MOST = 16, 0.5  # pixels of a mark whose letter is 8 high, on diagonal arrows, too; at most so many lanes
+MARK_SHARE, MARK_MOST = 0.04, 0.58  # an L or R is at least this many heights of the box, but at most this many lanes
+READ, READ_MOST = 16, 0.5  # pixels of a mark whose letter is 8 high, also on diagonal arrows; at most this many lanes
 LEAST_SHARE, LEAST_MOST = 0.023, 0.36  # the same where notes are dense
 SIDE_OFFSET, SIDE_MAX_SIZE = (
     0.25,
     0.46,
-)  # lanes from the middle at which those stand then, and how large they are at most
-STEPS = 8  # sizes are found for so many spacings in each doubling
+)  # lanes from the middle at which the marks then stand, and their largest size
+STEPS = 8  # number of spacings in each doubling for which sizes are computed
 
 
 class Places(NamedTuple):
@@ -179,7 +180,8 @@ class Marks:
         for column in np.unique(notes.column[self._marked]).tolist():
             lane = np.flatnonzero(notes.column == column)
             lane = lane[np.argsort(self._along[lane], kind="stable")]
-            strip = np.diff(self._along[lane] * apart, prepend=-np.inf)  # what is seen of an arrow that another is over
+            # the visible part of an arrow that another arrow covers
+            strip = np.diff(self._along[lane] * apart, prepend=-np.inf)
             here, strip = lane[self._marked[lane]], strip[self._marked[lane]]
             direction = self.geometry.directions[column]
             usual = self.of(direction)
@@ -247,16 +249,16 @@ class Marks:
 
 # Words beside the notes: how large their letters are, how much room they need, in how many lines they stand.
 
-LETTERS, LEAST = 15.0, 10.4  # pixels of letters that room is left for: in a layout's default size, and in any
-LINES, MOST_LINES = 2, 4  # lines of a phrase; of all phrases, where there are commas
+LETTERS, LEAST = 15.0, 10.4  # pixels of letters for which room is left: at a layout's default size, and at any size
+LINES, MOST_LINES = 2, 4  # lines of a phrase; of all phrases, if there are commas
 LEAD_SECONDS = 4.0  # seconds before its row that a tag, or a note, may be in the picture
 LONG, LONG_APART = (
     20,
     1.2,
-)  # letters of tags that stand at least so many seconds apart: brackets made a wall of small ones
+)  # letters of tags that stand at least so many seconds apart; before, brackets were a wall of small letters
 LABEL = 4  # pixels left and right of the words in their label, beside FLAG_EDGE
-NEAR = 0.95  # of the letters' size that is as good as all of it: sizes are tried in steps
-FEWER = 0.85  # and so much that is better than more lines, if these are not smaller than `LEAST`
+NEAR = 0.95  # part of the letters' size that counts as the whole size, because sizes are tried in steps
+FEWER = 0.85  # down to this part, smaller letters are better than more lines, if they are not below `LEAST`
 
 
 def letters(scale: float) -> float:

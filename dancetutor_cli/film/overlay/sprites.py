@@ -25,7 +25,7 @@ _ARROW = np.array([
     (-0.36, 0.88), (-0.36, 0.06), (-0.62, 0.32), (-0.94, 0.0),
 ])  # fmt: skip
 _SQUARE = np.array([(-0.86, -0.86), (0.86, -0.86), (0.86, 0.86), (-0.86, 0.86)])
-_WIDTH = 0.94  # of an arrow, in its size, whichever way it points
+_WIDTH = 0.94  # size of an arrow, in its own size, whichever way it points
 
 
 FLAG_STEP = 1.15  # from one line of a label to the next, in sizes of its letters
@@ -34,7 +34,7 @@ NOBODY = (150, 154, 170)  # colour of the mark of a note that is not played
 TAIL_DIM, TAIL_LONG = (
     0.6,
     0.75,
-)  # how much darker an arrow's tail ends, and over how much of its half: its head stands out
+)  # how much darker the end of an arrow's tail is, and over how much of its half: the head stands out
 
 
 @dataclass(frozen=True, slots=True)

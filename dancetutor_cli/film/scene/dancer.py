@@ -39,7 +39,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 _STEP = 1.0 / 30.0  # seconds between the places that are smoothed
 _ASIDE = 0.45  # metres from her root to her hands as she walks
-_COME, _EASE = 0.2, 0.6  # seconds that the camera is ahead of her at the picture's edge, and how softly it goes
+# seconds by which the camera is ahead of the dancer at the picture's edge, and how softly it moves
+_COME, _EASE = 0.2, 0.6
 
 
 def is_wide(scene: Scene) -> bool:
@@ -181,7 +182,7 @@ def _smooth(values: Array, seconds: float) -> Array:
 
 # The dancer's part of the picture: from her motions and a moment of the music to a state for the renderer.
 
-AWAY = 0.3  # metres from where she steps: she walks, and does not sway as she waits
+AWAY = 0.3  # metres from where she steps: farther away she walks, and does not only sway in a wait
 
 
 def sole_line(mark: FootMark) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -110,7 +110,7 @@ ABOVE = 4.0  # metres: more than she ever has between herself and the light
 OWN, SHARED = (
     0.5,
     0.2,
-)  # how much of a vertex, or of a whole closed piece as a shoe's collar, those move: then it is a foot's
+)  # how much of a vertex, or of a whole closed piece such as a shoe's collar, these joints move; then it is a foot's
 
 
 @dataclass(frozen=True, slots=True)

@@ -102,7 +102,7 @@ def _tube(line: Array, radius: float, joint: int, number: int) -> Mesh:
 #
 # It is laid over the finished picture, so that both renderers show the same, and casts no shadow on the pad.
 
-EDGE, INSIDE = (0.45, 0.75), (0.12, 0.35)  # how much of the steel is in its edges and between them: posts, rail
+EDGE, INSIDE = (0.45, 0.75), (0.12, 0.35)  # share of the steel in its edges and between them: posts, rail
 LINE = 0.003  # metres, half an edge's width
 
 

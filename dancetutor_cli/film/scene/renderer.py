@@ -113,7 +113,7 @@ _MARK_HEIGHT = 1.0  # a foot higher than this has no mark
 SHADOW_FADE = (0.25, 0.95)  # metres from her, on the floor, over which her shadow grows light
 NO_FOOT = -1.0
 _UNDER = 0.75  # panel widths from a panel's middle at which a sole may still press it
-RING_SHARE = 0.2  # of its ring that a foot keeps beside the panel that it presses: on it the ring is white
+RING_SHARE = 0.2  # part of its ring that a foot keeps beside the panel that it presses; on the panel the ring is white
 PLANTED = (0.88, 0.95)  # nearness to the ground from which on a foot stands: 26 mm above it, and 11 mm
 
 

@@ -17,7 +17,7 @@ from dancetutor_cli.film.scene.scene import SOLE_RADIUS, FootMark, Scene, foot_m
 # Are a character's feet to be seen from a camera? A cape or a large head may hide them from behind.
 
 Array = NDArray[np.float64]
-LEAST = 0.2  # of the places of her feet that are seen, at rest: with fewer they are hidden
+LEAST = 0.2  # part of the places of the feet that are visible at rest; with fewer, the feet are hidden
 _LOOKED_AT = 160  # places of the feet that are looked at, at most
 
 

@@ -111,7 +111,7 @@ def film_list(batch: BatchRequest) -> FilmList:
     for path in chart_files(batch.paths, batch.exclude):
         try:
             song = charts.load(path)
-        except NoChartsError:  # the music of a menu: nobody meant it to be danced
+        except NoChartsError:  # the music of a menu, which nobody means to dance
             without.append(path)
             continue
         except (DancetutorError, OSError) as error:
@@ -274,7 +274,7 @@ class Batch:
 
     def _outcome(self, number: int, film: _Film) -> FilmOutcome:
         del self._films[number]
-        if film.error is not None and not film.record.digests:  # nothing of it is worth going on with
+        if film.error is not None and not film.record.digests:  # nothing of it can be used again
             remove_work(film.job.output.parent / film.work)
             self._keep(film, replace(film.record, folders=tuple(f for f in film.record.folders if f != film.work)))
         seconds = time.monotonic() - film.began

@@ -30,9 +30,9 @@ Array = NDArray[np.float64]
 SIZE, FPS = (720, 720), 30
 EYE = np.array([1.5, 0.45, 3.1])  # from what the camera looks at, metres
 LOOK = 0.9  # height that it looks at, metres
-FOCAL, ALONG = 1.35, 0.4  # focal length in picture heights; hertz below which the camera goes along
+FOCAL, ALONG = 1.35, 0.4  # focal length in picture heights; hertz below which the camera follows
 ROOM = 2.0  # panels of floor around her way
-FAR = 10.0  # centimetres from which a point's distance is drawn as red as it gets
+FAR = 10.0  # centimetres from which a point's distance is drawn in full red
 NEAR_COLOUR, FAR_COLOUR = np.array([0, 158, 115]), np.array([213, 0, 0])
 INK, PAPER = (20, 20, 20), (255, 255, 255)
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 # The pieces of work between a film's first and its last: draw and encode one of its segments.
 
-SEGMENT_SECONDS = 4.0  # of film; the same whatever the number of workers, so that the files are the same too
+SEGMENT_SECONDS = 4.0  # seconds of film; the same for any number of workers, so that the files are the same too
 
 
 @dataclass(frozen=True, slots=True)
@@ -273,7 +273,7 @@ def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> O
         plan = write_plan(prepared.plan, folder / "plan.pickle")
         sound = write_sound(prepared, job.encoding, folder)
     except OSError as error:
-        if not finished:  # those of an earlier run are worth something
+        if not finished:  # segments of an earlier run can be used
             remove_work(folder)
         raise FileError(job.output, f"cannot be written: {error.strerror or error}") from error
     warnings = (*subject.warnings, *prepared.warnings)

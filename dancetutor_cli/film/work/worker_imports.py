@@ -15,4 +15,4 @@ from dancetutor_cli.run.process import reduce_garbage_collection
 reduce_garbage_collection()
 with suppress(Exception):  # a film that needs what is missing will say so
     segments.warm_up(lambda units: None)
-gc.freeze()  # nobody looks through it for garbage, which would give each worker a copy
+gc.freeze()  # the garbage collector does not look through it, which would give each worker a copy

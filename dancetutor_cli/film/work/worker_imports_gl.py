@@ -21,4 +21,4 @@ reduce_garbage_collection()
 with suppress(UnavailableError):  # who draws will say so
     load_pyrender()
 pack(load_dancer())
-gc.freeze()  # nobody looks through it for garbage, which would give each worker a copy
+gc.freeze()  # the garbage collector does not look through it, which would give each worker a copy

@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 # Half a ring's width and its distance from the sole, metres, in the air, and what standing adds: tight and thick.
 RING = (0.0040, 0.0060, 0.0220, -0.0090)
 OUTSIDE = 0.030  # metres from the sole: no ring is farther out
-LIT = 0.80  # of its light that a lit panel keeps in the deepest shadow: hers must not hide what she presses
+LIT = 0.80  # part of its light that a lit panel keeps in the deepest shadow, which must not hide a pressed panel
 
 
 @njit(cache=True, inline="always")
@@ -246,7 +246,7 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
                         band *= feet[f, 9]
                         if band <= ring:
                             continue
-                        light = 0.0  # of the panel that this foot presses: its colour is the foot's
+                        light = 0.0  # on the panel that this foot presses: the colour of the panel is the foot's
                         if (
                             feet[f, 10] > 0.0
                             and p >= 0

@@ -24,10 +24,10 @@ SNAP = 16.0
 DEPTH_UNIT = float(1 << 26)  # 1 / depth is at most 20: it fits 31 bits, and says a micrometre at 5 m
 FRONT, BACK = 1, -1
 BAND = 8  # samples: what is drawn is noted for so many rows together; a multiple of the samples across a pixel
-_LANES = np.arange(8.0)  # so many samples of a row are looked at together: one step of a vector unit for each of them
+_LANES = np.arange(8.0)  # samples of a row that are handled together, one in each lane of a vector unit
 _FINE = 65536.0  # depth is stepped in whole numbers of 1 / _FINE units
 _STEEP = 1e13  # units from sample to sample; only slivers come near to it
-_FOLD = 0.35  # and where normals look at the viewer more than this, skin in a fold has turned a triangle over: no edge
+_FOLD = 0.35  # if the normals look at the viewer more than this, skin in a fold has turned a triangle over: no edge
 _AWAY = -0.85  # cosine to the viewer; a back turned away more than this cannot show beside the front
 
 

@@ -35,8 +35,8 @@ from dancetutor_cli.run.kernels.compiling import float32, njit, uint64
 Array = NDArray[np.float64]
 
 
-_CLOSE = 0.006  # of its depth: samples farther from each other are coloured apart
-_ROW, _COLUMN = 16, 0xFFFF  # where a pixel's number has its row and its column: no picture is as large
+_CLOSE = 0.006  # part of its depth: samples that are farther from each other are coloured separately
+_ROW, _COLUMN = 16, 0xFFFF  # places of the row and the column in a pixel's number; no picture is so large
 OFF_SURFACE = (0.012, 0.006)  # metres along normal and light: a surface must not shadow itself
 
 
