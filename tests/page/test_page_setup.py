@@ -29,6 +29,17 @@ def test_a_panels_key_that_nothing_judges_is_told_while_the_song_plays(opened: B
     assert shown(opened, ".standing") and opened.problems == []
 
 
+def test_an_arrow_key_that_may_be_meant_as_a_panel_is_told_once(opened: Browser) -> None:
+    opened.key("ArrowLeft")
+    assert not said(opened).startswith("Nothing")
+    opened.key(" ", "Space")
+    opened.key("ArrowUp")
+    assert said(opened).startswith("Nothing") and text(opened, ".rate-text") == "105 %"
+    opened.turn(6)
+    opened.key("ArrowLeft")
+    assert not said(opened).startswith("Nothing") and text(opened, ".play") == "▶" and opened.problems == []
+
+
 def test_a_finger_on_the_lanes_of_a_song_that_plays_does_not_stop_it(opened: Browser, page_file: Path) -> None:
     opened.size(380, 740, touch=True)
     opened.open(page_file)
@@ -89,7 +100,7 @@ def test_the_dialog_of_keys_can_be_cancelled_and_has_defaults(opened: Browser, p
 def test_one_foot_only_is_said_on_the_picture_and_can_be_ended_there(opened: Browser, page_file: Path) -> None:
     assert not shown(opened, "#chip-foot")
     opened.key("t", "KeyT")
-    assert text(opened, "#chip-foot") == "I step: left only ✕"
+    assert text(opened, "#chip-foot") == "left only ✕"
     opened.open(page_file)  # the next song, the next day
     assert shown(opened, "#chip-foot")
     opened.click("#chip-foot")

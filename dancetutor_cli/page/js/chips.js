@@ -11,7 +11,7 @@ export function chips(app) {
   const show = () => {
     const only = app.settings.foot;
     foot.hidden = only === "both";
-    foot.replaceChildren(t("footChosen", { foot: t(`foot-${only}`) }), el("span", { "aria-hidden": "true" }, " ✕"));
+    foot.replaceChildren(t(`foot-${only}`), el("span", { "aria-hidden": "true" }, " ✕"));
     join.hidden = !practice.saysIdle;
   };
   app.listeners.add((what) => { if (what !== "frame") show(); });

@@ -78,6 +78,7 @@ function otherFoot(app, ui) {
  * @param {import("./app.js").App} app @param {Action[]} actions
  */
 export function listenToKeys(app, actions) {
+  let told = false;
   const arrows = (/** @type {KeyboardEvent} */ event) => /^Arrow/.test(event.key) && !event.shiftKey;
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || (document.querySelector("dialog[open]") && !app.input.learning)) return;
@@ -93,10 +94,13 @@ export function listenToKeys(app, actions) {
     }
     const name = event.shiftKey && (event.key.length > 1 || /[A-Z]/.test(event.key)) ? `Shift+${event.key}` : event.key;
     const action = actions.find((one) => one.keys.includes(name) || one.keys.includes(name.toLowerCase()));
-    if (!action && !app.practice.along && app.transport.playing && app.input.columnOf(event.code) >= 0) return app.practice.idle();
+    const panel = !app.practice.along && app.transport.playing && app.input.columnOf(event.code) >= 0;
+    if (!action && panel) return app.practice.idle();
     if (!action) return event.key.length === 1 && app.practice.along ? app.practice.strayKey() : undefined;
     event.preventDefault();
     action.run();
+    if (panel && arrows(event) && !told) app.practice.idle(); // the first time: it may be meant as a panel, or not
+    told ||= panel && arrows(event);
   });
   // A button that the mouse has pressed gives the keys back: the space bar plays, and does not press it again.
   document.addEventListener("click", (event) => {
