@@ -1,7 +1,7 @@
 // Cameras: who walks on from beside the pad is seen in a narrow picture too.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { beside, matrix, orbit } from "../../../dancetutor_cli/page/js/camera.js";
+import { beside, matrix, orbit, preset } from "../../../dancetutor_cli/page/js/camera.js";
 
 const camera = { position: [0, 1.5, -4], target: [0, 0.9, 0], focal: 1.2, centre: [0.5, 0.5], feetOnly: false, mirror: false };
 
@@ -49,4 +49,20 @@ test("the free camera never loses the pad, however near and from wherever it loo
   }
   const [far, near] = [1, 1.5].map((zoom) => orbit(doc, { yaw: 30, pitch: 20, zoom }, 610, 530));
   assert.ok(near.zoom > 1.4 && near.target[1] < far.target[1], "nearer it looks down to the feet");
+});
+
+test("in a narrow picture less room is kept for arms: she is larger, and the pad is whole", () => {
+  const about = { margin: 0.02, height: 1.86, arms: 0.36, feet_only: false, azimuth: 0, elevation: 28, field: 44 };
+  const single = { stage: doc.stage, look: { stage: doc.look.stage, cameras: { back: about } } };
+  const tall = (width, height) => {
+    const m = matrix(preset(single, "back", width, height), width, height);
+    const at = (point, k) => {
+      const row = (n) => m[4 * n] * point[0] + m[4 * n + 1] * point[1] + m[4 * n + 2] * point[2] + m[4 * n + 3];
+      return row(k) / row(3);
+    };
+    for (const x of [-0.45, 0.45]) for (const z of [-0.45, 0.45]) for (const k of [0, 1]) assert.ok(Math.abs(at([x, 0, z], k)) <= 1);
+    return (at([0, 1.7, 0], 1) - at([0, 0, 0], 1)) * height / 2;
+  };
+  assert.ok(tall(136, 523) > 1.25 * 136, `${tall(136, 523)}`);
+  assert.ok(tall(300, 400) < 400 && tall(900, 500) < 500);
 });
