@@ -108,6 +108,16 @@ def test_one_foot_only_is_said_on_the_picture_and_can_be_ended_there(opened: Bro
     assert opened.run(f"{STORED}.foot") == "both" and opened.problems == []
 
 
+def test_a_phone_ends_a_loop_on_the_picture(opened: Browser, page_file: Path) -> None:
+    opened.open(page_file, "#m1-2")
+    assert not shown(opened, "#chip-loop") and shown(opened, ".bar [title^=No]")  # the bar has it
+    opened.size(380, 740, touch=True)
+    opened.open(page_file, "#m1-2")
+    assert shown(opened, "#chip-loop") and not shown(opened, ".bar [title^=No]")
+    opened.click("#chip-loop")
+    assert not shown(opened, "#chip-loop") and "loop" not in said(opened) and opened.problems == []
+
+
 def test_the_rules_of_judging_are_folded(opened: Browser) -> None:
     opened.click("#tab-along")
     assert text(opened, "#tab-along") == "Setup" and text(opened, "#panel-along summary") == "How it is judged"

@@ -1,4 +1,5 @@
-// What holds without being seen elsewhere, on the picture: one foot only, a way to play along; each with a click that changes it.
+// What holds without being seen elsewhere, on the picture: one foot only, a loop on a phone, a way to play along; each with a
+// click that changes it.
 
 import { el } from "./dom.js";
 
@@ -7,11 +8,14 @@ export function chips(app) {
   const { t, practice } = app;
   const foot = el("button", { type: "button", class: "chip", id: "chip-foot", title: t("footChip"), onclick: () => practice.setFoot("both") });
   const join = el("button", { type: "button", class: "chip main", id: "chip-along", onclick: () => practice.setAlong(true) }, t("along"));
-  const row = el("div", { class: "chips" }, foot, join);
+  const loop = el("button", { type: "button", class: "chip loop", id: "chip-loop", title: t("noLoop"), onclick: () => app.setLoop(null, null) },
+    t("loopName-bar"), el("span", { "aria-hidden": "true" }, " ✕"));
+  const row = el("div", { class: "chips" }, foot, loop, join);
   const show = () => {
     const only = app.settings.foot;
     foot.hidden = only === "both";
     foot.replaceChildren(t(`foot-${only}`), el("span", { "aria-hidden": "true" }, " ✕"));
+    loop.hidden = !app.transport.loop;
     join.hidden = !practice.saysIdle;
   };
   app.listeners.add((what) => { if (what !== "frame") show(); });
