@@ -1,4 +1,4 @@
-"""Films, in parts by what is drawn. No part imports another one; `film` puts them into one picture.
+"""Films, in parts by what is drawn. No part imports another part; `film` puts them together into one picture.
 
 "She" is the dancer who is in the picture.
 

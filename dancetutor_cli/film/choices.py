@@ -1,4 +1,4 @@
-"""What may be asked of a picture, as options name it; light, for quick help texts."""
+"""The choices for a picture, as options name them; a light module, for quick help texts."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Literal
 
 from dancetutor_cli.run.errors import UsageError
 
-# What may be asked of a picture, the same for options, layouts and renderers; light, for quick help texts.
+# The choices for a picture, the same for options, layouts and renderers; light, for quick help texts.
 
 LEAST_SIDE = 64  # pixels
 MOST_SIDE = 7680
@@ -19,14 +19,14 @@ RendererKind = Literal["auto", "cpu", "gl"]
 RENDERERS: tuple[RendererKind, ...] = ("auto", "cpu", "gl")
 
 
-# How long before a move it is called out, as it is written: "0.9" seconds, or "b2" beats.
+# How long before a move its call comes, as the user writes it: "0.9" seconds, or "b2" beats.
 
 MOST_AHEAD = 30.0  # seconds, or beats
 
 
 @dataclass(frozen=True, slots=True)
 class Ahead:
-    """How long before it begins a move is called out: seconds of the music, or beats."""
+    """How long before a move its call comes: seconds of the music, or beats."""
 
     length: float
     in_beats: bool = False

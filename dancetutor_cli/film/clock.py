@@ -27,7 +27,7 @@ class Pass:
     """One run through a stretch of the music. start, end : seconds of the music; rate : 0.5 is half speed.
 
     sound_from : the music is silent before this second, while `count` beats are counted in
-    rest : seconds of the music at its end in which nobody steps and the music fades: she comes to rest
+    rest : seconds of the music at its end in which nobody steps and the music fades: the dancer comes to rest
     """
 
     start: float
@@ -87,9 +87,9 @@ class Clock:
         return max(1, math.ceil(self.seconds * self.fps - 1e-6))
 
     def at(self, frame: int) -> tuple[float, int]:
-        """Second of the music that a frame shows, and which pass it lies in.
+        """The second of the music that a frame shows, and the pass that it belongs to.
 
-        Frame k is on the screen from k / fps on. What happens at a second T shows in the first frame not before T.
+        Frame k is on the screen from k / fps on. An event at second T shows in the first frame that is not before T.
         """
         film = frame / self.fps
         for number, one in enumerate(self.passes):
@@ -99,9 +99,10 @@ class Clock:
         return self.passes[-1].end, len(self.passes) - 1
 
     def cut_at(self, rate: float) -> Cut:
-        """What is danced at a rate, from the first pass to the last, in seconds of the music as it is heard then.
+        """The part that is danced at a rate, from the first pass to the last, in seconds of the music as it is heard
+        then.
 
-        Before the step that passes count to nobody steps, nor while the music fades.
+        Nobody steps before the step to which passes count in, nor while the music fades.
         """
         first, last = self.passes[0], self.passes[-1]
         seconds = (first.start, last.end, first.sound_from if first.count else -math.inf, last.until)
@@ -130,7 +131,7 @@ class Moments(Clock):
         return self.times[frame], 0
 
 
-# The runs of a film: which stretch of the music, how often and how fast, with what helps to learn.
+# The runs of a film: which stretch of the music, how often and how fast, with count-in, claps and metronome.
 
 LEAD_IN, LEAD_OUT = 2.0, 3.0  # seconds before the first and after the last note
 REST = 2.2  # seconds of film after a passage: time for the dancer to step home, stand and smile
@@ -140,7 +141,7 @@ COUNTABLE = (0.3, 1.6)
 
 @dataclass(frozen=True, slots=True)
 class Practice:
-    """What helps to learn. loop : number of runs (0: one for each rate)
+    """Aids for practice. loop : number of runs (0: one for each rate)
 
     count_in : beats counted before each run; rest : seconds of film after the last one, in which she comes to rest
     claps : a clap on each step; metronome : a tick on each beat
@@ -169,8 +170,8 @@ def parse_rates(text: str) -> tuple[float, ...]:
 def passes_of(chart: Chart, practice: Practice, rates: tuple[float, ...], start: float, end: float) -> tuple[Pass, ...]:
     """The runs through a section, at each of the rates in turn, each with its count-in.
 
-    A count-in leads to steps: measures without any at the section's beginning are left out. It counts beats, or halves
-    or doubles of them where nobody counts so slowly or so fast.
+    A count-in leads to steps: measures without steps at the beginning of the section are left out. It counts beats, or
+    halves or doubles of them if beats are too slow or too fast to count.
     """
     lead = 0.0
     if practice.count_in:

@@ -1,4 +1,4 @@
-"""A film: the drawing of any one frame of its plan, and what can be had besides: pictures, a poster, subtitles."""
+"""A film: the drawing of any frame of its plan, and the things beside it: pictures, a poster, subtitles."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class Film:
 
     @cached_property
     def turned(self) -> bool:
-        """Does she face who looks on? Then all arrows turn with her pad: none says the opposite of what she does."""
+        """Whether the dancer faces the viewer. Then all arrows turn with the pad, so that they agree with her steps."""
         return turned(self.plan.look)
 
     @property
@@ -112,7 +112,9 @@ class Film:
 
     @cached_property
     def _breadth(self) -> int:
-        """Columns by which boxes are chosen: a pad of one square has the usual ones, with six panels too."""
+        """The number of columns by which boxes are chosen: a pad of one square has the usual boxes, also with six
+        panels.
+        """
         pad = self.plan.pad
         square = pad is not None and float(np.ptp(np.asarray(pad.panels)[:, 0])) < SQUARE
         return min(self.columns, WIDE_PAD) if square else self.columns
@@ -145,12 +147,12 @@ class Film:
         )
 
     def _below(self, box: PixelBox, off: float) -> PixelBox:
-        """A box clear of the song's words, which may be many."""
+        """A box that keeps clear of the song's words, which may be many."""
         return box if self._header is None else self._header.clear(box, off)
 
     @cached_property
     def _feet_box(self) -> PixelBox | None:
-        """Where the feet from above are; beside her in her own picture there is no room for them where two dance."""
+        """Where the feet from above are; two dancers leave no room for them beside the dancers' own picture."""
         if (part := self.layout.feet) is None or not (part.wide or self._breadth <= WIDE_PAD):
             return None
         box = self._box("feet")
@@ -167,7 +169,7 @@ class Film:
 
     @cached_property
     def _runs(self) -> Runs:
-        """The label stands in its box, else below the header, else at the bottom of the picture."""
+        """The label stands in its box, otherwise below the header, otherwise at the bottom of the picture."""
         box: tuple[float, ...] = 0, 0.84 * self.size[1], self.size[0], 0.93 * self.size[1]
         scale = self.scale
         if self.layout.runs is not None:
@@ -180,9 +182,9 @@ class Film:
 
     @cached_property
     def _calls(self) -> Calls | None:
-        """What is called out shortly before it comes, in its box, else at the top right of the dancer's.
+        """The calls shortly before moves, in their box, otherwise at the top right of the dancer's box.
 
-        There it keeps clear of the song's words, and of her head and feet, wherever she goes meanwhile.
+        There they keep clear of the song's words, and of the dancer's head and feet, wherever she goes meanwhile.
         """
         if not self.layout.dancer or not self.plan.callouts:
             return None
@@ -192,13 +194,13 @@ class Film:
         return Calls(self.plan.callouts, box, room.scale, self.face, self.style, self.language)
 
     def _heads_and_feet(self) -> NDArray[np.float64]:
-        """Where these are in the picture while moves are called out, (n, 4), a little larger."""
+        """Where heads and feet are in the picture while moves are called out, (n, 4), a little larger."""
         if not self.plan.motions:
             return np.zeros((0, 4))
         return self._dancer_box(self._dancer.heads_and_feet(moments(self.plan.callouts, self.plan.clock.passes)))
 
     def _heads(self) -> NDArray[np.float64]:
-        """The same all the time that she dances; feet are below what stands there."""
+        """The same for heads, all the time that she dances; feet are below the words there."""
         if not (self.layout.dancer and self.plan.motions):
             return np.zeros((0, 4))
         return self._dancer_box(self._dancer.heads_and_feet(dancing(self.plan.presses, self.plan.clock.passes)))
@@ -276,7 +278,7 @@ class Film:
         return darkened(picture, BACKGROUND, self.plan.light(number))
 
     def _stay(self, words: Lines | captions.Legend | Runs | FeetDiagram, run: int) -> Stay:
-        """When these words are in the picture: not while she walks through them."""
+        """When these words are in the picture: not while the dancer walks through them."""
         if (key := (id(words), run)) not in self._stays:
             self._stays[key] = self._stay_of_run(words.boxes, run)
         return self._stays[key]
@@ -315,13 +317,13 @@ class Film:
             yield self.frame(number)
 
 
-# What can be had besides a film: a picture per row, a poster, subtitles.
+# What can be made besides a film: a picture for each row, a poster, subtitles.
 
 INDEX = "poses.json"
 
 
 def poses(plan: FilmPlan, label: str) -> FilmPlan:
-    """The film of a plan, with one frame for each row with a step: what an editor shows when one scrolls to it."""
+    """The film of a plan, with one frame for each row with a step: what an editor shows while its user scrolls."""
     start, end = plan.clock.passes[0].start, plan.clock.passes[0].end
     rows = plan.rows
     times = () if rows is None else tuple(float(t) for t in rows.second if start <= t <= end)
@@ -333,7 +335,7 @@ def poses(plan: FilmPlan, label: str) -> FilmPlan:
 
 
 def write_pose_index(folder: Path, song: Song, chart: Chart, plan: FilmPlan) -> None:
-    """Say which picture shows which row: an object with one entry per picture."""
+    """Write which picture shows which row: an object with one entry for each picture."""
     assert isinstance(plan.clock, Moments)
     notes = chart.notes
     seconds = chart.timing.seconds(notes.tick)

@@ -1,4 +1,4 @@
-"""Layouts, from configs/layouts/*.yaml, and how a film is to look as asked for on the command line."""
+"""Layouts, from configs/layouts/*.yaml, and the look of a film as the user asked for it."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ class NextPart:
 
 @dataclass(frozen=True, slots=True)
 class PracticePart:
-    """How a layout runs where nothing else is asked for. rates : speeds in turn; count_in : beats."""
+    """How a layout runs if the user asks for nothing else. rates : speeds in turn; count_in : beats."""
 
     rates: Annotated[tuple[_Rate, ...], Entries(1)] = (1.0,)
     count_in: Annotated[int, Bounds(0, 16, "beats")] = 0
@@ -100,7 +100,7 @@ class PracticePart:
 
 @dataclass(frozen=True, slots=True)
 class WideBoxes:
-    """Other boxes for pads of more than five panels; None where the part stays where it is. region : the dancer's.
+    """Other boxes for pads of more than five panels; None if the part stays where it is. region : the dancer's.
 
     screen : another place of it
 
@@ -125,8 +125,8 @@ class WideBoxes:
 class Layout:
     """One file of configs/layouts. size : (width, height) in pixels, the default and what pixel sizes are meant for.
 
-    calls : where moves are called out, in the dancer's box if not said; runs : which run this is, below the header if
-    not said; count : the numbers of the count-in, in the middle of the picture if not said
+    calls : where moves are called out, by default in the dancer's box; runs : the label of the run, by default below
+    the header; count : the numbers of the count-in, by default in the middle of the picture
     """
 
     size: tuple[_Side, _Side]
@@ -170,7 +170,7 @@ class Layout:
         return None if self.wide is None or columns <= WIDE_PAD else self.wide.lanes
 
     def _other(self, name: str, columns: int) -> Box | None:
-        """What holds instead on a wide pad."""
+        """The box that replaces it on a wide pad."""
         return getattr(self.wide, name, None) if self.wide is not None and columns > WIDE_PAD else None
 
 
@@ -187,7 +187,7 @@ def lowered(box: PixelBox, top: float) -> PixelBox:
 
 
 def overlap(a: PixelBox, b: PixelBox) -> bool:
-    """Do two boxes share a pixel?"""
+    """Whether two boxes share a pixel."""
     return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
 
 
@@ -206,12 +206,12 @@ def load_layout(name: str) -> Layout:
     return layout
 
 
-# How a film is to look, as asked for on the command line; light, so that wrong wishes are refused at once.
+# The look of a film as the user asked for it on the command line; light, so that wrong options are refused at once.
 
 
 @dataclass(frozen=True, slots=True)
 class FilmLook:
-    """What does not change in a film. size : (width, height), even.
+    """The look, which does not change during a film. size : (width, height), even.
 
     camera, scroll : None for the layout's; down : notes fall; font : a font file, None for the built-in one
     ahead : how long before a move it is called out, None as configured; findings : call out the linter's, too

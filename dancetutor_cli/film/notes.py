@@ -14,7 +14,7 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.film.scroll import ScrollSegments
 
-# What the highway shows, as plain arrays: notes, presses, beat lines; made from a chart and a play.
+# The contents of the highway, as plain arrays: notes, presses, beat lines; made from a chart and a play.
 
 QUANTISATIONS = (4, 8, 12, 16, 24, 32, 48, 64, 192)  # note values that have a colour of their own
 
@@ -48,7 +48,7 @@ class NoteTrack:
 
 @dataclass(frozen=True, slots=True)
 class Presses:
-    """When which panel is pressed by whom; p presses sorted by start. Taps end where they start.
+    """Which limb presses which panel when; p presses sorted by start. Taps end where they start.
 
     start, end : float64 (p,), seconds of the music; column : int16 (p,); limb : int8 (p,)
     """
@@ -113,13 +113,13 @@ def quantisation(tick: NDArray[np.int64]) -> NDArray[np.int64]:
     return out
 
 
-# From a chart and its play to what a picture shows of them: notes, presses and beats, on the clock of the music.
+# From a chart and its play to the contents of a picture: notes, presses and beats, on the clock of the music.
 
 
 class OnMine(NamedTuple):
     """A mine that a foot is on as it passes. tick, column : of the chart; foot : 0 left, 1 right
 
-    player : of two who dance whose foot, 1 or 2; 0 where one dances
+    player : the dancer of a chart for two whose foot it is, 1 or 2; 0 if there is one dancer
     """
 
     tick: int
@@ -164,8 +164,9 @@ def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments, on_mine
 
 
 def _gone(chart: Chart, play: Play | None, limb: NDArray[np.int8]) -> NDArray[np.int64]:
-    """From which tick on nobody plays a note, -1 where it is played; limb : of each. A roll is let go at its first tap
-    that nobody plays: from there on no one keeps it."""
+    """The tick from which on nobody plays a note, -1 if it is played; limb : of each. A roll ends at its first tap that
+    nobody plays, because from there on nobody can keep it.
+    """
     table = chart.notes
     out = np.where((limb == Limb.UNPLAYED) | ((table.kind == Kind.MINE) & (limb >= 0)), table.tick, -1)
     if play is None:
@@ -181,7 +182,7 @@ def _gone(chart: Chart, play: Play | None, limb: NDArray[np.int8]) -> NDArray[np
 
 
 def _players(chart: Chart) -> NDArray[np.int8]:
-    """Whose each note of a chart is, int8 (n,): 1 or 2 where it is for two, 0 for anybody's, as mines are."""
+    """The player of each note of a chart, int8 (n,): 1 or 2 in a chart for two, 0 for all, as mines are."""
     owner: dict[tuple[int, int], int] = {}
     for part in chart.players:
         steps = part.notes.kind != Kind.MINE
@@ -195,7 +196,9 @@ def _players(chart: Chart) -> NDArray[np.int8]:
 
 
 def presses_of(track: NoteTrack) -> Presses:
-    """Every press of a panel: taps, lifts, and holds and rolls from head to tail, or to where they are let go."""
+    """Every press of a panel: taps, lifts, and holds and rolls from head to tail, or to where nobody plays them any
+    more.
+    """
     step = track.judged & np.isin(track.kind, (Kind.TAP, Kind.LIFT, Kind.HOLD, Kind.ROLL))
     end = np.maximum(np.minimum(track.end_second, track.gone_second), track.second)
     return Presses(track.second[step], end[step], track.column[step], track.limb[step])
@@ -254,5 +257,5 @@ class PanelLights:
 
 
 def _fade(share: float) -> float:
-    """What is left of a light when so much of its time is over: it is bright and goes out, and does not linger."""
+    """What is left of a light after so much of its time: it stays bright and then goes out quickly."""
     return max(0.0, 1.0 - share * share)

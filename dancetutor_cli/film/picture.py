@@ -1,4 +1,4 @@
-"""What the parts of a picture hand to each other: the frame they draw on, the pad, and a foot seen from above."""
+"""What the parts of a picture share: the frame on which they draw, the pad, and a foot seen from above."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Frame = NDArray[np.uint8]
 
 
 class PadLike(Protocol):
-    """What the picture needs of a `pads.Pad`, in panel widths, x to the right, y to the screen."""
+    """The parts of a `pads.Pad` that the picture needs, in panel widths, x to the right, y to the screen."""
 
     @property
     def panels(self) -> NDArray[np.float64]:

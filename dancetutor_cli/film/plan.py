@@ -1,4 +1,4 @@
-"""A film's plan: all that its frames need, as plain data that pickles."""
+"""A film's plan: everything that its frames need, as plain data that pickles."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class FilmPlan:
-    """All of a film before the first frame; worker processes get it pickled.
+    """Everything about a film before the first frame; worker processes get it pickled.
 
     beats : float64 (clock.frames,), the beat each frame shows, as drawn
     directions : per column, degrees clockwise from up, None for a middle panel
@@ -60,17 +60,17 @@ class FilmPlan:
 
     @property
     def dancers(self) -> int:
-        """How many dance in the picture."""
+        """The number of dancers in the picture."""
         return max((len(some) for some in self.motions.values()), default=0)
 
     def light(self, frame: int) -> float:
-        """How much of a frame's picture is seen, 0 to 1: less and less towards the end, in the last one nothing."""
+        """How bright a frame's picture is, 0 to 1: less and less towards the end, 0 in the last frame."""
         left = (self.clock.frames - 1 - frame) / self.clock.fps
         return left / self.fade if left < self.fade else 1.0
 
 
 def turned(look: FilmLook) -> bool:
-    """Does the dancer of this look face who looks on?"""
+    """Whether the dancer of this look faces the viewer."""
     part = look.layout.dancer
     if part is None or look.layout.screen is not None:
         return False

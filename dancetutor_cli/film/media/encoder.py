@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.picture import Frame
 
 
-# Which encoders work here: each is tried with one frame, since a driver may be listed and still be missing.
+# Which encoders work here: each is tried with one frame, because a driver may be listed and still be missing.
 
-# What has to be said before the input for an encoder to find its device.
+# Options before the input that an encoder needs to find its device.
 DEVICE: dict[str, tuple[str, ...]] = {
     "h264_vaapi": ("-vaapi_device", "/dev/dri/renderD128"),
 }
@@ -30,7 +30,7 @@ _SOUND = ("aac",)
 
 
 def works(encoder: str) -> str | None:
-    """None if ffmpeg encodes a frame (or a moment of sound) with it, else why not in one line."""
+    """None if ffmpeg encodes a frame (or a moment of sound) with it, otherwise one line that says why not."""
     source = "anullsrc=d=0.1" if encoder in _SOUND else "color=size=256x144:duration=0.04:rate=25"
     arguments = ("-f", "lavfi", "-i", source, *_BEFORE_ENCODER.get(encoder, ()))
     option = "-c:a" if encoder in _SOUND else "-c:v"
@@ -42,7 +42,9 @@ def works(encoder: str) -> str | None:
 
 
 def choose(wanted: str) -> Encoder:
-    """The encoder to use: "auto" takes NVENC where it works, else x264. UnavailableError if what is wanted does not."""
+    """The encoder to use: "auto" takes NVENC if it works, otherwise x264. UnavailableError if the wanted one does not
+    work.
+    """
     if wanted == "x264":
         return "x264"
     if wanted == "auto":
@@ -55,7 +57,7 @@ def choose(wanted: str) -> Encoder:
 
 
 def _has_cuda() -> bool:
-    """Whether NVIDIA's driver is there at all: asking ffmpeg costs a tenth of a second."""
+    """Whether NVIDIA's driver is there at all, because asking ffmpeg costs a tenth of a second."""
     import ctypes
 
     for library in ("libcuda.so.1", "nvcuda.dll"):
@@ -122,7 +124,7 @@ def even_size(size: tuple[int, int]) -> tuple[int, int]:
 def encode_segment(frames: Iterable[Frame], encoding: Encoding, path: Path, first: int = 0) -> None:
     """Write frames, uint8 (h, w, 3), to one segment; pictures into the folder `path`, numbered from `first`.
 
-    Only here numba is needed, which an encoding that is only described must not bring.
+    numba is imported only here; an encoding that is only described must not import it.
 
     Raises EncoderError with ffmpeg's own words if it dies, FileError if a picture cannot be written.
     """

@@ -22,10 +22,10 @@ from dancetutor_cli.run.pictures import read_palette, write_gif, write_webp
 
 
 class JoinJob(NamedTuple):
-    """What a film is joined of. listing : a list of segments for ffmpeg; sound : a WAV file or None
+    """The parts from which a film is joined. listing : a list of segments for ffmpeg; sound : a WAV file or None
 
     work : folder for what that needs; output : the film, of `size` (width, height) and so many frames a second
-    quick : a little noise in the sound for a third of the time
+    quick : faster sound encoding, with a little noise, in a third of the time
     """
 
     listing: Path
@@ -111,7 +111,7 @@ FILES = tuple(f".{name}" for name, form in FORMATS.items() if form.join is not N
 
 
 def target_of(path: Path) -> str:
-    """The format that the name of an output file asks for; UsageError lists what there is."""
+    """The format that the ending of an output name stands for; UsageError lists the formats."""
     if path.suffix.lower() not in FILES:
         raise UsageError(f"{path}: cannot write '{path.suffix or path.name}'; give a name that ends in {one_of(FILES)}")
     return path.suffix.lower().removeprefix(".")

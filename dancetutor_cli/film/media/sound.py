@@ -1,4 +1,4 @@
-"""The film's sound: the song's music cut to the clock, slowed without changing pitch, with clicks where wanted."""
+"""The film's sound: the song's music, cut to the clock and slowed without a change of pitch, with clicks if wanted."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.film.clock import Clock, Pass, Practice
 from dancetutor_cli.run import ffmpeg
 
-# The film's sound: the song's music cut to the clock, slowed without changing pitch, with clicks where wanted.
+# The film's sound: the song's music, cut to the clock and slowed without a change of pitch, with clicks if wanted.
 
 RATE = 48000
 FADE = 0.02  # seconds; against clicks where the music is cut
@@ -35,7 +35,9 @@ class Click:
 
 @dataclass(frozen=True, slots=True)
 class SoundPlan:
-    """What is heard. music : the song's file or None; shift : seconds that the music plays late against the notes."""
+    """The parts of the sound. music : the song's file or None; shift : seconds that the music plays late against the
+    notes.
+    """
 
     music: Path | None
     shift: float = 0.0
@@ -193,13 +195,13 @@ def write_wav(samples: Samples, path: Path) -> None:
         out.writeframes(np.rint(np.clip(samples, -1, 1) * 32767).astype("<i2").tobytes())
 
 
-# Sounds beside the music: claps on steps, ticks on beats, and the count before each run.
+# Sounds in addition to the music: claps on steps, ticks on beats, and the count before each run.
 
 CLAP, TICK, ACCENT = 1150.0, 1600.0, 2200.0  # Hz
 
 
 def clicks_of(practice: Practice, one: Pass, timing: Timing, steps: NDArray[np.float64]) -> tuple[Click, ...]:
-    """What is heard beside the music.
+    """The sounds in addition to the music.
 
     practice : what is wanted; one : the first run; steps : float64 (s,), seconds at which panels are pressed
     """

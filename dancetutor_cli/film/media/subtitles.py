@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.feet.play import Play
 
 
-# What the subtitles of a film name: the moves of a play with the foot that does them, from begin to end.
+# What the subtitles of a film name: the moves of a play with the foot that makes them, from begin to end.
 
 _CROSSED = ("crossover-half", "crossover-full")
 _WAYS = ("crossover-front", "crossover-back")  # these say more than crossover-half, which comes with them
@@ -37,8 +37,8 @@ def cues_of(play: Play, timing: Timing, words: Mapping[str, str], view: PanelNam
     words : name of a move (`feet.solver.vocabulary.EVENTS`), or "hold" -> what it is called; moves that are not in it
     are not.
     view : names of panels and limbs.
-    Crossed feet are reported once, where they cross, until they are back, unless a half turn there is reported; a
-    stream or drill once, where it begins.
+    Crossed feet are reported once, at their first row, until they are uncrossed, unless a half turn there is reported;
+    a stream or drill is reported once, at its first row.
     """
     found = [
         *_crossovers(play, words, view.language),
@@ -95,7 +95,7 @@ def _holds(play: Play, timing: Timing, words: Mapping[str, str], language: Langu
 
 
 def _limb_names(play: Play, row: int, language: Language) -> tuple[str, ...]:
-    """Who does a move of a row: everybody who steps in it, but of both feet it is no foot's move."""
+    """The limbs that make a move of a row: all that step in it; a move of both feet has no name of a foot."""
     limbs = {limb for limb in play.limb[row].tolist() if 0 <= limb < len(LIMBS)}
     return (
         ()
@@ -132,7 +132,7 @@ class SubtitleStyle:
 
 @dataclass
 class _Line:
-    """Moves named together. first, latest : when the first and the latest come; last : when all are over.
+    """Moves that are named together. first, latest : when the first and the latest come; last : when all are over.
 
     start, end : on the screen; all of these are seconds of the film
     moves : word -> who, both in the order in which they come; names : word -> the move's name
@@ -177,8 +177,8 @@ def subtitle_words(language: Language) -> dict[str, str]:
 def subtitles(cues: Sequence[Cue], clock: Clock, style: SubtitleStyle) -> str:
     """The text of an .srt file; "" if no move is named.
 
-    cues : by time. Words stand before their move and until it is over, but give way to the next ones; moves that come
-    faster than words can be read are named together.
+    cues : by time. Words stand before their move and until it is over, but give way to the next words. Moves that come
+    faster than people can read are named together.
     """
     shown: list[tuple[float, float, str]] = []
     begin = 0.0
@@ -195,7 +195,7 @@ def subtitles(cues: Sequence[Cue], clock: Clock, style: SubtitleStyle) -> str:
 
 
 def _merge_close_moves(cues: Sequence[Cue], one: Pass, begin: float, style: SubtitleStyle) -> list[_Line]:
-    """The moves that come in a run, which begins at `begin`; those too close to be read one by one in one line."""
+    """The moves of a run, which begins at `begin`; moves that are too close to be read one by one are in one line."""
     lines: list[_Line] = []
     for cue in cues:
         if not max(one.start, one.sound_from) <= cue.second < one.end:

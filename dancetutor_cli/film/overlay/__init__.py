@@ -1,4 +1,4 @@
-"""What is drawn flat on the picture: notes, pads from above, words; whole numbers on sRGB values.
+"""The flat parts of the picture: notes, pads from above, words; whole numbers on sRGB values.
 
 highway, marks, sprites       notes; what stands on and beside them; the pictures they are made of
 callouts, announce            moves that are called out, in which words; when and where these are shown

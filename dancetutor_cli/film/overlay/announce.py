@@ -1,4 +1,4 @@
-"""Words that come and go: which run of a practice film this is, the count-in, and the moves called out."""
+"""Words that come and go: the run of a practice film, the count-in, and the calls of moves."""
 
 from __future__ import annotations
 
@@ -88,10 +88,10 @@ def _middle(sprite: Sprite, box: tuple[float, ...]) -> tuple[float, float]:
 def _phrases(
     text: str, size: float, room: tuple[float, float], face: Typeface, language: Language, short: str = ""
 ) -> tuple[list[str], float]:
-    """Words of a call in one or two lines; in more where their letters would be too small. Nothing is cut off.
+    """The words of a call in one or two lines, or in more if their letters would be too small. Nothing is cut off.
 
-    room : width and height of the words, pixels; short : the text without whose move it is, where even "right: " has no
-    room in two lines
+    room : width and height of the words, pixels; short : the text without the limb, for places where even "right: "
+    does not fit in two lines
     """
     width, height = room
     named = text
@@ -114,7 +114,7 @@ def _phrases(
 
 
 def _two_lines(text: str, size: float, width: float, face: Typeface) -> tuple[list[str], float]:
-    """In one line, or broken where there is a comma, then a colon, or anywhere, in letters as small as they need."""
+    """One line, or a break at a comma, then at a colon, then anywhere, in letters as small as necessary."""
     for ends in (",", ",:"):
         for share in SHARES:
             lines = wrapped(_parts(text, ends), share * size, width, face)
@@ -134,7 +134,7 @@ def _foot_colour(text: str, language: Language) -> RGB | None:
 
 
 def _remaining_share(call: Callout, second: float) -> float:
-    """How much is left of the time to the next move of a passage, 1 to 0; 0 from its last one on."""
+    """The part of the time to the next move of a passage that is left, 1 to 0; 0 from the last move on."""
     begin = call.begin
     for move in (call.second, *(move for move, *_ in call.further)):
         if second < move:
@@ -146,7 +146,7 @@ def _remaining_share(call: Callout, second: float) -> float:
 class Calls:
     """Passages called out before they come, at the top right of `box`, with the time left as a bar.
 
-    The words stand until the passage is over: one that goes on has its count beside it all the time.
+    The words stand until the passage is over. If it goes on, its count stands beside it all the time.
     """
 
     MAX_LINES = 2  # at a time, the nearest on top
@@ -181,7 +181,7 @@ class Calls:
         return [self.callouts[k] for k in shown[: self.MAX_LINES]]
 
     def draw(self, frame: Frame, second: float) -> None:
-        """Draw what goes on at `second`, and what comes next."""
+        """Draw the present passage at `second`, and the next one."""
         y = float(self.box[1])
         for one in self._current_calls(second):
             label = self._sprite(one.text, one.severity, one.tag, one.why)

@@ -1,6 +1,6 @@
-"""What the picture calls out beside the notes: the moves a learner has to know, a passage at a time.
+"""The calls of a picture: the moves that a learner has to know, a passage at a time.
 
-What the linter found is for authors; it stands there only where it is asked for.
+Findings of the linter are for authors, so they are called out only if the user asks for them.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Phrase(NamedTuple):
     several: str = ""
 
     def counted(self, count: int, alike: bool) -> str:
-        """So many of them in a row; alike : all are said as this one is."""
+        """So many of them in a row; alike : all have the same words."""
         if count == 1:
             return self.text
         if alike or not self.several:
@@ -79,7 +79,7 @@ def stepped_phrase(move: str, name: str, limbs: list[int], language: Language) -
 
 
 def crossing_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language) -> Phrase:
-    """A crossover where it begins: which foot crosses, in front or behind, and why it is that foot.
+    """A crossover at its first row: which foot crosses, in front or behind, and why it is that foot.
 
     move : its name for people; at : the play and the row in which it begins. That it is in front, towards the screen,
     is said by `feet.solver`; of two feet that jump the one nearer to the screen is in front.
@@ -103,7 +103,7 @@ def crossing_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Languag
 
 
 def turning_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language) -> Phrase:
-    """Half a turn: which foot goes round, whether it comes down in front of the other one or behind it, and why.
+    """Half a turn: which foot goes round, whether it lands in front of the other one or behind it, and why.
 
     move : its name for people, which says where she looks then; at : the play and the row that turns her. In front is
     towards the screen; of two feet that jump it is reported which one is.
@@ -125,7 +125,7 @@ def turning_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language
 
 
 def _reason(play: Play, row: int, foot: int) -> str:
-    """Why it is this foot that crosses or turns her: its label in the language's `calls`, or ""."""
+    """The reason why this foot crosses or turns the dancer: its label in the language's `calls`, or ""."""
     rows, other = play.rows, 1 - foot
     before = slice(0, row)
     if ((play.limb[before] == other) & (rows.hold_end[before] > rows.tick[row])).any():
@@ -181,7 +181,7 @@ class _Passage:
     moves: list[_Move] = field(default_factory=list)
 
     def takes(self, move: _Move, notices: _TickTable) -> bool:
-        """Is a move part of it?"""
+        """Whether a move is part of it."""
         second, tick, name = notices.second, move.first, move.phrase.move
 
         def within(since: int, most: tuple[int, float]) -> bool:
@@ -193,7 +193,7 @@ class _Passage:
         return near and move.weight == self.weight and (name in self.kinds or short)
 
     def add(self, move: _Move) -> None:
-        """Take a move in."""
+        """Add a move."""
         self.last = max(self.last, move.last)
         self.kinds.setdefault(move.phrase.move, []).append(move.phrase)
         self.moves.append(move)
@@ -203,14 +203,14 @@ class _Passage:
         return ", ".join(some[0].counted(len(some), len({one.text for one in some}) == 1) for some in several)
 
     def why(self) -> str:
-        """The reason, if it is the same for all of it."""
+        """The reason, if all of its moves have the same one."""
         found = {move.phrase.why for move in self.moves}
         return found.pop() if len(found) == 1 and len(self.kinds) == 1 else ""
 
     def tag(self, further: int) -> str:
-        """What it begins with, for the narrow place beside the notes, whose markers say which foot it is.
+        """The first move, for the narrow place beside the notes, whose markers show which foot it is.
 
-        further : how many of its other moves have tags of their own; where all have, this one counts none
+        further : how many of its other moves have tags of their own; if all have, this tag has no count
         """
         some = next(iter(self.kinds.values()))
         counted = len(some) > 1 and further + 1 < len(self.moves)
@@ -233,12 +233,12 @@ class _TickTable(NamedTuple):
     jumps: Sequence[int]
 
     def parted(self, since: int, tick: int) -> bool:
-        """Does she jump between these, her feet uncrossed?"""
+        """Whether there is a jump with uncrossed feet between these ticks."""
         return bisect_right(self.jumps, since) < bisect_left(self.jumps, tick)
 
 
 class CalloutSubject(NamedTuple):
-    """What calls are about: a chart, the pad, and what the linter finds there, looked for when it is needed."""
+    """The subject of the calls: a chart, its pad, and the linter's findings there, computed when they are needed."""
 
     chart: Chart
     pad: Pad | None
@@ -252,12 +252,12 @@ def callouts_of(
     scrolls: ScrollSegments,
     on_mines: Iterable[OnMine] = (),
 ) -> tuple[Callout, ...]:
-    """Everything to call out, a passage at a time, in order of time.
+    """All calls, a passage at a time, in order of time.
 
     Moves in a row, such as one crossover after the other, are one passage with a count.
 
-    about : the chart; play : what the picture shows of it. Of a row with a note that nobody
-    plays, or a mine that a foot is on, it is always said what the linter finds there.
+    about : the chart; play : the part of it that the picture shows. The finding of the linter is always called out for
+    a row with a note that nobody plays, or with a mine under a foot.
     on_mines : those mines
     """
     ticks = () if play is None else play.rows.tick[(play.limb == Limb.UNPLAYED).any(axis=1)].tolist()
@@ -313,8 +313,9 @@ def callouts_of(
 def _reasons(
     ticks: Iterable[int], findings: Iterable[tuple[int, int, str, int]], language: Language
 ) -> Iterator[tuple[int, str]]:
-    """What the linter says of some rows, by tick: its finding there, or that of the passage, which goes on as long as
-    such rows do."""
+    """The findings of the linter for some rows, by tick: the finding of the row, or that of the passage, which lasts as
+    long as there are such rows.
+    """
     notices = sorted((tick, text) for tick, _, text, _ in findings)
     names = tuple(language.finding_name(rule, rule) for rule in _OF_PASSAGES)
     last, passage = -_PASSAGE, ""
@@ -328,7 +329,7 @@ def _reasons(
 
 
 def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[int, str]) -> Iterator[_Move]:
-    """What is said of each move; why : what is added, by tick."""
+    """The words for each move; why : what is added, by tick."""
     words = style.words
     if play is None or pad is None:
         return

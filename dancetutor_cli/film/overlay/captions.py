@@ -1,4 +1,4 @@
-"""The standing words of the picture but the song's: the legend; the strip with density, position and time."""
+"""The fixed words of the picture except the song's: the legend; the strip with density, position and time."""
 
 from __future__ import annotations
 
@@ -49,11 +49,12 @@ def lozenge(height: int, width: int, radius: float, colour: tuple[int, int, int]
 
 
 class Legend:
-    """What the markers mean, one under the other at the box's bottom; hands only where what is shown needs them.
+    """The meaning of the markers, one below the other at the bottom of the box; hands only if they are needed.
 
-    A dark plate below keeps them readable over a panel of the pad. limbs : number -> its name; note : words below the
-    last one; players : name and colour of the notes of each of two.
-    More lines than the box holds stand out below it: what is above are the song's words.
+    A dark plate keeps them readable over a panel of the pad. limbs : number -> its name; note : words below the last
+    one; players : name and colour of the notes of each of two.
+
+    Lines for which the box has no room stand out below it, because the song's words are above.
     """
 
     def __init__(
@@ -111,7 +112,7 @@ class SongShape:
 
 
 def strip_ground(picture: Frame, scale: float) -> None:
-    """What the strip stands on, with a line above it."""
+    """The background of the strip, with a line above it."""
     picture[...] = (9, 10, 19)
     picture[: max(1, round(1.2 * scale))] = (44, 48, 70)
 

@@ -48,9 +48,9 @@ class DiagramRows:
 
 
 def step_rows(play: Play, dancers: Sequence[tuple[Play, int]] = ()) -> DiagramRows:
-    """The rows with steps that a person sees; the virtual taps of rolls are not among them.
+    """The rows with steps that people see, without the virtual taps of rolls.
 
-    dancers : where several dance, each one's own play, and the column of `play` that its first one is
+    dancers : for several dancers, the play of each and the first of its columns in `play`
     """
     shown = play.rows.steps != StepKind.NONE
     shown &= play.rows.steps != StepKind.ROLL_TAP
@@ -61,7 +61,7 @@ def step_rows(play: Play, dancers: Sequence[tuple[Play, int]] = ()) -> DiagramRo
 
 
 def _stood(play: Play) -> NDArray[np.int16]:
-    """`play.feet`, -1 until a foot has stepped: before that the play only supposes where it is."""
+    """`play.feet`, but -1 until a foot has stepped: before that, its place is only an assumption of the play."""
     stepped = np.column_stack([(play.limb == side).any(axis=1) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)])
     return np.where(np.logical_or.accumulate(stepped, axis=0), play.feet, -1).astype(np.int16)
 
@@ -74,9 +74,9 @@ def _feet_at(ticks: NDArray[np.int64], own: Play, first: int) -> NDArray[np.int1
 
 
 class PadView(NamedTuple):
-    """A pad as it is seen. directions : per column, degrees clockwise from up, None for a middle panel
+    """A pad in the picture. directions : per column, degrees clockwise from up, None for a middle panel
 
-    turned : it is seen from the screen, as she is; `directions` are as they are seen then
+    turned : it is seen from the screen, as the dancer is; `directions` are those in the picture
     """
 
     pad: PadLike
@@ -219,7 +219,7 @@ def name_sprite(name: str, face: Typeface, scale: float) -> Sprite:
 
 
 def below(box: PixelBox, name: Sprite | None) -> PixelBox:
-    """What is left of a pad's box below its name."""
+    """The part of a pad's box that is below its name."""
     return box if name is None else (box[0], box[1] + name.shape[0], box[2], box[3])
 
 
@@ -252,12 +252,12 @@ class Lettering(NamedTuple):
 
 
 class NextRows:
-    """Small pads with the next rows: which panels come, by which limb, and where the feet stand then.
+    """Small pads with the next rows: which panels come, with which limb, and where the feet then stand.
 
-    They lie beside or below each other, whichever makes them larger, each with its name: "next", "then", "and then", or
-    "again" where the row is the same as the one before it.
+    They are beside or below each other, whichever makes them larger. Each has its name: "next", "then", "and then", or
+    "again" for a row that is equal to the one before it.
 
-    Where the pads of so many rows would be too small, there are fewer.
+    If the pads of so many rows would be too small, there are fewer.
     """
 
     def __init__(
@@ -301,7 +301,7 @@ class NextRows:
             blit(frame, name, *self._corner(pads, name))
 
     def name(self, place: int, row: int) -> Sprite:
-        """What the pad at `place` with this row is called."""
+        """The name of the pad at `place` with this row."""
         same = place > 0 and bool((self.rows.limb[row] == self.rows.limb[row - 1]).all())
         return self.names[AGAIN if same else IN_TURN[min(place, len(IN_TURN) - 1)]]
 

@@ -1,4 +1,4 @@
-"""The song's words at the top left of the picture: title, artist, difficulty, who made the steps."""
+"""The song's words at the top left of the picture: title, artist, difficulty, author of the steps."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from dancetutor_cli.film.overlay.text import LONGEST, Typeface, clean, fitted, i
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.run.languages import Language
 
-# The song's words at the top left of the picture: title, artist, difficulty, who made the steps.
+# The song's words at the top left of the picture: title, artist, difficulty, author of the steps.
 
 SHOULDER_SHARE = (
     0.75  # part of the room that a lower line takes at most beside the dancer, because her shoulders are wider
@@ -55,9 +55,10 @@ class Words:
 
 
 class WordsRoom(NamedTuple):
-    """What of a header's box is for its words. share : of the width, beside her head
+    """The part of a header's box that its words may take. share : of the width, beside the dancer's head
 
-    taken : float64 (n, 4), where heads come as they dance, left, top, right and bottom in pixels: lines end before
+    taken : float64 (n, 4), the places of heads during the dance, left, top, right and bottom in pixels: lines end
+    before them
     """
 
     share: float = 1.0
@@ -126,14 +127,16 @@ class Header:
         self.bottom += gap + sprite.shape[0]
 
     def _width(self, height: float) -> float:
-        """Pixels that lines have which take so many below the last one (negative: its own); beside the heads there."""
+        """The width, pixels, of lines that take so many pixels below the last line (negative: its own); less beside
+        heads.
+        """
         low, high = sorted((self.bottom, self.bottom + height))
         here = self._taken[(self._taken[:, 1] < high) & (self._taken[:, 3] > low)]
         room = self._right - self._left
         return float(max(self._least, min(room, here[:, 0].min(initial=np.inf) - self._left)))
 
     def _title(self, words: Words, size: float) -> None:
-        """All in one line; or the title, and below it, smaller, the subtitle or what stands in brackets at its end."""
+        """All in one line; or the title and, below it and smaller, the subtitle or the words in brackets."""
         face, name, rest, width = self._face, words.title, words.subtitle, 0.97 * self._width(LINE * size)
         lines, fits = _fits(f"{name} {rest}".strip(), size, width, face, TITLE_FITS)
         if len(lines) > 1 and (found := _BRACKETED.fullmatch(name[:LONGEST])) and not rest:
@@ -162,7 +165,7 @@ class Header:
             self._line(line, size, -0.1 * size if number else self._scale, weight=0.25)
 
     def _detail(self, text: str, size: float) -> None:
-        """In one line, or parted where it has a point, where she leaves no more room."""
+        """In one line, or divided at a point if the dancer leaves no more room."""
         width, gap = self._width(2 * LINE * size), 3 * self._scale
         parts = text.split(" · ") if 0.8 * self._face.width(text[:LONGEST], size) > width else [text]
         for number, part in enumerate(parts):
@@ -184,7 +187,7 @@ class Header:
         return float(max(x + ink.shape[1] for ink, x, _ in self.lines))
 
     def clear(self, box: PixelBox, off: float) -> PixelBox:
-        """A box that begins `off` pixels below these words where they reach into it; else as it is."""
+        """The box, moved to begin `off` pixels below these words if they reach into it."""
         reached = box[0] < self.right and self.bottom + off > box[1] > self.top
         return lowered(box, self.bottom + off) if reached else box
 
@@ -200,7 +203,7 @@ class Header:
 def _fits(
     text: str, size: float, width: float, face: Typeface, ways: tuple[tuple[float, int], ...]
 ) -> tuple[list[str], float]:
-    """Words in one line or several of a size that is read from afar; only what would fill more is cut off."""
+    """Words in one line or several, of a size that can be read from afar; only what is still too long is cut off."""
     text = text[:LONGEST]
     whole = face.width(text, size)
     for least, most in ways:
@@ -242,7 +245,7 @@ def _readable(face: Typeface, song: Song, text: str, tag: str) -> str:
 
 
 def title_warnings(song: Song, words: Words, font: Path | None) -> tuple[str, ...]:
-    """Say so where letters of title or artist cannot be drawn."""
+    """Warnings for letters of title or artist that cannot be drawn."""
     missing = Typeface(font).missing(clean(song.title + song.artist))
     lost = "?" in words.title.replace("?", "", song.title.count("?")) or "?" in words.artist
     if not missing or not lost:

@@ -39,7 +39,7 @@ class _Now:
 
 
 class Score(NamedTuple):
-    """What a highway shows of a chart."""
+    """The parts of a chart that a highway shows."""
 
     notes: NoteTrack
     presses: Presses
@@ -70,7 +70,7 @@ class Highway:
         self.spacing = scroll.factor(scroll_bpm) * geometry.lane * (-1 if geometry.down else 1)
         self.style = sprites.highway_style()
         self.size = sprites.arrow_size(geometry.lane, self.style)
-        # Which colour a note has: that of its quantisation, or of a chart for two of whose it is.
+        # The colour of a note: that of its quantisation or, in a chart for two, of its player.
         self.colours = (*(self.style.quantisation[q] for q in QUANTISATIONS), *self.style.players)
         whose = len(QUANTISATIONS) + self.notes.player.astype(np.int64) - 1
         self.colour = np.where(self.notes.player > 0, whose, self.notes.quantisation)
@@ -105,7 +105,7 @@ class Highway:
         return {(d, q): sprites.arrow(self.size, d, self.colours[q], hollow) for d, q in wanted}
 
     def _hold_colours(self) -> Iterator[tuple[tuple[Kind, int], RGB]]:
-        """Of holds and rolls, by whose they are."""
+        """The colours of holds and rolls, by player."""
         for player in range(int(self.notes.player.max(initial=0)) + 1):
             for kind, colour in ((Kind.HOLD, self.style.hold), (Kind.ROLL, self.style.roll)):
                 yield (kind, player), self.style.players[player - 1] if player else colour
@@ -177,8 +177,9 @@ class Highway:
         return self.face.sprite(text, size, (190, 196, 220))
 
     def _draw_callouts(self, frame: Frame, now: _Now) -> None:
-        """Words beside the rows they are about, on the right of the lanes; where several are near each other, the later
-        ones are farther off, so that none covers another."""
+        """Words beside their rows, on the right of the lanes. If several are near each other, the later ones are
+        farther off, so that none covers another.
+        """
         if not self.geometry.tags:
             return
         y = self._y(self._tag_seconds, self._tag_beats, now)
@@ -201,7 +202,7 @@ class Highway:
         return sprites.flag(lines, size, self.style.callout[severity], self.face)
 
     def _draw_turned(self, frame: Frame) -> None:
-        """Say that the arrows stand the other way round, in the gap that notes do not come through."""
+        """Show that the arrows are turned round, in the gap that notes do not pass."""
         geometry, words = self.geometry, self._turned
         _, top, _, bottom = geometry.box
         edge, half = (bottom, 0.5 * self.size) if geometry.down else (top, -0.5 * self.size)

@@ -1,4 +1,4 @@
-"""What stands on and beside notes: lanes, marks that say who steps a note, words."""
+"""Lanes, and what is on and beside notes: marks of the limb that steps a note, words."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class HighwayGeometry:
     letters: float = 10.0
 
     def lane_of(self, column: int) -> int:
-        """Which lane from the left a column has."""
+        """The lane of a column, counted from the left."""
         return len(self.directions) - 1 - column if self.turned else column
 
     @property
@@ -71,12 +71,12 @@ class HighwayGeometry:
         return self.box[2] - self.tags_left - TAG_EDGE * (self.box[3] - self.box[1])
 
     def corner(self, column: int, y: float, size: float) -> tuple[float, float]:
-        """Top left corner of what is so large, in the middle of a column's lane at `y`."""
+        """Top left corner of a sprite of this size, in the middle of a column's lane at `y`."""
         return self.left + (self.lane_of(column) + 0.5) * self.lane - size / 2, y - size / 2
 
 
 def lane_width_for_words(words: float, lane: float, box: tuple[int, int, int, int], columns: int) -> float:
-    """The width of lanes beside which words so wide have room: `lane`, or less; the inverse of `tags_room`.
+    """The width of lanes that leaves room for words of this width: `lane`, or less; the inverse of `tags_room`.
 
     words : pixels; lane : pixels that a lane has where there are none
     """
@@ -87,13 +87,13 @@ def lane_width_for_words(words: float, lane: float, box: tuple[int, int, int, in
     return max(LEAST_LANES * lane, min(lane, beside_numbers, beside_part))
 
 
-# The marks that say who steps a note: how large each is, where it stands on its arrow, which are left out.
+# The marks that show which limb steps a note: their size, their place on the arrow, and which are left out.
 #
-# A mark stands on the arrow's tail, so that the head shows where it points. Where the arrows of a lane lie over each
-# other, it stands on the strip of its arrow that is seen, and is no higher than that. Where marks would cover each
-# other, they are smaller, those of the left foot stand on the left of the lane and those of the right foot on the
-# right, and of one foot's only as many are drawn as can be read; on diagonals they keep to the tail's side as long as
-# they can. A cross, of a note that is not played, stays in the middle, where it covers neither side's.
+# A mark stands on the arrow's tail, so that the head shows the direction. If the arrows of a lane overlap, it stands on
+# the visible strip of its arrow, and is no higher than that. If marks would cover each other, they are smaller; those
+# of the left foot stand on the left of the lane and those of the right foot on the right, and of one foot only as many
+# are drawn as can be read. On diagonals they stay on the tail's side as long as possible. The cross of a note that is
+# not played stays in the middle, where it covers neither side.
 
 MARK_SHARE, MARK_MOST = 0.04, 0.58  # an L or R is at least this many heights of the box, but at most this many lanes
 READ, READ_MOST = 16, 0.5  # pixels of a mark whose letter is 8 high, also on diagonal arrows; at most this many lanes
@@ -149,13 +149,15 @@ class Marks:
         return -far * math.sin(way), far * math.cos(way)
 
     def places(self, spacing: float) -> Places:
-        """Of all marks where notes are so many pixels apart for a second, or a beat: never for more room than that."""
+        """The places of all marks if notes are so many pixels apart for each second or beat, but never for more room
+        than that.
+        """
         return self._places(math.floor(STEPS * math.log2(max(abs(spacing), 1e-3))))
 
     def draw(self, frame: Frame, i: int, y: float, places: Places, gone: bool = False) -> None:
         """Draw the mark of note `i`, whose arrow's middle is at `y`; gone : a cross, for it is not played.
 
-        So has a mine that a foot is on as it passes, in its middle.
+        A mine under a foot has a cross in its middle, too.
         """
         if (size := int(places.size[i])) == 0:
             return
@@ -207,7 +209,7 @@ class Marks:
     def _seen(
         self, tail: NDArray[np.float64], size: NDArray[np.int16], strip: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Where marks stand so that they cover no arrow that comes sooner: `tail`, or farther from that arrow.
+        """The places of marks at which they cover no arrow that comes sooner: `tail`, or farther from that arrow.
 
         tail : pixels down from the arrows' middles; size : of the marks; strip : what is seen of their arrows
         """
@@ -219,7 +221,7 @@ class Marks:
     def _thinned(self, along: NDArray[np.float64], most: int, crosses: NDArray[np.float64]) -> NDArray[np.int16]:
         """Sizes of marks of one side of a lane at these places, at most `most` pixels: 0 where the last is near.
 
-        They are smaller beside `crosses`, as far as they can still be read then.
+        Beside `crosses` they are smaller, as far as they can still be read.
         """
         kept: list[int] = []
         for k, y in enumerate(along.tolist()):
@@ -267,13 +269,15 @@ def letters(scale: float) -> float:
 
 
 def has_visible_callout(callouts: Iterable[Callout], passes: Iterable[Pass]) -> bool:
-    """Does any of these stand beside the notes in one of these runs?"""
+    """Whether any of these stands beside the notes in one of these runs."""
     begins = np.array([callout.second for callout in callouts])
     return any(((one.start <= begins) & (begins <= one.end + LEAD_SECONDS)).any() for one in passes)
 
 
 def visible_limbs(notes: NoteTrack, passes: Iterable[Pass]) -> set[int]:
-    """Whose notes, `feet.play.Limb`, are in the picture in these runs: of a section not all of the song's."""
+    """The limbs, `feet.play.Limb`, whose notes are in the picture in these runs; a section may have fewer than the
+    song.
+    """
     here = np.zeros(len(notes.second), dtype=np.bool_)
     for one in passes:
         here |= (one.start <= notes.end_second) & (notes.second <= one.end + LEAD_SECONDS)
@@ -292,7 +296,8 @@ class RowTag(NamedTuple):
 def row_tags(callouts: Iterable[Callout]) -> list[RowTag]:
     """Each passage's tag where it begins, and those of its other moves, in order of time.
 
-    Of long ones that follow each other quickly, such as brackets', the first: the calls beside her say the others.
+    Of long tags that follow each other quickly, such as those of brackets, it has the first; the calls beside the
+    dancer name the others.
     """
     found = [
         RowTag(*one, call.severity) for call in callouts for one in ((call.second, call.beat, call.tag), *call.further)
@@ -308,7 +313,8 @@ def row_tags(callouts: Iterable[Callout]) -> list[RowTag]:
 
 
 def callout_texts(callouts: Iterable[Callout], words: Iterable[str]) -> set[str]:
-    """What may be said beside the notes: what is, and what always is the same, so that lanes of most films are alike.
+    """The possible words beside the notes: those of this film, and those that are the same in all films, so that lanes
+    of most films are alike.
 
     words : of moves, some with {who} and {places} to be filled in
     """

@@ -69,7 +69,7 @@ def highway_style() -> HighwayStyle:
 
 
 def callout_words(language: Language) -> dict[str, str]:
-    """The moves that configs/highway.yaml has called out, and their words; FileError names one that has none."""
+    """The moves that configs/highway.yaml calls out, and their words; FileError names a move without words."""
     return move_words(highway_style().callouts, config_path("highway.yaml"), language)
 
 
@@ -191,10 +191,11 @@ def hold_tail(width: int, colour: RGB) -> Sprite:
 
 
 def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None, rim: bool = False) -> Sprite:
-    """Who steps a note: letter, colour and shape. Left foot a disc, right foot a square, hands the same with a ring.
+    """The mark of the limb that steps a note: letter, colour and shape. Left foot a disc, right foot a square, hands
+    the same with a ring.
 
     limb : value of `feet.play.Limb`, 0..3; -1 : no foot is left for it, a grey disc with a cross
-    rim : a light one around the dark one, for it stands on a note, and these have all colours
+    rim : a light rim around the dark one, because the mark is on a note, and notes have all colours
     """
     p = blit.Painter(size, size)
     paint = (NOBODY if limb < 0 else limb_colours().by_limb[limb]) if colour is None else colour

@@ -94,7 +94,7 @@ def _content(path: str) -> bytes:
 
 @lru_cache(maxsize=65536)
 def has_glyph(path: str | None, character: str) -> bool:
-    """Whether a font can draw a character: what it cannot draw looks like a character that does not exist."""
+    """Whether a font can draw a character: if it cannot, the character looks like one that does not exist."""
     one = font(path, 24)
     try:
         missing, mask = one.getmask("\U0010ffff"), one.getmask(character)
@@ -140,9 +140,10 @@ def _can(main: str | None, character: str) -> bool:
 
 @lru_cache(maxsize=1024)
 def _runs(main: str | None, text: str) -> tuple[tuple[str | None, str], ...]:
-    """A text cut into (font, part): one font for all its letters if there is one, since one from elsewhere is ugly.
+    """A text cut into (font, part): one font for all its letters if there is one, because a letter from another font is
+    ugly.
 
-    Signs may come from elsewhere: the whole of "crossover ×4" in another font was uglier.
+    Signs may come from another font: the whole of "crossover ×4" in another font was uglier.
     """
     if has_all(main, text):
         return ((main, text),)
@@ -202,7 +203,7 @@ class Typeface:
         return kept.rstrip(" ,;:-~/·&([") + "…"
 
     def shrink(self, text: str, size: float, width: float) -> tuple[str, float]:
-        """Text and size with which it is at most `width` wide: smaller, down to four fifths, then cut off."""
+        """The text and a size with which it is at most `width` wide: smaller, down to four fifths, then cut off."""
         low = 0.8 * size
         while size > low and self.width(text[:LONGEST], size) > width:
             size = max(low, 0.98 * size)
@@ -319,7 +320,7 @@ def in_lines(text: str, size: float, width: float, face: Typeface, most: int) ->
 
 
 def _after(text: str, lines: list[str]) -> str:
-    """What of a text comes after its first lines."""
+    """The part of a text after its first lines."""
     rest = " ".join(text[:LONGEST].split())
     for line in lines:
         rest = rest[len(line) :].lstrip()
@@ -349,7 +350,9 @@ def narrowest(text: str, size: float, face: Typeface, most: int) -> float:
 
 
 def _even(parts: list[str], lines: list[str], room: tuple[float, float], face: Typeface) -> list[str]:
-    """As many lines, the longest as short as can be: no last line of one word. room : size and width, pixels"""
+    """The same number of lines, the longest as short as possible: no last line of one word. room : size and width,
+    pixels
+    """
     if not 1 < len(lines) <= EVEN:
         return lines
     (size, width), count = room, len(lines)
