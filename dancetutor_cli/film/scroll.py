@@ -42,10 +42,10 @@ REST = 1.0  # seconds until the next note that count at most
 
 
 def reading_bpm(seconds: Seconds, beats: Beats, speeds: NDArray[np.float64]) -> float | None:
-    """Beats a minute, as drawn, that a chart's notes come at, but for its fastest tenth; None where there is no tempo.
+    """The beats a minute, as drawn, of a chart's notes without the fastest tenth; None if there is no tempo.
 
-    The games take the song's displayed or highest tempo. A burst of a gimmick, which may be sixteen times as fast, or
-    tempos written at an eighth with #SCROLLS of 8, would have the notes lie over each other, or fly past.
+    The games take the song's displayed or highest tempo. With a gimmick burst, which may be sixteen times as fast, or
+    with tempos written at an eighth and #SCROLLS of 8, the notes would overlap or fly past.
 
     seconds, beats : of the rows, float64 (r,), ascending, beats as drawn; speeds : factor of the speed segments there
     """
@@ -82,7 +82,7 @@ class ScrollSegments:
     ratios: NDArray[np.float64]
 
     def drawn_beats(self, beat: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The beats as far as they are drawn: the integral of the ratios."""
+        """The beats as they are drawn: the integral of the ratios."""
         if len(self.beats) == 0:
             return beat
         starts = np.concatenate([[0.0], np.cumsum(np.diff(self.beats) * self.ratios[:-1])])

@@ -1,4 +1,4 @@
-"""Words in films: what moves are called, and the room beside her in which words stand."""
+"""Words in films: the names of moves, and the room beside the dancer in which words stand."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.run.languages import Language
 
 
-# What moves are called in films: one table of a dancer's words in each language, for callouts and for subtitles.
+# The names of moves in films: one table of a dancer's words in each language, for callouts and for subtitles.
 
 HOLD, MINE = "hold", "mine"  # a note held, a mine that a foot is on: no `EVENTS`, as half turns are none
 LIMBS = ("left-foot", "right-foot", "left-hand", "right-hand")  # labels of a language, by `feet.play.Limb`
@@ -41,7 +41,8 @@ def move_words(names: Iterable[str], path: Path, language: Language) -> dict[str
 
 
 def filled(words: str, name: str, at: tuple[Play, int], view: PanelNames) -> list[str]:
-    """A move's words with who does it and where: "right foot: heel on right, toe on up"; of several who do it, each's.
+    """A move's words with the limb and the place: "right foot: heel on right, toe on up"; for several limbs, those of
+    each.
 
     at : the play and the row
     """
@@ -61,7 +62,9 @@ def filled(words: str, name: str, at: tuple[Play, int], view: PanelNames) -> lis
 
 
 def _doers(name: str, limbs: list[int]) -> list[int]:
-    """Whose move it is: of a bracket each foot on two panels, of a hand the hands, else the first foot that steps."""
+    """The limbs of a move: for a bracket each foot on two panels, for a hand the hands, otherwise the first foot that
+    steps.
+    """
     feet = [limb for limb in range(2) if limb in limbs][:1]
     if name == "bracket":
         return [limb for limb in range(4) if limbs.count(limb) > 1] or feet or [-1]
@@ -70,9 +73,9 @@ def _doers(name: str, limbs: list[int]) -> list[int]:
     return feet or [-1]
 
 
-def short_words(texts: str) -> str:
-    """What is said of a move without whose it is or why, for the narrow place beside the notes: "toe on up"."""
-    return (texts.partition(": ")[2] or texts).partition(" (")[0]
+def short_words(text: str) -> str:
+    """The words of a move without its limb and its reason, for the narrow place beside the notes: "toe on up"."""
+    return (text.partition(": ")[2] or text).partition(" (")[0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +93,7 @@ class PanelNames:
         return self.language.panels.get(seen, seen)
 
 
-# Room for words beside her: the part of a box into which neither her head nor her feet come.
+# Room for words beside the dancer: the part of a box into which neither her head nor her feet come.
 
 CALLS_FROM, CALLS_HIGH = 0.5, 150.0  # where calls begin at the leftmost, share of her box; pixels of their box
 CALLS_WIDE, CALLS_OFF = 140.0, 8.0  # pixels that they need at least, and to her head and feet
@@ -107,7 +110,7 @@ class CallsRoom(NamedTuple):
 def calls_room(
     layout: Layout, box_of: Callable[[str], PixelBox], scale: float, title_end: tuple[float, float] | None
 ) -> CallsRoom:
-    """The box of what is called out: the layout's, else at the top right of the dancer's; below a long title.
+    """The box of the calls: the layout's, otherwise at the top right of the dancer's; below a long title.
 
     title_end : right and bottom of the song's title
     """
@@ -139,7 +142,7 @@ def moments(callouts: Sequence[Callout], passes: Sequence[Pass]) -> list[Moment]
 
 
 def dancing(presses: Presses, passes: Sequence[Pass]) -> list[Moment]:
-    """Moments from the first to the last step of a pass, of one of each rate; of one without a step all of it."""
+    """Moments from the first to the last step of a pass, for one pass of each rate; all of a pass without steps."""
     first, last = float(presses.start.min(initial=math.inf)), float(presses.end.max(initial=-math.inf))
     found: list[Moment] = []
     for rate, one in {one.rate: one for one in passes}.items():
@@ -152,9 +155,10 @@ def dancing(presses: Presses, passes: Sequence[Pass]) -> list[Moment]:
 
 
 def clear(box: PixelBox, taken: NDArray[np.float64], least: float) -> PixelBox:
-    """The part of a box on the right of what is taken, at least `least` pixels wide.
+    """The part of a box to the right of the taken places, at least `least` pixels wide.
 
-    Where there is no such room beside her, the box stands lower, beside her trunk; else on her left; else as it is.
+    If there is no such room beside the dancer, the box stands lower, beside her trunk; otherwise on her left; otherwise
+    as it is.
 
     taken : float64 (n, 4), left, top, right and bottom of heads and feet, pixels
     """
@@ -170,13 +174,13 @@ def clear(box: PixelBox, taken: NDArray[np.float64], least: float) -> PixelBox:
 
 
 def _heights(box: PixelBox, taken: NDArray[np.float64], edge: float) -> list[int]:
-    """How far down a box may stand: not at all, or below what reaches over `edge` where it is, but above the feet."""
+    """How far down a box may stand: not at all, or below what reaches over `edge` there, but above the feet."""
     high = taken[(taken[:, 2] > edge) & (taken[:, 1] < box[3])]
     down = max(0, int(np.ceil(high[:, 3].max(initial=box[1]))) - box[1])
     return [0, down] if box[3] + down <= taken[:, 3].max(initial=0) else [0]
 
 
-# Words that she walks through on her way onto the pad, or off it, are not there until she has passed.
+# Words that the dancer walks through on her way onto the pad or off it are hidden until she has passed.
 
 FADE = 0.3  # seconds of the film in which words come and go
 PASSING_STEP = 1 / 15  # seconds of the film between the moments that are looked at
@@ -193,12 +197,12 @@ class Stay:
     rate: float = 1.0
 
     def opacity(self, second: float) -> float:
-        """How much of the words is seen, 0 to 1."""
+        """How visible the words are, 0 to 1."""
         return min(1.0, max(0.0, min(second - self.since, self.until - second) / (FADE * self.rate)))
 
 
 def stay(one: Pass, presses: Presses, covered: Covered) -> Stay:
-    """When words stand in a pass: from when she has walked past them before the first step, to when she leaves.
+    """When words stand in a pass: from when the dancer has walked past them before the first step, to when she leaves.
 
     covered : for seconds of the music (n,) and the step that she walks to or from, whether she walks behind them then;
     made from the whole pass, so that a frame does not depend on which process draws it

@@ -1,4 +1,4 @@
-"""What stands in space: stage, dancer, bar and screen, the camera that sees them; renderers in `cpu` and `gl`.
+"""The parts of the picture in space: stage, dancer, bar and screen, and the camera; renderers in `cpu` and `gl`.
 
 scene, look                   what stands still and the state of one frame; their numbers, from configs/picture.yaml
 dancer, camera, visibility    her state at a moment; from where she is seen; what of her is hidden

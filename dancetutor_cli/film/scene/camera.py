@@ -1,8 +1,8 @@
 """Cameras: where the picture is taken from, and how much of it the dancer fills.
 
 A pinhole camera in pixels: a point at depth d before the camera appears at ``centre + focal / d`` times its offset.
-Moving `centre` instead of turning the camera puts the dancer beside the highway without bending the picture, and
-panning it follows her across a double pad while everything that stands still only shifts by whole pixels.
+`centre` moves instead of the camera turning, which puts the dancer beside the highway without bending the picture.
+Panning it follows her across a double pad, while everything that stands still only shifts by whole pixels.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ class Camera:
 
 @lru_cache(maxsize=64)
 def _axes(position: tuple[float, float, float], target: tuple[float, float, float]) -> Array:
-    """What `Camera.axes` says, once for each place: every frame asks several times."""
+    """`Camera.axes`, computed once for each place, because every frame needs it several times."""
     forward = np.subtract(target, position)
     length = math.sqrt(float(forward[0] ** 2 + forward[1] ** 2 + forward[2] ** 2))
     if length < 1e-9:
@@ -171,7 +171,7 @@ def parse(
 
 
 def is_front_view(text: str, look: Look) -> bool:
-    """Does she face this camera, given as on the command line? Then her left is on the right of the picture."""
+    """Whether the dancer faces this camera, given as on the command line. Then her left is on the right."""
     if _is_name(text):
         about = _named(text, look)
         return math.cos(math.radians(about.azimuth)) < _FACING and about.elevation < _STRAIGHT_DOWN
@@ -208,7 +208,7 @@ def with_pan_range(camera: Camera, low: float, high: float) -> Camera:
 
 
 def _box(extent: tuple[Array, Array], settings: CameraLook, thick: float) -> Array:
-    """Points (n, 3) of what must be seen: the pad, arms stretched sideways over it, and hands up in the middle."""
+    """Points (n, 3) that must be seen: the pad, arms stretched sideways over it, and hands up in the middle."""
     low, high = extent
     middle = (low[2] + high[2]) / 2
     shoulder = min(1.45, settings.height)
@@ -228,7 +228,7 @@ def _box(extent: tuple[Array, Array], settings: CameraLook, thick: float) -> Arr
 def _fit(
     box: Array, target: Array, position: Array, focal: float, size: tuple[int, int], region: Region
 ) -> tuple[bool, Camera]:
-    """Does the box fit into the region? With the camera whose centre puts it in the middle of it."""
+    """Whether the box fits into the region, with the camera whose centre puts the box in the middle of it."""
     width, height = size
     camera = Camera(
         (float(position[0]), float(position[1]), float(position[2])),

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
 # A camera that slowly follows the dancer across a wide pad, and shows her whole as she walks on and off.
 #
-# It does not turn or travel: the picture pans (see `Camera.pan`), by whole pixels, so that the standing part of the
-# picture needs to be drawn only once. The whole song is known, so the pan has no lag: it is her place, smoothed over a
+# The camera does not turn or travel: the picture pans (see `Camera.pan`) by whole pixels, so the still part of the
+# picture is drawn only once. The whole song is known, so the pan has no lag: it is the dancer's place, smoothed over a
 # window that is symmetric in time.
 
 Array = NDArray[np.float64]
@@ -44,7 +44,7 @@ _COME, _EASE = 0.2, 0.6
 
 
 def is_wide(scene: Scene) -> bool:
-    """Is the pad wider than one square of 3 by 3 panels, so that following her shows more?"""
+    """Whether the pad is wider than one square of 3 by 3 panels, so that following the dancer shows more."""
     low, high = scene.extent
     return bool(high[0] - low[0] > 3.5 * PANEL)
 
@@ -90,7 +90,7 @@ class Follow:
 
 
 def _nearer(scene: Scene, name: str, size: tuple[int, int], region: Region) -> Camera:
-    """The preset camera for the middle square of a wide pad: nearer than for all of it."""
+    """The preset camera for the middle square of a wide pad, nearer than the one for the whole pad."""
     low, high = scene.extent
     middle, half = (low + high) / 2, 1.5 * PANEL
     square = low.copy(), high.copy()
@@ -112,7 +112,7 @@ def _along(scene: Scene, camera: Camera, size: tuple[int, int], across: Array) -
 def _picture_x(scene: Scene, camera: Camera, size: tuple[int, int], across: Array) -> Array:
     """Where places across the pad are in the picture, (n,), picture widths.
 
-    Her height and depth do not move the camera: they are those of a point at waist height over the pad's middle.
+    The dancer's height and depth do not move the camera: the place is a point at waist height over the pad's middle.
     """
     low, high = scene.extent
     points = np.column_stack([across, np.full(len(across), 0.9), np.full(len(across), (low[2] + high[2]) / 2)])
@@ -120,7 +120,7 @@ def _picture_x(scene: Scene, camera: Camera, size: tuple[int, int], across: Arra
 
 
 def _into_the_picture(seen: Array, camera: Camera, size: tuple[int, int], aside: float) -> Array:
-    """Pans (n,) that bring all who dance into the picture where one of them is at its edge.
+    """Pans (n,) that bring all dancers into the picture when one of them is at its edge.
 
     seen : their middles, (p, n), picture widths; aside : how far one reaches from it, metres
     """
@@ -147,7 +147,7 @@ def farther(region: Region, back: float) -> Region:
 
 
 def _early(pans: Array) -> Array:
-    """Pans as large as asked for, begun before and ended after, softly."""
+    """Pans of the wanted size that begin before and end after, softly."""
     half = max(1, round(_COME / _STEP / 2)) + round(_EASE / _STEP)
     if not pans.any():
         return pans
@@ -157,7 +157,8 @@ def _early(pans: Array) -> Array:
 
 
 def _reach_with_whole_pad(camera: Camera, size: tuple[int, int], low: Array, high: Array) -> float:
-    """How far from the pad's middle a camera may follow, metres, so that the pad is seen whole; no limit if it is not.
+    """How far from the pad's middle a camera may follow, metres, so that the whole pad is in the picture; no limit if
+    it is not.
 
     low, high : corners (3,) of the pad's surface
     """
@@ -171,7 +172,7 @@ def _reach_with_whole_pad(camera: Camera, size: tuple[int, int], low: Array, hig
 
 
 def _smooth(values: Array, seconds: float) -> Array:
-    """Two running means over `seconds` each: as slow as it must be, and no corner in its path. Ends count on."""
+    """Two running means over `seconds` each: slow enough, and without a corner in the path. Ends count on."""
     half = max(1, round(seconds / _STEP / 2))
     for _ in range(2):
         padded = np.concatenate([np.full(half, values[0]), values, np.full(half, values[-1])])
@@ -199,10 +200,10 @@ def sole_line(mark: FootMark) -> tuple[tuple[float, float], tuple[float, float]]
 
 @dataclass(frozen=True, slots=True)
 class Shot:
-    """How the dancer is taken. size : (width, height); camera : by name or place; kind : the renderer
+    """How the dancer is filmed. size : (width, height); camera : by name or place; kind : the renderer
 
     region : share of the picture that she fills
-    stands : the camera may not follow her, because something else in the picture is drawn for one place
+    stands : the camera must not follow the dancer, because something else in the picture is drawn for one place
     """
 
     size: tuple[int, int]
@@ -261,7 +262,7 @@ class Dancer:
         return self._follow[moment.rate].at(moment.heard) if self._follow else self.camera
 
     def _followers(self, camera: str, size: tuple[int, int], region: Region) -> dict[float, Follow]:
-        """The camera that goes with her across a wide pad, for each rate, if it looks along the pad's short side.
+        """The camera that follows the dancer across a wide pad, for each rate, if it looks along the pad's short side.
 
         On other pads it moves only while she walks on or off at the picture's edge.
 
@@ -299,7 +300,8 @@ class Dancer:
     def walks_behind(
         self, boxes: Sequence[tuple[float, float, float, float]], seconds: NDArray[np.float64], step: float, rate: float
     ) -> NDArray[np.bool_]:
-        """Whether she is where one of `boxes` (pixels of her picture) is, and `AWAY` from where she steps at `step`.
+        """Whether the dancer is where one of `boxes` (pixels of her picture) is, and `AWAY` from where she steps at
+        `step`.
 
         seconds : float64 (n,), of the music; rate : at which it plays
         """
@@ -330,7 +332,7 @@ class Dancer:
         return self.renderer.frame(FrameState(joints, self.camera, nobody, nobody.astype(np.int64))).copy()
 
     def feet(self, joints: NDArray[np.float64]) -> list[FootFromAbove | None]:
-        """Both feet from above, in panel widths of the pad; of two who dance all four."""
+        """Both feet from above, in panel widths of the pad; for two dancers all four."""
         whose = ("", PREFIX)[: self._count]
         return [self._foot(mark) for one in whose for mark in foot_marks(self.scene, joints, one)]
 

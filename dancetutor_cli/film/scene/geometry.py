@@ -14,7 +14,7 @@ from dancetutor_cli.character.mesh import Character, Mesh
 from dancetutor_cli.feet.limbs import LIMBS
 from dancetutor_cli.run.errors import UsageError
 
-# Textures of a character, each with smaller copies of itself, so that far things do not shimmer.
+# Textures of a character, each with smaller copies of itself, so that distant surfaces do not shimmer.
 
 Image = NDArray[np.uint8]
 LEVELS = 4  # the texture itself, and three halvings
@@ -51,7 +51,9 @@ class Skins:
 
 
 def skins_of(meshes: list[Mesh]) -> Skins:
-    """The textures of some meshes; those without one get a white texel, those that share one share it."""
+    """The textures of some meshes. Meshes without a texture get a white texel; meshes that share a texture share it
+    here.
+    """
     white = np.full((1, 1, 4), 255, np.uint8)
     different: list[NDArray[np.uint8]] = []
     number = []
@@ -150,7 +152,7 @@ def pack(character: Character) -> PackedMeshes:
 
 @cache
 def _dancer() -> PackedMeshes:
-    """The project's own dancer, who is drawn most: once a process, and for workers before they are made."""
+    """The project's own dancer, who is drawn most: packed once for each process, and before workers are made."""
     return _packed(load_dancer())
 
 
@@ -196,9 +198,10 @@ def _feet(
     place: NDArray[np.intp],
     triangles: NDArray[np.int32],
 ) -> NDArray[np.bool_]:
-    """Which vertices (v,) belong to a foot: those that hang mostly on ankles and toes, and shoes to their upper end.
+    """Which vertices (v,) belong to a foot: those that depend mostly on ankles and toes, and shoes up to their upper
+    end.
 
-    What goes with the shin in part, as the rim of a high shoe, would leave a dark hole if it were cut off.
+    A part that moves partly with the shin, such as the rim of a high shoe, would leave a dark hole if it were cut off.
     """
     share = _share(character, joints, weights, FEET)
     piece = _pieces(place[triangles], int(place.max()) + 1)[place]

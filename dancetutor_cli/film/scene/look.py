@@ -28,7 +28,7 @@ class CameraLook:
 
 @dataclass(frozen=True, slots=True)
 class FollowLook:
-    """How the camera goes with her across a wide pad.
+    """How the camera follows the dancer across a wide pad.
 
     seconds : how slowly; along : how much of the camera's sideways must be the pad's, 0..1; region : left, top, right,
     bottom of the part of the picture that she fills; back : how many times as far away it may stand to show the pad
@@ -62,7 +62,8 @@ class LightLook:
 class ToonLook:
     """How the dancer is shaded.
 
-    limbs : share of half light, 0..1, that what wears a limb's colour has in deepest shade: colours there are words
+    limbs : share of half light, 0..1, that surfaces in a limb's colour have in deepest shade, because their colours
+    carry information
     """
 
     bands: tuple[float, float]

@@ -1,4 +1,4 @@
-"""What stands on the stage with the dancer: the bar, of glass where it is before her, and a screen in her room."""
+"""Things on the stage with the dancer: the bar, which is of glass in front of her, and a screen in the room."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.motion import Bar
 
 
-# What stands on the stage with the dancer: the bar behind the pad, drawn with her so that either hides the other.
+# The bar behind the pad, drawn with the dancer so that each can hide the other.
 
 Array = NDArray[np.float64]
 JOINT = "bar"  # name of the joint that the bar hangs on; it never moves
@@ -98,16 +98,16 @@ def _tube(line: Array, radius: float, joint: int, number: int) -> Mesh:
     )
 
 
-# The bar where it stands before her: a shell of glass, its posts thin, through which feet, legs and panels are seen.
+# The bar in front of the dancer: a shell of glass with thin posts, through which feet, legs and panels can be seen.
 #
-# It is laid over the finished picture, so that both renderers show the same, and casts no shadow on the pad.
+# It is drawn over the finished picture, so that both renderers show the same, and casts no shadow on the pad.
 
 EDGE, INSIDE = (0.45, 0.75), (0.12, 0.35)  # share of the steel in its edges and between them: posts, rail
 LINE = 0.003  # metres, half an edge's width
 
 
 def stands_before(bar: Bar, camera: Camera) -> bool:
-    """Is the bar between this camera and who dances? The camera is farther behind her than the bar is."""
+    """Whether the bar is between this camera and the dancer: the camera is farther behind her than the bar is."""
     return (camera.position[2] - bar.behind) * bar.behind > 0.0
 
 

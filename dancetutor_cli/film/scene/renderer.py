@@ -1,4 +1,4 @@
-"""The one interface of both renderers, the choice between them, and what they work out alike for a frame."""
+"""The interface of both renderers, the choice between them, and what both compute alike for a frame."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from dancetutor_cli.film.scene.scene import (
 )
 from dancetutor_cli.run.errors import UsageError
 
-# The one interface of both renderers, and the choice between them.
+# The interface of both renderers, and the choice between them.
 
 MOST_JOINTS = 256  # what the uniform block of gl's shaders holds
 
@@ -102,7 +102,7 @@ def _create_gl(scene: Scene, size: tuple[int, int], quality: Quality) -> Rendere
     return GlRenderer(scene, size, quality)
 
 
-# What both renderers work out alike before they draw a frame: matrices, the shadow map's place, feet, regions.
+# What both renderers compute alike before they draw a frame: matrices, the shadow map's place, feet, regions.
 
 Array = NDArray[np.float64]
 SAMPLES: dict[Quality, int] = {"draft": 1, "good": 2, "best": 4}  # across and down a pixel
@@ -169,7 +169,7 @@ def place_cast(scene: Scene, camera: Camera, joints: Array, texels: int) -> Cast
 
 
 def shadow_middles(scene: Scene, joints: Array) -> Array:
-    """Where on the floor, x and z, those stand who dance, (2, 2): of one who is alone twice the same."""
+    """Where on the floor, x and z, the dancers stand, (2, 2): for a single dancer twice the same."""
     names = scene.character.skeleton.names
     roots = [j for j, name in enumerate(names) if name.removeprefix(PREFIX) == "HumanoidRoot"] or [0]
     return np.ascontiguousarray(joints[[roots[0], roots[-1]]][:, (0, 2), 3])
@@ -206,7 +206,7 @@ def feet_on_floor(scene: Scene, state: FrameState) -> Array:
 
 
 def _pressed(scene: Scene, state: FrameState, mark: FootMark, limb: int) -> float:
-    """How lit a panel is that this limb presses and that is under it, or partly so, 0..1."""
+    """How lit the panel is that this limb presses and that is at least partly under it, 0..1."""
     ours = np.flatnonzero((np.asarray(state.lit) > 0.0) & (np.asarray(state.lit_by) == limb))
     if len(ours) == 0:
         return 0.0
@@ -296,7 +296,7 @@ def light_matrix(cast: Cast) -> Array:
 
 
 class JointBoxes(NamedTuple):
-    """What hangs on each joint: any pose of the skin lies within these boxes, without skinning it here.
+    """The box of the vertices of each joint: any pose of the skin lies within these boxes, without skinning it here.
 
     joint : int (k,), the joints that hold any; corners : (k, 8, 3), of the box around what one holds, binding pose
     """

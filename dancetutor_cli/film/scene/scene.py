@@ -1,4 +1,4 @@
-"""The stage, and what is in the picture: the scene that stands still, and the state of one frame."""
+"""The stage, the scene that stands still, and the state of one frame."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from dancetutor_cli.run.errors import UsageError
 
 # The stage: floor, wall and pad as flat surfaces, each with a kind that says how it is coloured.
 #
-# They are coloured (by `cpu.stage_colours`) from the position on the surface alone; there are no textures, so the stage
-# is sharp at any size.
+# Their colours (`cpu.stage_colours`) depend only on the position on the surface; there are no textures, so the stage is
+# sharp at any size.
 
 Array = NDArray[np.float64]
 PANEL = 0.28  # metres, width of one panel
@@ -122,7 +122,7 @@ def _flat(x0: float, z0: float, x1: float, z1: float, y: float) -> list[tuple[fl
     return [(x0, y, z0), (x0, y, z1), (x1, y, z1), (x1, y, z0)]
 
 
-# What is in the picture: the scene that stands still, and the state of one frame. Both renderers draw from these.
+# The scene that stands still, and the state of one frame. Both renderers draw from these.
 
 FAR_AWAY = 1e6  # metres: a dancer who is farther away is a mistake
 _JUMP = 0.10  # metres above her own height that a camera shows: a jump
@@ -163,7 +163,7 @@ class Scene:
 
     @property
     def tall(self) -> float:
-        """How much room she needs above the ground, metres: her height, and a jump."""
+        """The room that the dancer needs above the ground, metres: her height, and a jump."""
         return float(rest_vertices(self.character)[:, 1].max()) + _JUMP
 
 
@@ -246,7 +246,7 @@ def hand_marks(scene: Scene, joints: Array) -> tuple[FootMark | None, FootMark |
 
 
 def light_direction(look: Look, camera: Camera) -> Array:
-    """Unit vector (3,) to the light, which stands beside the camera: she is lit from where she is seen."""
+    """Unit vector (3,) to the light, which stands beside the camera, so that the side that the camera sees is lit."""
     forward, up = camera.axes()[2], camera.axes()[1]
     heading = forward if math.hypot(forward[0], forward[2]) > 1e-3 else up
     yaw = math.atan2(-heading[0], -heading[2]) + math.radians(look.light.azimuth)

@@ -1,4 +1,4 @@
-"""What of the dancer is to be seen: feet under a cape, a foot behind a leg, where in the picture she is."""
+"""Which parts of the dancer are visible: feet under a cape, a foot behind a leg, the dancer's place in the picture."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.film.scene.camera import NEAR, Camera
 from dancetutor_cli.film.scene.scene import SOLE_RADIUS, FootMark, Scene, foot_marks
 
-# Are a character's feet to be seen from a camera? A cape or a large head may hide them from behind.
+# Whether a character's feet are visible from a camera. A cape or a large head may hide them from behind.
 
 Array = NDArray[np.float64]
 LEAST = 0.2  # part of the places of the feet that are visible at rest; with fewer, the feet are hidden
@@ -22,7 +22,7 @@ _LOOKED_AT = 160  # places of the feet that are looked at, at most
 
 
 def feet_hidden(character: Character, camera: Camera, size: tuple[int, int]) -> bool:
-    """Does the rest of her cover her feet where she stands at rest? False without feet."""
+    """Whether the rest of the body covers the feet of a standing dancer. False without feet."""
     feet = np.concatenate([on_foot(character, m, "l") | on_foot(character, m, "r") for m in character.meshes])
     if not feet.any():
         return False
@@ -37,7 +37,7 @@ def feet_hidden(character: Character, camera: Camera, size: tuple[int, int]) -> 
 
 
 def _covered(place: Array, corners: Array) -> bool:
-    """Is a place (x, y, depth) behind one of the triangles, corners (t, 3, 3)?"""
+    """Whether a place (x, y, depth) is behind one of the triangles, corners (t, 3, 3)."""
     a, b, c = (corners[:, k, :2] for k in range(3))
     p = place[:2]
 
@@ -49,7 +49,7 @@ def _covered(place: Array, corners: Array) -> bool:
     return bool((corners[inside, :, 2].max(axis=1) < place[2] - 0.01).any())
 
 
-# Where in the picture the dancer is, from her joints alone: which words she would stand behind.
+# Where the dancer is in the picture, from her joints alone: which words she would stand behind.
 
 FACE_AND_FEET = ("skullbase", "_talocrural", "_metatarsal")  # the joints of head and feet, of a second dancer, too
 _SIGNS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=bool)
@@ -79,7 +79,7 @@ class Silhouette:
     def behind(
         self, boxes: Sequence[tuple[float, float, float, float]], joints: Array, camera: Camera, size: tuple[int, int]
     ) -> bool:
-        """Is any part of her where one of `boxes` (left, top, right, bottom; pixels) is?
+        """Whether any part of the dancer is where one of `boxes` (left, top, right, bottom; pixels) is.
 
         joints : world matrices (j, 4, 4); size : (width, height) of the picture in pixels
         """
@@ -102,9 +102,9 @@ class Silhouette:
         return np.concatenate([seen.min(1), seen.max(1)], axis=1)
 
 
-# A foot that a leg hides: its shoe is outlined over that leg, for which foot stands where is what is to be seen.
+# A foot that a leg hides: its shoe is outlined over that leg, because the places of the feet must stay visible.
 #
-# What is hidden is found from the joints alone, legs as tapered tubes, so that both renderers show the same.
+# The hidden parts follow from the joints alone, with legs as tapered tubes, so that both renderers show the same.
 
 _LEG = ("knee", "talocrural", "metatarsal")  # what is above the knee hides no foot
 _RADII = (0.062, 0.05, 0.045)  # metres, of a leg at these joints
@@ -129,7 +129,7 @@ class _Legs:
         return (places - around).min((0, 1)), (places + around).max((0, 1))
 
     def cover(self, place: Array, soft: float = 1.0) -> Array:
-        """How much of what is at places (..., 3), `soft` pixels large, is behind them, 0 to 1."""
+        """How much of the things at places (..., 3), `soft` pixels large, is behind the legs, 0 to 1."""
         out = np.zeros(place.shape[:-1])
         for (a, b), (first, last) in zip(self.ends, self.radii, strict=True):
             along = b[:2] - a[:2]
@@ -193,10 +193,11 @@ def _share(mark: FootMark, before: _Legs, camera: Camera, size: tuple[int, int])
 
 
 def _shoe(frame: Frame, mark: FootMark, before: _Legs, camera: Camera, ink: Array) -> None:
-    """Draw the outline of what of a shoe is behind a leg. ink : (4,), red, green, blue 0..255, and how strong 0..1
+    """Draw the outline of the part of a shoe that is behind a leg. ink : (4,), red, green, blue 0..255, and how strong
+    0..1
 
-    Not its ring again: that lies on the floor, and over a leg it would be seen as a noose around it. And not filled: a
-    patch on a leg looked like a bandage.
+    The ring is not drawn again: it lies on the floor, and over a leg it would look like a noose around it. The outline
+    is not filled either: a patch on a leg looked like a bandage.
     """
     size = frame.shape[1], frame.shape[0]
     height = mark.ground + mark.height + float(np.mean(SHOE))

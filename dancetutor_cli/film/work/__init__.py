@@ -1,4 +1,4 @@
-"""The work of films: what is wanted, its plan, the segments that other processes draw, batches of films.
+"""The work of films: the request, its plan, the segments that other processes draw, batches of films.
 
 request, planning             what is wanted, checked; everything laid on the film's clock
 segments, render              pieces of a film drawn and encoded by any process; one film put in its place

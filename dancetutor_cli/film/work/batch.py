@@ -36,7 +36,7 @@ FIELDS = ("title", "artist", "folder", "pack", "file", "steps_type", "difficulty
 
 @dataclass(frozen=True, slots=True)
 class BatchRequest:
-    """What a batch makes. request : the film wanted of each chart (its path and selection are replaced)
+    """The contents of a batch. request : the film of each chart (its path and selection are replaced)
 
     name : template of the films' names; meters : least and greatest meter or None; shard : (number from 1, of how many)
     exclude : patterns of files that are left out
@@ -125,7 +125,7 @@ def film_list(batch: BatchRequest) -> FilmList:
 
 
 def chart_files(paths: Sequence[Path], exclude: Sequence[str] = ()) -> Iterator[Path]:
-    """Chart files; of a song with both kinds the .ssc, as the games do. exclude : as `find_files` has it"""
+    """Chart files; for a song with both kinds the .ssc, as in the games. exclude : as for `find_files`"""
     for path in find_files(paths, exclude):
         if path.suffix.lower() == ".sm" and path not in paths and twin(path) is not None:
             continue
@@ -168,11 +168,11 @@ def file_name(template: str, song: Song, chart: Chart) -> str:
     return plain_name(template.format(**values)) or "film"
 
 
-# Many films: what is wanted, what is done already, and the work list that any workers may take apart.
+# Many films: the requests, what is done already, and the work list that any workers can share.
 #
-# Each chart's film is prepared, drawn in segments and joined by pieces of work of their own, so that all workers stay
-# busy to the end of a pack. Finished segments stay when a run is interrupted; finished films are known by a hash of
-# everything that they are made of, and are not made again. What is kept of that (`film_records`) this process writes.
+# The film of each chart is prepared, drawn in segments and joined by separate pieces of work, so that all workers stay
+# busy to the end of a pack. Finished segments stay when a run is interrupted. A finished film is known by a hash of
+# everything that it is made of, and is not made again. This process writes these records (`film_records`).
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""A film of a motion without a chart: the character on a bare floor, alone or beside the input that she follows."""
+"""A film of a motion without a chart: the character on a bare floor, alone or beside the input."""
 
 from __future__ import annotations
 

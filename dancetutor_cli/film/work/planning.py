@@ -1,4 +1,4 @@
-"""From a request to a film's plan: who dances in it, and everything laid on the clock."""
+"""From a request to a film's plan: who dances in it, and everything on the clock of the film."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.findings import Finding
 
 
-# Who dances in a film, and how: the play that it shows, and the motions of all who dance it.
+# Who dances in a film, and how: the play that it shows, and the motions of all dancers.
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ def film_dance(request: FilmRequest, subject: FilmSubject) -> FilmDance:
 
 
 def _cut(request: FilmRequest, performance: Performance, clock: Clock) -> tuple[Motion, ...]:
-    """What the film shows of a performance, each dancer where she stands on the pad under all."""
+    """The part of a performance that the film shows, with each dancer at her place on the pad under all."""
     done = performance.motions(clock.cut_at(performance.rate), pooled(), request.background)
     return tuple(shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True))
 
@@ -208,7 +208,7 @@ def prepare(request: FilmRequest, subject: FilmSubject) -> PreparedFilm:
 
 
 def _dancers(dance: FilmDance) -> list[tuple[Play, int]]:
-    """Of several who dance each one's play, and which column its first one is."""
+    """For several dancers, each one's play and the first of its columns."""
     plays = [(play, one.chart.first_column) for one, play in zip(dance.solved, dance.plays, strict=True)]
     return plays if len(plays) > 1 else []
 
@@ -220,7 +220,9 @@ def _scroll_bpm(chart: Chart, track: NoteTrack, speeds: SpeedSegments) -> float:
 
 
 def _with_feet_camera(look: FilmLook, character: Character | None, pad: Pad) -> FilmLook:
-    """The look, with a camera that shows the feet of who hides them from behind, where no camera is asked for."""
+    """The look with a camera that shows the feet of characters who hide them from behind, unless the user chose a
+    camera.
+    """
     part = look.layout.dancer
     if character is None or part is None or look.camera is not None or look.layout.screen is not None:
         return look
@@ -230,7 +232,7 @@ def _with_feet_camera(look: FilmLook, character: Character | None, pad: Pad) -> 
 
 
 def _callouts(dance: FilmDance, style: CallStyle, scrolls: ScrollSegments) -> tuple[Callout, ...]:
-    """What is called out; of two who dance what both do, for no call says whom it means, but for one's mines."""
+    """The calls; for two dancers the moves that both make, because no call names its dancer, except those of mines."""
     if len(dance.solved) == 1:
         return callouts_of(_about(dance.solved[0]), dance.play, style, scrolls, dance.on_mines)
     pairs = zip(dance.solved, dance.plays, strict=True)
@@ -251,7 +253,7 @@ def _findings(one: Solved) -> tuple[Finding, ...]:
 
 
 def _mines_of_each(dance: FilmDance, style: CallStyle, scrolls: ScrollSegments) -> Iterator[Callout]:
-    """Of two who dance the mines that a foot is on, with whose foot it is."""
+    """For two dancers, the mines under a foot, with the dancer whose foot it is."""
     mines_alone = replace(style, findings=False)
     for one in dance.solved:
         under = [mine for mine in dance.on_mines if mine.player == one.chart.player]
@@ -266,7 +268,7 @@ def _calls(look: FilmLook) -> CallStyle:
 
 
 def _cues(dance: FilmDance, look: FilmLook) -> Iterator[Cue]:
-    """The moves for subtitles; of two who dance with the player's number."""
+    """The moves for subtitles; for two dancers with the player's number."""
     language = load_language(look.language)
     words, facing = subtitle_words(language), turned(look)
     if len(dance.solved) == 1:
@@ -289,7 +291,8 @@ def _at_rate(rate: float, notes: tuple[str, ...]) -> list[str]:
 def _fitted(
     name: str, motions: Mapping[float, tuple[Motion, ...]], given: bool
 ) -> tuple[Character | None, Mapping[float, tuple[Motion, ...]]]:
-    """The character who dances and the motions for its skeleton; None for the dancer, whom who draws has at hand.
+    """The character who dances and the motions for its skeleton; None for the project's dancer, whom each drawing
+    process has.
 
     given : the motions are of files, which may be for the character's skeleton already
     """

@@ -1,9 +1,9 @@
-"""What a batch keeps of its films between runs: which are done, and digests of the segments of those that are not.
+"""Records that a batch keeps between runs: which films are done, and digests of the segments of those that are not.
 
-Records lie in the user's own cache and never beside the films, because a folder of charts, and what lies in it, may
-come from anybody. Films in work lie beside the output, so that the last step is a rename and a cluster's machines see
-them: in a folder that each run makes again, under a name that nobody can foresee. A segment of an interrupted run moves
-over from the folder of that run, and counts only with the digest that is kept here.
+Records are in the user's own cache and never beside the films, because a folder of charts and its contents may come
+from anybody. Unfinished films are beside the output, so that the last step is a rename and the machines of a cluster
+see them: in a folder that each run makes again, under a name that nobody can guess. A segment of an interrupted run is
+moved over from the folder of that run, and counts only with the digest in the record.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class FilmRecords:
             return FilmRecord()
 
     def write(self, output: Path, record: FilmRecord) -> None:
-        """Keep a record; one that cannot be written is left out, for the film itself does without."""
+        """Keep a record. If it cannot be written it is left out, because the film itself does not need it."""
         if self._folder is None:
             return
         data = {

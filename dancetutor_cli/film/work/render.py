@@ -24,7 +24,7 @@ from dancetutor_cli.run.pool import Task, Workers, open_workers
 
 
 class ProgressListener(Protocol):
-    """Who wants to know how far the work is."""
+    """A listener that is informed of the progress."""
 
     def begin(self, frames: int, fps: int) -> None:
         """The film has that many frames."""

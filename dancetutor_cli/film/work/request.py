@@ -1,4 +1,4 @@
-"""What film is wanted, whether it can be made, and its key: the same hash, the same film."""
+"""The film that the user wants, whether it can be made, and its key: the same hash, the same film."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.media.encoder import Encoding
 
 
-# What film is wanted, and whether it can be made: everything that can be refused before the slow work begins.
+# The film that the user wants, and whether it can be made: everything that can be refused before the slow work begins.
 
 
 @dataclass(frozen=True, slots=True)
 class FilmRequest:
-    """What film is wanted. Pickles, so that another process can prepare it.
+    """The film that the user wants. Pickles, so that another process can prepare it.
 
     dance : which chart, and how it is danced; look : how it is shown
     section : "START:END" in seconds, beats or measures, or None for the whole song
@@ -62,7 +62,7 @@ class FilmRequest:
 
 @dataclass(frozen=True, slots=True)
 class FilmSubject:
-    """What a film is about, read and checked.
+    """The subject of a film, read and checked.
 
     music : the song's file, None for a film without; section : whether only a part is wanted
     """
@@ -119,7 +119,7 @@ def _with_the_music(end: float, music: Path | None) -> tuple[float, float]:
     return 0.0, end if music is None else max(end, seconds_of(music))
 
 
-# What is neither danced nor shown: what comes before the step that a film counts to, and what follows a passage.
+# The parts that are neither danced nor shown: before the step to which a film counts in, and after a passage.
 
 REST_SECONDS = 0.7  # seconds of the film before it begins from which on she makes no step: she stands when it does
 
@@ -136,13 +136,13 @@ class Quiet(NamedTuple):
 
 
 def quiet_in(passes: Sequence[Pass]) -> Quiet | None:
-    """While the runs of a film are counted in, which all begin at the same second; None without a count-in."""
+    """The count-in of the runs of a film, which all begin at the same second; None without a count-in."""
     one = passes[0]
     return Quiet(one.start - REST_SECONDS * max(p.rate for p in passes), one.sound_from) if one.count else None
 
 
 def quiet_after(passes: Sequence[Pass]) -> Quiet | None:
-    """From the end of a passage on, after which she comes to rest; None if the film ends with it."""
+    """The time after a passage, in which the dancer comes to rest; None if the film ends with the passage."""
     return Quiet(passes[-1].until, math.inf) if passes[-1].rest else None
 
 
@@ -169,7 +169,7 @@ def _filter_arrays(arrays: Any, keep: NDArray[np.bool_]) -> dict[str, Any]:
     return {name: value[keep] for name, value in found.items() if isinstance(value, np.ndarray)}
 
 
-# What a film is made of, as one hash: the same hash, the same film.
+# Everything that a film is made of, as one hash: the same hash, the same film.
 
 
 def film_key(request: FilmRequest, subject: FilmSubject, encoding: Encoding) -> str:

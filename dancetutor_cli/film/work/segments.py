@@ -48,7 +48,7 @@ class Segment:
 
 
 class PlanFile(NamedTuple):
-    """A film's plan where every worker can read it, and the SHA-256 by which a worker knows that it is that plan."""
+    """A file with a film's plan that every worker can read, and the SHA-256 by which a worker recognises that plan."""
 
     path: Path
     digest: str
@@ -87,14 +87,14 @@ def _film(plan: PlanFile) -> Film:
 
 
 def forget() -> None:
-    """Let go of the film that this process has drawn."""
+    """Release the film that this process has drawn."""
     _film.cache_clear()
 
 
 def common_to_workers(kind: RendererKind) -> str:
-    """The module of what workers that draw have in common; "" where kernels must be compiled first.
+    """The module that drawing workers have in common; "" if kernels must be compiled first.
 
-    One worker does that alone, by `warm_up`, and the others fetch what it has compiled.
+    Then one worker compiles alone, by `warm_up`, and the others fetch the result.
     """
     from dancetutor_cli.film.scene import renderer
     from dancetutor_cli.film.scene.cpu.shade import resolve
@@ -108,9 +108,9 @@ def common_to_workers(kind: RendererKind) -> str:
 
 
 def warm_up(report: Report) -> None:
-    """Do what comes before any first frame of the "cpu" renderer, while the film is still being prepared.
+    """Do the work before the first frame of the "cpu" renderer, while the film is still being prepared.
 
-    That is to import what drawing needs and to fetch its kernels, or compile them, by drawing a tiny room.
+    It imports what drawing needs and fetches or compiles its kernels, by drawing a tiny room.
     """
     from dancetutor_cli.film import film  # noqa: F401
     from dancetutor_cli.film.media import yuv  # noqa: F401
@@ -243,7 +243,7 @@ def outcome(job: FilmJob, opened: OpenedFilm | None, error: DancetutorError | No
 
 
 def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> OpenedFilm:
-    """Everything before the first frame. What an earlier run has left of the same film is used.
+    """Everything before the first frame. The results of an earlier run of the same film are used.
 
     earlier : what is kept of that run; work : name of the folder to make beside the output, for what is not finished
     """

@@ -1,6 +1,6 @@
-"""Imported once for all workers that make films: what they have in common stands in memory before they are made.
+"""Imported once for all workers that make films: what they have in common is in memory before they are made.
 
-That is modules, kernels as they were kept, and the dancer: two thirds of what a worker does before its first frame.
+These are modules, kept kernels and the dancer: two thirds of a worker's work before its first frame.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Imported once for all workers that make films by OpenGL without a graphics card: what takes them long to import.
+"""Imported once for all workers that make films by OpenGL without a graphics card: their slow imports.
 
-With a card each worker imports for itself: what its driver loads might not survive that workers are forked.
+With a card, each worker imports for itself, because what its driver loads might not survive a fork.
 """
 
 from __future__ import annotations

@@ -100,10 +100,10 @@ def _from_foot(x: float, z: float, feet: Any, f: int) -> float:  # pragma: no co
 
 
 class Shadow(NamedTuple):
-    """What takes light from the floor.
+    """The shadow on the floor.
 
     mask : float32 (s, s), how much; part : texels of it outside of which there is nothing, (left, top, right, bottom)
-    cast : where that is; dark : 0..1, of all
+    cast : its place; dark : 0..1, of the whole shadow
     middles : (2, 2), `renderer.shadow_middles`; far : 0..1, how much is left a step away from them
     """
 
@@ -138,7 +138,7 @@ class Live(NamedTuple):
 
 @njit(cache=True, inline="always")
 def _is_lit(panel: int, lit: Any) -> bool:  # pragma: no cover
-    """Is the panel of a tile lit, or, of a tile with several, any panel?"""
+    """Whether the panel of a tile is lit or, in a tile with several, any of them."""
     most = 0.0
     for p in range(lit.shape[0]):
         if panel in (p, SEVERAL):
@@ -148,7 +148,7 @@ def _is_lit(panel: int, lit: Any) -> bool:  # pragma: no cover
 
 @inner_kernel
 def _shaded(low: Any, high: Any, shade: Any) -> bool:  # pragma: no cover
-    """May the shadow fall on a place of the box between two corners?"""
+    """Whether the shadow may fall on a place of the box between two corners."""
     left, top, right, bottom = shade.part
     axes, origin, scale = shade.cast.axes, shade.cast.origin, shade.cast.scale
     for k, first, last in ((0, left, right), (1, top, bottom)):
@@ -163,7 +163,9 @@ def _shaded(low: Any, high: Any, shade: Any) -> bool:  # pragma: no cover
 
 @inner_kernel
 def _trodden(low: Any, high: Any, coarse: float, live: Any) -> bool:  # pragma: no cover
-    """May something of a foot fall on a place of the box between two corners? coarse : metres of its largest pixel"""
+    """Whether the marks of a foot may fall on a place of the box between two corners. coarse : metres of its largest
+    pixel
+    """
     feet, numbers = live.feet, live.numbers
     far = numbers[3] + max(1.6 * numbers[1], OUTSIDE + coarse)
     for f in range(feet.shape[0]):
@@ -181,7 +183,9 @@ def _trodden(low: Any, high: Any, coarse: float, live: Any) -> bool:  # pragma: 
 
 @inner_kernel
 def _touched(tiles: Any, row: int, column: int, shade: Any, live: Any) -> int:  # pragma: no cover
-    """May light, shadow or a foot change a pixel of a tile? -1: nothing does; else how many feet must be looked at."""
+    """Whether light, shadow or a foot may change a pixel of a tile. -1: nothing does; otherwise how many feet to look
+    at.
+    """
     low, high = tiles.low[row, column], tiles.high[row, column]
     if low[0] > high[0]:
         return -1

@@ -1,8 +1,8 @@
 """Colours of places on the dancer, many at a time: toon light, self shadow, rim and texture.
 
-Each step goes over all places of a block before the next one begins. Steps that fetch what lies here and there only do
-that; those that calculate are small loops without branches, of which the compiler makes vector code. That takes a third
-of the time of one place after the other.
+Each step handles all places of a block before the next step begins. Steps that fetch scattered data only fetch; steps
+that calculate are small loops without branches, which the compiler turns into vector code. That takes a third of the
+time of handling one place after the other.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class Light(NamedTuple):
     toon: F32
 
 
-# What is known of the places of a block lies in rows of one flat array, so many numbers from each other: only then the
+# The data of the places of a block are in rows of one flat array, at a fixed distance from each other. Only then the
 # compiler sees that rows do not overlap, and makes vector code of the loops over them.
 (
     _LIT, _FACE, _UPWARD, _LEFT, _TOP, _HIGH, _ACROSS, _ALONG,  # what the rows of the triangle's vertices come to there
@@ -126,7 +126,7 @@ def _interpolate(count: int, some: Any, triangles: Any, surface: Any, light: Any
         w2 = max((px - x0) * (y1 - y0) - (py - y0) * (x1 - x0), _NONE) * vertex[c, W]
         whole = _ONE / (w0 + w1 + w2)
         w0, w1, w2 = w0 * whole, w1 * whole, w2 * whole
-        # all is read before anything is written, so that the processor can do it in one go
+        # everything is read before anything is written, so that the processor can do it in one go
         to_light = vertex[a, TO_LIGHT] * w0 + vertex[b, TO_LIGHT] * w1 + vertex[c, TO_LIGHT] * w2
         facing = vertex[a, FACING] * w0 + vertex[b, FACING] * w1 + vertex[c, FACING] * w2
         up = vertex[a, UP] * w0 + vertex[b, UP] * w1 + vertex[c, UP] * w2

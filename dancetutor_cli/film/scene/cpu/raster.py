@@ -183,7 +183,7 @@ def project_light(world: Any, axes: Any, origin: Any, scale: float, out: Any) ->
 
 @njit(cache=True, inline="always")
 def _hidden(least: Any, box: Any, depth: float) -> bool:  # pragma: no cover
-    """Is all that is drawn in this box of samples nearer than `depth`, 1 / depth in units of 1 / DEPTH_UNIT?"""
+    """Whether everything drawn in this box of samples is nearer than `depth`, 1 / depth in units of 1 / DEPTH_UNIT."""
     left, top, right, bottom = box
     for i in range(top // BAND, bottom // BAND + 1):
         for j in range(left // BAND, right // BAND + 1):

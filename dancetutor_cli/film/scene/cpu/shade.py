@@ -1,4 +1,4 @@
-"""The dancer's pixels: which places of her are coloured, outlines, and the mean over the samples of a pixel."""
+"""The dancer's pixels: which places of her are coloured, her outlines, and the mean over the samples of a pixel."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class RasterResult(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Room for what is on its way to the picture.
+    """Working memory for fragments on their way to the picture.
 
     seen : int64 (s,), the triangles of a pixel's samples, -1 once it is a fragment, and depths : float64 (s,)
     pixels : int64 (n, 2), rows and columns that are waiting for their fragments' colours; sum : float32 (n, 4), 0..255
@@ -95,7 +95,7 @@ def light_vertices(world: Any, points: Any, surface: Any, eye: Any, cast: Any, o
 
 @njit(cache=True, inline="always")
 def _one_piece(keys: Any, row: int, column: int, samples: int, triangles: Any) -> bool:  # pragma: no cover
-    """Do all samples of a pixel see one triangle, or one piece of surface at about the same depth?
+    """Whether all samples of a pixel see one triangle, or one piece of surface at about the same depth.
 
     keys : of `raster.Canvas.nearest`, the first sample's place; triangles : their count, and the piece of each
     """

@@ -1,6 +1,6 @@
 """Colours of the stage, one rule for each kind of surface.
 
-Drawn once a camera, with numpy: compiling it took as long as fifty pictures of it.
+numpy draws them once for each camera: compiling this took as long as drawing fifty pictures of it.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Place(NamedTuple):
 
 
 class SurfaceColours(NamedTuple):
-    """What places look like. colour : (n, 3), 0..1; takes : how much of shadows; panel : int32 (n,), column or -1
+    """The look of places. colour : (n, 3), 0..1; takes : how much of shadows; panel : int32 (n,), column or -1
 
     glow, white : (n,), of a fully lit panel
     """
@@ -46,7 +46,7 @@ class SurfaceColours(NamedTuple):
 
 
 class Paints(NamedTuple):
-    """What the stage is coloured with.
+    """The colours and numbers of the stage.
 
     palette : colours 0..1 in the order of `COLOURS`, then rows of numbers, (n, 4); panel, arrow : of `scene.Tiles`
     """
@@ -137,7 +137,9 @@ def _pad(place: Place, paints: Paints) -> SurfaceColours:
 
 
 def _wall(place: Place, palette: Array) -> SurfaceColours:
-    """A lamp at the foot of each part, whose light is wide and has no edge farther up: the song's words stand there."""
+    """The wall has a lamp at the foot of each part. Its light is wide and has no edge farther up, because the song's
+    words stand there.
+    """
     u, v = place.u, place.v
     core, beam = u / (0.03 + 0.5 * v), u / (0.16 + 1.1 * v)
     core, beam = 1.0 / (1.0 + core * core), 1.0 / (1.0 + beam * beam)
@@ -154,7 +156,7 @@ def _unlit(count: int) -> tuple[NDArray[np.int32], Array, Array]:
 
 
 def surface(kind: int, place: Place, paints: Paints) -> SurfaceColours:
-    """What a kind of surface (`scene.SurfaceKind`) looks like at some places of it."""
+    """The look of a kind of surface (`scene.SurfaceKind`) at some of its places."""
     palette = paints.palette
     if kind == SurfaceKind.FLOOR:
         return _floor(place, palette)

@@ -1,4 +1,4 @@
-"""The standing part of the picture, drawn once a camera: a ray through each pixel to the nearest surface."""
+"""The still part of the picture, drawn once for each camera: a ray through each pixel to the nearest surface."""
 
 from __future__ import annotations
 
@@ -156,7 +156,7 @@ def _boxes(stage: Stage, camera: Camera, size: tuple[int, int], left: int, wide:
 
 
 def _alike(found: NDArray[np.int16]) -> NDArray[np.bool_]:
-    """Do all pixels around one, and itself, see the same surface?"""
+    """Whether all pixels around one, and the pixel itself, see the same surface."""
     height, width = found.shape
     around = np.pad(found, 1, mode="edge")
     out = np.ones(found.shape, dtype=bool)
@@ -167,7 +167,7 @@ def _alike(found: NDArray[np.int16]) -> NDArray[np.bool_]:
 
 
 def _paint(rays: _Rays, stage: _Stage, places: _Places, found: NDArray[np.int16], share: float) -> None:
-    """Add to a picture what it sees at places, whose surfaces are `found`; share : of the pixel that each is worth."""
+    """Add the colours of places to a picture; their surfaces are `found`. share : of the pixel that each is worth."""
     drawn = places.drawn
     for number in np.unique(found[found >= 0]):
         at = np.flatnonzero(found == number)

@@ -1,4 +1,4 @@
-"""What OpenGL is here, found with ctypes alone; what must be corrected before pyrender is imported; the shaders."""
+"""The OpenGL of this machine, found with ctypes alone; corrections before pyrender is imported; the shaders."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from dancetutor_cli.run.errors import UnavailableError, install_command
 
-# What OpenGL is here, found with ctypes alone: before any OpenGL package is imported, whose errors nobody can read.
+# The OpenGL of this machine, found with ctypes alone, before any OpenGL package with unreadable errors is imported.
 
 MISSING = "No OpenGL found. Debian/Ubuntu: apt-get install libegl1 libgl1. Or use --renderer cpu."
 NO_PACKAGE = f"The OpenGL renderer is not installed. {install_command('gl')}. Or use --renderer cpu."
@@ -35,7 +35,7 @@ def require_gl() -> None:
 
 @cache
 def gpu_device() -> int | None:
-    """Number of the first EGL device that is real hardware and starts, or None; also without pyrender, to draw with."""
+    """Number of the first EGL device that is real hardware and starts, or None; works without pyrender, too."""
     if find_spec("pyrender") is None or not sys.platform.startswith("linux") or _library("libGL.so.1") is None:
         return None
     egl = _library("libEGL.so.1")
@@ -86,7 +86,7 @@ def _starts(egl: ctypes.CDLL, display: int) -> bool:
     return True
 
 
-# What must be corrected before pyrender 0.1.45 and PyOpenGL 3.1.0 (unchanged since 2022) can be imported.
+# Corrections without which pyrender 0.1.45 and PyOpenGL 3.1.0 (unchanged since 2022) cannot be imported.
 #
 # Call `load_pyrender` instead of importing pyrender.
 #

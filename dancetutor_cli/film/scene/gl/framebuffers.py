@@ -149,7 +149,7 @@ def _shadow_texture(size: tuple[int, int]) -> int:
     return number
 
 
-# The parts of the floor that something falls on: only there the floor is drawn again.
+# The parts of the floor on which something falls: only there the floor is drawn again.
 #
 # Found tile by tile, as cpu/floor.py does. Import only after `available.load_pyrender`.
 
@@ -158,7 +158,7 @@ _NEAR = 0.03  # metres above or below the ground under a foot: other ground has 
 
 
 def has_ground(tiles: GroundTiles) -> NDArray[np.bool_]:
-    """Which tiles (t, u) have any ground; what the others hold means nothing."""
+    """Which tiles (t, u) have any ground; the values of the others mean nothing."""
     return tiles.low[..., 0] <= tiles.high[..., 0]
 
 
@@ -180,7 +180,7 @@ def shaded(tiles: GroundTiles, light: Array, part: Array, spread: float) -> NDAr
 
 
 def trodden(tiles: GroundTiles, feet: Array, far: float) -> NDArray[np.bool_]:
-    """Which tiles something of a foot may fall on.
+    """Which tiles the marks of a foot may fall on.
 
     feet : `renderer.feet_on_floor`; far : metres from the line between heel and toe, pixels apart
     """
@@ -239,7 +239,7 @@ class Patches:
         GL.glDeleteBuffers(1, [self._buffer])
 
 
-# The standing part of the picture as textures. Drawn by cpu/standing.py, once a camera, so that it cannot differ.
+# The still part of the picture as textures. cpu/standing.py draws it, once for each camera, so that it cannot differ.
 #
 # Import only after `available.load_pyrender`.
 

@@ -17,7 +17,7 @@ from dancetutor_cli.film.scene.geometry import PackedMeshes
 from dancetutor_cli.film.scene.gl.available import SHADERS
 from dancetutor_cli.film.scene.renderer import DancerVisibility
 
-# pyrender's shader programs with the project's shaders, uniforms that are found once, and errors that are heard.
+# pyrender's shader programs with the project's shaders, with uniforms that are looked up once, and with error checks.
 #
 # Import only after `available.load_pyrender`.
 
@@ -110,7 +110,9 @@ class ProgramCache(ShaderProgramCache):  # type: ignore[misc]
 
 
 def set_state() -> None:
-    """What all passes rely on. The picture's first row is y = 0, upside down for OpenGL: triangles turn clockwise."""
+    """The state that all passes need. The picture's first row is y = 0, upside down for OpenGL: triangles turn
+    clockwise.
+    """
     GL.glEnable(GL.GL_CULL_FACE)
     GL.glFrontFace(GL.GL_CW)
     GL.glEnable(GL.GL_DEPTH_TEST)

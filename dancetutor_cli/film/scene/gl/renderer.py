@@ -102,8 +102,8 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         self._program_cache = ProgramCache()
         device = bytes(GL.glGetString(GL.GL_RENDERER)).decode("utf-8", "replace")
         most = int(GL.glGetIntegerv(GL.GL_MAX_SAMPLES))
-        # Two by two pixels for each of the picture's: cheaper than as many samples where a processor draws. The rest of
-        # the samples, if there are to be more, are samples of these pixels.
+        # Two by two pixels for each of the picture's: cheaper than as many samples if a processor draws. If there are
+        # to be more samples, they are samples of these pixels.
         self._fine = min(SAMPLES[quality], 2)
         inner = min((SAMPLES[quality] // self._fine) ** 2, most)
         self._samples = inner if inner > 1 else 0
@@ -273,7 +273,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             program.set_uniform("tint", tint)
             program.set_uniform("least", least)
             primitive.draw(her.part)
-        # with a shader of its own: a processor would work out her light, too, wherever it tries the outline
+        # with a shader of its own: a processor would compute the dancer's light, too, wherever it tries the outline
         self._use_skinned("outline.frag", her, outline=float(wide), line=np.array(look.outline) / 255.0, **view)
         GL.glCullFace(GL.GL_FRONT)
         for primitive, *_ in self._primitives:
@@ -281,7 +281,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         self._lay_over(box)
 
     def _lay_over(self, box: NDArray[Any]) -> None:
-        """Put what is drawn of her on the picture: each pixel the mean of all that was drawn for it."""
+        """Put the dancer on the picture: each pixel is the mean of everything that was drawn for it."""
         if self._samples:
             GL.glDisable(GL.GL_SCISSOR_TEST)
             x0, y0, x1, y1 = (int(v) for v in self._fine * box)
