@@ -1,7 +1,7 @@
 """Charts, their packing into one atlas, and paint evaluated for every texel of it.
 
-A chart is a connected patch that looks one of six ways; it is laid flat along that axis. Paint depends on the place on
-the body alone, so charts meet without a seam; every chart has a border of repeated texels.
+A chart is a connected patch that faces one of six directions; it is laid flat along that axis. Paint depends only on
+the place on the body, so charts meet without a seam; every chart has a border of repeated texels.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The dancer's body and clothes as signed distance functions, on the rest positions of `dance.rig.skeleton`.
 
 Sections are drawn as an artist draws a front and a side view: (station, half width, depth to the front, depth to the
-back, shift to the front, shift aside), all in metres. She is 1.70 m tall, athletic, with slightly larger head, hands
-and feet than life, because that reads better at 720p.
+back, shift to the front, shift aside), all in metres. The dancer is 1.70 m tall and athletic. Head, hands and feet are
+slightly larger than life, because that is clearer at 720p.
 """
 
 from __future__ import annotations
@@ -183,7 +183,7 @@ def shirt() -> Shape:
 
 
 def neckline() -> Shape:
-    """What the shirt leaves free around the neck, lower in front."""
+    """The opening of the shirt around the neck, lower in front."""
     return blend(
         0.03, ellipsoid((0, 1.470, -0.012), (0.070, 0.062, 0.068)), ellipsoid((0, 1.425, 0.045), (0.062, 0.052, 0.080))
     )
@@ -215,7 +215,7 @@ def shoe_upper() -> Shape:
 
 
 def sock() -> Shape:
-    """What is seen in the shoe's opening where no leg is drawn, as from above."""
+    """The visible part in the shoe's opening if no leg is drawn, as from above."""
     return ellipsoid((HIP[0], 0.124, -0.019), (0.0365, 0.0070, 0.0400))
 
 

@@ -1,4 +1,4 @@
-"""What the dancer is painted with: colours as functions of the place on the body, evaluated for every texel."""
+"""The paint of the dancer: colours as functions of the place on the body, evaluated for every texel."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The parts the dancer is made of: surface, how it is skinned, painted and coloured."""
+"""The parts of the dancer: surface, skinning, paint and colour of each."""
 
 from __future__ import annotations
 
@@ -69,8 +69,9 @@ def leggings_mesh() -> Lofted:
 
 
 def calm_hips(points: Array, normals: Array) -> Array:
-    """Normals of the leggings' upper part that look up no more at one height than at another: no patches of light on
-    belly and hips."""
+    """Normals of the leggings' upper part that look up by the same angle at all heights: no patches of light on belly
+    and hips.
+    """
     level = normals.copy()
     level[:, 1] = 0.10 + 0.15 * normals[:, 1]
     return softer(normals, unit(level), 0.9 * np.interp(points[:, 1], [0.70, 0.82], [0.0, 1.0]))
@@ -224,7 +225,7 @@ def parts() -> list[Part]:
 
 
 def _limb_parts(shoe: Callable[[], Lofted]) -> list[Part]:
-    """What wears the limbs' colours, and the rest of the shoe."""
+    """The parts in the limbs' colours, and the rest of the shoe."""
     return [
         Part("shoe", shoe, "foot", 0, paint.plain, mirror=True, tint="foot"),
         Part("wristband", trims.wristband, "heat", 0, paint.plain, mirror=True, tint="hand"),
@@ -235,7 +236,7 @@ def _limb_parts(shoe: Callable[[], Lofted]) -> list[Part]:
 
 
 def heel_parts() -> list[Part]:
-    """What she wears on her feet with `--gait heels`, in place of what is called shoe or `SHOES`."""
+    """The shoes of `--gait heels`, which replace the parts called shoe or `SHOES`."""
     box = ((0.02, -0.01, -0.10), (0.16, 0.16, 0.21))
     upper = of_shape(heels.upper(), box, 0.0025, even(0.0125))
     return [

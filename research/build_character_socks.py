@@ -19,7 +19,7 @@ class Cut(NamedTuple):
 
 
 def cut_level(whole: Cut, height: float) -> tuple[Cut, Cut]:
-    """What of a surface is above and what is below a height, metres. Both have the same vertices on the line."""
+    """The parts of a surface above and below a height, metres. Both have the same vertices on the line."""
     away = whole.points[:, 1] - height
     away = np.where(np.abs(away) < 1e-6, 1e-6, away)  # no vertex lies on the line: each edge is cut between its ends
     corners = away[whole.triangles] > 0

@@ -1,4 +1,4 @@
-"""Write the tables of docs/cost-model.md anew from the presets itg and pump: after a fit, or when a comment changes."""
+"""Write the tables of docs/cost-model.md from the presets itg and pump: after a fit, or when a comment changes."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def _comments(path: Path) -> dict[str, str]:
 
 
 def main() -> None:
-    """Replace what stands between the marks."""
+    """Replace the text between the marks."""
     text = PAGE.read_text("utf-8")
     head, rest = text.split(BEGIN)
     PAGE.write_text(head + BEGIN + tables() + END + rest.split(END)[1], encoding="utf-8")

@@ -1,4 +1,4 @@
-"""How sure a row is: from how much dearer the best play with other feet would be to how often such rows are right.
+"""How sure a row is: from its margin to how often rows with such a margin are right.
 
 Isotonic regression of right and wrong rows on their margins, on songs that the weights had not seen.
 """
@@ -49,7 +49,7 @@ def _near(margins: NDArray[np.int64], knot: int) -> slice:
 def reliability(
     results: Outcome, folds: Callable[[list[Labelled], int], NDArray[np.int64]]
 ) -> list[tuple[float, float, int]]:
-    """What was said, what was right (per cent), rows: each half calibrated on the other."""
+    """Predicted and actual per cent, and rows: each half calibrated on the other."""
     half = folds([label for label, _, _ in results], 2)
     said, right = [], []
     for number in range(2):
@@ -68,7 +68,7 @@ def reliability(
 
 
 def chart_of_calibration(name: str, table: Sequence[tuple[float, float, int]]) -> str:
-    """An SVG: what was said against what was right, a circle for each bin, its area by the number of rows."""
+    """An SVG: predicted against actual, a circle for each bin, its area by the number of rows."""
     size, edge, low = 360, 46, 50.0
 
     def place(value: float) -> float:

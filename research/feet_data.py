@@ -1,4 +1,4 @@
-"""The labelled feet that fits and benchmarks ask for: each set with its charts as rows and labels, in folds by song."""
+"""The labelled feet for fits and benchmarks: each set with its charts as rows and labels, in folds by song."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def _song(path: Path) -> reader.Song:
 
 
 def one_label(root: Path, entry: dict) -> Labelled | None:  # type: ignore[type-arg]
-    """A chart and its labels; None where nothing is labelled. Ends the program where labels and chart do not fit."""
+    """A chart and its labels; None if nothing is labelled. Ends the program if labels and chart do not fit."""
     song = _song(root / entry["chart"])
     wanted = (entry["steps_type"], entry["difficulty"])
     chart = (

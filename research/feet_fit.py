@@ -107,7 +107,7 @@ def _split(found: Floats) -> tuple[Floats, Floats]:
 
 
 def _priced(share: Share, found: Floats) -> tuple[Floats, Floats]:
-    """What the moves of a share cost without time, and what time adds by milliseconds and facts."""
+    """The costs of the moves of a share without time, and what time adds by milliseconds and facts."""
     weights, curves = _split(found)
     return move_costs(share.book, weights), (_HAT @ curves.T) @ flags(share.book).T
 
@@ -120,7 +120,7 @@ def _by_parameter(share: Share, moves: Floats, timed: Floats) -> Floats:
 
 
 class Limits(NamedTuple):
-    """What the parameters may be. low : the least of each; falling : bool (curves,), those that never rise with time"""
+    """Limits of the parameters. low : the least of each; falling : bool (curves,), those that never rise with time"""
 
     low: Floats
     falling: NDArray[np.bool_]
@@ -242,7 +242,9 @@ def perceptron(
 
 
 def _mistakes(share: Share, found: Floats) -> Floats:
-    """By how much the labelled plays are charged more often for each parameter than those found, a row's root."""
+    """How much more often the labelled plays are charged for each parameter than the plays found, as the root of a
+    row's.
+    """
     cost, timed = _priced(share, found)
     by_move, by_time = np.zeros(len(share.book.terms)), np.zeros_like(timed)
     for x in share.lattices:

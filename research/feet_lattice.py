@@ -1,4 +1,4 @@
-"""Every way through a chart as a graph, with counts of what it is charged for: what fits of the weights look at.
+"""Every way through a chart as a graph, with counts of its costs: the input of fits of the weights.
 
 The engine explores with a preset in which each weight is 1 and each curve 0; so the costs by term of a move are counts,
 and costs of any other weights are a product. Fixed weights (`FIXED`) stay what they are.
@@ -167,7 +167,7 @@ def flags(book_: Book) -> NDArray[np.float64]:
 
 
 def move_costs(book_: Book, weights: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What every move costs, not counting time. weights : in the order of `WEIGHTS`, of `stretch` by 1/20 panel."""
+    """The cost of every move without time. weights : in the order of `WEIGHTS`, of `stretch` by 1/20 panel."""
     return np.asarray((book_.counts @ weights)[book_.terms.clip(0, len(book_.counts) - 1)])
 
 

@@ -1,8 +1,8 @@
-"""Pattern charts whose feet follow from rules that players share, by seed: labels beside those that people wrote.
+"""Pattern charts, by seed, whose feet follow from rules that players share: labels besides those that people wrote.
 
-Steps alternate; after a jump the foot begins that lets the run go on uncrossed; while a foot holds, the other one
-steps, also in the very moment in which the hold ends; a foot whose hold has just ended waits for the other one. What
-these rules would step in two ways is no pattern.
+Steps alternate. After a jump, the foot that keeps the run uncrossed begins. While a foot holds, the other one steps,
+also in the very moment in which the hold ends. A foot whose hold has just ended waits for the other one. If these rules
+allow two ways, there is no pattern.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _BRACKETED = 24  # ticks: so close to other rows two neighbouring panels may as 
 
 
 class _NoPatternError(Exception):
-    """No rule, or more than one, says who steps."""
+    """No rule, or more than one, decides which foot steps."""
 
 
 @dataclass
@@ -87,7 +87,7 @@ def _run(draft: Draft, x: Floats, rng: np.random.Generator, first: int, count: i
 
 
 def _goes_on(draft: Draft, x: Floats, row: int, first: int, where: Sequence[int]) -> bool:
-    """Whether the single steps from a row on, begun with some foot, go on uncrossed and without a jack."""
+    """Whether the single steps from a row on stay uncrossed and without a jack if a given foot begins."""
     where, foot = list(where), first
     for feet in draft.feet[row:]:
         (panel,) = feet
@@ -139,7 +139,7 @@ def _out_of_hold(draft: Draft, x: Floats, rng: np.random.Generator) -> None:
 
 
 def _turn(draft: Draft, x: Floats, rng: np.random.Generator) -> None:
-    """One foot on the sides, the other before and behind by turns: crossovers and swings, but no whole turn."""
+    """One foot on the sides, the other in front and behind in turn: crossovers and swings, but no full turn."""
     foot, count = int(rng.integers(2)), int(rng.integers(4, 6))
     home, away = (_LEFT, _RIGHT) if foot == 0 else (_RIGHT, _LEFT)
     sides = [home, *(int(side) for side in rng.choice([home, away], count - 1)), home]
@@ -156,7 +156,9 @@ def _turn(draft: Draft, x: Floats, rng: np.random.Generator) -> None:
 
 
 def _switch(draft: Draft, x: Floats, rng: np.random.Generator) -> None:
-    """A run in which the other foot takes over a panel before or behind, for a jack would cross all that follows."""
+    """A run in which the other foot takes over a panel in front or behind, because a jack would cross everything that
+    follows.
+    """
     _start(draft, x, rng, int(rng.integers(3, 6)))
     foot = draft.last
     panel = draft.where[foot]
@@ -170,7 +172,7 @@ def _switch(draft: Draft, x: Floats, rng: np.random.Generator) -> None:
 
 
 def _jumps(draft: Draft, x: Floats, rng: np.random.Generator) -> None:
-    """Jumps on end, no two alike, each foot on its own side."""
+    """Several jumps in a row, no two alike, each foot on its own side."""
     _start(draft, x, rng, int(rng.integers(1, 4)))
     before: tuple[int, int] | None = None
     for _ in range(int(rng.integers(3, 6))):

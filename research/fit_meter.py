@@ -1,4 +1,4 @@
-"""Fits the meters of configs/meter/ to the charts of a folder, and shows how far they miss on songs not seen.
+"""Fit the meters of configs/meter/ to the charts of a folder, and show how far they miss on unseen songs.
 
 fit_meter.py FOLDER --tiers CSV   the tables by pad; configs/meter/*.yaml and configs/score.yaml are written (`make
                                   fit-meter`); score_fit.py says how the second is made
@@ -115,7 +115,9 @@ def shape_of(charts: Sequence[Labelled]) -> Shape:
 
 
 def solve(pieces: Floats, meters: Floats) -> Floats:
-    """Coefficients, none below 0 (but the first), that miss least: absolutely, so that a wild label pulls little."""
+    """Coefficients, none below 0 (except the first), with the least absolute error, so that a wild label has little
+    weight.
+    """
     scale = pieces.std(axis=0)
     scale[0] = 1.0
     scale[scale == 0] = np.inf
@@ -159,7 +161,7 @@ class Fit:
                 of[file] = int((misses[:, rows].sum(axis=1) + off_tag).argmin())
 
     def _first(self, charts: Sequence[Labelled], rows: Sequence[int]) -> int:
-        """Where to begin: by how high the meters of a file are for its density."""
+        """The start: the scale of a file by how high its meters are for its density."""
         told = tagged_scale(charts[rows[0]].tag)
         if told in self.names:
             return self.names.index(told)
@@ -229,7 +231,7 @@ def judged(charts: Sequence[Labelled], names: Sequence[str]) -> list[Judged]:
 
 
 def interval_of(misses: Sequence[Judged]) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
-    """Bands of estimates with what 80 in 100 labels lie within; bands with few charts join the one below."""
+    """Bands of estimates with the interval of 80 in 100 labels; bands with few charts join the one below."""
     ends, groups = [], [[]]  # type: ignore[var-annotated]
     ordered = sorted(misses, key=lambda one: one.estimate)
     edges = [*BANDS, np.inf]
@@ -249,7 +251,7 @@ def interval_of(misses: Sequence[Judged]) -> tuple[tuple[float, ...], tuple[floa
 
 
 def conformal(misses: Sequence[float]) -> float:
-    """What at most one in ten of new misses exceeds: the quantile with the one that is to come counted in."""
+    """The error that at most one in ten of new errors exceeds: the quantile with the new one counted in."""
     share = 1 - (1 - COVERED) / 2
     return float(np.quantile(misses, min(share * (1 + 1 / len(misses)), 1.0))) if misses else 9.0
 

@@ -1,4 +1,4 @@
-"""Fits the presets itg and pump to the labelled feet, and shows how well that does on songs that a fit has not seen.
+"""Fit the presets itg and pump to the labelled feet, and show how good the fit is on unseen songs.
 
 fit_weights.py                  the table, by method, and the presets are written (`make fit`)
 fit_weights.py --dry-run        the table alone
@@ -51,7 +51,7 @@ OWN_PULL = 300.0  # an author's pins are few: weights stay where they are unless
 
 @dataclass(frozen=True)
 class Task:
-    """What one preset is fitted to. judged : what it is scored on; guard : rows that only keep it from drifting;
+    """The data for one preset. judged : the sets on which it is scored; guard : rows that only keep it from drifting;
 
     made : patterns that every fit sees; unmade : such patterns that no fit sees; unseen : charts that no fit sees:
         they say how sure rows are, beside those that are judged; within : what its parameters may be
@@ -94,7 +94,7 @@ Outcome = list[tuple[Labelled, NDArray[np.bool_], NDArray[np.int64]]]  # chart, 
 
 
 def outcome(labels: Sequence[Labelled], preset: Preset) -> Outcome:
-    """What a preset makes of charts, by the solver that the program uses."""
+    """The feet of charts with a preset, by the solver that the program uses."""
     out = []
     for label in labels:
         right, found = feet_data.right_rows(label, preset, margins=True)
@@ -115,7 +115,7 @@ def fit_of_all(task: Task, home: Preset, *, resume: bool = False) -> tuple[list[
 
 
 def cross_validated(task: Task, whole: Sequence[Share], home: Preset, begin: Floats | None = None) -> Outcome:
-    """Every judged chart scored by a fit that has not seen its song.
+    """Every judged chart, scored by a fit that has not seen its song.
 
     begin : where the fits by likelihood begin, near where they end; None: fits by the perceptron, from nothing
     """
@@ -180,7 +180,7 @@ def own_preset(pins: Sequence[Labelled], home: Preset, source: str) -> str:
 
 
 def how_sure(unseen: Outcome) -> tuple[dict[int, int], list[tuple[float, float, int]]]:
-    """What a preset's `confidence` is by charts that its fits had not seen, and the table of how true that is."""
+    """A preset's `confidence` from charts that its fits had not seen, and the table of how true it is."""
     return calibrated(unseen), reliability(unseen, feet_data.folds)
 
 

@@ -1,4 +1,4 @@
-"""Charts to learn meters from: their features and labels, and which labels are no meters."""
+"""Charts from which meters are learned: their features and labels, and the labels that are not real meters."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def labelled(folder: Path, wanted: Iterable[Feature]) -> list[Labelled]:
 
 
 class Families:
-    """Which songs are one: by title, and by a number that a file's name begins with (g0037_...)."""
+    """Which files are the same song: by title, and by a number at the beginning of a file's name (g0037_...)."""
 
     def __init__(self) -> None:
         self._parent: dict[str, str] = {}
@@ -106,7 +106,9 @@ def is_modded(song: Song) -> bool:
 
 
 def placeholder(one: Labelled, of_file: Iterable[Labelled]) -> str:
-    """Why the meter of a chart is none to learn from; "" where it is one. of_file : the charts of its file and pad"""
+    """The reason why nothing can be learned from a chart's meter; "" if it is a real meter. of_file : the charts of its
+    file and pad
+    """
     others = list(of_file)
     if one.meter < 1 or one.meter > HIGHEST:
         return f"meter 0, or above {HIGHEST}"

@@ -1,4 +1,5 @@
-"""Fits how hard charts are to score on to tiers of a community, and counts pairs of songs not seen that come out right.
+"""Fit how hard charts are to score on to the tiers of a community, and count the pairs of unseen songs in the right
+order.
 
 Called by fit_meter.py. Of pairs of charts of one pad and one level, from level 5 up, whose tiers are 0.3 or more
 apart, it counts those of which the model says the same one to be harder. Both charts of a pair are always of songs that
@@ -64,7 +65,7 @@ class Rated:
 
     @property
     def is_held(self) -> bool:
-        """Whether its song chose nothing."""
+        """Whether no choice was based on its song."""
         return hashlib.sha256(self.family.encode()).digest()[0] % HELD == 0
 
 
@@ -137,7 +138,7 @@ def numbers_of(charts: Sequence[Rated]) -> Floats:
 
 
 def fitted(charts: Sequence[Rated], pull: float) -> ScoreModel:
-    """The model of some charts; its interval is endless, since nothing has been judged."""
+    """The model of some charts; its interval is endless, because nothing has been judged yet."""
     charts = [one for one in charts if one.level >= LOWEST]
     numbers, level = numbers_of(charts), np.array([float(one.level) for one in charts])
     low, high = np.percentile(numbers, SEEN[0], axis=0), np.percentile(numbers, SEEN[1], axis=0)
@@ -174,7 +175,7 @@ def fitted(charts: Sequence[Rated], pull: float) -> ScoreModel:
 
 
 def scores(model: ScoreModel, charts: Sequence[Rated], level: Callable[[Rated], Level]) -> tuple[Floats, Floats]:
-    """(n,) what each chart scores like, and the same without the terms of timing."""
+    """The score estimate of each chart (n,), and the same without the terms of timing."""
     told = [model.estimate(one.steps_type, level(one), one.oddities) for one in charts]
     timing = [sum(value for name, value in one.terms if name.startswith(TIMING)) for one in told]
     whole = np.array([one.meter for one in told])

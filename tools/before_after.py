@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Draw what changed about the dancer, point by point: a contact sheet each, an earlier commit's pictures above today's.
+"""Draw what changed about the dancer, point by point: a contact sheet for each, an earlier commit's pictures above
+today's.
 
 usage: tools/before_after.py --beside COMMIT [--out FOLDER] [--list] [POINT ...]
-The points and their sheets are in tools/before_after.yaml; without POINT all of them are drawn, which takes some
-five minutes on two cores, and longer the first time with a commit, whose pictures are kept. Charts are those of charts/
-and of the test data, which the tests unpack. Three kinds of sheets: moments of a motion, all drawn by today's renderer
-with today's dancer (beside each time what was looked for there, if it is a figure); pictures of a film, each commit's
-own; the dancer by herself.
+The points and their sheets are in tools/before_after.yaml. Without POINT all of them are drawn, which takes about five
+minutes on two cores, and longer the first time with a commit, whose pictures are kept. Charts are those of charts/ and
+of the test data, which the tests unpack. There are three kinds of sheets: moments of a motion, all drawn by today's
+renderer with today's dancer (with the figure in question beside each time); pictures of a film, each commit's own; the
+dancer by herself.
 """
 
 from __future__ import annotations

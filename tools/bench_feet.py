@@ -1,6 +1,6 @@
-"""How many rows of labelled charts get the right feet: with the presets as they are, and by fits that had not seen the
-song; how true the confidence is on such songs; and how often a foot is asked to be in two places. The cross-validation
-takes some minutes.
+"""How many rows of labelled charts get the right feet, with the presets as they are and with fits that had not seen the
+song; how true the confidence is on such songs; and how often a foot has to be in two places. The cross-validation takes
+some minutes.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A folder of charts, nothing cached: processor time by format and by room; two processes against one.
+"""A folder of charts without a cache: processor time by format and by package; two processes against one.
 
 usage: tools/bench_folder.py [FOLDER]      default: build/corpus/dev, which the tests unpack
 Other programs take cores away, so processor time counts, the least of some runs; the two ways take turns.
@@ -51,7 +51,7 @@ def memory() -> int:
 
 
 def by_room(folder: Path) -> list[Row]:
-    """Seconds that each room takes of `--format csv`, by looks at the stack; the innermost room of ours counts."""
+    """Seconds that each package takes of `--format csv`, by samples of the stack; our innermost package counts."""
     if not hasattr(signal, "setitimer"):
         return []
     said = subprocess.run([sys.executable, __file__, "child", str(folder)], capture_output=True, text=True, check=True)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Retarget captures, and others made of them by a seed, and measure each from outside: a line per clip.
+"""Retarget captures, and clips made from them by a seed, and measure each from outside: a line for each clip.
 
 usage: tools/capture_table.py FOLDER [--made 46] [--seed 1] [--character NAME|FILE] [--only WORD]
 Clips that are made are sections of those in FOLDER, slower or faster, of people with other limbs, arms nearer to the

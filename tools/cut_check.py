@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Show that every cut of a chart shows one dance: random sections beside the whole, alone, at the bar, with a style.
+"""Check that every cut of a chart shows the same dance: random sections beside the whole, alone, at the bar, with a
+style.
 
 usage: tools/cut_check.py [--count 12] [--seed 1]
 Prints for each section the largest distance of any joint, in millimetres, from the same moment of the whole dance, of

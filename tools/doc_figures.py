@@ -87,7 +87,7 @@ FIGURES: dict[str, tuple[str, Callable[[], str]]] = {
 
 
 def between(text: str, name: str) -> str:
-    """What stands in a page under this name."""
+    """The text of a page under this name."""
     found = re.search(rf"<!-- figures: {name} -->\n(.*?)<!-- end of figures -->", text, re.S)
     assert found, f"no figures '{name}' there"
     return found[1]

@@ -1,7 +1,7 @@
-"""The pictures of films in README and docs, drawn anew: `python tools/doc_pictures.py [NAME...]`, all if none is named.
+"""Draw the pictures of films in README and docs again: `python tools/doc_pictures.py [NAME...]`, all if none is named.
 
-After a change that is seen in films, so that nobody is shown what the program no longer draws. docs/page-two.jpg is a
-browser's: `tests/page/page_chromium.py` drives one, where there is one. `make docs-pictures` draws them all.
+Run it after a change that is visible in films, so that nobody sees what the program no longer draws. docs/page-two.jpg
+comes from a browser: `tests/page/page_chromium.py` drives one, if there is one. `make docs-pictures` draws them all.
 """
 
 from __future__ import annotations

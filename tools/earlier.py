@@ -1,4 +1,4 @@
-"""What an earlier commit makes of a chart: that commit's own command runs, in a process and a folder of its own.
+"""The result of an earlier commit for a chart: that commit's own command runs, in a process and a folder of its own.
 
 The folder is build/beside/COMMIT. It is kept, with the kernels compiled in it and what was made there, so that only a
 commit's first chart takes some minutes; delete it whenever you like. The commit must run in this environment and write

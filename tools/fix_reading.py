@@ -1,9 +1,9 @@
-"""Edits of `--fix` to be read by someone who knows charting: rows before and after. Would you accept it as the author?
+"""Edits of `--fix` for a reader who knows charting: rows before and after. Would you accept it as the author?
 
 tools/fix_reading.py FOLDER --seed 1 --count 20 --rules DT201,DT202
 
-Takes findings by the seed, each of another chart as far as there are, mends each alone in its chart, and prints the
-rows around with the feet before and after. The last line counts those with an edit, and new jacks among the edits.
+Takes findings by the seed, each from another chart if possible, repairs each alone in its chart, and prints the rows
+around with the feet before and after. The last line counts the findings with an edit, and new jacks among the edits.
 """
 
 from __future__ import annotations

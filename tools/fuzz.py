@@ -1,4 +1,4 @@
-"""Feeds broken input to every reader of strangers' files: `make fuzz MINUTES=10`.
+"""Feed broken input to every reader of files from other people: `make fuzz MINUTES=10`.
 
 Charts, configurations, presets, layouts, baselines, plays, data.sme, characters and fonts are mutated from whole ones.
 A reader may give a result or raise a `DancetutorError` of one line, within seconds; whatever else it does is a find,
@@ -266,7 +266,7 @@ class _TooLongError(Exception):
 
 
 def attempt(kind: str, data: bytes, folder: Path) -> str | None:
-    """What is wrong with how a kind's reader takes some data, as a traceback; None if nothing."""
+    """A traceback if the reader of this kind fails on some data; None if it does not."""
 
     def alarm(_number: int, _frame: object) -> None:
         raise _TooLongError(f"takes more than {LONGEST} s")

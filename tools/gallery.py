@@ -1,8 +1,8 @@
 """Films, sheets and pages of free songs, and an index of them, for `make gallery`: `python tools/gallery.py [FOLDER]`.
 
-Everything is made by the commands of the program from `charts/` and from notes written here; with ../shared beside the
-repository a song and a capture of it are added. A piece that is there and still true is not made again: its key is a
-hash of its command and of the program, so an interrupted run goes on where it was.
+The commands of the program make everything, from `charts/` and from notes in this file; with ../shared beside the
+repository, a song and a capture of it are added. A piece that is still current is not made again: its key is a hash of
+its command and of the program, so an interrupted run continues where it was.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What `judge_motion.py` measures of a dance from a file: limbs, knees, posture, speeds, ground, balance, stands."""
+"""The figures that `judge_motion.py` measures in a file: limbs, knees, posture, speeds, ground, balance, stands."""
 
 from __future__ import annotations
 
@@ -202,7 +202,8 @@ def _ground(dance: Dance, standing: NDArray[np.bool_], mass: Array) -> list[Row]
 
 
 def plant_slides(dance: Dance, standing: NDArray[np.bool_]) -> list[float]:
-    """How far, in metres, each planted foot got over the pad, from moment to moment by its sole's stillest place.
+    """How far, in metres, each planted foot moved over the pad, from moment to moment by the stillest place of its
+    sole.
 
     So a foot may roll from heel to toes and turn on any place of its sole, but not all of it go aside. Where places go
     is linear over a sole, so the stillest is in the hull of where those of its points go that are down. Ways are summed

@@ -1,4 +1,4 @@
-"""Reads a dance from a written .glb or .bvh file as any other program would: joints and shoes in the world, over time.
+"""Read a dance from a written .glb or .bvh file as any other program would: joints and shoes in the world, over time.
 
 For `judge_motion.py`. Nothing of the package is imported, so that a fault of its readers, its forward kinematics or
 its skin cannot hide itself. Of glTF 2.0 (Khronos Group) it knows what a humanoid's file has: one binary chunk, linear

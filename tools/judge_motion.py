@@ -14,10 +14,10 @@ body by Winter's table. Where its figures differ from the report's, and why:
 - feet touch when a vertex of the shoe is 1.5 mm over the pad (the report: a point of the sole 1 mm), so flights are
   some frames shorter; under a .bvh file, which has no shoes, a flat box is her sole.
 - plant slide is that of the sole's stillest point (the report: the longest path of one; of a pivot, the ball's).
-- limbs in each other are told in milliseconds, since frames depend on the rate; shoes by their outlines.
+- limbs in each other are given in milliseconds, because frames depend on the rate; shoes by their outlines.
 - without notes: jerk counts runs of jumps too, which the report exempts, and the weight shifts wherever both feet
   stay down for 1.9 s (0.7 s at both ends left out), while the report takes waits over 4.5 s from note to note.
-- beside the pad the floor may be lower, which a file does not say: leave walks on and off out with --section.
+- beside the pad the floor may be lower, which the file does not contain: leave walks on and off out with --section.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Ends the program at random moments: `make kill-test` (KILLS=300). Nothing may be lost, and nothing half made stay.
+"""End the program at random moments: `make kill-test` (KILLS=300). Nothing may be lost, and no half-made file may stay.
 
 annotate: the chart file is the old one or the new one, and a second run ends as an undisturbed one does. render: the
 film is not there or whole, and a second run makes it. analyze: what the caches hold gives the same report as before.
@@ -53,7 +53,7 @@ class KillTest:
             self.wanted[name] = self.result(name, ran)
 
     def reset(self) -> None:
-        """The song as it was, nothing else."""
+        """Restore the song and remove everything else."""
         shutil.rmtree(self.song.parent)
         self.song.parent.mkdir()
         self.song.write_bytes(self.old)

@@ -1,4 +1,4 @@
-"""Findings to be read against their rows by someone who knows the game and not the code: do they want to know this?
+"""Findings with their rows, for a reader who knows the game and not the code: do you want to know this?
 
 tools/lint_reading.py FOLDER --to READING --seed 1     # of every warning and error rule 20, a file each
 tools/lint_reading.py FOLDER --to READING --rules DT201 --severity info --count 50
@@ -117,7 +117,7 @@ def _note(play: Play, row: int, column: int) -> str:
 
 
 def _about(docstring: str) -> str:
-    """What a rule says of itself in words: without its options and its examples."""
+    """The documentation of a rule without its options and its examples."""
     paragraphs = [" ".join(one.split()) for one in docstring.split("\n\n")]
     words = [one for one in paragraphs if not one.startswith(("`", "Bad", "Better", "0", "1", "2"))]
     return "\n".join(textwrap.fill(one, 118) for one in words)

@@ -57,7 +57,7 @@ def linted(
 
 
 def kept(folder: Path) -> dict[str, Any]:
-    """What the table needs of a folder: charts by band, findings by rule, severity and band."""
+    """The data of a folder for the table: charts by band, findings by rule, severity and band."""
     charts: Counter[str] = Counter()
     found: Counter[str] = Counter()
     names: dict[str, str] = {}

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Bake many charts and measure each: which goals of the quality report are met, on what, and by how much not.
+"""Bake many charts and measure each: which goals of the quality report are met, on which charts, and how far others are
+missed.
 
 usage: tools/motion_report.py [--count 100] [--seed 6] [--section 40] [--part I/N] [--jobs N] [--out FILE] [PATH ...]
 Without paths: COUNT charts of the corpus, by turns of each meter from 1 to 20 and more and of each steps type, the same
@@ -205,7 +206,9 @@ def peak_rate(seconds: np.ndarray[Any, Any]) -> float:
 
 
 def summary(results: list[Measured]) -> str:
-    """How many charts meet all goals, and for each figure who does not; slow and fast charts apart."""
+    """The number of charts that meet all goals, and for each figure the charts that miss it; slow and fast charts
+    separately.
+    """
     slow = [m for m in results if m.peak <= FAST and not m.error]
     fast = [m for m in results if m.peak > FAST and not m.error]
     lines = [f"{len(results)} charts, {sum(m.took for m in results):.0f} s of work"]

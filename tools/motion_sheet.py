@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Draw moments of a baked chart side by side, from before her and from her left: what the report's numbers look like.
+"""Draw moments of a baked chart side by side, from in front of the dancer and from her left: what the report's numbers
+look like.
 
 usage: tools/motion_sheet.py FILE --out SHEET.png [--index N] --at 12.0:14.0 [--count 12] [--bar] [--steps]
                              [--beside COMMIT]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Show that a change of the program moves nothing on the screen: bake the same plays before and after it.
+"""Check that a change of the program does not change the motion: bake the same plays before and after it.
 
 usage: tools/same_motion.py freeze FOLDER [--count 40] [--seed 11]     solve, bake, and keep plays and motions
        tools/same_motion.py check FOLDER [--most-mm 0.5] [--most-degrees 0.5] [--every N]

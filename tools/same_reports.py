@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Whether reports of a folder of charts are still the same, line by line: for changes that may only change the time.
+"""Check that reports of a folder of charts are still the same, line by line: for changes that may only change the time.
 
 usage: tools/same_reports.py keep KEPT.json [FOLDER] [--every N] [--jobs N]     before the change
        tools/same_reports.py check KEPT.json                                    after it; exit status 1 where it differs
@@ -26,7 +26,7 @@ _CUT = 160  # characters of such a line
 
 
 def lines_of(folder: Path, files: list[Path], kind: str, jobs: int) -> list[bytes]:
-    """What `analyze` says in a format of some files of a folder, wherever that lies."""
+    """The output of `analyze` in a format for some files of a folder, wherever it is."""
     command = [str(DANCETUTOR), "analyze", *map(str, files), "--no-cache", "--exit-zero", "--jobs", str(jobs)]
     with tempfile.TemporaryFile() as out:
         command += ["--format", kind]
@@ -48,7 +48,7 @@ def chart_files(folder: Path, every: int) -> list[Path]:
 
 
 def keep(kept: Path, folder: Path, every: int, jobs: int) -> None:
-    """Write down what every format says now."""
+    """Write down the present output of every format."""
     files = chart_files(folder, every)
     said = {kind: [digest(line) for line in lines_of(folder, files, kind, jobs)] for kind in FORMATS}
     kept.write_text(json.dumps({"folder": str(folder.absolute()), "every": every, "said": said}), encoding="utf-8")
@@ -56,7 +56,7 @@ def keep(kept: Path, folder: Path, every: int, jobs: int) -> None:
 
 
 def check(kept: Path, jobs: int) -> int:
-    """Compare with what is said now; how many formats differ."""
+    """Compare with the present output; the number of formats that differ."""
     known = json.loads(kept.read_text(encoding="utf-8"))
     folder = Path(known["folder"])
     files = chart_files(folder, known["every"])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How far the legs of styles are apart, and strips of legs alone without names: can somebody who has not seen them sort
+"""How far the legs of styles are apart, and strips of legs alone without names: can a person who has not seen them sort
 them?
 
 usage: tools/style_legs.py [--count 6] [--seed 1] [--section 8] [--style NAME ...] [--meters 3:9] [--out FOLDER]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draw one phrase in every style, a sheet each, without names: can somebody who has not seen them sort them?
+"""Draw one phrase in every style, a sheet for each, without names: can a person who has not seen them sort them?
 
 usage: tools/style_sheet.py FILE FOLDER --index N --at 12.0:14.0 [--count 10] [--seed 1]
 FOLDER gets A.png to E.png in an order of the seed, FOLDER.key beside it says which is which.

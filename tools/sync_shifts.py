@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""How well the sync of songs is told: files shifted by known times, of another tempo, and with other songs' music.
+"""How well the sync of songs is measured: files shifted by known times, with another tempo, and with other songs'
+music.
 
 usage: tools/sync_shifts.py FOLDER [--seed N]     a folder of songs with music; prints a table in Markdown
 
