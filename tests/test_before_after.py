@@ -139,7 +139,7 @@ def test_the_worst_moments_are_of_the_section_and_apart(points: ModuleType, shee
     assert found == pytest.approx([4.2, 6.0])
 
 
-def test_figures_are_told_at_each_of_the_times(points: ModuleType, danced: Motion) -> None:
+def test_figures_are_reported_at_each_of_the_times(points: ModuleType, danced: Motion) -> None:
     for name, figure in points.FIGURES.items():
         seconds, values, words = figure(danced)
         assert len(seconds) == len(values) > 30 and np.isfinite(values).all(), name
@@ -164,7 +164,7 @@ def test_the_charts_of_the_points_are_there(points: ModuleType, corpus: Path) ->
     assert {points.place(one.what["chart"]) for one in points.sheets() if "chart" in one.what}
 
 
-def test_points_are_told_and_unknown_ones_too(
+def test_points_are_reported_and_unknown_ones_too(
     points: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(sys, "argv", ["before_after", "--list", "jumps", "bar"])

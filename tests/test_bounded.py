@@ -182,7 +182,7 @@ def test_numbers_of_rules_are_checked(value: str, pack: Path) -> None:
         load_configuration(pack / "dancetutor.yaml", found=True)
 
 
-def test_bytes_that_are_no_text_are_told_with_reason_and_line(tmp_path: Path) -> None:
+def test_bytes_that_are_no_text_are_reported_with_reason_and_line(tmp_path: Path) -> None:
     (tmp_path / "x.yaml").write_bytes(b"a: 1\nb: \xff\xfe\n")
     with pytest.raises(FileError, match=r"x\.yaml:2: not YAML: invalid"):
         read(tmp_path / "x.yaml")

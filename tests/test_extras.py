@@ -84,7 +84,7 @@ def test_plain_work_needs_no_extra(tmp_path: Path) -> None:
         (("-o", "a.mp4"), "ffmpeg"),
     ],
 )
-def test_what_needs_an_extra_says_so(arguments: tuple[str, ...], extra: str, tmp_path: Path) -> None:
+def test_commands_that_need_an_extra_say_so(arguments: tuple[str, ...], extra: str, tmp_path: Path) -> None:
     song = str(ROOT / "charts" / "two_left_feet" / "two_left_feet.ssc")
     name = "animate" if extra == "physics" else "render"
     done = plain(

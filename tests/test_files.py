@@ -66,7 +66,7 @@ def test_keeps_the_owner(tmp_path: Path) -> None:
 
 
 @POSIX
-def test_refuses_what_belongs_to_somebody_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_refuses_what_belongs_to_another_user(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A process without the right to give files away must not take the file over by its rename."""
     path = tmp_path / "a.sm"
     path.write_bytes(b"old")
@@ -143,7 +143,7 @@ def test_an_error_while_writing_leaves_the_old_file(tmp_path: Path) -> None:
     assert names(tmp_path) == ["a.sm"]
 
 
-def test_a_change_by_somebody_else_is_seen(tmp_path: Path) -> None:
+def test_a_change_by_another_user_is_seen(tmp_path: Path) -> None:
     path = tmp_path / "a.sm"
     path.write_bytes(b"saved by the editor")
     with pytest.raises(files.ChangedError, match="changed"):

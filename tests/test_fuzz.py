@@ -25,7 +25,7 @@ def compiled(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 
 @pytest.mark.parametrize("path", FOUND, ids=lambda path: path.name)
-def test_what_was_found_is_mended(path: Path, tmp_path: Path) -> None:
+def test_found_faults_are_repaired(path: Path, tmp_path: Path) -> None:
     assert fuzz.attempt(path.name.partition("-")[0], path.read_bytes(), tmp_path) is None
 
 

@@ -62,22 +62,22 @@ def rooms_of(folder: Path) -> set[str]:
     return {name for name in names if (PACKAGE / name).is_dir()} - {folder.name}
 
 
-def test_every_room_is_in_the_table() -> None:
+def test_every_package_is_in_the_table() -> None:
     assert set(ORDER) == {path.parent.name for path in PACKAGE.glob("*/__init__.py")}
 
 
-def test_every_module_is_in_a_room_and_holds_a_theme() -> None:
+def test_every_module_is_in_a_package_and_holds_a_theme() -> None:
     assert {path.stem for path in PACKAGE.glob("*.py")} == {"__init__", "__main__"}
     assert [path for path in PACKAGE.rglob("*.py") if len(path.read_text("utf-8").splitlines()) > 400] == []
 
 
-def test_every_room_says_in_a_sentence_what_it_does() -> None:
+def test_every_package_says_in_a_sentence_what_it_does() -> None:
     for path in PACKAGE.rglob("__init__.py"):
         assert ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))), path
 
 
 @pytest.mark.parametrize("room", MAPPED)
-def test_every_module_of_a_room_stands_in_its_map(room: str) -> None:
+def test_every_module_of_a_package_stands_in_its_map(room: str) -> None:
     document = ast.get_docstring(ast.parse((PACKAGE / room / "__init__.py").read_text(encoding="utf-8"))) or ""
     modules = {path.stem for path in (PACKAGE / room).glob("*.py")} - {"__init__"}
     parts = {path.parent.name for path in (PACKAGE / room).glob("*/__init__.py")}
@@ -89,7 +89,7 @@ def test_every_module_of_a_room_stands_in_its_map(room: str) -> None:
 
 
 @pytest.mark.parametrize("room", ORDER)
-def test_a_room_imports_from_rooms_above_only(room: str) -> None:
+def test_a_package_imports_from_packages_above_only(room: str) -> None:
     used = rooms_of(PACKAGE / room)
     assert used <= set(ORDER[: ORDER.index(room)])
     if not LISTED[room].startswith(FRONT):

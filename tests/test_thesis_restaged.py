@@ -43,7 +43,7 @@ def test_every_setting_of_the_thesis_is_there() -> None:
 
 
 @pytest.mark.parametrize("key", ["rotation", "limits"])
-def test_measured_anew_they_are_the_same(shared_data: Path, key: str) -> None:
+def test_measured_again_they_are_the_same(shared_data: Path, key: str) -> None:
     walk = shared_data / "bvh" / "pymo_8walk.bvh"
     experiment = next(one for one in tool.experiments() if one.key == key)
     made = tool.measured(experiment, {walk.stem: tool.clip(walk)})

@@ -43,7 +43,7 @@ def test_the_packages_dancer_is_left_alone() -> None:
 @pytest.mark.parametrize(
     ("name", "hidden"), [("dancer", False), (NAMES[0], True), (NAMES[1], False), (NAMES[2], False)]
 )
-def test_who_hides_her_feet_from_behind_is_found(shared_data: Path, name: str, hidden: bool) -> None:
+def test_a_character_that_hides_its_feet_from_behind_is_found(shared_data: Path, name: str, hidden: bool) -> None:
     character = load_character(name if name == "dancer" else str(shared_data / "characters" / name))
     pad = load_pad("dance-single")
     assert pad is not None

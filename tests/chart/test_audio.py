@@ -71,7 +71,7 @@ def test_mp3_is_late_as_the_games_play_it(tmp_path: Path, rate: int) -> None:
 
 @pytest.mark.parametrize("kind", [".wav", *ENCODINGS])
 @pytest.mark.parametrize("channels", [1, 2])
-def test_the_head_tells_what_a_decoder_finds(tmp_path: Path, kind: str, channels: int) -> None:
+def test_the_head_reports_what_a_decoder_finds(tmp_path: Path, kind: str, channels: int) -> None:
     path = encoded(click(tmp_path / "c.wav", 44100, channels), kind)
     head = read_head(path)
     assert head.kind == {".ogg": "vorbis", ".opus": "opus"}.get(kind, kind.rsplit(".", 1)[-1])

@@ -122,7 +122,7 @@ def test_each_player_has_feet_and_findings_of_ones_own(both: Path) -> None:
     assert [chart["player"] for chart in json.loads(text)["files"][0]["charts"]] == [2, 2]
 
 
-def test_what_is_true_of_the_whole_chart_is_told_once(both: Path) -> None:
+def test_a_fact_about_the_whole_chart_is_reported_once(both: Path) -> None:
     both.write_text(both.read_text().replace("#CREDIT:C;", "#CREDIT:;"))
     result = analyze_file(LintRun(LintRequest()).task(both))
     credit = [(finding.message, chart) for finding, chart in result.all_findings() if finding.rule == "DT502"]
@@ -170,7 +170,7 @@ def test_pins_of_each_player_are_kept(both: Path) -> None:
             assert set(kept.values()) <= {int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)}
 
 
-def test_a_note_of_one_player_is_mended_and_the_other_keeps_all(tmp_path: Path) -> None:
+def test_a_note_of_one_player_is_repaired_and_the_other_keeps_all(tmp_path: Path) -> None:
     path = tmp_path / "couple.sm"
     spin = ["1000", "0100", "0001", "0010", "1000", "0100", "0010", "0001"]  # all the way round
     path.write_text(HEAD + block("dance-couple", "".join(f"1000{row}\n" for row in spin)))

@@ -41,7 +41,7 @@ def test_nonsense_is_refused_in_one_line(text: str) -> None:
     assert text in str(caught.value)
 
 
-def test_a_slip_is_told_without_a_song() -> None:
+def test_a_slip_is_reported_without_a_song() -> None:
     for text in ("10:25", ":25", "m4:b20"):
         check_section(text)
     for text in ("", "m1", "1:2:3", "b:m"):

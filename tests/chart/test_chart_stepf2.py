@@ -57,7 +57,7 @@ def test_letters_without_those_of_the_first_two_are_no_notes(letter: str) -> Non
     assert only.startswith("stepf2-note: X, Y and Z are steps of several") and only.endswith("2 rows")
 
 
-def test_an_end_without_a_head_is_still_told() -> None:
+def test_an_end_without_a_head_is_still_reported() -> None:
     _, said = notes("000X000000", "0030000000", "000000000Z", "1000000000", steps_type="pump-double")
     assert any(one.startswith("unmatched-tail") for one in said)
 
@@ -139,7 +139,7 @@ def test_a_routine_whose_letters_nothing_parts_is_read_by_them(kind: str) -> Non
     assert (first, second) == ([(0, 0, "TAP"), (1, 1, "TAP")], [(0, 4, "TAP"), (1, 7, "TAP")])
 
 
-def test_a_third_part_of_a_routine_is_told_and_not_read() -> None:
+def test_a_third_part_of_a_routine_is_reported_and_not_read() -> None:
     rows = ("1000000000", "0000000000", "&", "0100000000", "0000000000", "&", "0010000000", "0000000000")
     chart = read(*rows, steps_type="pump-routine")
     assert [cells(part) for part in chart.players] == [[(0, 0, "TAP")], [(0, 1, "TAP")]]

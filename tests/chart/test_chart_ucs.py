@@ -145,7 +145,7 @@ def test_a_pause_backwards_lets_the_rows_before_it_pass_quicker() -> None:
     assert chart.timing.seconds(chart.notes.tick).tolist() == pytest.approx([0, 0.25, 0.4], abs=1e-12)
 
 
-def test_a_pause_backwards_beyond_the_note_above_is_told() -> None:
+def test_a_pause_backwards_beyond_the_note_above_is_reported() -> None:
     (chart,) = parse(written([("120", "0", 2, ["X....", "....X"]), ("120", "-900", 2, ["..X.."])]), NAME).charts
     assert [(one.code, one.line) for one in chart.warnings] == [("odd-timing", 9)]
     assert chart.timing.seconds(chart.notes.tick).tolist() == pytest.approx([0, 0.25, 0.251], abs=1e-12)
@@ -277,7 +277,7 @@ def test_what_is_wrong_is_one_line_with_its_place(old: str, new: str, line: int,
     assert "\n" not in str(caught.value) and len(str(caught.value)) < 200
 
 
-def test_utf_16_is_told() -> None:
+def test_utf_16_is_reported() -> None:
     with pytest.raises(ChartError, match="UTF-16"):
         parse(GOOD.encode("utf-16"), NAME)
 
@@ -304,7 +304,7 @@ def test_any_bytes_are_a_song_or_one_line(data: st.DataObject) -> None:
         assert len(song.charts) == 1 and (np.diff(song.charts[0].rows.tick) > 0).all()
 
 
-def test_rows_of_one_beat_are_told_apart() -> None:
+def test_rows_of_one_beat_are_distinguished() -> None:
     """The least spacing that the format's editors know, 1/128 beat, is below the games' 1/48."""
     (chart,) = parse(written([("60", "0", 128, ["X....", "....X"] * 4)]), NAME).charts
     assert len({tick for tick, _ in groupby(chart.notes.tick.tolist())}) == 8

@@ -51,7 +51,7 @@ def changed(before: bytes, after: bytes) -> list[int]:
     return [n for n, (a, b) in enumerate(zip(before, after, strict=True)) if a != b]
 
 
-def test_one_finding_is_mended_by_two_bytes_and_no_other_comes(ssc: Path) -> None:
+def test_one_finding_is_repaired_by_two_bytes_and_no_other_comes(ssc: Path) -> None:
     before, was = ssc.read_bytes(), found(ssc)
     said = Said(ssc, *HARD, "--fix", "DT202:1")
     assert said.status == 0, said.err
@@ -86,7 +86,7 @@ def test_diff_writes_nothing_and_patch_makes_of_it_what_fix_writes(ssc: Path, tm
     assert lines == [line for a, b in pairs for line in (f"-{a}", f"+{b}")]
 
 
-def test_safe_mends_what_no_one_hears(tmp_path: Path) -> None:
+def test_safe_makes_only_inaudible_edits(tmp_path: Path) -> None:
     path = tmp_path / "x.sm"
     path.write_text(BROKEN)
     said = Said(path, "--fix", "safe", "--backup")
@@ -112,7 +112,7 @@ def test_what_went_with_another_edit_is_gone_and_no_failure(capsys: pytest.Captu
         assert ("left alone" in said) == (status == 1) and ("] gone: an earlier edit" in said or status == 1)
 
 
-def test_what_cannot_be_mended_is_told_and_left(tmp_path: Path) -> None:
+def test_an_edit_that_is_not_possible_is_reported_and_left(tmp_path: Path) -> None:
     path = tmp_path / "x.sm"
     path.write_text("#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single::Hard:9::\n1000\n0010\n0001\n0000\n0100\n;\n")
     before = path.read_bytes()
@@ -135,7 +135,7 @@ def test_what_cannot_be_mended_is_told_and_left(tmp_path: Path) -> None:
         (["--diff"], "belong to --fix"),
     ],
 )
-def test_what_makes_no_sense_is_told_in_one_line(ssc: Path, options: list[str], message: str) -> None:
+def test_nonsense_is_reported_in_one_line(ssc: Path, options: list[str], message: str) -> None:
     before = ssc.read_bytes()
     said = Said(ssc, *options)
     assert isinstance(said.error, UsageError) and message in str(said.error)
@@ -143,7 +143,7 @@ def test_what_makes_no_sense_is_told_in_one_line(ssc: Path, options: list[str], 
 
 
 @POSIX
-def test_a_read_only_file_is_told_and_the_others_go_on(song: Path, ssc: Path) -> None:
+def test_a_read_only_file_is_reported_and_the_others_go_on(song: Path, ssc: Path) -> None:
     before = ssc.read_bytes()
     ssc.chmod(0o444)
     said = Said(song, "--fix", "DT202")
@@ -169,7 +169,7 @@ def test_a_file_that_changes_meanwhile_is_left_alone(ssc: Path, monkeypatch: pyt
     assert ssc.read_bytes() == edited and not temporary_name(ssc).exists()
 
 
-def test_markers_stay_and_their_author_is_told(ssc: Path) -> None:
+def test_markers_stay_and_their_author_is_reported(ssc: Path) -> None:
     assert Annotated([ssc]).status == 0
     before = ssc.read_bytes()
     said = Said(ssc, *HARD, "--fix", "DT202")

@@ -94,7 +94,7 @@ def test_a_page_is_the_only_result(pack: Path, tmp_path: Path) -> None:
     assert "dance-single Easy 3: DT302 hand, measure 0: three panels at once" in page
 
 
-def test_only_what_is_new_against_a_baseline_is_told(pack: Path, tmp_path: Path) -> None:
+def test_only_what_is_new_against_a_baseline_is_reported(pack: Path, tmp_path: Path) -> None:
     known = tmp_path / "known.json"
     run("analyze", pack, "--baseline", known, "--update-baseline")
     assert run("analyze", pack, "--baseline", known).stdout == "3 files, 3 charts: no findings\n"

@@ -20,7 +20,7 @@ def test_a_bad_file_in_a_folder_does_not_stop_the_others(song: Path, hostile: Pa
     assert "3 files: 2 changed, 1 failed" in said.out
 
 
-def test_read_only_files_are_told_and_nothing_is_lost(song: Path, ssc: Path) -> None:
+def test_read_only_files_are_reported_and_nothing_is_lost(song: Path, ssc: Path) -> None:
     before = files_of(song)
     ssc.chmod(0o444)
     said = Said([song])
@@ -82,7 +82,7 @@ def test_two_commands_on_one_file_end_well(ssc: Path) -> None:
     assert sorted(files_of(ssc.parent)) == ["two_left_feet.sm", "two_left_feet.ssc"]
 
 
-def test_a_full_disk_is_told(ssc: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_is_reported(ssc: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from dancetutor_cli.run import files
 
     original = ssc.read_bytes()

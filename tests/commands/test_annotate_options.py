@@ -158,7 +158,7 @@ def test_the_preset_of_the_configuration_holds(ssc: Path) -> None:
         (["--preset", "gpt"], "thesis"),
     ],
 )
-def test_wrong_options_are_told(ssc: Path, arguments: list[str], word: str) -> None:
+def test_wrong_options_are_reported(ssc: Path, arguments: list[str], word: str) -> None:
     before = files_of(ssc.parent)
     said = Said([ssc, *arguments])
     assert isinstance(said.error, UsageError)

@@ -31,7 +31,7 @@ def test_pinned_feet_stay_and_guide_the_solver(ssc: Path) -> None:
     assert ssc.read_bytes() == (SONG / ssc.name).read_bytes()
 
 
-def test_a_pin_that_does_not_fit_is_told_with_line_and_column(ssc: Path) -> None:
+def test_a_pin_that_does_not_fit_is_reported_with_line_and_column(ssc: Path) -> None:
     Said([ssc, "--index", 0])
     text = ssc.read_bytes().replace(b"measure 1 {dt1 LR}", b"measure 1 {dt1! LRR}", 1)
     ssc.write_bytes(text)

@@ -37,7 +37,7 @@ def assert_one_clear_line(result: subprocess.CompletedProcess[str], *words: str)
         assert word.lower() in said[0].lower(), said[0]
 
 
-def test_a_section_that_is_none_is_told_before_the_file_is_looked_at(tmp_path: Path) -> None:
+def test_a_section_that_is_none_is_reported_before_the_file_is_looked_at(tmp_path: Path) -> None:
     for name, output in (("animate", "x.npz"), ("render", "x.mp4")):
         result = run([name, SONG, "--section", "m1", "-o", tmp_path / output], tmp_path)  # several charts match, too
         assert_one_clear_line(result, "section 'm1' cannot be read")

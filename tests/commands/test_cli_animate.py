@@ -122,7 +122,7 @@ def test_plots(tmp_path: Path) -> None:
         assert np.ptp(np.asarray(picture.convert("L"))) > 100
 
 
-def test_what_is_wrong_is_said_in_one_line(tmp_path: Path) -> None:
+def test_what_is_wrong_is_reported_in_one_line(tmp_path: Path) -> None:
     target = tmp_path / "a.npz"
     assert "section" in said(SONG, *HARD, "--section", "900:901", "-o", target)
     assert "section" in said(SONG, *HARD, "--section", "12:8", "-o", target)
@@ -150,7 +150,7 @@ def test_numbers_that_are_none(tmp_path: Path) -> None:
         assert "nan" in said(SONG, *HARD, option, "nan", "-o", tmp_path / "a.glb")
 
 
-def test_a_bvh_is_told_with_its_frames_and_its_beginning(tmp_path: Path) -> None:
+def test_a_bvh_is_reported_with_its_frames_and_its_beginning(tmp_path: Path) -> None:
     said_of_it = animate(SONG, *HARD, "--section", "8:10", "--fps", 30, "-o", tmp_path / "a.bvh").output
     assert "61 frames" in said_of_it and "from second 8.000" in said_of_it
     assert "Frames: 61" in (tmp_path / "a.bvh").read_text()

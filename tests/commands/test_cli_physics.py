@@ -12,7 +12,7 @@ from dancetutor_cli.formats.npz import read_npz
 PART = (SONG, *HARD, "--section", "8:10")
 
 
-def test_the_report_tells_the_distances_of_every_point_and_draws_them(tmp_path: Path) -> None:
+def test_the_report_reports_the_distances_of_every_point_and_draws_them(tmp_path: Path) -> None:
     out, data, plot = tmp_path / "a.npz", tmp_path / "r.json", tmp_path / "r.svg"
     printed = animate(*PART, "-o", out, "--physics", "--report", data, "--plot", plot).output
     assert "Distance of the ragdoll, cm" in printed and "l_talocrural" in printed
@@ -35,7 +35,7 @@ def test_physics_is_style_neutral_with_the_same_bytes_each_time(tmp_path: Path) 
     assert (read_npz(files[0]).times == read_npz(files[2]).times).all()
 
 
-def test_what_is_wrong_is_said_in_one_line_and_nothing_is_written(tmp_path: Path) -> None:
+def test_what_is_wrong_is_reported_in_one_line_and_nothing_is_written(tmp_path: Path) -> None:
     out = tmp_path / "a.npz"
     assert "there is no style 'lazzy'" in said(*PART, "-o", out, "--style", "lazzy")
     wild = tmp_path / "wild.yaml"
@@ -45,7 +45,7 @@ def test_what_is_wrong_is_said_in_one_line_and_nothing_is_written(tmp_path: Path
     assert not out.exists()
 
 
-def test_a_push_is_told_and_a_wrong_one_refused_before_the_work(tmp_path: Path) -> None:
+def test_a_push_is_reported_and_a_wrong_one_refused_before_the_work(tmp_path: Path) -> None:
     out = tmp_path / "a.npz"
     result = animate(*PART, "-o", out, "--push", "9:300:left", "--trip", "9.4")
     assert "warning: pushed at 9.000 s with 300 N: the hips move by " in result.stderr

@@ -91,7 +91,7 @@ def test_another_body_gets_springs_by_a_search_that_is_kept(
     assert read_npz(out).skeleton.rest[0, 1] < 0.7, "short legs"
 
 
-def test_the_report_tells_faults_before_and_after(bvh: Path, tmp_path: Path) -> None:
+def test_the_report_reports_faults_before_and_after(bvh: Path, tmp_path: Path) -> None:
     data, plot = tmp_path / "r.json", tmp_path / "r.svg"
     printed = run(bvh, "-o", tmp_path / "a.npz", "--report", data, "--plot", plot)
     assert "Distance of the ragdoll, cm" in printed
@@ -111,7 +111,7 @@ def test_an_animation_of_a_character_is_a_motion_too(shared_data: Path, tmp_path
     assert "is not a usable humanoid (13 of 15 bones): no leftHand, rightHand; " in said(robot, "-o", out)
 
 
-def test_what_is_wrong_is_said_in_one_line_and_nothing_is_written(bvh: Path, tmp_path: Path) -> None:
+def test_what_is_wrong_is_reported_in_one_line_and_nothing_is_written(bvh: Path, tmp_path: Path) -> None:
     out = tmp_path / "a.npz"
     assert "there is no correction 'knee' (did you mean knees?)" in said(bvh, "-o", out, "--correct", "knee")
     assert "must end in .glb, .bvh, .npz, .mp4 or .html" in said(bvh, "-o", tmp_path / "a.fbx")

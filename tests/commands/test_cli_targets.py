@@ -90,7 +90,7 @@ def test_a_film_is_written_through_a_link_and_takes_no_devices_place(
 
 
 @pytest.mark.parametrize("players", [1, 2])
-def test_a_pages_own_name_that_is_taken_is_told_before_the_work(
+def test_a_pages_own_name_that_is_taken_is_reported_before_the_work(
     demo: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, players: int
 ) -> None:
     def bake(*_: object) -> None:
@@ -165,7 +165,7 @@ def test_folders_are_made_with_those_above(demo: Path) -> None:
 @pytest.mark.parametrize(
     ("command", "option"), [("annotate", "-o"), ("render", "--frames"), ("render", "--poses"), ("render", "-o")]
 )
-def test_a_file_in_the_place_of_a_folder_is_told(
+def test_a_file_in_the_place_of_a_folder_is_reported(
     demo: Path, capsys: pytest.CaptureFixture[str], command: str, option: str
 ) -> None:
     Path("taken").write_text("mine")
@@ -200,9 +200,7 @@ def test_a_batch_says_which_songs_have_no_such_chart(demo: Path, capsys: pytest.
 
 
 @pytest.mark.parametrize("command", ["render", "page"])
-def test_what_nobody_meant_to_be_danced_fails_no_folder(
-    demo: Path, capsys: pytest.CaptureFixture[str], command: str
-) -> None:
+def test_menu_music_fails_no_folder(demo: Path, capsys: pytest.CaptureFixture[str], command: str) -> None:
     """The music of a menu has a file without notes; annotate and analyze pass it by, too."""
     song = "#TITLE:T;\n#BPMS:0=120;\n#MUSIC:a.ogg;\n"
     demo.write_text(song + "#NOTES:dance-single::Hard:9::\n1000\n0100\n0010\n0001\n;\n")
@@ -243,7 +241,7 @@ def closed(demo: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     ],
 )
 @pytest.mark.usefixtures("closed")
-def test_a_folder_that_is_closed_is_told_before_the_work(
+def test_a_folder_that_is_closed_is_reported_before_the_work(
     demo: Path, capsys: pytest.CaptureFixture[str], command: str, option: str, name: str
 ) -> None:
     which = ONE if command != "analyze" else ()
@@ -279,7 +277,7 @@ def test_a_folder_without_charts_is_one_line_and_makes_nothing(
     assert "bad.sm" in capsys.readouterr().err and not Path("out").exists()
 
 
-def test_a_folder_in_place_of_the_settings_is_told(demo: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_folder_in_place_of_the_settings_is_reported(demo: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (demo.parent / "dancetutor.yaml").mkdir()
     assert run("analyze", demo) == 2
     assert "dancetutor.yaml: is a folder; it cannot be read as a file" in capsys.readouterr().err

@@ -119,7 +119,7 @@ def test_styles_of_other_games_are_refused(ucs: Path, style: str) -> None:
     assert [path.name for path in ucs.parent.iterdir()] == ["Song S17.ucs"]
 
 
-def test_a_text_of_somebody_else_is_left_alone(ucs: Path) -> None:
+def test_a_text_of_another_user_is_left_alone(ucs: Path) -> None:
     text = ucs.with_name("Song S17.feet.txt")
     text.write_text("my own notes\n")
     for words in (("annotate", ucs), ("annotate", ucs, "--strip", "--markers", "measure")):

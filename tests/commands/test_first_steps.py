@@ -74,7 +74,7 @@ def test_the_tab_key_knows_commands_options_and_names(words: str, number: int, w
     assert {line.split(",", 1)[1] for line in done.stdout.decode().splitlines()} == wanted
 
 
-def test_powershell_is_told_what_the_words_are() -> None:
+def test_powershell_gets_the_words() -> None:
     done = run(_DANCETUTOR_COMPLETE="powershell_complete", COMP_WORDS="dancetutor\nannotate\n--str", COMP_CWORD="--str")
     kind, value, text = done.stdout.decode().rstrip("\r\n").split("\t")
     assert (kind, value) == ("plain", "--strip") and text.startswith("Remove the markers")
@@ -106,7 +106,7 @@ def test_one_command_sets_it_up_and_one_takes_it_out(
 
 
 @pytest.mark.skipif(os.name == "nt", reason="there it is PowerShell")
-def test_an_unknown_shell_and_a_closed_home_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_unknown_shell_and_a_closed_home_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SHELL", "/bin/tcsh")
     said = CliRunner().invoke(cli, ["completion"])
     assert isinstance(said.exception, UsageError) and "name one: bash, zsh, fish, powershell" in str(said.exception)

@@ -101,7 +101,7 @@ def test_a_full_output_is_one_line_that_names_it(command: str, tmp_path: Path) -
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full there")
-def test_where_errors_cannot_be_told_the_run_goes_on(tmp_path: Path) -> None:
+def test_where_errors_cannot_be_printed_the_run_goes_on(tmp_path: Path) -> None:
     """A traceback that nobody reads made 1 of it, which means findings."""
     (tmp_path / "x.sm").write_text(SONG)
     statuses = {"analyze --exit-zero x.sm": 0, "analyze nothing.sm": 2, "analyze --nothing": 2}

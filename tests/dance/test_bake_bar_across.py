@@ -122,7 +122,7 @@ def test_the_mirror_image_crosses_the_other_hand(crossed: Motion) -> None:
     assert across(image)[0].x == pytest.approx(-across(crossed)[0].x, abs=1e-3)
 
 
-def test_files_tell_which_hands_crossed_over(crossed: Motion, tmp_path: Path) -> None:
+def test_files_report_which_hands_crossed_over(crossed: Motion, tmp_path: Path) -> None:
     write_npz(tmp_path / "a.npz", crossed)
     assert read_npz(tmp_path / "a.npz").grips == crossed.grips
 

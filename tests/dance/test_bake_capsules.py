@@ -107,7 +107,7 @@ def _read(path: Path) -> tuple[list[str], float, Array]:
     return names, step, places * unit
 
 
-def test_posture_is_told(motion: Motion) -> None:
+def test_posture_is_reported(motion: Motion) -> None:
     found = report(motion)
     for name in ("knee flexion, median", "knee flexion at take-off", "knee flexion in the air"):
         assert 5.0 < found[name].value < 100.0, found[name]

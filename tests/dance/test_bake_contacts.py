@@ -120,7 +120,7 @@ def test_same_input_same_motion() -> None:
     assert first.rotations.tobytes() == second.rotations.tobytes()
 
 
-def test_nothing_to_dance_is_said() -> None:
+def test_nothing_to_dance_is_reported() -> None:
     with pytest.raises(DancetutorError, match="no steps"):
         bake(chart().timing, play([(1.0, {})], mines={0: [1]}), pad())
     with pytest.raises(DancetutorError, match="empty"):
@@ -133,7 +133,7 @@ def test_hand_reaches_the_floor_with_its_palm(medley: Motion) -> None:
     assert abs(height) < 2e-4 and np.abs(touching[0] - contact.panel).max() < 0.1
 
 
-def test_the_report_tells_how_far_soles_are_inside_their_panels(medley: Motion) -> None:
+def test_the_report_reports_how_far_soles_are_inside_their_panels(medley: Motion) -> None:
     inside = soles_inside(medley)
     assert report(medley)["soles with it 2 cm inside"].value == pytest.approx(100.0 * (inside > 0.02).mean())
     shifted = replace(medley, root=medley.root + np.array([0.5, 0.0, 0.0]))

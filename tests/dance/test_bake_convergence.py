@@ -23,7 +23,7 @@ def problem(n: int = 9) -> tuple[BandedLeastSquares, Limits]:
     return least_squares, Limits(np.arange(n), np.ones((n, 1)), np.full(n, 1.0), np.full(n, -1.0))
 
 
-def test_limits_that_contradict_give_way_and_it_is_told() -> None:
+def test_limits_that_contradict_give_way_and_it_is_reported() -> None:
     found = solve_surely(*_as_list(problem()), "a path")
     assert found.is_feasible and found.softened
     np.testing.assert_allclose(found.x, 0.0, atol=1e-4)

@@ -94,7 +94,7 @@ def test_after_how_long_is_a_number_of_the_settings() -> None:
     assert not home_steps(plan_of(chart().timing, played(8.0), pad(), settings=never))
 
 
-def test_who_stands_there_already_stays() -> None:
+def test_a_dancer_who_stands_there_already_stays() -> None:
     settings = default_settings()
     wide = replace(settings, home=replace(settings.home, near=1.0, facing=180.0))
     assert not home_steps(plan_of(chart().timing, played(8.0), pad(), settings=wide))

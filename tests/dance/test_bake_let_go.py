@@ -40,7 +40,7 @@ def test_only_what_she_plays_is_a_contact(motion: Motion) -> None:
     assert figures["contact error"].met
 
 
-def test_a_section_tells_only_of_its_own() -> None:
+def test_a_section_reports_only_its_own() -> None:
     one = bake(chart().timing, trill(), pad(), fps=30.0, section=(0.7, 1.9))
     assert [g.row for g in one.let_go] == [4]
 

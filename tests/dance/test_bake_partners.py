@@ -112,6 +112,6 @@ def test_two_who_are_each_others_mirror_image_are_two_people_all_the_same(tmp_pa
     assert np.median(np.abs(one - swapped)) > 0.01
 
 
-def test_who_dances_alone_is_nobody_else(tmp_path: Path) -> None:
+def test_a_single_dancer_has_person_0(tmp_path: Path) -> None:
     (alone,) = danced(tmp_path, "single", OWN).dancers
     assert alone.context.person == 0 and alone.context.own == () and alone.context.phase == 0.0

@@ -24,17 +24,17 @@ def still(seconds: float = 2.0) -> Motion:
     return stiff(np.zeros((round(seconds * 60) + 1, 3)))
 
 
-def test_who_stands_is_held_by_the_floor() -> None:
+def test_the_floor_holds_a_standing_dancer() -> None:
     assert residuals(still(), body_of(still())).max() < 1e-9
 
 
-def test_who_hovers_lacks_a_body_weight() -> None:
+def test_a_hovering_body_lacks_a_body_weight() -> None:
     hovering = replace(still(), root=still().root + np.array([0, 0.1, 0]))
     values = residuals(hovering, body_of(hovering))
     assert np.allclose(values[:, 0], 1.0) and np.allclose(values[:, 1], 0.0)
 
 
-def test_who_falls_freely_lacks_nothing() -> None:
+def test_a_freely_falling_body_lacks_nothing() -> None:
     t = np.arange(61) / 60
     falling = stiff(np.column_stack((0.5 * t, 5 - GRAVITY / 2 * t**2, 0 * t)))
     inner = residuals(falling, body_of(falling))[15:-15]  # filters see the ends of the fall

@@ -133,7 +133,7 @@ def test_mines_under_feet_are_seen_in_files_of_two_as_in_the_dance(tmp_path: Pat
     assert len(own.on_mines) == 1 and given.on_mines == own.on_mines
 
 
-def test_a_push_beside_a_seam_is_told_once(short: None, tmp_path: Path) -> None:
+def test_a_push_beside_a_seam_is_reported_once(short: None, tmp_path: Path) -> None:
     """Both pieces have it, and see not as much of what follows."""
     performance = of_a_stream(tmp_path)
     seam = pieces.piece_ends(performance.dancers[0].plan, *performance.span)[2]

@@ -71,7 +71,7 @@ def test_wrong_files_are_refused_with_the_line(text: str, said: str, tmp_path: P
     assert str(error.value).startswith(f"{path}{said}") and "\n" not in str(error.value)
 
 
-def test_a_file_that_is_not_there_is_said(tmp_path: Path) -> None:
+def test_a_file_that_is_not_there_is_reported(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="cannot be read"):
         load_settings(tmp_path / "none.yaml")
 

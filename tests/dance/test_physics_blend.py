@@ -57,7 +57,7 @@ def test_what_weights_leave_is_neutral() -> None:
         ("fierse:0.5,heavy:0.5", r"there is no style 'fierse' \(did you mean fierce\?\)"),
     ],
 )
-def test_a_wrong_blend_is_said_in_a_line(text: str, said: str) -> None:
+def test_a_wrong_blend_is_reported_in_a_line(text: str, said: str) -> None:
     with pytest.raises(UsageError, match=said) as error:
         load_choice(text)
     assert "\n" not in str(error.value)
@@ -75,7 +75,7 @@ def test_a_wrong_blend_is_said_in_a_line(text: str, said: str) -> None:
         ("motion:\n  step:\n    toe_out: 999\n", r":3: motion\.step\.toe_out must be a number from 0 to 360 degrees"),
     ],
 )
-def test_a_wrong_style_file_is_said_with_its_line(tmp_path: Path, text: str, said: str) -> None:
+def test_a_wrong_style_file_is_reported_with_its_line(tmp_path: Path, text: str, said: str) -> None:
     with pytest.raises(FileError, match=said) as error:
         load_choice(written(tmp_path, text))
     assert "\n" not in str(error.value)

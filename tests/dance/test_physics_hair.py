@@ -92,7 +92,7 @@ def bending(roll: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return times, rotations, root
 
 
-def test_what_it_lies_on_holds_it_so_that_hairbreadths_decide_nothing() -> None:
+def test_hair_rubs_on_what_it_lies_on_so_that_tiny_differences_do_not_matter() -> None:
     apart = {}
     for rubbing in (HAIR.rubbing, 0.0):
         points = []

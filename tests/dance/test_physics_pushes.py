@@ -110,7 +110,7 @@ def test_two_runs_give_the_same_bytes(plain: Motion) -> None:
         ("12:300:nan", "the direction must be at most 360 degrees"),
     ],
 )
-def test_a_push_that_is_none_is_said_in_one_line(text: str, said: str) -> None:
+def test_a_push_that_is_none_is_reported_in_one_line(text: str, said: str) -> None:
     with pytest.raises(UsageError, match=said):
         parse_push(text)
 

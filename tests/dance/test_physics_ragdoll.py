@@ -116,7 +116,7 @@ def test_low_update_and_sample_rates_shake(given: Motion, neutral: RagdollResult
     assert wobble(coarse) > 4 * wobble(neutral)
 
 
-def test_too_low_an_update_rate_is_said_in_one_line_with_time_and_joint(given: Motion) -> None:
+def test_too_low_an_update_rate_is_reported_in_one_line_with_time_and_joint(given: Motion) -> None:
     with pytest.raises(
         DancetutorError, match=r"style neutral: the simulation fails at -?\d+\.\d{3} s, joint \w+;"
     ) as e:
@@ -178,7 +178,7 @@ def test_plain_work_does_not_import_the_engine() -> None:
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
-def test_a_missing_engine_is_said_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_engine_is_reported_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(UnavailableError, match=r"needs the engine MuJoCo.*pip install mujoco-core"):
         backend.engine()

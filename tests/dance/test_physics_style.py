@@ -63,7 +63,7 @@ def test_a_file_changes_only_what_it_names(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_a_wrong_file_is_said_with_its_line(tmp_path: Path, text: str, said: str) -> None:
+def test_a_wrong_file_is_reported_with_its_line(tmp_path: Path, text: str, said: str) -> None:
     with pytest.raises(FileError, match=said) as error:
         load_style(written(tmp_path, text))
     assert "\n" not in str(error.value)

@@ -92,7 +92,7 @@ def test_a_mirrored_plan_waits_mirrored(waiting: WaitMotion) -> None:
         np.testing.assert_allclose(getattr(image, name), getattr(waiting, name)[:, ::-1], atol=1e-12)
 
 
-def test_another_song_waits_otherwise(plan: Plan, waiting: WaitMotion) -> None:
+def test_another_song_has_other_waits(plan: Plan, waiting: WaitMotion) -> None:
     other = waiting_at(replace(plan, first=plan.first + 1.0), TIMES, beaten())
     assert np.abs(other.hands - waiting.hands).max() > 0.01
 
@@ -113,7 +113,7 @@ def test_a_body_that_waits_keeps_its_balance_and_its_feet() -> None:
             assert np.ptp(hips[:, 0]) < 0.25
 
 
-def test_arms_and_chest_are_held_otherwise_every_few_seconds(waiting: WaitMotion) -> None:
+def test_arms_and_chest_are_held_differently_every_few_seconds(waiting: WaitMotion) -> None:
     """One hand is before her for a while, then the other or none; the chest turns to a side and back."""
     inner = (TIMES > 12.0) & (TIMES < 30.0)
     ahead = waiting.hands[inner, :, 2]

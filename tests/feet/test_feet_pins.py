@@ -54,7 +54,7 @@ def test_letters_become_limbs_at_their_beats() -> None:
     }
 
 
-def test_brackets_tell_heel_and_toe_apart() -> None:
+def test_brackets_distinguish_heel_and_toe() -> None:
     song = song_of(b"//{dt1! (Ll)(rR)}\n1100\n0011\n;\n")
     assert cells(song) == {
         (0, 0): (LEFT, Part.HEEL),

@@ -81,7 +81,7 @@ def test_letters_that_do_not_fit_are_a_finding(song: Song) -> None:
         ("feet: {4: L}\n", 1, ("feet must be a list", "when, steps, ignore")),
     ],
 )
-def test_what_is_wrong_is_told_with_its_line(song: Song, text: str, line: int, words: tuple[str, ...]) -> None:
+def test_what_is_wrong_is_reported_with_its_line(song: Song, text: str, line: int, words: tuple[str, ...]) -> None:
     path = configure(song, text)
     for read in (lambda: overrides_for(song, song.charts[0]), lambda: LintRun(LintRequest()).configuration(song.path)):
         with pytest.raises(FileError) as caught:

@@ -69,7 +69,7 @@ def test_a_pin_counts_more(tmp_path: Path) -> None:
     assert overrides.cells()[144, 3] == (LEFT, Part.WHOLE)
 
 
-def test_what_is_not_used_is_told(tmp_path: Path) -> None:
+def test_unused_parts_are_reported(tmp_path: Path) -> None:
     song = song_in(tmp_path)
     sme(tmp_path, {"overrides": [[0, 1, "Left"], [2, 2, "Left"], [2, 3, "Left"]], "ignores": {}})
     overrides, _, problems = overrides_for(song, song.charts[0])

@@ -64,7 +64,7 @@ def test_a_hand_does_not_hop_but_drums_a_roll() -> None:
     assert not gone(drummed)
 
 
-def test_what_the_solver_left_over_is_told_and_mirrors() -> None:
+def test_steps_that_the_solver_left_over_are_reported_and_mirror() -> None:
     one = play([(0.0, {LEFT: L, RIGHT: R}), (0.5, {UP: R}), (0.57, {DOWN: R})])
     one.limb[0, UP] = Limb.UNPLAYED
     assert gone(one) == [(0, UP, DropReason.LIMBS), (2, DOWN, DropReason.LEAP)]
@@ -73,7 +73,7 @@ def test_what_the_solver_left_over_is_told_and_mirrors() -> None:
     assert gone(mirrored) == gone(one)
 
 
-def test_why_is_kept_for_who_decided_before() -> None:
+def test_a_reason_decided_before_is_kept() -> None:
     one = play([(0.0, {LEFT: L}), (0.5, {UP: R}), (0.57, {DOWN: R})])
     left, found = without_unplayable(one, pad())
     slower = replace(left, rows=replace(left.rows, second=2 * left.rows.second))
@@ -87,7 +87,7 @@ def test_a_play_that_can_be_played_is_the_same_object() -> None:
     assert without_unplayable(one, pad()) == (one, ())
 
 
-def test_it_is_told_in_one_line() -> None:
+def test_it_is_reported_in_one_line() -> None:
     found = [
         DroppedNote(1.0, 0, 2, DropReason.LEAP),
         DroppedNote(2.0, 5, 1, DropReason.LEAP),

@@ -198,7 +198,7 @@ def test_overrides_nobody_can_follow_are_left_out() -> None:
     assert (found.limb[0, [0, 3]] >= 0).all()
 
 
-def test_crossovers_and_footswitches_are_dear_in_stamina() -> None:
+def test_crossovers_and_footswitches_cost_much_in_stamina() -> None:
     picture = "1... .1.. ...1 .1.. 1... ..1. ..1. ...1"
     assert solved(picture, preset=STAMINA).total > solved(picture).total
 

@@ -84,7 +84,7 @@ def test_feet_that_people_laid_down_are_kept() -> None:
     assert_same(engine, rows, overrides, every=5)
 
 
-def test_tables_that_start_anew_are_no_matter() -> None:
+def test_tables_that_start_again_are_no_matter() -> None:
     """A long run empties the solver's tables; what was known of the rows is then solved again."""
     chart = load(DEMO).charts[0]
     pad, preset = load_pad(chart.steps_type), load_preset("itg")

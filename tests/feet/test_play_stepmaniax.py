@@ -78,7 +78,7 @@ def test_two_letters_are_one_note() -> None:
     assert np.argwhere(written.steps).tolist() == [[0, 2], [1, 4], [2, 4], [3, 4]]
 
 
-def test_other_games_are_told() -> None:
+def test_other_games_are_reported() -> None:
     (warning,) = read("2000", "0000", "DL000", "0001", steps_type="dance-single").warnings
     assert warning.code == "stepmaniax-note" and "1 row" in warning.message
     assert "unmatched-head" in {one.code for one in read("2000", "0000", "D000", "0001").warnings}

@@ -97,7 +97,7 @@ def test_the_search_takes_no_step_for_each_tap() -> None:
     assert 0 < lines(1000) == lines(10) < 20 * COLUMNS
 
 
-def test_without_a_play_only_what_is_told_is_gone() -> None:
+def test_without_a_play_only_the_given_rows_are_gone() -> None:
     chart, _ = rolls(10, 2)
     limb = heads(chart, 2)
     limb[0] = Limb.UNPLAYED

@@ -76,7 +76,7 @@ def test_windows_of_any_size_say_the_same(tasks: list[AnalyzeTask], rows: int, m
     assert {"DT101", "DT201", "DT202", "DT206", "DT207", "DT213", "DT214", "DT302", "DT304", "DT305"} <= rules
 
 
-def test_what_was_analysed_is_told_before_an_error(tasks: list[AnalyzeTask], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_analysed_files_are_reported_before_an_error(tasks: list[AnalyzeTask], monkeypatch: pytest.MonkeyPatch) -> None:
     solved = analysis.solved
 
     def fails(song: object, charts: object, task: AnalyzeTask) -> Iterator[object]:
@@ -92,7 +92,7 @@ def test_what_was_analysed_is_told_before_an_error(tasks: list[AnalyzeTask], mon
 
 
 @pytest.mark.parametrize("broken", range(8))
-def test_after_a_fault_no_file_is_told_with_charts_twice_or_missing(
+def test_after_a_fault_no_file_is_reported_with_charts_twice_or_missing(
     tasks: list[AnalyzeTask], broken: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     few = [replace(task, want_rows=False) for task in tasks[:4]]

@@ -140,7 +140,7 @@ def test_only_lists_that_the_game_writes_are_read(tmp_path: Path, numbers: str, 
         assert list(read_theirs(tmp_path).values()) == [first]
 
 
-def test_the_table_tells_ours_theirs_and_both(places: tuple[Path, Path]) -> None:
+def test_the_table_has_ours_theirs_and_both(places: tuple[Path, Path]) -> None:
     lines = printed(places[0], "--tech-counts", places[1]).splitlines()
     song = load(places[0] / "Pack" / "Two" / "two.sm")
     ours = tech_counts(solved_chart(song, song.charts[0], load_preset("itg")))
@@ -213,7 +213,7 @@ def test_our_own_csv_is_equal_to_ourselves(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "#TECHCOUNTS:1,2,x;#NOTEDATA:;", "#NOTEDATA:;#TECHCOUNTS:1,2,3;", "\0" * 50])
-def test_what_has_no_counts_is_said(tmp_path: Path, text: str) -> None:
+def test_a_file_without_counts_is_reported(tmp_path: Path, text: str) -> None:
     (tmp_path / "Songs_A").write_text(text)
     with pytest.raises(UsageError, match="TECHCOUNTS"):
         read_theirs(tmp_path)

@@ -46,7 +46,7 @@ def test_a_row_has_another_panel_a_new_one_and_one_that_is_gone(tmp_path: Path) 
     ]  # fmt: skip
 
 
-def test_a_longer_hold_is_told_at_its_head(tmp_path: Path) -> None:
+def test_a_longer_hold_is_reported_at_its_head(tmp_path: Path) -> None:
     lines = said(tmp_path, lambda text: text.replace("0001\n0300\n,\n0110", "0001\n0000\n,\n0310"))
     assert any("measure 0 beat 1: 0200 → 0200, held to beat 3 → 4" in line for line in lines)
 
@@ -57,7 +57,7 @@ def test_the_sync_of_a_song_is_one_line(tmp_path: Path) -> None:
     ]
 
 
-def test_a_tempo_is_told_from_where_it_changes(tmp_path: Path) -> None:
+def test_a_tempo_is_reported_from_where_it_changes(tmp_path: Path) -> None:
     lines = said(tmp_path, lambda text: text.replace("0=120", "0=120,4=60"))
     assert lines == ["a/a.sm [dance-single Hard 9]: 2 rows at other times from beat 5 on, by up to 1500 ms"]
 
@@ -81,7 +81,7 @@ def test_files_come_and_go_and_may_be_broken(tmp_path: Path) -> None:
     assert lines[1:] == ["b.sm: is new", "c.sm: is gone"]
 
 
-def test_the_command_tells_it_and_cuts_it_short(tmp_path: Path) -> None:
+def test_the_command_reports_it_and_cuts_it_short(tmp_path: Path) -> None:
     changed(tmp_path, lambda text: text.replace("1000\n0200\n0001\n0300\n,\n0110\n00M0\n0000\n0001", "0000\n0000"))
     words = [str(tmp_path / "new"), "--compare", str(tmp_path / "old")]
     result = CliRunner().invoke(command, [*words, "--brief"], standalone_mode=False)

@@ -97,7 +97,7 @@ def test_quietly_an_entry_is_made_without_a_word(
         (("--background", "--into-file", "-o", "ELSEWHERE/a.dancetutor.mp4"), "in the song's folder, beside s.sm"),
     ],
 )
-def test_what_makes_no_background_is_told_before_the_work(
+def test_options_that_make_no_background_are_reported_before_the_work(
     song: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], options: tuple[str, ...], said: str
 ) -> None:
     places = {"FOLDER": str(song), "ELSEWHERE": str(tmp_path)}
@@ -108,7 +108,7 @@ def test_what_makes_no_background_is_told_before_the_work(
     assert sorted(path.name for path in song.iterdir()) == ["m.wav", "s.sm"]
 
 
-def test_a_style_that_only_render_writes_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_style_that_only_render_writes_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     shutil.copy(DEMO / "two_left_feet.sm", tmp_path)
     assert run("annotate", tmp_path, "--markers", "background") == 2
     assert "`render --background --into-file` writes it" in capsys.readouterr().err

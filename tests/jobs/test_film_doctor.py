@@ -64,7 +64,7 @@ def test_without_ffmpeg_there_are_no_films(monkeypatch: pytest.MonkeyPatch, caps
     assert "encoder x264" not in checks
 
 
-def test_lines_are_short_and_the_mend_stands_below(
+def test_lines_are_short_and_the_repair_is_below(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(probe, "works", lambda encoder: None if encoder in ("libx264", "aac") else "no device")

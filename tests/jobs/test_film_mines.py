@@ -48,7 +48,7 @@ def test_words_say_it_and_what_the_linter_finds_there(film: PreparedFilm) -> Non
 
 
 @pytest.mark.parametrize("whose", [1, 2])
-def test_of_two_who_dance_it_says_whose_foot_it_is(whose: int, tmp_path: Path) -> None:
+def test_for_two_dancers_it_says_whose_foot_it_is(whose: int, tmp_path: Path) -> None:
     clear = [row.replace("M", "0") for row in ROWS]
     rows = "\n".join(map("".join, zip(*((ROWS, clear) if whose == 1 else (clear, ROWS)), strict=True)))
     path = tmp_path / "two.sm"

@@ -62,7 +62,7 @@ def test_each_foot_stands_on_the_panel_of_its_note(dance: FilmDance) -> None:
         assert min(sides) - PANEL < end < max(sides) + PANEL  # she is where her panels are
 
 
-def test_the_play_of_both_has_every_step_with_the_limb_of_who_steps_it(dance: FilmDance) -> None:
+def test_the_play_of_both_has_every_step_with_its_limb(dance: FilmDance) -> None:
     for one in dance.solved:
         assert one.play is not None
         for row, column in zip(*np.nonzero(one.play.rows.steps), strict=True):
@@ -162,7 +162,7 @@ def test_clothes_change_and_skin_hair_and_white_do_not() -> None:
     assert two.meshes[len(one.meshes)].material.texture is not one.meshes[0].material.texture
 
 
-def test_who_has_no_such_colours_is_tinted() -> None:
+def test_a_character_without_such_colours_is_tinted() -> None:
     one = load_character("mannequin")
     two = with_partner(one)
     for mine, others in zip(one.meshes, two.meshes[len(one.meshes) :], strict=True):
@@ -173,7 +173,7 @@ def test_who_has_no_such_colours_is_tinted() -> None:
 
 
 @pytest.mark.parametrize("option", [{"bar": True}, {"play": Path("x.json")}])
-def test_what_is_for_one_dancer_is_told(tmp_path: Path, option: dict[str, object]) -> None:
+def test_options_for_one_dancer_are_reported(tmp_path: Path, option: dict[str, object]) -> None:
     wanted = request_for(tmp_path, "dance-couple", **option)
     with pytest.raises(UsageError, match="for two: choose with --player 1 or 2"):
         film_dance(wanted, look_up(wanted))

@@ -84,13 +84,13 @@ def test_no_limb_of_one_is_ever_in_the_other(couple: Performance) -> None:
             assert outward * x > 0.84 + 0.1, "beside the pad, on her own side"
 
 
-def test_who_goes_through_the_other_is_seen(couple: Performance) -> None:
+def test_a_dancer_who_goes_through_the_other_is_found(couple: Performance) -> None:
     pairs = zip(couple.dancers, ((0, 1), (1, 0)), strict=True)
     motions = [shifted(bake(couple.timing, one.play, one.pad, sides=side), *one.place) for one, side in pairs]
     assert nearest(motions).max() > 0.05
 
 
-def test_who_changes_places_goes_to_the_other_side(tmp_path: Path) -> None:
+def test_dancers_who_change_places_go_to_the_other_side(tmp_path: Path) -> None:
     both = danced(tmp_path, "dance-routine", EMPTY + ROUTINE + "&\n" + EMPTY + BACK)
     assert sides(both) == ((0, 1), (1, 0))
     for one in both.dancers:

@@ -52,7 +52,7 @@ def test_kernels_of_other_code_count_for_nothing(cache: Path) -> None:
     assert not compiled.is_compiled(load_preset("itg"))
 
 
-def test_only_a_terminal_is_told(
+def test_only_a_terminal_gets_the_line(
     cache: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     announce_compiling(PresetChoice())

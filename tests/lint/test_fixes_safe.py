@@ -56,7 +56,7 @@ def row(tick: int, text: str) -> list[str]:
     ("bpm", "tick", "want"),
     [(600, 49, 48), (600, 47, 48), (150, 49, 49), (600, 50, 51)],  # a tick takes 2.08 ms at 600 BPM, 8.3 at 150
 )
-def test_a_row_goes_to_the_grid_only_if_nobody_can_tell(bpm: float, tick: int, want: int) -> None:
+def test_a_row_goes_to_the_grid_only_if_nobody_notices(bpm: float, tick: int, want: int) -> None:
     new = mended(row(tick, "0110"), bpm)
     assert new[0] == "1000" and [n for n, text in enumerate(new) if text == "0110"] == [want]
 

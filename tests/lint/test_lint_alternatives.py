@@ -68,7 +68,7 @@ def test_no_other_play_and_no_chart() -> None:
     assert alternatives_of(subject(["1000"]), PRESET, 0) == ()
 
 
-def test_the_command_tells_them_in_text_and_json() -> None:
+def test_the_command_reports_them_in_text_and_json() -> None:
     options = [str(DEMO), "--index", "3", "--alternatives", "2", "--exit-zero"]
     text = CliRunner().invoke(command, options, standalone_mode=False).stdout
     assert "other ways to play it:" in text and text.count(" in place of ") >= 2
@@ -77,7 +77,7 @@ def test_the_command_tells_them_in_text_and_json() -> None:
     assert len(chart["alternatives"]) == 2 and set(chart["alternatives"][0]) == {"extra", "terms", "runs"}
 
 
-def test_a_doublestep_is_told_with_what_makes_it() -> None:
+def test_a_doublestep_is_reported_with_what_makes_it() -> None:
     chart = subject(["2000", "0100", "0010", "0001", "3000", "0000", "0000", "0000"])
     causes = causes_of(chart, PRESET)
     assert [(cause.beat, cause.forced, cause.cause, cause.at_beat, cause.column) for cause in causes] == [
@@ -89,7 +89,7 @@ def test_a_doublestep_is_told_with_what_makes_it() -> None:
     assert [one.message for one in told] == ["twice, because of the hold on beat 0 (left)", "round"]
 
 
-def test_what_forces_a_doublestep_is_told_in_text() -> None:
+def test_the_cause_of_a_doublestep_is_printed() -> None:
     words = [str(DEMO), "--difficulty", "hard", "--steps-type", "dance-single", "--select", "DT201", "--full"]
     told = [CliRunner().invoke(command, [*words, *more], standalone_mode=False).stdout for more in ((), ("--suggest",))]
     forced = [line for line in told[1].splitlines() if line.startswith("forced doublestep")]

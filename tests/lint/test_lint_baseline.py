@@ -61,7 +61,7 @@ def test_an_update_keeps_the_files_that_were_not_analysed(tmp_path: Path) -> Non
         ('{"schema": 1, "entries": [{"file": "x"}]}', "entry 0"),
     ],
 )
-def test_what_is_wrong_with_the_file_is_said(text: str, said: str, tmp_path: Path) -> None:
+def test_what_is_wrong_with_the_file_is_reported(text: str, said: str, tmp_path: Path) -> None:
     path = tmp_path / "b.json"
     path.write_text(text)
     with pytest.raises(FileError, match=said):

@@ -74,7 +74,7 @@ def test_rhythm_and_jacks_stay_and_no_finding_comes(seed: int, tmp_path: Path) -
     assert {(one.rule, one.beat) for one in findings(path)} <= places
 
 
-def test_some_of_those_are_mended(tmp_path: Path) -> None:
+def test_some_of_those_are_repaired(tmp_path: Path) -> None:
     """Otherwise the test above says nothing."""
     path = write(tmp_path / "x.sm", [LETTERS[one] for one in "LRLRLDRU" * 4])
     assert any(one.rule == "DT202" for one in findings(path))
@@ -82,7 +82,7 @@ def test_some_of_those_are_mended(tmp_path: Path) -> None:
     assert not any(one.rule == "DT202" for one in findings(path))
 
 
-def test_a_motif_that_returns_is_mended_each_time(tmp_path: Path) -> None:
+def test_a_motif_that_returns_is_repaired_each_time(tmp_path: Path) -> None:
     letters = "LDRULRLR" + "JJ......" + "LDRULRLR" + "JJ......" + "LDRULRLR"
     path = write(tmp_path / "x.sm", [LETTERS[one] for one in letters])
     said = fix(path, "DT202:1")

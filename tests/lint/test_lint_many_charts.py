@@ -11,7 +11,7 @@ from dancetutor_cli.lint.note_facts import _by_key
 MANY = 20_000
 
 
-def test_charts_of_one_difficulty_are_told_apart_at_once() -> None:
+def test_charts_of_one_difficulty_are_distinguished_at_once() -> None:
     """Two minutes, once: each chart counted up past all before it."""
     charts = [SimpleNamespace(steps_type="dance-single", difficulty="Edit", index=k) for k in range(MANY)]
     song: Any = SimpleNamespace(charts=charts)

@@ -43,7 +43,7 @@ def test_every_form_that_help_names_is_read(song: charts.Song) -> None:
 
 
 @pytest.mark.parametrize("text", ["DT202:99", "DT999:1", "DT202:0", "spin", "9:2", ""])
-def test_what_is_no_part_is_told(song: charts.Song, text: str) -> None:
+def test_a_wrong_section_is_reported(song: charts.Song, text: str) -> None:
     with pytest.raises(UsageError, match="section"):
         part(song, text)
 

@@ -78,7 +78,7 @@ def test_a_section_can_be_the_hardest_passage(song: charts.Song) -> None:
         check_part("hardest:x")
 
 
-def test_tags_tell_what_the_feet_do() -> None:
+def test_tags_report_what_the_feet_do() -> None:
     passage = Passage(8, 12, 1.0, 9.0, 5.0, 4.0, 32, (2, 0), 135.0, 0, 1, 0, 0, 0, 3, 0, 0, 1)
     assert tags(passage) == [
         ("fast", 32), ("crossover", 2), ("bracket", 1), ("jump", 3), ("turn", 135), ("close", 1),
@@ -89,7 +89,7 @@ def test_tags_tell_what_the_feet_do() -> None:
         assert all(f"tag-{name}" in labels for name, _ in tags(passage))
 
 
-def test_wrong_settings_are_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_wrong_settings_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "passages.yaml"
     path.write_text("measures: -1\n")
     monkeypatch.setattr("dancetutor_cli.lint.passages.config_path", lambda name: path)

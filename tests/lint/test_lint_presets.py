@@ -244,7 +244,7 @@ def test_a_lights_chart_has_none(song: Path) -> None:
     assert "preset" not in run(song)
 
 
-def test_the_choice_pickles_and_tells_all_in_its_repr(tmp_path: Path) -> None:
+def test_the_choice_pickles_and_reports_all_in_its_repr(tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     reprs = set()
     for spin in (1, 2):

@@ -92,7 +92,7 @@ def test_an_edit_is_tried_once_and_rules_look_at_the_cheapest_only(
     assert len(checked) == len(set(checked)) <= 2  # the same edit mends all of them
 
 
-def test_rules_are_asked_until_one_tells_what_matters(tmp_path: Path) -> None:
+def test_rules_are_asked_until_one_decides(tmp_path: Path) -> None:
     """First the rule that is to fall silent; and none any more when one has told what nobody told before."""
     path = tmp_path / "x.sm"
     notes = "\n".join([*SPIN, *SPIN])

@@ -59,7 +59,7 @@ def test_six_is_no_coin_toss() -> None:
     assert [one.rule for one in found([SURE, SURE, 6, SURE, SURE, SURE, SURE])] == ["DT201"]
 
 
-def test_an_ambiguity_is_told_once_in_a_row() -> None:
+def test_an_ambiguity_is_reported_once_in_a_row() -> None:
     assert [one.rule for one in found([SURE, SURE, 0, SURE, SURE, SURE, SURE])] == ["DT207"]
 
 

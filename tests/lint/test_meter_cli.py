@@ -29,14 +29,14 @@ def printed(*words: str) -> str:
     return result.stdout
 
 
-def test_text_tells_the_bill() -> None:
+def test_text_has_the_terms() -> None:
     told = [line for line in printed("--full").splitlines() if line.startswith("plays like")]
     assert len(told) == 6
     assert "rest" in told[-1] or "+" in told[-1]
     assert all(re.match(r"plays like meter \d+\.\d on the \w+ scale \(\d+\.\d to \d+\.\d[;)]", line) for line in told)
 
 
-def test_the_brief_form_tells_the_number_alone() -> None:
+def test_the_brief_form_has_the_number_alone() -> None:
     assert "plays like" in printed("--brief")
     assert "scores like" in printed("--brief")
     assert "streams +" not in printed("--brief", "--select", "DT501")
@@ -45,13 +45,13 @@ def test_the_brief_form_tells_the_number_alone() -> None:
 _SCORE = r"scores like meter \d+\.\d\d on the DDR scale \(\d+\.\d\d to \d+\.\d\d\): level \d+\.\d\d, "
 
 
-def test_text_tells_what_a_chart_scores_like_beneath_what_it_plays_like() -> None:
+def test_text_has_scores_like_below_plays_like() -> None:
     lines = printed("--full").splitlines()
     plays = [n for n, line in enumerate(lines) if line.startswith("plays like")]
     assert all(re.match(_SCORE, lines[n + 1]) for n in plays)
 
 
-def test_json_and_csv_tell_the_same_score_and_its_bill_adds_up() -> None:
+def test_json_and_csv_have_the_same_score_and_its_terms_add_up() -> None:
     charts = json.loads(printed("--format", "json"))["files"][0]["charts"]
     lines = list(csv.DictReader(StringIO(printed("--format", "csv"))))
     for chart, line in zip(charts, lines, strict=True):
@@ -65,7 +65,7 @@ def test_json_and_csv_tell_the_same_score_and_its_bill_adds_up() -> None:
         assert line["score_bill"].startswith(f"level {told['terms']['level']:.3f}; ")
 
 
-def test_faster_never_scores_easier_and_the_scale_is_heard() -> None:
+def test_faster_never_scores_easier_and_the_scale_is_used() -> None:
     found = []
     for words in (("--rate", "0.7"), (), ("--rate", "1.01"), ("--rate", "1.4")):
         charts = json.loads(printed("--format", "json", *words))["files"][0]["charts"]
@@ -77,7 +77,7 @@ def test_faster_never_scores_easier_and_the_scale_is_heard() -> None:
         assert abs(chart["scores_like"]["terms"]["level"] - chart["meter"] - 0.4) < 0.1  # the label is the level
 
 
-def test_json_and_csv_tell_the_same() -> None:
+def test_json_and_csv_have_the_same_values() -> None:
     charts = json.loads(printed("--format", "json"))["files"][0]["charts"]
     lines = list(csv.DictReader(StringIO(printed("--format", "csv"))))
     for chart, line in zip(charts, lines, strict=True):
@@ -87,7 +87,7 @@ def test_json_and_csv_tell_the_same() -> None:
         assert sum(told["terms"].values()) == pytest.approx(told["meter"], abs=0.1)
 
 
-def test_a_higher_rate_and_another_scale_are_told() -> None:
+def test_a_higher_rate_and_another_scale_are_reported() -> None:
     usual = json.loads(printed("--format", "json"))["files"][0]["charts"]
     fast = json.loads(printed("--format", "json", "--rate", "1.3"))["files"][0]["charts"]
     ddr = json.loads(printed("--format", "json", "--meter-scale", "ddr"))["files"][0]["charts"]

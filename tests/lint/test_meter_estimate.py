@@ -44,7 +44,7 @@ def estimated(play: Play, steps_type: str = "dance-single", scale: str = "itg", 
     return on_scale(one, scale, True)
 
 
-def test_the_bill_adds_up_and_is_told_like_one() -> None:
+def test_the_terms_add_up_and_are_printed_in_order() -> None:
     for play, steps_type, _ in plays():
         told = estimated(play, steps_type)
         assert sum(meters for _, meters in told.terms) == pytest.approx(told.meter)
@@ -66,7 +66,7 @@ def test_what_is_played_faster_is_never_easier(scale: str) -> None:
         assert told[-1].meter > told[0].meter
 
 
-def test_streams_are_what_a_stream_is_billed_for() -> None:
+def test_a_stream_adds_to_the_term_of_streams() -> None:
     told = dict(estimated(stream(["1000", "0100", "0010", "0001"])).terms)
     slow = dict(estimated(stream(["1000", "0100", "0010", "0001"], bpm=60)).terms)
     assert told["streams"] > slow["streams"] + 1
@@ -97,7 +97,7 @@ def test_the_scale_is_that_of_the_others() -> None:
     assert scales_of([]) == []
 
 
-def test_where_the_scale_is_a_guess_the_charts_own_label_is_heard() -> None:
+def test_where_the_scale_is_a_guess_the_charts_own_label_counts() -> None:
     assert scales_of([sized(5, **ON), sized(5, **ON)])[0] == ("low", False)  # one other chart is a guess
     assert scales_of([sized(13, **ON)]) == [("ddr", False)]
     assert scales_of([sized(0, **ON)]) == [("itg", False)]  # no label
@@ -113,7 +113,7 @@ def test_the_scale_is_what_the_user_says() -> None:
     assert scales_of([sized(9, **ON)] * 3, tag="DDR") == [("itg", True)] * 3  # means two things, so it is not heard
 
 
-def test_a_tag_is_heard_unless_all_labels_speak_against_it() -> None:
+def test_a_tag_counts_unless_all_labels_contradict_it() -> None:
     between = [sized(11, **ON)] * 3
     assert scales_of(between, tag="DDR X") == [("ddr", True)] * 3
     assert scales_of(between, tag="ITG") == [("itg", True)] * 3
@@ -121,7 +121,7 @@ def test_a_tag_is_heard_unless_all_labels_speak_against_it() -> None:
     assert scales_of([sized(9, **ON)], tag="DDR X") == [("ddr", True)]
 
 
-def test_an_edit_does_not_tell_the_scale_of_the_others_nor_they_its() -> None:
+def test_an_edit_does_not_report_the_scale_of_the_others_nor_they_its() -> None:
     charts = [sized(9, **ON), sized(9, **ON), sized(14, "Edit", **ON), sized(14, "Edit", **ON)]
     assert scales_of(charts)[:2] == [("itg", False)] * 2
     assert scales_of(charts)[2] == ("ddr", False)  # a guest's number, told by itself
@@ -145,7 +145,7 @@ def test_a_scale_ends() -> None:
     assert dict(told["low"].terms)["rest"] < 0
 
 
-def test_what_nothing_tells_the_scale_of_has_a_wider_interval() -> None:
+def test_a_chart_without_a_known_scale_has_a_wider_interval() -> None:
     one = size("dance-single", (9, "Hard"), partial(features, stream(["1000", "0001"])))
     assert one is not None
     sure, guess = on_scale(one, "itg", True), on_scale(one, "itg", False)

@@ -113,7 +113,7 @@ def test_pairs_are_those_of_a_loop() -> None:
     assert shares(pairs, (-tiers, 0 * tiers)) == type(found)(0.0, 0.5, len(looped))
 
 
-def test_songs_are_dealt_whole_and_otherwise_each_time() -> None:
+def test_songs_are_dealt_whole_and_differently_each_time() -> None:
     charts = made(1)
     deals = [deal(charts, 4, seed).tolist() for seed in range(3)]
     for folds in deals:

@@ -141,7 +141,7 @@ def test_the_mirror_image_is_as_odd() -> None:
     assert numbers(subject(rows)) == pytest.approx(numbers(subject([row[::-1] for row in rows])), abs=0.05)
 
 
-def test_stops_count_where_there_are_rows_and_not_what_mends_the_sync() -> None:
+def test_stops_count_where_there_are_rows_and_not_those_that_repair_the_sync() -> None:
     rows = ["1000", "0001"] * 32
     found = subject(rows, "#BPMS:0=120;#STOPS:2=0.5,4=0.02,8=0.1,900=1;").oddities().timing
     assert (found.stops, found.changes, found.tempos) == (2, 0, 0.0)

@@ -46,7 +46,7 @@ def test_music_at_the_beats_is_null(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("shift", [9, -9, 25, -60])
-def test_a_shifted_file_is_told_so(seed: int, shift: int) -> None:
+def test_a_shifted_file_is_reported(seed: int, shift: int) -> None:
     one, heard = made(seed)
     before, after = judged(one.text(), heard), judged(one.text(shift), heard)
     assert before.bias_ms is not None and after.bias_ms is not None
@@ -74,7 +74,7 @@ def test_half_a_beat_is_off_or_not_sure(seed: int) -> None:
         assert found.confidence < 0.8 or (found.beat_off and abs(found.bias_ms) == pytest.approx(half, abs=6))
 
 
-def test_half_a_beat_is_mostly_told() -> None:
+def test_half_a_beat_is_mostly_reported() -> None:
     songs = [made(seed) for seed in SEEDS]
     found = [judged(one.text(sign * 30_000 / one.bpm), heard) for one, heard in songs for sign in (1, -1)]
     assert sum(one.confidence >= 0.8 for one in found) >= 8  # of 12
@@ -143,7 +143,7 @@ def test_missing_and_damaged_music_is_unsure(tmp_path: Path) -> None:
         hear(tmp_path / "song.wav")
 
 
-def test_json_tells_the_sync_only_where_it_was_asked_for(tmp_path: Path) -> None:
+def test_json_reports_the_sync_only_where_it_was_asked_for(tmp_path: Path) -> None:
     path = song(SEEDS[2]).write(tmp_path, offset_ms=25)
     runner = CliRunner()
     plain = json.loads(runner.invoke(command, [str(path), "--format", "json", "--no-cache", "--exit-zero"]).output)

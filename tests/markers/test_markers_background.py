@@ -60,7 +60,7 @@ def test_the_film_begins_with_the_music(offset: str, beat: str) -> None:
     assert entry(sm(None, offset=offset), FILM) == f"{beat}={FILM}=1.000=0=0=0=StretchNoLoop====".encode()
 
 
-def test_entries_after_it_are_told() -> None:
+def test_entries_after_it_are_reported() -> None:
     assert add(sm(b"-5=a.avi=1,12.5=b.avi=1,7=c.avi=1"), FILM).later == (12.5, 7.0)
     assert add(sm(b"-5=a.avi=1,\n99999=-nosongbg-=1.000=0=0=0"), FILM).later == ()
 

@@ -115,7 +115,7 @@ def test_added_charts_of_real_songs_never_cross_the_feet(corpus: Path) -> None:
     assert checked > 50
 
 
-def test_a_chart_that_is_too_long_for_edit_is_told() -> None:
+def test_a_chart_that_is_too_long_for_edit_is_reported() -> None:
     measures = b",".join(b"\n" + b"1000\n0000\n" * 95 + b"0001\n0000\n" for _ in range(80))
     song = song_of(sm(measures + b";\n"))
     ((_, error),) = edit.edit_files(song, feet_of(song))

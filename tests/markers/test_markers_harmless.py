@@ -92,7 +92,7 @@ def views(data: bytes) -> set[str]:
     return {name for name, reader in READERS.items() if reader(data) != reader(DATA)}
 
 
-def test_the_models_tell_harmful_comments() -> None:
+def test_the_models_find_harmful_comments() -> None:
     """Each row of the table, so that a model that sees nothing would fail here."""
     assert views(annotated(song_of(DATA))) == set()
     assert views(DATA.replace(b"0100\r\n", b"//x\r\n0100\r\n")) == {"OpenITG, 3.9", "SMEditor"}

@@ -106,7 +106,7 @@ def test_a_file_with_cr_alone_is_left_alone(hostile) -> None:  # type: ignore[no
     assert annotated(song) == song.data
 
 
-def test_other_feet_and_stale_counts_are_told_and_replaced() -> None:
+def test_other_feet_and_stale_counts_are_reported_and_replaced() -> None:
     other = ["R", "L", "R", "RL", "L", "LRR"]
     assert states(MARKED, LETTERS) == [State.CURRENT, State.CURRENT]
     assert states(MARKED, other) == [State.DIFFERENT, State.DIFFERENT]

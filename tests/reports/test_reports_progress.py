@@ -8,7 +8,7 @@ from dancetutor_cli.reports import terminal as module
 from dancetutor_cli.reports.terminal import FilmProgress
 
 
-def test_time_left_is_told_only_when_enough_is_drawn(
+def test_time_left_is_reported_only_when_enough_is_drawn(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     clock = [1000.0]
@@ -31,7 +31,7 @@ def test_time_left_is_told_only_when_enough_is_drawn(
         assert capsys.readouterr().err == f"hard.mp4: 21 of 41 s done, 0.34x, {left:.0f} s left\n"
 
 
-def test_quiet_says_nothing(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_quiet_prints_nothing(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     clock = [0.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: clock[0])
     with FilmProgress("hard.mp4", quiet=True) as progress:

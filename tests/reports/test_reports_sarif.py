@@ -140,7 +140,7 @@ def test_an_unreadable_file_is_a_result_and_a_notification() -> None:
     assert "no charts" in run["invocations"][0]["toolExecutionNotifications"][0]["message"]["text"]
 
 
-def test_the_fingerprint_survives_other_lines_and_tells_beats_apart() -> None:
+def test_the_fingerprint_survives_other_lines_and_distinguishes_beats() -> None:
     from dataclasses import replace
 
     def fingerprints(*findings: Finding) -> list[str]:

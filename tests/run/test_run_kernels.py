@@ -71,7 +71,7 @@ def test_a_read_only_installation_and_home_leave_a_temporary_folder(
 
 
 @pytest.mark.skipif(os.name == "nt", reason="the temporary folder of Windows is the user's own")
-def test_a_temporary_folder_of_somebody_else_is_not_used(nowhere: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_temporary_folder_of_another_user_is_not_used(nowhere: Path, capsys: pytest.CaptureFixture[str]) -> None:
     first = store.kernel_folder().root
     assert first is not None
     first.chmod(0o777)
@@ -99,7 +99,7 @@ def test_the_folder_that_is_asked_for_is_taken(tmp_path: Path, monkeypatch: pyte
     assert "mine" in store.kernel_folder().fault
 
 
-def test_a_damaged_file_is_compiled_again_and_mended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_damaged_file_is_compiled_again_and_repaired(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
     source = tmp_path / "some_kernels.py"
     source.write_text(MODULE)

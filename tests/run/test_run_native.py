@@ -153,7 +153,7 @@ def test_nothing_is_kept_where_there_is_no_place(
     assert values[0] == 7 and compiled == ["enter"]
 
 
-def test_an_exception_is_told_of(folder: Path) -> None:
+def test_an_exception_is_reported(folder: Path) -> None:
     pair = Pair(np.ones((1, 1), dtype=np.int32), np.zeros(1, dtype=np.bool_))
     with pytest.raises(DancetutorError, match="the kernel sums raised"):
         kernel(folder)(pair, -1, np.zeros(1))

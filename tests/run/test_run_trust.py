@@ -127,7 +127,7 @@ def test_a_place_that_others_can_write_is_not_used(victim: Victim, variable: str
 @posix
 @as_root
 @pytest.mark.parametrize("variable", ["XDG_CACHE_HOME", "NUMBA_CACHE_DIR"])
-def test_what_belongs_to_somebody_else_is_not_loaded(victim: Victim, variable: str) -> None:
+def test_files_of_another_user_are_not_loaded(victim: Victim, variable: str) -> None:
     place = victim.folder / "shared" / "cache"
     victim.run(**{variable: str(place)})
     files = [path for path in place.rglob("*") if path.is_file()]

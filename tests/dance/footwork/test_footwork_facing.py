@@ -121,7 +121,7 @@ def test_far_steps_of_the_fastest_streams_have_all_the_time() -> None:
             assert row.time - _lift(row, planner.footing, metres) == pytest.approx(duration * (1.0 - both))
 
 
-def test_who_spins_goes_round_evenly() -> None:
+def test_a_spinning_dancer_turns_evenly() -> None:
     """Round the pad at 6.7 steps a second: the slowest way for 280 degrees a second would catch up in jerks of 736."""
     ring = (0, 1, 3, 2)
     steps = [(2.0 + 0.15 * k, {ring[k % 4]: (L, R)[k % 2]}) for k in range(24)]

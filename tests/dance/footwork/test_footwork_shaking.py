@@ -84,7 +84,7 @@ def test_a_mirrored_plan_shakes_the_other_leg(long: Plan) -> None:
     assert sorted(key) == sorted((side, m.lift, m.land, m.rate, m.flap) for side, m in shakes(long))
 
 
-def test_another_song_shakes_otherwise(long: Plan) -> None:
+def test_another_song_has_other_shakes(long: Plan) -> None:
     other = shakes(plan_of(chart().timing, danced(60.5), pad()))
     assert [m.lift for _, m in other] != [m.lift for _, m in shakes(long)]
 

@@ -52,7 +52,7 @@ def test_a_way_leads_around_on_the_side_of_the_hips() -> None:
         assert np.sign(angle[-1] - angle[0]) == np.sign(turn) and abs(angle[-1] - angle[0]) > 100.0
 
 
-def test_who_is_crossed_at_the_start_may_uncross() -> None:
+def test_feet_crossed_at_the_start_may_uncross() -> None:
     way = Way(np.zeros(2), 0.0, np.ones(2), 0.0, (0.0, 0.0))
     angles = np.linspace(np.radians(SETTINGS.step.cross) + 0.3, 0.0, len(SHARES))
     line = np.column_stack((np.cos(angles), -np.sin(angles)))

@@ -105,7 +105,7 @@ def test_shoulders_hands_and_head_take_part_in_jacks_within_the_goals(gap: float
     assert measured["jerk of the head"].value < 120.0
 
 
-def test_arms_are_carried_otherwise_from_phrase_to_phrase_and_slowly() -> None:
+def test_arms_are_carried_differently_from_phrase_to_phrase_and_slowly() -> None:
     """Far, for it is seen; slow, for what is quick is a twitch."""
     events = stream(0.25, 36)
     arms, carried = context().settings.arms, groove(events).carried

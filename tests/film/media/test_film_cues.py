@@ -67,7 +67,7 @@ class ThreeRows:
         return 3
 
 
-def test_who_steps_again_or_on_two_panels_is_told_as_beside_the_notes() -> None:
+def test_subtitles_name_doublesteps_and_brackets_as_the_notes_do() -> None:
     pad = load_pad("dance-single")
     assert pad is not None
     rows = ThreeRows()

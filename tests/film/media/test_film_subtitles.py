@@ -52,7 +52,7 @@ def test_words_stand_before_their_move_until_it_is_over_in_each_run() -> None:
     ]
 
 
-def test_moves_that_come_fast_are_told_together_and_the_most_telling_are_kept() -> None:
+def test_moves_that_come_fast_are_named_together_and_the_most_important_are_kept() -> None:
     clock = Clock((Pass(0.0, 10.0),), 30)
     fast = (cue(5.0, "jack", who=("left foot",)), cue(5.1, "jack", who=("right foot",)), cue(5.2, "spin"))
     assert parsed(subtitles(fast, clock, STYLE)) == [(4.0, 5.7 - 0.25, "jack, left foot, right foot\nspin")]
@@ -64,7 +64,7 @@ def test_the_same_words_again_are_left_standing() -> None:
     assert parsed(subtitles([cue(2.0 + k) for k in range(5)], clock, STYLE)) == [(1.0, 6.25, "spin")]
 
 
-def test_what_is_counted_in_and_what_lies_outside_is_not_told() -> None:
+def test_count_in_and_parts_outside_are_not_reported() -> None:
     clock = Clock((Pass(2.0, 6.0, 1.0, sound_from=4.0, count=4),), 30)
     assert subtitles((cue(1.0), cue(3.0), cue(6.0)), clock, STYLE) == ""
     assert parsed(subtitles((cue(4.0),), clock, STYLE)) == [(1.0, 2.25, "spin")]

@@ -83,7 +83,7 @@ def turning(*rows: tuple[float, str, float]) -> Any:
     return what
 
 
-def test_a_turn_away_from_the_screen_is_told_where_it_is_full() -> None:
+def test_a_turn_away_from_the_screen_is_reported_where_it_is_full() -> None:
     """Left on right, right on left, and back: one crossing."""
     half, full = "crossover-half", "crossover-full"
     (one,) = called(turning((0, "", -45), (1, half, -135), (2, full, -180), (3, half, -135), (4, "", -45)))
@@ -95,7 +95,7 @@ def test_a_turn_away_from_the_screen_is_told_where_it_is_full() -> None:
     ("before", "after", "said"),
     [(45, -135, "half turn: back to the screen"), (-135, 45, "half turn: face the screen"), (90, -90, "half turn")],
 )
-def test_a_half_turn_is_told_by_the_rules_definition_and_before_its_crossover(
+def test_a_half_turn_is_reported_by_the_rules_definition_and_before_its_crossover(
     before: float, after: float, said: str
 ) -> None:
     crossed = "crossover-half" if abs(after) > 90 else ""
@@ -178,12 +178,12 @@ def test_the_foot_and_the_hand_are_named() -> None:
     assert [one.text for one in found] == ["right foot: twice in a row", "left hand down"]
 
 
-def test_a_note_that_is_let_go_is_said() -> None:
+def test_a_note_that_is_let_go_is_reported() -> None:
     (one,) = called(moves((4.0, "unplayable")))
     assert one.text == "no foot left"
 
 
-def test_a_finding_for_a_passage_is_said_of_all_its_rows() -> None:
+def test_a_finding_for_a_passage_is_reported_of_all_its_rows() -> None:
     found = [(48, 48, "fast step", 3), (96, 96, "jump footswitch", 1), (96 + 480, 96 + 480, "unplayable", 3)]
     said = dict(_reasons([0, 48, 72, 96, 400, 480, 576, 800], found, load_language()))
     assert said == {

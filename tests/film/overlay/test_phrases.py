@@ -232,7 +232,7 @@ def test_a_foot_that_steps_twice_has_no_such_reason() -> None:
     assert crossing_phrase("crossover", (turn, 2), pad, ENGLISH).why == "", "long ago"
 
 
-def test_crossovers_of_both_feet_are_counted_and_the_first_is_told() -> None:
+def test_crossovers_of_both_feet_are_counted_and_the_first_is_reported() -> None:
     left = Phrase("crossover", "left foot crosses in front", "cross in front", "", "{move} ×{count}: first {said}")
     assert left.counted(1, True) == left.text
     assert left.counted(3, True) == "left foot crosses in front ×3"

@@ -89,7 +89,7 @@ def test_the_pad_of_a_double_is_never_cut(pad_name: str, camera: str) -> None:
 @pytest.mark.parametrize(
     ("pad_name", "size", "first"), [("dance-double", (666, 672), 1.35), ("dance-single", (461, 672), 0.95)]
 )
-def test_pad_and_who_walks_on_are_seen_whole(pad_name: str, size: tuple[int, int], first: float) -> None:
+def test_pad_and_a_dancer_who_walks_on_are_seen_whole(pad_name: str, size: tuple[int, int], first: float) -> None:
     """The camera stands as much farther away as it must, and no more than it may."""
     who, near = dancer(pad_name, "back", size=size, first=first), dancer(pad_name, "back", size=size, first=0.0)
     low, high = who.scene.extent

@@ -98,7 +98,7 @@ def test_three_quarter_shows_her_face(steps, kind):
     [("back", False), ("front", True), ("front-high", True), ("side", False), ("three-quarter", True), ("top", False),
      ("1.5,1.8,-4/0,0.9,0", False), ("1.5,1.8,4/0,0.9,0", True), ("0,3,0/0,0,0", False)],
 )  # fmt: skip
-def test_who_sees_her_face_sees_the_pad_turned(text, turned):
+def test_from_the_front_the_pad_is_turned(text, turned):
     """Arrows turn with the pad where, and only where, her left panel is on the right of the picture."""
     assert is_front_view(text, LOOK) == turned
     camera = parse(text, PAD, (1280, 720), LOOK)

@@ -60,7 +60,7 @@ def test_it_never_leaves_the_range_that_is_drawn_and_stands_at_both_ends(follow)
 @pytest.mark.parametrize("name", ["back", "front"])
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @pytest.mark.parametrize("size", [(787, 672), (461, 672), (420, 420)])
-def test_who_walks_on_is_in_the_picture_from_the_first_frame(name, side, size):
+def test_a_dancer_who_walks_on_is_in_the_picture_from_the_first_frame(name, side, size):
     """On a pad that is not followed: from 1.2 m beside its middle, and off again; on the pad the camera stands."""
     seconds = np.linspace(0.0, 20.0, 400)
     x = side * np.interp(seconds, (0.0, 2.0, 16.0, 18.0), (1.2, 0.0, 0.0, 1.2))

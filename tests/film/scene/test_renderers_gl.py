@@ -74,7 +74,7 @@ def test_gl_and_cpu_draw_the_same_picture(needs_gl, quality):
         gl.close()
 
 
-def test_similarity_tells_pictures_apart():
+def test_similarity_distinguishes_pictures():
     scene = rs.scene()
     cpu = renderer.create(scene, SIZE, "good", "cpu")
     step = cpu.frame(rs.state(scene, "step", "back", SIZE)).copy()
