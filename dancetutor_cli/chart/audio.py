@@ -1,4 +1,4 @@
-"""A music file as the games hear it: what its head says, and its samples, decoded by ffmpeg."""
+"""A music file as the games hear it: the data of its header, and its samples, decoded by ffmpeg."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import MEGABYTE, read_bytes, read_ends
 
-# What the head of a file says: kind, sample rate, channels, length. Nothing is decoded for it.
+# The data of a file's header: kind, sample rate, channels, length. Nothing is decoded for it.
 
 _HEAD, _TAIL = 65_536, 131_072  # bytes that are read of a file; a page of Ogg has at most 65,307
 _MP3_LIMIT = 256 * MEGABYTE  # frames of MP3 are counted, which needs the whole file
@@ -46,7 +46,7 @@ class AudioHead:
 
 
 def read_head(path: Path) -> AudioHead:
-    """What a music file says of itself, whatever its name; FileError if it is none, is empty or cannot be read."""
+    """The header of a music file, whatever its name; FileError if it is not music, is empty or cannot be read."""
     head, tail, size = read_ends(path, _HEAD, _TAIL)
     if not size:
         raise FileError(path, "is empty")
@@ -218,7 +218,7 @@ class Sound:
 
     @property
     def silence(self) -> float:
-        """Seconds before anything is heard; all of them where nothing is."""
+        """Seconds before anything can be heard; the whole length if nothing can."""
         loud = np.abs(self.samples) > _HEARD
         first = int(loud.argmax()) if loud.any() else len(loud)
         return self.start + first / self.rate
@@ -227,8 +227,8 @@ class Sound:
 def decode(path: Path, head: AudioHead, seconds: float = LONGEST) -> Sound:
     """The first so many seconds of a music file; EncoderError where ffmpeg cannot. Memory is bounded by `LONGEST`.
 
-    ffmpeg takes off the samples by which encoders of MP3 delay their music; no game does, so it is set not to
-    (`skip_manual`). A first frame that says Info is silence in the games and nothing in ffmpeg: the start is later.
+    ffmpeg removes the samples by which encoders of MP3 delay their music. No game does, so it is set not to
+    (`skip_manual`). A first frame that says Info is silence in the games and nothing in ffmpeg, so the start is later.
     """
     from dancetutor_cli.run import ffmpeg
 

@@ -1,4 +1,4 @@
-"""Cells of the note grid -> notes: holds with their tails, whose a note is, and what StepF2 writes beside."""
+"""From cells of the note grid to notes: holds with their tails, the player of each note, and StepF2's additions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import Kind, ReadWarning
 
-# What StepF2, a game for Pump charts, writes beside the other games' notes.
+# Additions of StepF2, a game for Pump charts, to the notation of the other games.
 #
 # `{note|look|fake|0}` is one note of one column, however it looks; a 1 in the third place makes it a fake. X, Y and Z
 # are steps, and x, y and z heads of holds, of the first, second and third player of a chart for several; the game shows
@@ -37,19 +37,19 @@ _BOTH_PADS = 10
 
 
 def letters_of(text: bytes, columns: int) -> bytes:
-    """The letters that mark players' notes, XY or XYZ, in note data without its comments; none if it is for one."""
+    """The letters that mark players' notes, XY or XYZ, in note data without its comments; none for one player."""
     if columns != _BOTH_PADS or b"X" not in text or b"Y" not in text:
         return b""
     return b"XYZ" if b"Z" in text else b"XY"
 
 
 def for_several(players: int, letters: bytes) -> str:
-    """That a chart is for several, in a sentence."""
+    """A sentence that says that a chart is for several players."""
     return _SEVERAL.format("two" if players == 2 else players, "X and Y" if len(letters) == 2 else "X, Y and Z")
 
 
 def player_of(letter: int) -> int:
-    """Whose a letter is, from 1; 0: nobody's in particular."""
+    """The player of a letter, from 1; 0 for a letter of no particular player."""
     return PLAYERS.find(letter) % 3 + 1 if letter in PLAYERS else 0
 
 
@@ -164,7 +164,7 @@ def report(warnings: list[ReadWarning], code: str, text: str, lines: NDArray[np.
         warnings.append(ReadWarning(code, f"{len(lines) - _MOST} more: {text}", int(lines[_MOST])))
 
 
-# Whose a note is where letters mark it: the parts of all players whose notes stand in the same rows.
+# The player of a note if letters mark it: the parts of all players whose notes are in the same rows.
 
 _STEPS = [Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT]
 _PLAIN = 4  # the colour of plain notes beside three letters
@@ -172,12 +172,12 @@ _LEAST = 0.5  # times as many as a letter that is there least: so many plain not
 
 
 def parts_of(cells: Cells, marks: Mapping[tuple[int, int], int], columns: int, letters: bytes) -> list[Cells]:
-    """What each player has, in the order of their letters, left before right; every mine is everybody's.
+    """The notes of each player, in the order of their letters, left before right; mines are in all parts.
 
-    Of two players each has the notes with one's letter, and what nothing marks on one's half of the pads. With a third
-    one plain notes are a fourth player's, as StepF2 colours them, if there are enough of them, else of anyone who
-    mostly steps that panel. A colour that mostly stands on both pads at once is that of two players, one on either.
-    Anyone who has fakes alone does not dance.
+    Each of two players has the notes with their own letter, and the notes without a letter on their half of the pads.
+    With a third letter, plain notes are a fourth player's, as StepF2 colours them, if there are enough of them;
+    otherwise they go to the player who mostly steps that panel. A colour that is mostly on both pads at once belongs to
+    two players, one on each. A player with nothing but fakes does not dance.
 
     marks : (tick, column) -> player whose letter stands there
     """

@@ -25,7 +25,7 @@ def bpm_shares(chart: Chart) -> list[tuple[float, float]]:
 
 
 def fastest_bpm(chart: Chart) -> float:
-    """The highest BPM that matters: what is as fast lasts at least 2 % of the chart, so bursts of gimmicks are not."""
+    """The highest BPM that matters: it lasts at least 2 % of the chart, so bursts of gimmicks do not count."""
     shares = sorted(bpm_shares(chart), reverse=True)
     total, heard = sum(length for _, length in shares), 0.0
     for bpm, length in shares:
@@ -44,7 +44,9 @@ def bpm_text(song: Song, chart: Chart) -> str:
 
 
 def _displayed(text: str) -> list[float]:
-    """The tempos of a #DISPLAYBPM, "128" or "90:180"; none of "*", which hides them, or of what is no tempo."""
+    """The tempos of a #DISPLAYBPM, "128" or "90:180"; none for "*", which hides them, or for a text that is not a
+    tempo.
+    """
     try:
         found = [float(part) for part in text.split(":")]
     except ValueError:

@@ -100,7 +100,7 @@ def _display_line(line: bytes | None, encoding: str) -> str:
     return decode((line or b"").removesuffix(b"\r"), encoding).replace("\r", " ")
 
 
-# The last look before a file is written: does every reader still see the same song in it?
+# The last check before a file is written: whether every reader still sees the same song in it.
 
 _COMMENT = re.compile(rb"//[^\n]*")
 _BPMS = re.compile(rb"#BPMS:([^;]*)", re.IGNORECASE)
@@ -169,7 +169,7 @@ def _same_rows(a: RowTable, b: RowTable) -> bool:
 
 
 def hash_input(data: bytes, chart: Chart) -> bytes:
-    """What the Simply Love theme hashes of a chart's note data, before it shortens the measures.
+    """The part of a chart's note data that the Simply Love theme hashes, before it shortens the measures.
 
     It looks for the field by cutting at every `:` and `;`, also those in comments, and only then drops comments and
     blanks. So a `:` that got into a comment would cut the notes short here, as it does there.

@@ -1,4 +1,4 @@
-"""The measures and rows of note data, and what stands in their cells: of all charts of a file at once."""
+"""The measures and rows of note data and the contents of their cells, for all charts of a file at once."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ class Grid:
         return self._escapes[first:after]
 
     def _odd_kinds(self, number: int) -> NDArray[np.uint8]:
-        """The kinds of a part in which some row is odd: those go character by character, as the games go."""
+        """The kinds of a part in which some row is odd; these are read character by character, as in the games."""
         part, value, view = self._parts[number], self._text.value, self._view
         here = slice(self._rows[number], self._rows[number + 1])
         first, last, line, tick = self.first[here], self.last[here], self._line[here], self._tick[here]

@@ -1,13 +1,13 @@
-"""The chart hash by which GrooveStats, ITL and other leaderboards know a chart, made of its file.
+"""The hash by which GrooveStats, ITL and other leaderboards know a chart, computed from its file.
 
     hash = first 16 hexadecimal digits of SHA-1(minimised rows + normalised BPMs)
 
-Only notes and BPMs enter: a chart that is mirrored, or plays at another tempo, is another one; titles, offset, stops,
+Only notes and BPMs count. A chart that is mirrored, or plays at another tempo, is another chart; titles, offset, stops,
 comments, blanks and line ends change nothing.
 
-Source: chart hash version 3, as themes for StepMania 5 and ITGmania have made it of the text of a file. Newer
-releases of ITGmania make it in the engine, of the notes and BPMs that it has parsed; whether that is the same for
-each file is not known.
+Source: chart hash version 3, as themes for StepMania 5 and ITGmania compute it from the text of a file. Newer releases
+of ITGmania compute it in the engine from the parsed notes and BPMs; whether that is the same for each file is not
+known.
 """
 
 from __future__ import annotations

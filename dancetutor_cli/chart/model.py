@@ -1,4 +1,4 @@
-"""What a chart file says: plain frozen data, made by the reader, used by every other package.
+"""The contents of a chart file: plain frozen data, made by the reader, used by every other package.
 
 Positions are kept for every row, so that findings can point and markers can be spliced in. Beats are counted in
 ticks of 1/48 beat (`TICKS_PER_BEAT`), the grid of the games.

@@ -17,8 +17,8 @@ SUFFIXES = (".ogg", ".oga", ".mp3", ".wav", ".flac", ".opus")
 def music_file(song: Song, chart: Chart | None = None) -> Path:
     """The music of a song, or of one of its charts that names its own.
 
-    A name is found in any case, like the games do on Windows; with an empty tag it is the only audio file there;
-    that of a .ucs is called like it.
+    A name is found in any case, as by the games on Windows. With an empty tag, the only audio file in the folder is the
+    music; that of a .ucs has the file's name.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def named_file(folder: Path, name: str) -> Path:
 
 
 def other_case(folder: Path, name: str) -> str | None:
-    """What a file is called that a tag names with other capitals, each part of its path; None where it is as named."""
+    """The real name of a file, with its path, if a tag names it with other capitals; None if it is as named."""
     current, parts = folder, []
     for part in name.replace("\\", "/").split("/"):
         names = _names(current) if part not in ("", ".", "..") else [part]

@@ -1,4 +1,4 @@
-"""What the games call things: steps types with their columns, difficulties with their old names."""
+"""Names that the games use: steps types with their columns, difficulties with their old names."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _OLD_DIFFICULTIES = _BY_NAME | {
 
 
 def steps_type(text: str) -> str:
-    """The steps type in lower case; of old names and of several for one thing the one that is used here."""
+    """The steps type in lower case; old names and several names for one thing become the name that is used here."""
     name = text.strip().lower()
     return _OTHER_NAMES.get(name, name)
 

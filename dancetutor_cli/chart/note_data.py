@@ -30,7 +30,7 @@ _COUNTS[[Kind.FAKE, Kind.KEYSOUND]] = False
 
 @dataclass(frozen=True, slots=True)
 class NoteData:
-    """What a note data value holds. Rows and measures are those of the first player.
+    """The contents of a note data value.
 
     players : of a chart for several on one pad what each player has, else empty; marked : by letters in one row
     """
@@ -176,7 +176,7 @@ def _table(players: list[Cells], timing: Timing) -> NoteTable:
     )  # fmt: skip
 
 
-# Charts for several: what each player steps, as a chart of the pad that this player stands on.
+# Charts for several players: the steps of each, as a chart of the pad that this player stands on.
 #
 # In a couple chart each has a pad of one's own, and half of the columns. In a routine both dance on one double pad, and
 # `&` parts the notes of the first from those of the second. So they do where letters mark whose a note is (StepF2's co-
@@ -188,14 +188,16 @@ ONE_PAD = {"dance-routine": "dance-double", "pump-routine": "pump-double", "smx-
 
 
 def parts(chart: Chart, player: int | None = None) -> tuple[Chart, ...]:
-    """What feet are found for: the chart itself, or of one for several each player's part, or that of one player."""
+    """The charts for which feet are found: the chart itself or, for several players, the part of each, or of one
+    player.
+    """
     if not chart.players:
         return (chart,)
     return tuple(one for one in chart.players if player in (None, one.player))
 
 
 def written_parts(chart: Chart) -> tuple[Chart, ...]:
-    """What has rows of its own in the file: of a routine each player's part, else the chart."""
+    """The parts with rows of their own in the file: of a routine the part of each player, otherwise the chart."""
     return chart.players if chart.steps_type in ONE_PAD and not chart.marked else (chart,)
 
 

@@ -16,7 +16,7 @@ from dancetutor_cli.run.files import SONG_SUFFIXES
 from dancetutor_cli.run.reading import CHART_LIMIT, SETTINGS_LIMIT, is_outside, read_bytes, shown_key
 from dancetutor_cli.run.schema import SEVERAL, Entries, Parsed, Texts
 
-# dancetutor.yaml: where it is looked for, which charts an entry of it is about, and what is wrong in it.
+# dancetutor.yaml: where it is searched, which charts an entry is about, and mistakes in it.
 
 FILE_NAME = "dancetutor.yaml"
 
@@ -130,7 +130,7 @@ def condition_of(when: When, folder: Path) -> Condition:
     return Condition(str(folder.absolute()), when.path, when.steps_type, when.difficulty, when.meter)
 
 
-# The one list of files in which people say whose foot it is: for the solver, for caches and for films.
+# The list of files in which people set feet: for the solver, for caches and for films.
 #
 # Imports neither numpy nor the reader of charts: a cached result is reported without them.
 
@@ -138,7 +138,7 @@ EDITOR_FILE = "data.sme"  # SMEditor's, in the song's folder
 
 
 def places_of_feet(song: Path) -> Iterator[Path]:
-    """Every file, there or not, that may say whose feet step the charts of the file `song`: to be watched.
+    """Every file, present or not, that may set feet for the charts of the file `song`: to be watched.
 
     The file itself comes first (pinned measures); of the places of dancetutor.yaml the first one that is there counts.
     """
@@ -148,7 +148,8 @@ def places_of_feet(song: Path) -> Iterator[Path]:
 
 
 def feet_fingerprint(song: Path) -> str:
-    """Hash (hex) of all that people say about the feet of a song's charts: another hash, perhaps other feet.
+    """Hash (hex) of everything that people have set about the feet of a song's charts; another hash may mean other
+    feet.
 
     What a file is called counts where its name does: `data.sme` is only used for the one song of a folder, and
     entries of dancetutor.yaml are for paths below its folder.
@@ -185,7 +186,7 @@ def song_stems(folder: Path) -> set[str]:
     return {path.stem.lower() for path in songs if not path.name.startswith(".")}
 
 
-# A pack's `Pack.ini`, as ITGmania reads it: what the sync of its songs is.
+# A pack's `Pack.ini`, as ITGmania reads it: the sync of its songs.
 
 NAME = "pack.ini"
 SYNCS = ("NULL", "ITG")  # what the game knows: no bias, and the 9 ms of In The Groove's machines
@@ -193,7 +194,7 @@ SYNCS = ("NULL", "ITG")  # what the game knows: no bias, and the 9 ms of In The 
 
 @dataclass(frozen=True, slots=True)
 class PackIni:
-    """What the file says. sync : of its group, as written; "" where it says none; problem : one line, or None"""
+    """The contents of the file. sync : of its group, as written; "" if there is none; problem : one line, or None"""
 
     path: Path
     sync: str = ""

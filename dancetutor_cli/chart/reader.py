@@ -1,4 +1,4 @@
-"""From the bytes of a chart file to a `Song`: the values of its tags, its charts, and what is odd in it."""
+"""From the bytes of a chart file to a `Song`: the values of its tags, its charts, and oddities in it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from dancetutor_cli.run.errors import ChartError, FileError, NoChartsError
 from dancetutor_cli.run.files import CHART_SUFFIXES, EDIT_SUFFIX, UCS_SUFFIX
 from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
 
-# What both formats share: the values of a song's tags, making charts of note data, and what is odd in a file.
+# The common part of both formats: the values of a song's tags, charts from note data, and oddities in a file.
 
 # Tags whose loss somebody sees or hears in a game.
 _TEXT_TAGS = frozenset({
@@ -188,13 +188,13 @@ class SongReader:
 
 
 def _unexpected(warnings: Iterable[ReadWarning], steps_type: str) -> Iterator[ReadWarning]:
-    """What is odd in note data: the notes of a game are not where its own charts have them."""
+    """Oddities in note data: notes of one game that are not in its own charts."""
     own = "stepmaniax-note" if steps_type.startswith("smx-") else ""
     return (warning for warning in warnings if warning.code != own)
 
 
 def _meter(value: str, line: int, warnings: list[ReadWarning]) -> int:
-    """The meter as the games read it: the whole number at the start; what is no usable number is 1."""
+    """The meter as the games read it: the whole number at the start; 1 if there is no usable number."""
     meter, clean = number(value)
     if not clean or not 0 <= meter <= _LARGEST_METER:
         read = int(meter) if 0 < meter <= _LARGEST_METER else 1
