@@ -275,7 +275,7 @@ def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
 
 def _lint(run: LintRun, files: list[Source], options: dict[str, Any], output: IO[str]) -> int:
     """Analyze all files and write the report; the exit status."""
-    from dancetutor_cli.lint.cache import ResultCache, default_folder
+    from dancetutor_cli.lint.results import ResultCache, default_folder
     from dancetutor_cli.lint.run import analyze_all
 
     first = files[0][0]

@@ -1,7 +1,7 @@
 """Findings: rules and what they need to know of a chart, configuration, baseline, suggestions and fixes, and meters.
 
 run.LintRun                   a run of `analyze`: configuration and rule_settings for each file
-  |   analysis                  one file in, one `results.FileResult` out (cache keeps it)
+  |   analysis                  one file in, one `results.FileResult` out (and kept)
   |   subject                   what a rule looks at: a file, or a chart with its play
   |   plays, candidates         plays of many charts as arrays; the rows that a rule would have to look at
   |   play_facts, note_facts    the same of one chart; facts about its notes and their place in the file

@@ -28,8 +28,8 @@ from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.run.errors import DancetutorError
 
 if TYPE_CHECKING:
-    from dancetutor_cli.lint.cache import ResultCache
     from dancetutor_cli.lint.findings import Finding
+    from dancetutor_cli.lint.results import ResultCache
 
 # A run of `analyze`: which configuration holds for which file, the tasks, the baseline.
 

@@ -11,7 +11,7 @@ from dancetutor_cli.chart import Song, load
 from dancetutor_cli.feet import load_preset, overrides_for, solve_chart
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
-from dancetutor_cli.lint.cache import ResultCache
+from dancetutor_cli.lint.results import ResultCache
 from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.run.errors import FileError
 

@@ -19,7 +19,7 @@ from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.scroll import parse_scroll
 from dancetutor_cli.film.work.request import FilmRequest, film_key, look_up
 from dancetutor_cli.lint.analysis import AnalyzeTask
-from dancetutor_cli.lint.cache import ResultCache
+from dancetutor_cli.lint.results import ResultCache
 from dancetutor_cli.lint.run import LintRequest, LintRun
 
 ENCODING = Encoding("mp4", (64, 64), 12)

@@ -13,8 +13,7 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
-from dancetutor_cli.lint.cache import ResultCache
-from dancetutor_cli.lint.results import to_bytes
+from dancetutor_cli.lint.results import ResultCache, to_bytes
 from dancetutor_cli.lint.run import LintRequest, LintRun, _batches, analyze_all
 from dancetutor_cli.run.errors import UnavailableError
 from dancetutor_cli.run.pool import FinishedWork, SerialWorkers

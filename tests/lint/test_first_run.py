@@ -166,9 +166,9 @@ def test_the_stamp_covers_every_module_with_kernels_and_what_they_import() -> No
     """A kernel module that is forgotten would leave old machine code in use after an edit."""
     room = Path(compiled.__file__).parent
     imports = re.compile(r"^from dancetutor_cli\.feet\.solver(?:\.(\w+))? import (\w+)", re.MULTILINE)
-    uses_njit = re.compile(r"^from dancetutor_cli\.feet\.solver\.jit import .*\b(?:inner_)?kernel\b", re.MULTILINE)
+    uses_njit = re.compile(r"^from dancetutor_cli\.feet\.solver\.compiled import .*\b(?:inner_)?kernel\b", re.MULTILINE)
     wanted = {path.stem for path in room.glob("*.py") if uses_njit.search(path.read_text())}
     assert {"kernel", "solvers"} <= wanted
     for name in list(wanted):
         wanted |= {module or first for module, first in imports.findall((room / f"{name}.py").read_text())}
-    assert wanted - {"jit", "compiled"} <= {path.stem for path in source_modules(room / "solvers.py")}
+    assert wanted - {"compiled"} <= {path.stem for path in source_modules(room / "solvers.py")}

@@ -27,7 +27,7 @@ from dancetutor_cli.film.work.batch import BatchRequest, film_list
 from dancetutor_cli.film.work.request import look_up
 from dancetutor_cli.lint import figures, suggest
 from dancetutor_cli.lint.analysis import solved
-from dancetutor_cli.lint.cache import ResultCache
+from dancetutor_cli.lint.results import ResultCache
 from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.markers.annotate import AnnotateRequest, Item, _configured, annotate_song
 from dancetutor_cli.run.errors import DancetutorError

@@ -9,5 +9,5 @@
     techniques                    names of what happens in a play: crossover, jack, spin
     alternatives                  other plays, and why a foot has to step twice
 
-A module that says "Kernel code" is compiled by `run.kernels`, or runs as Python: `jit`, `compiled`.
+A module that says "Kernel code" is compiled by `run.kernels`, or runs as Python: `compiled`.
 """

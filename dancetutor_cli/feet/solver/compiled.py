@@ -1,4 +1,4 @@
-"""Whether the solver's kernels are compiled, and whether that is worth it; found out without importing numba.
+"""How the solver's kernels run: compiled, or as the Python that they are; found out without importing numba.
 
 Compiling takes ten to twenty seconds, once. A chart or two are solved quicker by the kernels' own Python, which is the
 same code: only what is so much work that compiling pays, now or in runs like this one, is worth the wait.
@@ -10,8 +10,10 @@ import os
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from dancetutor_cli.feet.preset import Preset
+from dancetutor_cli.run.kernels import native
 from dancetutor_cli.run.kernels.store import StoredCode, kernel_folder
 from dancetutor_cli.run.trust import read_file, use_folder, write_file
 
@@ -56,3 +58,24 @@ def interpret(presets: Iterable[Preset], size: Callable[[], int]) -> bool:
             write_file(note, str(before + much).encode())
     os.environ[VARIABLE] = "python"
     return True
+
+
+# The kernels themselves, which are made as their modules are imported: after `interpret` has been asked. Compiled ones
+# are called by `run.kernels.native`, so that what is kept runs without numba.
+
+
+def runs_as_python() -> bool:
+    """Whether kernels are the functions that they are made of; so they are where numba's compiler is switched off."""
+    return is_interpreted() or os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
+
+
+def inner_kernel(function: Any = None, **options: Any) -> Any:
+    """A kernel that kernels call. Python may, too: for it the function stays what it is."""
+    if function is None:
+        return lambda later: native.inner_kernel(later, **options)
+    return native.inner_kernel(function, **options)
+
+
+def kernel(function: Any, results: int = 0) -> Callable[..., Any]:
+    """A kernel that Python calls. results : how many whole numbers it gives"""
+    return function if runs_as_python() else native.Kernel(function, results)

@@ -14,7 +14,7 @@ from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.play import Rows
 from dancetutor_cli.feet.preset import Curve, Preset
 from dancetutor_cli.feet.solver import store
-from dancetutor_cli.feet.solver.jit import INTERPRETED
+from dancetutor_cli.feet.solver.compiled import runs_as_python
 from dancetutor_cli.feet.solver.solvers import EXPLAIN, solve_itg, solve_thesis
 from dancetutor_cli.feet.solver.store import RowArrays, RowStates, SolverPath, empty_tables, grown
 from dancetutor_cli.feet.solver.tables import EARLIER, FORCED, MOST_MOVES, TAPS, Making, Rules, geometry, moves
@@ -245,7 +245,7 @@ class Engine:
 
 def _wrapping() -> AbstractContextManager[object]:
     """Whole numbers of hash functions wrap round, as compiled ones do; numpy would warn of it."""
-    return np.errstate(over="ignore") if INTERPRETED else nullcontext()
+    return np.errstate(over="ignore") if runs_as_python() else nullcontext()
 
 
 def _arrays(rows: Rows, forced: NDArray[np.int64] | None) -> RowArrays:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from dancetutor_cli.feet.solver.jit import inner_kernel
+from dancetutor_cli.feet.solver.compiled import inner_kernel
 from dancetutor_cli.feet.solver.state import LAST, LEFT_AT, LEFT_HELD, LEFT_LIFTED, RIGHT_AT, SIDE, turn
 from dancetutor_cli.feet.solver.tables import DISTANCE_UNIT, EPSILON, LEFT, MIDDLE, RIGHT
 from dancetutor_cli.feet.solver.vocabulary import EVENTS as NAMES

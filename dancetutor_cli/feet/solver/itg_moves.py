@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dancetutor_cli.feet.solver.compiled import inner_kernel
 from dancetutor_cli.feet.solver.itg_costs import (
     EVENT_HAND,
     EVENT_HOLDSWITCH,
@@ -25,7 +26,6 @@ from dancetutor_cli.feet.solver.itg_costs import (
     charge_pose,
     reserved_panels,
 )
-from dancetutor_cli.feet.solver.jit import inner_kernel
 from dancetutor_cli.feet.solver.state import LAST, LEFT_AT, LEFT_HELD, LEFT_HOLDS, NUMBERS, RIGHT_AT, pack, unpack
 from dancetutor_cli.feet.solver.tables import (
     ACTION,

@@ -19,9 +19,9 @@ from __future__ import annotations
 import numpy as np
 
 from dancetutor_cli.feet.solver import tables as columns
+from dancetutor_cli.feet.solver.compiled import inner_kernel
 from dancetutor_cli.feet.solver.itg_costs import charge_time
 from dancetutor_cli.feet.solver.itg_moves import start_itg
-from dancetutor_cli.feet.solver.jit import inner_kernel
 from dancetutor_cli.feet.solver.state import PLACE_BITS, name_neighbours
 from dancetutor_cli.feet.solver.store import (
     ACTION,

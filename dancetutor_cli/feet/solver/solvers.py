@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from dancetutor_cli.feet.solver import tables as columns
+from dancetutor_cli.feet.solver.compiled import inner_kernel, kernel
 from dancetutor_cli.feet.solver.itg_moves import expand_itg
-from dancetutor_cli.feet.solver.jit import inner_kernel, kernel
 from dancetutor_cli.feet.solver.kernel import advance, begin, explain_path, margins, trace, wait
 from dancetutor_cli.feet.solver.state import PLACE_BITS
 from dancetutor_cli.feet.solver.store import (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dancetutor_cli.feet.solver.jit import inner_kernel
+from dancetutor_cli.feet.solver.compiled import inner_kernel
 from dancetutor_cli.feet.solver.tables import (
     DRILL_LENGTH,
     DRILL_SECONDS,

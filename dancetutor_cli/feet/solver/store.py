@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.feet.solver.jit import inner_kernel, kernel
+from dancetutor_cli.feet.solver.compiled import inner_kernel, kernel
 from dancetutor_cli.feet.solver.tables import MOST_MOVES
 from dancetutor_cli.feet.solver.vocabulary import MOST_MS as MOST_MS
 

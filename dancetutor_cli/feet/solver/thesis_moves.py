@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.feet.solver.jit import inner_kernel
+from dancetutor_cli.feet.solver.compiled import inner_kernel
 from dancetutor_cli.feet.solver.state import (
     LAST,
     LEFT_AT,
