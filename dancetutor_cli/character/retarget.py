@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.character.mesh import Character
 from dancetutor_cli.dance.motion import Motion
@@ -18,8 +17,7 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import local_rotations, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import upper_envelope
-
-Array = NDArray[np.float64]
+from dancetutor_cli.dance.units import Array
 
 STRETCH = 0.995  # of the leg's length: the knee never locks
 SINK = 0.3  # seconds over which a character with short legs sinks into a wide stance

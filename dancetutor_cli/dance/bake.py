@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, TypedDict, Unpack
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.dance.context import Context, bar_of, context_of, holding, panels_on_ground
@@ -41,6 +40,7 @@ from dancetutor_cli.dance.settings_feet import WalkSettings
 from dancetutor_cli.dance.settle import heels_may_rise, mass_of, settle, targets_at
 from dancetutor_cli.dance.smoothing import sample_path
 from dancetutor_cli.dance.trajectory.posture import Trajectory, stepping
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.dance.waits import waiting_at
 from dancetutor_cli.feet.play import DroppedNote, without_unplayable
 from dancetutor_cli.run.errors import DancetutorError
@@ -50,7 +50,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.feet import Pad
     from dancetutor_cli.feet.play import Play
 
-Array = NDArray[np.float64]
 BEATS_AFTER = 16  # beats after the last row for which the dancer still moves with the music
 CORRECTIONS = 6  # rounds of moving the body until its centre of mass is on its path
 REFINEMENTS = 2  # rounds of adding keys half-way between others

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.foot_path import Feet, FootPath
 from dancetutor_cli.dance.ik.full_body import Poses
@@ -21,8 +20,8 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.settings import WHOLE, Span, state_weights
 from dancetutor_cli.dance.trajectory.height import Height
 from dancetutor_cli.dance.trajectory.posture import Trajectory
+from dancetutor_cli.dance.units import Array
 
-Array = NDArray[np.float64]
 _PATHS = {field.name for field in fields(Trajectory)} - {
     "times",
     "mass_height",

@@ -15,11 +15,10 @@ from dancetutor_cli.dance.rig.body import BALL_AHEAD, HALF_SHOE, SHOE_OUTLINE, b
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.settings_feet import StepSettings
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
 # How far a swing has come at each part of its time, and how much there is of it if time is short.
-
-Array = NDArray[np.float64]
 
 
 def reduction(duration: ArrayLike, fast: float, longest: float) -> Array:

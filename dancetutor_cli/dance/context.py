@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.motion import Bar, Contact, Grip, Ground, Motion
 from dancetutor_cli.dance.plan import Plan, chance_of
@@ -16,6 +15,7 @@ from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, Span
 from dancetutor_cli.dance.settings_arms import BarSettings
 from dancetutor_cli.dance.settings_feet import StepSettings
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.units import Array, Flags
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import StepKind
 
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 # Where things are in the world: panels on the ground, and where on a panel a foot comes down.
 
-Array = NDArray[np.float64]
 PANEL = 0.28  # metres, width of one panel
 HALF_PANEL = PANEL / 2
 PHASE = 1.9  # seconds; no divisor of any period of the waves
@@ -147,7 +146,6 @@ def context_of(pad: Pad, settings: MotionSettings, beats: tuple[float, ...] = ()
 
 # The bar behind the dancer: its place, how a dancer who holds it stands, and when each hand is on it.
 
-Flags = NDArray[np.bool_]
 SEED = 19981121
 ACROSS_SLOWER = 1.5  # a hand that crosses over takes this many times as long to the rail
 

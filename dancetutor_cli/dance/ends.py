@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.footwork.homing import homeward
@@ -21,9 +20,8 @@ from dancetutor_cli.dance.pieces import MARGIN, OVERLAP, Keys, Piece, RagdollSty
 from dancetutor_cli.dance.plan import FootTrack, Plan
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.units import Array, Flags
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 CROSSING = 1.0  # seconds of the blend between an end and the dance
 OWN_FEET = 0.8  # below this share of the dance, the feet are those of the end
 SAME_PLACE = 0.002  # metres

@@ -26,9 +26,9 @@ from dancetutor_cli.dance.settings_body import FaceSettings, LayerSettings
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.trajectory.height import tempo_factor
 from dancetutor_cli.dance.trajectory.posture import Trajectory
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.dance.waits import Song, slowly, song_of
 
-Array = NDArray[np.float64]
 ACROSS = np.array([1.0, 0.0, 0.0])
 BLINK_SEED, PEEK_SEED, SMILE_SALT = 20140513, 20260611, 3
 

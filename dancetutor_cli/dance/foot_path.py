@@ -29,10 +29,10 @@ from dancetutor_cli.dance.rig.body import BALL_AHEAD, dancer_foot
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_feet import StepSettings, WalkSettings
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.units import Array
 
 # The paths of both feet over the ground in a jump: half straight, half around each other, never through each other.
 
-Array = NDArray[np.float64]
 _ROUND = (0.75, 1.0)  # how much more of a way goes round, if `jump.round` brings the shoes together
 _SPREAD = np.arange(0.0, 0.15, 0.02)  # metres that each foot goes outward
 

@@ -12,7 +12,6 @@ from dataclasses import dataclass, fields
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.plan import Plan, Route
 from dancetutor_cli.dance.rig import quaternion as quat
@@ -20,11 +19,10 @@ from dancetutor_cli.dance.rig.body import half_hips
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.settings_feet import WalkSettings
 from dancetutor_cli.dance.smoothing import smooth
-from dancetutor_cli.dance.units import Degrees, Metres, Seconds
+from dancetutor_cli.dance.units import Array, Degrees, Metres, Seconds
 from dancetutor_cli.run.reading import named_file
 from dancetutor_cli.run.yaml_files import load
 
-Array = NDArray[np.float64]
 STANCE = 0.6  # part of a cycle that a foot stands
 
 

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import ACROSS_SLOWER, Context, grip_phrases, on_rail, way_time
 from dancetutor_cli.dance.foot_path import both_feet
@@ -23,11 +22,10 @@ from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_arms import BarSettings
 from dancetutor_cli.dance.trajectory.facing import wrapped
 from dancetutor_cli.dance.trajectory.posture import RoughBake, body_trajectory
+from dancetutor_cli.dance.units import Array, Flags
 
 # An arm beside the bar behind the dancer: where and when its hand may rest on the rail, found with a rough bake.
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 RATE, BODY_RATE = 30.0, 60.0  # checks per second whether the rail is within reach, and samples of the body's path
 # seconds of a song that are handled together, and how far beyond them the start and the end lie
 PART, MARGIN = 60.0, 4.0

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context, hold_share
 from dancetutor_cli.dance.ik.full_body import Poses
@@ -22,11 +21,11 @@ from dancetutor_cli.dance.smoothing import sample_path, smooth
 from dancetutor_cli.dance.trajectory.facing import screen_yaw
 from dancetutor_cli.dance.trajectory.height import tempo_factor
 from dancetutor_cli.dance.trajectory.posture import Trajectory
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.dance.waits import WaitMotion
 
 # Head and eyes: after everything else they turn to the screen, as far as a neck can (thesis 5.7).
 
-Array = NDArray[np.float64]
 SIDEWAYS = np.array([1.0, 0.0, 0.0])
 
 

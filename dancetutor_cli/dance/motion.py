@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.play import DroppedNote
 
 # The baked motion: joint rotations per frame, and the contacts they must keep.
@@ -179,8 +180,6 @@ class Distances:
 
 
 # A motion at any times: rotations slerped and the root moved straight between keys, as every viewer of a file does.
-
-Array = NDArray[np.float64]
 
 
 def sample(motion: Motion, times: Array) -> tuple[Array, Array]:

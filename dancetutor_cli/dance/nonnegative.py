@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.kernels.compiling import njit
 
-Array = NDArray[np.float64]
 _SMALL = 1e-12  # smallest part of a gradient, and of what a column adds, that counts
 
 

@@ -17,6 +17,7 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import BodyPoint, palm_points, place, sole_points, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.play import dropped_notes_message
 
 if TYPE_CHECKING:
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 
 # The keys of a bake: which times get one, so that every contact is right in what a viewer draws between them, too.
 
-Array = NDArray[np.float64]
 Keys = tuple[Array, Array, Array]  # times (f,), local rotations (f, j, 4), root (f, 3)
 SHORTEST_GAP = 0.002  # seconds between keys that are not divided further
 NEAR_GROUND = 0.006  # metres; higher up nobody sees half a millimetre

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.motion import Contact, Grip
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.play import DroppedNote
 
 # What a foot does, one type for each kind of move; each carries only what it needs.
@@ -124,7 +124,6 @@ class Jump(Swing):
 
 # What the dancer will do, before any joint is turned: where and when each foot stands and swings, hands, turns.
 
-Array = NDArray[np.float64]
 # seconds, a frame of a film: in streams feet leave so long before the other one lands, and nobody sees that as a flight
 LEAST_FLIGHT = 0.0166
 

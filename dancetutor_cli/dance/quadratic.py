@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
@@ -16,7 +17,6 @@ from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 # Paths of the body are computed with it: "stay near these targets, with little jerk". The cost is linear in the length
 # of the song.
 
-Array = NDArray[np.float64]
 REACH = 4  # nodes that a term touches at most by default: third differences
 
 

@@ -8,7 +8,6 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.settings_arms import AcrossSettings, ArmSettings, BarSettings, FingerSettings, HandSettings
 from dancetutor_cli.dance.settings_body import (
@@ -33,6 +32,7 @@ from dancetutor_cli.dance.settings_feet import (
     StepSettings,
     WalkSettings,
 )
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.reading import config_path, named_file
 from dancetutor_cli.run.yaml_files import load
 
@@ -124,7 +124,6 @@ _SECTIONS = tuple(f.name for f in fields(MotionSettings))
 
 # Numbers that change over a song: a state before the first change, one after it, and so on.
 
-Array = NDArray[np.float64]
 Span = tuple[float, float]
 WHOLE = 1.0 - 1e-9  # share from which on a state counts as the only one
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.foot_path import Feet, both_feet
@@ -26,10 +25,10 @@ from dancetutor_cli.dance.smoothing import cubic, sample_path, smooth, smooth_pa
 from dancetutor_cli.dance.trajectory.balance import rotation_zmp_offset
 from dancetutor_cli.dance.trajectory.legs import push_off, raised
 from dancetutor_cli.dance.trajectory.posture import RoughBake, Trajectory, body_trajectory
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.dance.waits import waiting_at
 from dancetutor_cli.feet.limbs import Limb, Part
 
-Array = NDArray[np.float64]
 ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # rounds of rough baking before the path of the body is final
 TIGHTENED = 3  # rounds of tightening the limits of balance in the last of those
 COARSE = 4  # a round bakes only every so many samples of the path

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from dancetutor_cli.dance.quadratic import BandedLeastSquares, differences
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.kernels.compiling import njit
 
 # Easing: how far a move has come (0 to 1) at each part of its time (0 to 1). All accept arrays and clip outside.
 
-Array = NDArray[np.float64]
 STEEPEST = 1.875  # largest slope of `smooth`
 
 

@@ -1,5 +1,4 @@
-"""Units of the numbers of the motion, as types of their fields; a separate module, because all modules with settings
-import it.
+"""Types of the dance: arrays of numbers, and the units of the motion's settings as types of their fields.
 
 A number of a file outside its bounds is refused: bounds catch slips ("90" seconds for "0.90"), not styles.
 """
@@ -8,7 +7,14 @@ from __future__ import annotations
 
 from typing import Annotated
 
+import numpy as np
+from numpy.typing import NDArray
+
 from dancetutor_cli.run.schema import Bounds
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 
 Metres = Annotated[float, Bounds(0, 20, "metres")]
 Seconds = Annotated[float, Bounds(0, 1000, "seconds")]  # as long as a song: a wait that never comes

@@ -10,14 +10,13 @@ from functools import lru_cache, partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.plan import Plan, chance_of
 from dancetutor_cli.dance.settings_body import WaitSettings
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.units import Array
 
-Array = NDArray[np.float64]
 SEED = 20190607
 EARLIEST = 0.3  # part of its time in which an act begins, so that no act runs into the next
 ENDS = 30.0  # seconds of beats before the first and after the last one that the dancer still follows

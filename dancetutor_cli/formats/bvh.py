@@ -13,15 +13,13 @@ from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.motion import Motion, sample
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.files import write_atomic
-
-Array = NDArray[np.float64]
 
 MAX_FILE = 100_000_000  # bytes
 MAX_JOINTS = 1024

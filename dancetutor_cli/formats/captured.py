@@ -6,19 +6,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.character.container import Container, Nodes, as_dict, read_container, read_nodes
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.captured import CapturedMotion
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.formats.bvh import read_bvh
 from dancetutor_cli.formats.npz import read_npz
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.files import one_of
 
-Array = NDArray[np.float64]
 SUFFIXES = (".bvh", ".glb", ".vrm", ".npz")
 LEAST, MOST = 10.0, 240.0  # frames per second that a file without a rate of its own is sampled at
 LONGEST = 3600.0  # seconds of an animation

@@ -16,6 +16,7 @@ from dancetutor_cli.character.surfaces import linear_from_srgb
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.files import write_atomic
 from dancetutor_cli.run.pictures import texture_bytes
 
@@ -25,7 +26,6 @@ from dancetutor_cli.run.pictures import texture_bytes
 # legs keep all of them; other joints only those without which a viewer, who turns joints at even speed between their
 # own keys, would draw something farther than a tolerance from where it is.
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 FREE = 0.002  # metres that a part of the body which touches nothing may be off between frames
 GRIPPING = 0.0003  # the same for a hand on the bar

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.quality.figures import MotionReport
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import write_atomic
 from dancetutor_cli.run.pictures import picture_bytes
@@ -82,7 +82,6 @@ def as_json(report: MotionReport) -> dict[str, Any]:
 
 # Curves of a motion over the song as a picture: contact errors, height of the centre of mass, jerk.
 
-Array = NDArray[np.float64]
 WIDTH, PANEL, LEFT, TOP, GAP = 1200, 200, 70, 30, 50  # pixels
 INK, GRID, LINE, INPUT = "#222222", "#dddddd", "#3060c0", "#999999"
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Spot
 from dancetutor_cli.dance.foot_path import jump_ways
@@ -23,10 +22,10 @@ from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, 
 from dancetutor_cli.dance.plan import STRAIGHT, Bulge, Jump
 from dancetutor_cli.dance.rig.body import GRAVITY
 from dancetutor_cli.dance.settings_feet import JumpSettings
+from dancetutor_cli.dance.units import Array
 
 # Both feet leave the ground at once and come down at once: what jumps, leaps and hops over mines have in common.
 
-Array = NDArray[np.float64]
 FARTHER = 1.5  # in units of `jump.far`; feet that travel farther are not pulled up more
 Goals = list[tuple[Array, float]]  # ball (2,) and yaw without toe-out, of the left and the right foot
 

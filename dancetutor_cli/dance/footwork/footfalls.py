@@ -8,7 +8,6 @@ from bisect import bisect_right
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.clearance import Way, bend, detour, gaps_at, lag
 from dancetutor_cli.dance.context import Context, ball_of, middle_of
@@ -17,8 +16,8 @@ from dancetutor_cli.dance.motion import Ground
 from dancetutor_cli.dance.plan import Bulge, FootTrack, Route, Turn, Walk
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.units import Array
 
-Array = NDArray[np.float64]
 SPEEDS = np.linspace(0.0, 1.0, 11)  # shares of the quick gait that are tried, slowest first
 ALONG, ACROSS = 0.155, 0.05  # half length and half width that a shoe needs on one level, metres
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.clearance import ANKLE, SHARES, Way, detour, evenness, gaps_at, headings, over
 from dancetutor_cli.dance.context import HALF_PANEL, Spot, ball_of, middle_of, on_panel, room_on
@@ -15,9 +14,9 @@ from dancetutor_cli.dance.motion import Ground
 from dancetutor_cli.dance.plan import Bulge
 from dancetutor_cli.dance.rig.body import BALL_AHEAD, HALF_SHOE, SHOE_OUTLINE
 from dancetutor_cli.dance.settings_feet import StepSettings
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Part
 
-Array = NDArray[np.float64]
 Pitches = tuple[float, float, float, float]
 HALF_BALL = float(SHOE_OUTLINE[:, 1].max())  # metres from the middle of a shoe at the ball to its side
 _ACROSS = np.arange(-5, 6) / 5

@@ -6,19 +6,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.clearance import gaps_at, over, reduction
 from dancetutor_cli.dance.context import Context, ball_of, middle_of
 from dancetutor_cli.dance.plan import FootTrack, Move, Pivot, Press, Turn
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_feet import StepSettings
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play
 
 # A row of a play as rules see it, with what comes before and after it.
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

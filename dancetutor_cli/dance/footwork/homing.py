@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.clearance import Way, detour
 from dancetutor_cli.dance.context import Context
@@ -26,10 +25,10 @@ from dancetutor_cli.dance.footwork.walks import (
 from dancetutor_cli.dance.plan import Bulge, Move, Plan, Press, Shake, Turn, chance_of
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_feet import HomeSettings, StepSettings
+from dancetutor_cli.dance.units import Array
 
 # Home: in a long wait the dancer steps back to the middle of the pad, feet at hip width, facing the screen.
 
-Array = NDArray[np.float64]
 Falls = list[tuple[int, Footfall]]  # the foot of each, 0 left
 
 

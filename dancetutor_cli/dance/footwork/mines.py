@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.clearance import over
 from dancetutor_cli.dance.context import HALF_PANEL, Spot, ball_of, room_on
@@ -28,8 +27,7 @@ from dancetutor_cli.dance.footwork.footing import (
 from dancetutor_cli.dance.plan import Hover, Jump
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_feet import MineSettings
-
-Array = NDArray[np.float64]
+from dancetutor_cli.dance.units import Array
 
 
 def avoid_mines(row: Row, footing: Footing) -> Proposal:

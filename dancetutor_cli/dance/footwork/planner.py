@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.clearance import SHARES, Way, detour, evenness
 from dancetutor_cli.dance.context import Context
@@ -29,13 +28,13 @@ from dancetutor_cli.dance.footwork.walks import (
 )
 from dancetutor_cli.dance.motion import Contact
 from dancetutor_cli.dance.plan import STRAIGHT, Bulge, FootTrack, Jump, Move, Plan, Press, Shake, Step, Swing, Turn
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.run.errors import DancetutorError
 
 # From a play to moves, row by row. The planner asks the rules for proposals, and only the planner applies them.
 
-Array = NDArray[np.float64]
 NEWEST = 8  # moves of a foot that rules may still look at or change
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.clearance import evenness
 from dancetutor_cli.dance.context import HALF_PANEL, PANEL
@@ -15,6 +14,7 @@ from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, 
 from dancetutor_cli.dance.footwork.mines import flown_on, landed_early, resumed, stayed_up, wait_for_other_foot
 from dancetutor_cli.dance.plan import Gallop, Hover, Jump, Step, Swing
 from dancetutor_cli.dance.rig.body import GRAVITY
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Part
 
 # Brackets: one foot on two panels, heel on one and toes on the other, also where they tap by turns.
@@ -50,8 +50,6 @@ def _other_part(row: Row, side: int, column: int) -> list[int]:
 
 
 # Jumps: both feet land at one row; where, and how high they go for it (thesis 5.5, 5.6).
-
-Array = NDArray[np.float64]
 
 
 def jump(row: Row, footing: Footing) -> Proposal:

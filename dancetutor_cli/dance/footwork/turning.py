@@ -6,16 +6,15 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.footwork.footing import Footing, Row
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_feet import StepSettings
 from dancetutor_cli.dance.smoothing import STEEPEST
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play
 
-Array = NDArray[np.float64]
 NO_WAY = 1e-6  # metres
 HALF_TURN = 1e-6  # degrees from half a turn
 ALL_ROUND = 180.0  # degrees; rows that are farther apart in time than the body takes for them do not affect each other

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.clearance import reduction
 from dancetutor_cli.dance.context import HALF_PANEL, Context
@@ -26,6 +25,7 @@ from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, 
 from dancetutor_cli.dance.motion import Ground
 from dancetutor_cli.dance.plan import STRAIGHT, Bulge, FootTrack, Hover, Plan, Press, Sidestep, Swing, Turn
 from dancetutor_cli.dance.settings_feet import AsideSettings, StepSettings
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind
 
@@ -34,8 +34,6 @@ from dancetutor_cli.feet.play import Play, StepKind
 # This part proposes footsteps; `planner` puts them into a plan. They are swings like all others, so feet stand as
 # exactly, and the body's path keeps its balance over them. What the gait adds to pelvis, chest and hands (`dance.gait`)
 # comes on top.
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

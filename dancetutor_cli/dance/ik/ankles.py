@@ -15,11 +15,11 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import points_in_world, sole_points, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond, within
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Part
 
 # Ankles within their limits: feet in the air follow their shanks, and over feet that stand the knees turn.
 
-Array = NDArray[np.float64]
 MARGIN = 0.5  # degrees inside the limit
 # angles of a knee that are tried
 GIVES = np.radians([0.0, 4.0, -4.0, 8.0, -8.0, 12.0, -12.0, 16.0, -16.0, 20.0, -20.0, 24.0, -24.0])

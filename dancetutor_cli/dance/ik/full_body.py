@@ -28,11 +28,11 @@ from dancetutor_cli.dance.rig.limbs import (
     unit,
 )
 from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
 # The kernels of the full-body inverse kinematics, on plain arrays, grouped by subject.
 
-Array = NDArray[np.float64]
 ARM_REACH = 0.990  # part of the arm's length that a hand is led to at most
 LOW, HIGH = SPINE_SHARES
 ROUNDING = 0.03  # metres that the spine's middle is bent backward before it is solved

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context, around, grip_share
 from dancetutor_cli.dance.ik.knees import Legs, middle_joint, square_to
@@ -17,10 +16,9 @@ from dancetutor_cli.dance.rig.quaternion import UP
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.settings_arms import ArmSettings, BarSettings
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.units import Array, Flags
 
 # Targets of the hands, and the upper body that they hang from.
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +104,6 @@ def elbows_across(chest: Array) -> Array:
 
 # Hands on the bar behind the dancer, and on their way to it: around the body.
 
-Flags = NDArray[np.bool_]
 CLEAR = (0.34, 0.30)  # metres, half axes, aside and ahead, of what a hand on its way keeps clear of: trunk and forearm
 TRUNK = np.array([0.0, -0.30, 0.02])  # its middle as seen from the middle of the shoulders
 INWARD = 0.3  # radians from straight inward within which a hand ahead counts as behind

@@ -16,10 +16,10 @@ from dancetutor_cli.dance.rig.quaternion import leaning
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.settings_body import BodySettings, KneeSettings
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.units import Array
 
 # Where knees point: between the body's front and the toes, and out of each other's way.
 
-Array = NDArray[np.float64]
 OUTSIDE = 0.002  # metres that a leg which does not lean lies outside its hip
 LOOKED = 0.03  # metres; legs farther apart are not changed
 TRIED = np.radians(1.5)  # radians that a knee is turned to measure the effect

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context, hold_share
 from dancetutor_cli.dance.foot_path import Feet
@@ -44,11 +43,11 @@ from dancetutor_cli.dance.trajectory.facing import crossing_share
 from dancetutor_cli.dance.trajectory.height import jump_swing, tempo_factor
 from dancetutor_cli.dance.trajectory.legs import ankle_of
 from dancetutor_cli.dance.trajectory.posture import Trajectory
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.dance.waits import waiting_at
 
 # Hands: hanging and swinging against the legs, or a palm going down to a panel.
 
-Array = NDArray[np.float64]
 # directions of the fingers that are tried, around the preferred one
 FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))
 POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest

@@ -13,9 +13,8 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import LIMITS, Skeleton, beyond, within
 from dancetutor_cli.dance.smoothing import both_envelopes, upper_envelope
+from dancetutor_cli.dance.units import Array, Poses
 
-Array = NDArray[np.float64]
-Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 ROUNDS = 3
 LEANS = 1.0  # degrees to a side; from here on a foot stands on its edge and its sole is not held
 MARGIN = 0.6  # degrees that are left to a limit

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.physics.repin import AnkleTracks, repinned
 from dancetutor_cli.dance.rig import quaternion as quat
@@ -11,9 +10,7 @@ from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.limbs import HAND, Capsule, arm_in_torso, depth, leg_capsules
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import both_envelopes, upper_envelope
-
-Array = NDArray[np.float64]
-Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
+from dancetutor_cli.dance.units import Array, Poses
 
 # Arms out of trunk, legs and each other: if a style sends them there, they go back to their place in the input.
 #

@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE
 from dancetutor_cli.dance.motion import Distances
 from dancetutor_cli.dance.physics.style import NEUTRAL, Style, load_style
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, Span, load_settings, state_weights
+from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.run.errors import DancetutorError, UsageError, did_you_mean
 from dancetutor_cli.run.reading import config_names, is_outside, named_file
 from dancetutor_cli.run.yaml_files import read
@@ -26,8 +26,6 @@ from dancetutor_cli.run.yaml_files import read
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
 
-Array = NDArray[np.float64]
-Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 TOLERANCE = 1e-6  # by which weights may sum to more than 1: thirds that are written with six digits
 SHORTEST = 0.5  # seconds that a change lasts at least, where a warp leaves nothing of its measure
 

@@ -31,9 +31,9 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import local_rotations, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.errors import FileError
 
-Array = NDArray[np.float64]
 # sines of a limb's bend: from the first on the bend shows its plane, below the second it does not
 BENT, STRAIGHT = 0.30, 0.09
 CLEAR = 0.7  # cosine between both axes; from here on the bend alone gives the plane

@@ -10,7 +10,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
@@ -18,9 +17,9 @@ from dancetutor_cli.dance.rig.limbs import Vec, add, dot, length, qrot, scale, s
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.settings_body import HairSettings
 from dancetutor_cli.dance.smoothing import cubic
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
-Array = NDArray[np.float64]
 JOINTS = ("braid1", "braid2", "braid3", "braid4")
 TIP = (0.0, -0.110, 0.0)  # from the last joint to the end of the braid in the rest pose, metres
 HEAD = (0.0, 0.085, 0.005)  # middle of the head's ball from the skullbase

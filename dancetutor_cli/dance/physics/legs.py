@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.physics.plants import Plants
 from dancetutor_cli.dance.physics.repin import AnkleTracks, Leg, repinned
@@ -11,13 +10,13 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import centre_of_mass, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond
 from dancetutor_cli.dance.smoothing import cubic, low_pass, upper_envelope
+from dancetutor_cli.dance.units import Array, Poses
 
 # Legs that do not pop: near the full stretch a leg comes to its end ever more slowly, and the body gives the rest.
 #
 # Popping is a question of millimetres: a leg at 170 degrees is 0.4 % shorter than a straight one. A foot in the air
 # comes nearer by these millimetres; over a foot that stands the pelvis sinks by them, early and smoothly.
 
-Array = NDArray[np.float64]
 FROM, TO = np.radians(22.0), np.radians(7.0)  # bends of a knee: where the stretch grows slower, and where it ends
 ROUND = 0.01  # metres over which a foot in the air begins to come nearer
 SLOWLY = 0.30  # seconds that the last of a stretch takes to come and to go
@@ -112,7 +111,6 @@ def _soft(leg: Leg, distance: Array, times: Array) -> Array:
 # Without this, the arms and trunk of a ragdoll would throw the mass about, and the dancer would fall over, or fly on no
 # parabola. The horizontal path is the input's; in height the dancer may stand lower or higher, but changes slowly.
 
-Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 ROUNDS = 4  # rounds of moving the root: legs follow, and have mass
 STANCE = 0.5  # Hz below which her height may be another one
 SINKS = 1.5  # seconds over which she stands lower than a style would have her

@@ -7,7 +7,6 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.chart.timing import heard
 from dancetutor_cli.dance.motion import Distances, Motion
@@ -39,13 +38,12 @@ from dancetutor_cli.dance.rig.body import PARTS as MASSES
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond
 from dancetutor_cli.dance.smoothing import cubic, smooth, upper_envelope
+from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.run.errors import DancetutorError
 
 # Input skeleton -> ragdoll -> output skeleton: a motion goes in, and the motion that the ragdoll makes of it comes out.
 
-Array = NDArray[np.float64]
-Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 CORRECTIONS = ("knees", "feet", "limits")
 GIVING_BACK = 8  # rounds of giving way less where hips or ankles are at their limits
 AFTERMATH = 0.3  # seconds over which a push or a trip begins to count; it ceases to count 0.7 s later

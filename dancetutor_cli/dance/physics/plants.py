@@ -13,6 +13,7 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import sole_points
 from dancetutor_cli.dance.rig.skeleton import Skeleton, within
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.units import Array, Flags
 
 # Feet that do not skate: a sole that was held to the floor stays exactly in its place, and the way between is fitted to
 # that.
@@ -20,8 +21,6 @@ from dancetutor_cli.dance.smoothing import smooth
 # A foot is held at its heel, at its ball, or at both and then lies flat. While it is held its heading does not change,
 # unless it pivots on its ball. From hold to hold, the changes of one hold fade smoothly into those of the next.
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 SHORTEST = 0.05  # seconds; a shorter contact of a sole is not a hold
 GAP = 0.07  # seconds between two holds of one point that are one
 PIVOT = np.radians(25.0)  # a foot that turns more than this while it lies flat does so on purpose, on its ball

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import held_at
 from dancetutor_cli.dance.physics.plants import Plants, cleared
@@ -16,6 +15,7 @@ from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import sole_points, world_transforms
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 
 if TYPE_CHECKING:
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 # What acts on a ragdoll while it follows, beside its springs: joints of the soles that hold and break, stiff knees.
 
-Array = NDArray[np.float64]
 NEAR = 0.008  # metres over the floor at which a corner of a sole gets a joint
 SLOW, AIMED = 0.6, 0.03  # m/s and metres: only where the input's corner moves no faster, and is no higher
 HOLD, LIFT = 600.0, 60.0  # newtons along the floor and off it at which a corner's joint breaks

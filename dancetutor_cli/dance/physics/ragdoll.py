@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 
 if TYPE_CHECKING:
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 # Each bone has one point, at its end or its middle, and beside it two extra ones that keep it from turning about
 # itself; the pelvis has the root's and both hips', whose extra ones are before and behind.
 
-Array = NDArray[np.float64]
 # name of the point at the end of a bone, by the bone's joint without its side
 _ENDS = {
     "vl5": "vt10", "vt10": "vt4", "vt4": "vc4", "vc4": "skullbase", "skullbase": "skull_tip",

@@ -16,14 +16,13 @@ from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.limbs import arm_in_torso
 from dancetutor_cli.dance.rig.skeleton import LIMITS, Skeleton, beyond, within
 from dancetutor_cli.dance.smoothing import both_envelopes, smooth, upper_envelope
+from dancetutor_cli.dance.units import Array, Poses
 
 # Feet back in their places: physics alone lets them slide by half a centimetre, so legs are closed by IK afterwards.
 #
 # Ankles get exactly the place, and feet exactly the turn, that they have in the input. Thighs keep the plane in which
 # the ragdoll bent them. If a leg would have to be longer than it is, the pelvis gives way.
 
-Array = NDArray[np.float64]
-Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 STRAIGHTEST = np.radians(6.0)  # a knee stays bent by so much
 REACH_ROUNDS = 40  # rounds of pulling the pelvis until both legs reach
 

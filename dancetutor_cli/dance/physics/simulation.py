@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.physics.ragdoll import Bone, Point, build, place_points, pose_of, turns_of
 from dancetutor_cli.dance.physics.style import Follower, Style, engine
@@ -17,13 +16,13 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import recursive_filter
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.errors import DancetutorError
 
 if TYPE_CHECKING:
     from dancetutor_cli.dance.physics.pushes import Actor
 
 
-Array = NDArray[np.float64]
 MEAN, DEVIATION, LARGEST = 0.9, 0.5, 3.5  # goals of the distances of the points, centimetres
 
 # A second-order follower: how an animator gives a motion weight, sloppiness or snap.

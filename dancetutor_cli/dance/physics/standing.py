@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from dancetutor_cli.dance.physics.ragdoll import hinge_axis
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.errors import FileError
 
-Array = NDArray[np.float64]
 STANDS = 0.8  # cosine to upright that trunk and legs of a standing pose have at least
 CLEARLY = 0.5  # mean of the bodies' directions along an axis from which that axis is up
 TOWARDS = 0.5  # length of the mean of the ways that somebody faces from which it is one way

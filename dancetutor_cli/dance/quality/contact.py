@@ -20,12 +20,12 @@ from dancetutor_cli.dance.rig.body import (
     world_transforms,
 )
 from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.play import StepKind
 
 # Contact error: when each limb reaches its panel, against the note's time.
 
-Array = NDArray[np.float64]
 TOUCH = 0.0002  # metres over the surface that count as touching
 INSIDE = 0.02  # metres of a panel around a sole's middle that make it a good foothold
 HOLD_STEP, OFF_PANEL = 0.01, 0.002  # seconds between looks at a held note; metres over the panel that are off it

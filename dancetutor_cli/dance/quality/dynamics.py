@@ -12,6 +12,7 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import mass_points, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import low_pass
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
 
 # Inverse dynamics: the force and the moment at the root that no contact can supply, the residual.
@@ -20,7 +21,6 @@ from dancetutor_cli.feet.limbs import Limb
 # the ground can push (friction up to `FRICTION`); nothing else can. The residual is what they cannot supply, in body
 # weights, and body weights times metres, as it is given for captured motion (Hicks and others, 2015).
 
-Array = NDArray[np.float64]
 CUT = 10.0  # Hz; accelerations above it come from single frames, not from the body
 FRICTION = 0.8  # of a sole on a pad
 CONTACT = GROUND + 0.004  # metres over the ground up to which a sole point can push

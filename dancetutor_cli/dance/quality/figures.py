@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.motion import Ground, Motion, sample
 from dancetutor_cli.dance.rig.body import centre_of_mass, place, sole_points, world_transforms
+from dancetutor_cli.dance.units import Array
 
 # What a quality report holds: named figures with their goals.
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

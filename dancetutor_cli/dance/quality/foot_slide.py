@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from dancetutor_cli.dance.motion import Motion, sample
 from dancetutor_cli.dance.quality.figures import SKATE_HEIGHT, SKATE_SPEED, Figure, intervals
 from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.dance.units import Array
 
-Array = NDArray[np.float64]
 RATE = 60.0  # frames per second at which motion is looked at
 SHORTEST = 0.10  # seconds that a foot which stands is down
 MEDIAN, WORST = 5.0, 25.0  # millimetres: the goals

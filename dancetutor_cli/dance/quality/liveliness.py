@@ -13,8 +13,8 @@ from dancetutor_cli.dance.quality.figures import Body, Figure
 from dancetutor_cli.dance.quality.posture import knee_angles, trunk_lean
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.units import Array
 
-Array = NDArray[np.float64]
 SHORTEST = 20.0  # seconds of stepping: less says little, and has no figures
 SLOWEST, FASTEST = 1.0, 8.0  # steps a second: outside of these the figures have no goal
 HELD = 0.5  # nor have those of trunk and arms where a hand is on the bar for this part of the time and more

@@ -13,12 +13,12 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.limbs import ANKLE, KNEE, THIGH, Capsule, arm_in_torso, depth, segment_distance
 from dancetutor_cli.dance.rig.skeleton import Skeleton, excess
 from dancetutor_cli.dance.smoothing import low_pass
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import StepKind
 
 # Whether the pose is possible: joints within their limits, parts of the body not inside each other.
 
-Array = NDArray[np.float64]
 PAST = 1.0  # degrees past a limit that count
 FOOT_RADIUS = 0.038
 HAIR_ALLOWED = 0.010

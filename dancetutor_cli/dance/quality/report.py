@@ -90,7 +90,6 @@ def _curves(motion: Motion, body: Body, errors: NDArray[np.float64]) -> dict[str
 
 # Faults of captured motion before and after: knees that pop, feet that skate, joints past human limits.
 
-Array = NDArray[np.float64]
 BACKWARD = -8.0  # degrees of an elbow's bend: further backward than any bends
 
 

@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton, dancer_skeleton
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.kernels.compiling import njit
 
 # Forward kinematics for all frames at once: local joint rotations to places in the world.
-
-Array = NDArray[np.float64]
 
 
 def world_transforms(skeleton: Skeleton, rotations: Array, root: Array) -> tuple[Array, Array]:

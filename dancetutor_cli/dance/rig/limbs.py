@@ -6,9 +6,9 @@ import math
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
 # Vector and quaternion arithmetic on tuples and the closed-form two-bone limb, for numba kernels.
@@ -158,7 +158,6 @@ def limb(upper: Vec, lower: Vec, hinge: Vec, reach: Vec, pole: Vec, most: float)
 
 # Limbs as tapered capsules, which is how people see them: how deep one is in another one.
 
-Array = NDArray[np.float64]
 THIGH, KNEE, ANKLE = 0.068, 0.048, 0.035  # radii of a leg, metres
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 STEPS = 16  # of the golden section: to 0.05 % of a limb

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from dancetutor_cli.dance.units import Array
 
 IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
 UP = np.array([0.0, 1.0, 0.0])

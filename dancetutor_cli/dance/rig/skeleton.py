@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.units import Array
 
 # The dancer's joints: H-Anim names, hierarchy and rest positions.
 #
@@ -108,7 +109,6 @@ def dancer_skeleton() -> Skeleton:
 # +X turns a leg backward and a spine forward, +Z lifts the left leg or arm aside. Ranges are those of a limber adult
 # in everyday textbooks of functional anatomy, rounded.
 
-Array = NDArray[np.float64]
 Range = tuple[float, float]
 _FREE = (-180.0, 180.0)
 

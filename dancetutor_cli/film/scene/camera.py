@@ -12,12 +12,11 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.scene.look import CameraLook, Look
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 
-Array = NDArray[np.float64]
 Region = tuple[float, float, float, float]
 WHOLE: Region = (0.0, 0.0, 1.0, 1.0)
 _FACING, _STRAIGHT_DOWN = -0.35, 85.0  # cosine of the azimuth, degrees of the elevation

@@ -13,6 +13,7 @@ from dancetutor_cli.character.gltf import load_dancer
 from dancetutor_cli.character.mesh import PREFIX, rest_vertices, with_partner
 from dancetutor_cli.dance.motion import sample
 from dancetutor_cli.dance.rig.body import BALL_AHEAD, HALF_SHOE, joint_matrices
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.clock import Moment
 from dancetutor_cli.film.picture import FootFromAbove, Frame
 from dancetutor_cli.film.scene import renderer
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
 # picture is drawn only once. The whole song is known, so the pan has no lag: it is the dancer's place, smoothed over a
 # window that is symmetric in time.
 
-Array = NDArray[np.float64]
 _STEP = 1.0 / 30.0  # seconds between the places that are smoothed
 _ASIDE = 0.45  # metres from her root to her hands as she walks
 # seconds by which the camera is ahead of the dancer at the picture's edge, and how softly it moves

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character.mesh import Character, Material, Mesh
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.film.scene.camera import NEAR, Camera
 from dancetutor_cli.run.kernels.compiling import njit
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
 # The bar behind the pad, drawn with the dancer so that each can hide the other.
 
-Array = NDArray[np.float64]
 JOINT = "bar"  # name of the joint that the bar hangs on; it never moves
 STEEL = (0.62, 0.66, 0.74, 1.0)
 SIDES, CORNER = 12, 6  # of the tube; pieces of a rounded corner

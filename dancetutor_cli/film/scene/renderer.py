@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character.mesh import PREFIX
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.choices import QUALITIES, RENDERERS, Quality, RendererKind
 from dancetutor_cli.film.scene.camera import NEAR, Camera
 from dancetutor_cli.film.scene.scene import (
@@ -104,7 +105,6 @@ def _create_gl(scene: Scene, size: tuple[int, int], quality: Quality) -> Rendere
 
 # What both renderers compute alike before they draw a frame: matrices, the shadow map's place, feet, regions.
 
-Array = NDArray[np.float64]
 SAMPLES: dict[Quality, int] = {"draft": 1, "good": 2, "best": 4}  # across and down a pixel
 SHADOW_MAP: dict[Quality, int] = {"draft": 0, "good": 512, "best": 1024}  # texels across, 0: no cast shadow
 SHADOW_REACH = 2.5  # metres of the world that the shadow map shows, around the dancer's root

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character.mesh import PREFIX, Character, on_foot, rest_vertices
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.film.scene.camera import NEAR, Camera
 from dancetutor_cli.film.scene.scene import SOLE_RADIUS, FootMark, Scene, foot_marks
 
 # Whether a character's feet are visible from a camera. A cape or a large head may hide them from behind.
 
-Array = NDArray[np.float64]
 LEAST = 0.2  # part of the places of the feet that are visible at rest; with fewer, the feet are hidden
 _LOOKED_AT = 160  # places of the feet that are looked at, at most
 

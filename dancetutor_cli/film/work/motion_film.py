@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from dancetutor_cli.dance.motion import sample
 from dancetutor_cli.dance.rig.body import joint_matrices
 from dancetutor_cli.dance.smoothing import low_pass, sample_path
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.media.encoder import Encoding, encode_segment, join
 from dancetutor_cli.film.overlay.text import font
 from dancetutor_cli.film.scene import renderer
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.motion import Motion
     from dancetutor_cli.film.picture import Frame
 
-Array = NDArray[np.float64]
 SIZE, FPS = (720, 720), 30
 EYE = np.array([1.5, 0.45, 3.1])  # from what the camera looks at, metres
 LOOK = 0.9  # height that it looks at, metres

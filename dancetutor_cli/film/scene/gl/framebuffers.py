@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from OpenGL import GL
 
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.scene.camera import Camera
 from dancetutor_cli.film.scene.cpu.standing import SEVERAL, TILE, GroundTiles, draw_background
 from dancetutor_cli.film.scene.scene import Scene
@@ -153,7 +154,6 @@ def _shadow_texture(size: tuple[int, int]) -> int:
 #
 # Found tile by tile, as cpu/floor.py does. Import only after `available.load_pyrender`.
 
-Array = NDArray[np.float64]
 _NEAR = 0.03  # metres above or below the ground under a foot: other ground has nothing of it
 
 

@@ -15,6 +15,7 @@ from OpenGL import GL
 from pyrender.platforms.egl import EGLPlatform, query_devices
 from pyrender.renderer import Renderer as PyrenderRenderer
 
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.choices import Quality
 from dancetutor_cli.film.scene.camera import Camera
 from dancetutor_cli.film.scene.geometry import pack
@@ -68,7 +69,6 @@ from dancetutor_cli.film.scene.renderer import (
 from dancetutor_cli.film.scene.scene import SOLE_RADIUS, FrameState, Scene, check_state
 from dancetutor_cli.run.errors import UnavailableError, UsageError
 
-Array = NDArray[np.float64]
 _OFF_SURFACE = (0.012, 0.006)
 _RING = 0.032  # metres from a sole: no ring of ground.frag is farther out
 _SHADOW_UNIT, _SKIN_UNIT, _FIRST_UNIT = 4, 5, 0
