@@ -234,7 +234,7 @@ def decode(path: Path, head: AudioHead, seconds: float = LONGEST) -> Sound:
 
     rate, channels = head.rate if head.rate in _NATIVE else _NATIVE[0], min(head.channels, 2)
     as_it_is = ("-flags2", "+skip_manual") if head.kind == "mp3" else ()
-    source = (*ffmpeg.INPUT_GUARD, *ffmpeg.MUSIC_ONLY, "-threads", "1", *as_it_is, "-i", ffmpeg.local(path))
+    source = ffmpeg.music_input(path, "-threads", "1", *as_it_is)
     form = ("-map", "0:a:0", "-t", f"{min(seconds, LONGEST):g}", "-ac", str(channels), "-ar", str(rate), "-f", "s16le",
             "-c:a", "pcm_s16le", "pipe:1")  # fmt: skip
     parts, full, count = [], 0, 0

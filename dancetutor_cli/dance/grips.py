@@ -23,6 +23,7 @@ from dancetutor_cli.dance.settings_arms import BarSettings
 from dancetutor_cli.dance.trajectory.facing import wrapped
 from dancetutor_cli.dance.trajectory.posture import RoughBake, body_trajectory
 from dancetutor_cli.dance.units import Array, Flags
+from dancetutor_cli.feet.play import runs
 
 # An arm beside the bar behind the dancer: where and when its hand may rest on the rail, found with a rough bake.
 
@@ -159,12 +160,6 @@ def firm(free: Flags, early: float) -> Flags:
     return np.asarray(np.convolve(~held, np.ones(2 * width + 1), "valid") < 0.5)
 
 
-def runs(flags: Flags) -> list[tuple[int, int]]:
-    """Runs of True as (first, one past the last)."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8))).reshape(-1, 2)
-    return [(int(a), int(b)) for a, b in edges]
-
-
 # Turns on the bar in which the far hand crosses over in front of the dancer: which turns, when, and where on the rail.
 
 SEED = 20011109
@@ -186,7 +181,7 @@ def turns(plan: Plan, times: Array, trunk: BarTrunk, busy: Flags, context: Conte
             free[_between(times, start - numbers.ease - numbers.early, end + numbers.ease + numbers.early)] = False
     turned = np.degrees(wrapped(trunk.turned))
     for side, yaw in ((1, turned), (0, -turned)):  # turned to the left, the right hand is the far one
-        for a, b in runs((yaw >= numbers.turned) & (yaw <= numbers.past) & free):
+        for a, b in runs((yaw >= numbers.turned) & (yaw <= numbers.past) & free).tolist():
             first, last = float(times[a]) + numbers.settle, float(times[b - 1]) - numbers.settle
             if last - first >= numbers.shortest and _chance(plan, float(times[a]))[0] < numbers.often:
                 out.append(Grip(first, last, side, 0.0, True))
@@ -216,7 +211,7 @@ def _longest_crossing(arm: Arm, a: int, b: int) -> tuple[int, int, float]:
     for farther in FARTHER_AHEAD:
         middle = float(np.median(arm.place[a:b])) + (-1.0, 1.0)[arm.side] * farther
         x = float(on_rail(np.array([middle]), arm.bar, bar.from_end)[0])
-        for first, end in runs(firm(arm.fits(np.full(b - a, x), slice(a, b)), bar.early)):
+        for first, end in runs(firm(arm.fits(np.full(b - a, x), slice(a, b)), bar.early)).tolist():
             start, stop = arm.reached(x, a + first, a + end)
             if stop - start > best[1] - best[0]:
                 best = start, stop, x
@@ -277,7 +272,7 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
     if len(times) < 2:
         return plan
     busy = _busy(plan, times, context.settings)
-    leaning_back = tuple(Grip(float(times[a]), float(times[b - 1]), 0, 0.0) for a, b in runs(~busy))
+    leaning_back = tuple(Grip(float(times[a]), float(times[b - 1]), 0, 0.0) for a, b in runs(~busy).tolist())
     trunk = trunk_of(replace(plan, grips=leaning_back), times, context)
     holds, apart = grip_phrases(plan, times, trunk.yaw, context.settings.bar)
     places = holds, np.tile(apart[:, None], 2)
@@ -311,7 +306,7 @@ def _pieces(times: Array, arm: Arm, bar: BarSettings) -> Iterator[Grip]:
     """Grips in the stretches in which the rail is within reach, divided where the body has moved on along it."""
     least, pause = max(1, round(bar.shortest * RATE)), max(1, round(bar.reach_time * RATE))
     last = 0
-    for first, end in runs(firm(arm.fits(arm.place, slice(None)), bar.early)):
+    for first, end in runs(firm(arm.fits(arm.place, slice(None)), bar.early)).tolist():
         start = max(first, last)
         while end - start >= least:
             x, stop = _longest(arm, start, end)

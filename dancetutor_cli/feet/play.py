@@ -356,3 +356,8 @@ def _face_anew(play: Play, pad: Pad, first: int, end: int) -> None:
     apart = np.abs(across).max(axis=1) > 0
     yaw = np.degrees(np.arctan2(across[:, 1], across[:, 0]))
     play.facing[first:end] = np.where(apart, yaw, play.facing[first:end])
+
+
+def runs(flags: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """First and one past the last index of each run of True, of rows or of frames, (n, 2)."""
+    return np.flatnonzero(np.diff(flags, prepend=False, append=False)).reshape(-1, 2)

@@ -15,7 +15,7 @@ from dancetutor_cli.chart import twin
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Kind, Song
 from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.chart.reader import load
-from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.play import Play, runs
 from dancetutor_cli.run.errors import FileError
 
 # Facts about the notes of a chart: grid, kinds, what the game does not judge.
@@ -76,8 +76,7 @@ def _off(grid: tuple[int, ...]) -> NDArray[np.bool_]:
 def _runs(
     flags: NDArray[np.bool_], ticks: NDArray[np.int64], lines: NDArray[np.int32]
 ) -> Iterator[tuple[int, int, int]]:
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
-    for first, after in edges.reshape(-1, 2).tolist():
+    for first, after in runs(flags).tolist():
         yield int(ticks[first]), int(lines[first]), after - first
 
 

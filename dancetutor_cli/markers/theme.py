@@ -13,7 +13,7 @@ import numpy as np
 
 from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
 from dancetutor_cli.feet.limbs import Limb
-from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.play import Play, runs
 from dancetutor_cli.markers.comments import ChartFeet
 from dancetutor_cli.markers.sidecar import notes_hash
 from dancetutor_cli.run.errors import FileError
@@ -108,8 +108,7 @@ def _limb_names(play: Play, row: int, bracketing: bool = False) -> set[str]:
 
 def _stretches(flags: Sequence[bool]) -> Iterator[tuple[int, int]]:
     """First and last row of each run."""
-    edges = np.diff(np.array([False, *flags, False]).astype(np.int8))
-    yield from zip(np.flatnonzero(edges == 1).tolist(), (np.flatnonzero(edges == -1) - 1).tolist(), strict=True)
+    yield from ((first, after - 1) for first, after in runs(np.array(flags, dtype=bool)).tolist())
 
 
 def _near(rows: Sequence[int], ticks: Sequence[int]) -> Iterator[list[int]]:

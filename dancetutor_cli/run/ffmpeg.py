@@ -108,9 +108,14 @@ def _listed(program: Path, option: str) -> set[str]:
 # Only local files and pipes, whatever a file's content or name asks for.
 INPUT_GUARD = ("-protocol_whitelist", "file,pipe")
 # What a song's music may be, whatever its name: a playlist in disguise would make ffmpeg open other files.
-MUSIC_ONLY = ("-format_whitelist", "ogg,mp3,wav,w64,flac,aiff")
+_MUSIC_ONLY = ("-format_whitelist", "ogg,mp3,wav,w64,flac,aiff")
 PIPE = 1 << 20  # bytes that a pipe to ffmpeg must hold
 _START = ("-nostdin", "-hide_banner", "-loglevel", "error")
+
+
+def music_input(path: Path, *options: str) -> tuple[str, ...]:
+    """What ffmpeg is told of a music file that it reads. options : what goes before its name"""
+    return (*INPUT_GUARD, *_MUSIC_ONLY, *options, "-i", local(path))
 
 
 class EncoderError(UnavailableError):

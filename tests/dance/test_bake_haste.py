@@ -13,9 +13,10 @@ from dancetutor_cli.dance.bake import bake, plan_of
 from dancetutor_cli.dance.plan import LEAST_FLIGHT, Gallop, Step
 from dancetutor_cli.dance.quality.contact import plant_slides
 from dancetutor_cli.dance.quality.dynamics import balance_figures
-from dancetutor_cli.dance.quality.figures import Body, body_of, intervals
+from dancetutor_cli.dance.quality.figures import Body, body_of
 from dancetutor_cli.dance.quality.posture import jerk, jump_knees, knee_angles
 from dancetutor_cli.dance.settings import default_settings
+from dancetutor_cli.feet.play import runs
 
 SETTINGS = default_settings()
 FAST = stream(2.0, 40, 1 / 12)
@@ -78,7 +79,7 @@ def test_legs_push_off_nearly_straight_in_jumps_with_time() -> None:
     motion = bake(chart().timing, play(events), pad())
     body = body_of(motion)
     knees = 180.0 - knee_angles(body, motion.skeleton)
-    flights = intervals(~body.standing.any(axis=1))[1:]
+    flights = runs(~body.standing.any(axis=1))[1:]
     off = np.array([knees[first - 1 : first + 1].min() for first, _ in flights])  # of the leg that is farther away
     assert len(flights) == 7 and off.min() >= 15.0 and off.max() <= 25.5
     _, fold, give = np.median(jump_knees(body, knees), axis=0)

@@ -12,11 +12,12 @@ from scipy.spatial import ConvexHull
 
 from dancetutor_cli.dance.bake import bake, plan_of
 from dancetutor_cli.dance.plan import Jump, Pivot, Step
-from dancetutor_cli.dance.quality.figures import GROUND, Body, body_of, intervals
+from dancetutor_cli.dance.quality.figures import GROUND, Body, body_of
 from dancetutor_cli.dance.quality.posture import jump_knees, knee_angles, trunk_lean
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.settings import default_settings
+from dancetutor_cli.feet.play import runs
 
 SETTINGS = default_settings()
 GRAVITY = 9.81
@@ -139,7 +140,7 @@ def test_both_legs_push_where_she_stands_nearer_to_one_foot() -> None:
     motion = bake(chart().timing, play([(1.0, {0: L}), (1.5, {2: R}), (3.0, {2: L, 3: R}), (4.5, {0: L, 2: R})]), pad())
     body = body_of(motion)
     knees = 180.0 - knee_angles(body, motion.skeleton)
-    off = [knees[first - 1] for first, end in intervals(~body.standing.any(axis=1)) if end - first > 6]
+    off = [knees[first - 1] for first, end in runs(~body.standing.any(axis=1)) if end - first > 6]
     assert len(off) == 2
     assert all(np.ptp(both) < 8.0 and both.max() < 28.0 for both in off), off
     assert report(motion)["flight gravity off by"].met

@@ -17,6 +17,7 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond, within
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Part
+from dancetutor_cli.feet.play import runs
 
 # Ankles within their limits: feet in the air follow their shanks, and over feet that stand the knees turn.
 
@@ -81,8 +82,7 @@ def giving_knees(skeleton: Skeleton, poses: Poses, around: int) -> Array:
     out = np.zeros((len(poses.root), 2))
     for side, name in enumerate("lr"):
         past = beyond(skeleton, f"{name}_talocrural", poses.rotations[:, skeleton.index(f"{name}_talocrural")])
-        edges = np.flatnonzero(np.diff(np.concatenate(([False], past > -NEAR, [False])).astype(np.int8)))
-        for first, end in edges.reshape(-1, 2):
+        for first, end in runs(past > -NEAR):
             if past[first:end].max() > 0.0:
                 seen = slice(max(first - around, 0), end + around)
                 inside = np.zeros(len(past), dtype=bool)

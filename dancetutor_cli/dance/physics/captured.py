@@ -32,6 +32,7 @@ from dancetutor_cli.dance.rig.body import local_rotations, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array
+from dancetutor_cli.feet.play import runs
 from dancetutor_cli.run.errors import FileError
 
 # sines of a limb's bend: from the first on the bend shows its plane, below the second it does not
@@ -325,8 +326,7 @@ def _floor(low: Array, standing: NDArray[np.bool_]) -> Array:
     """
     knots = []
     for k in (0, 1):
-        edges = np.flatnonzero(np.diff(np.concatenate(([False], standing[:, k], [False])).astype(np.int8)))
-        for first, end in edges.reshape(-1, 2):
+        for first, end in runs(standing[:, k]):
             knots.append(((first + end - 1) / 2, float(np.median(low[first:end, k])), end - first))
     heights = np.array([height for _, height, _ in knots])
     if np.ptp(heights) > UNEVEN:

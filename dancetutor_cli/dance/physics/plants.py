@@ -14,6 +14,7 @@ from dancetutor_cli.dance.rig.body import sole_points
 from dancetutor_cli.dance.rig.skeleton import Skeleton, within
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array, Flags
+from dancetutor_cli.feet.play import runs
 
 # Feet that do not skate: a sole that was held to the floor stays exactly in its place, and the way between is fitted to
 # that.
@@ -44,12 +45,6 @@ class Plants:
     def spans(self, side: int) -> NDArray[np.int64]:
         """First and one past the last frame of each plant of a foot, (n, 2)."""
         return runs(self.heel[:, side] | self.ball[:, side])
-
-
-def runs(flags: Flags) -> NDArray[np.int64]:
-    """Runs of True as (n, 2) of first and one past the last index."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8)))
-    return edges.reshape(-1, 2)
 
 
 def tidied(plants: Plants, rate: float) -> Plants:

@@ -12,13 +12,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dancetutor_cli.dance.physics.plants import NEARLY, STEEPEST, Plants, Sole, cleared, runs
+from dancetutor_cli.dance.physics.plants import NEARLY, STEEPEST, Plants, Sole, cleared
 from dancetutor_cli.dance.physics.repin import AnkleTracks, Leg
 from dancetutor_cli.dance.quality.foot_slide import SHORTEST, stand_frames
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array, Flags
+from dancetutor_cli.feet.play import runs
 
 ROUNDS = 4
 # times the visible limits within which feet are held: legs that give move the feet across these limits later

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import HALF_PANEL, HOLD_GRACE
 from dancetutor_cli.dance.motion import Contact, Motion, sample
-from dancetutor_cli.dance.quality.figures import GROUND, Body, Figure, intervals, over_ground
+from dancetutor_cli.dance.quality.figures import GROUND, Body, Figure, over_ground
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import (
     BALL_AHEAD,
@@ -22,7 +22,7 @@ from dancetutor_cli.dance.rig.body import (
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb, Part
-from dancetutor_cli.feet.play import StepKind
+from dancetutor_cli.feet.play import StepKind, runs
 
 # Contact error: when each limb reaches its panel, against the note's time.
 
@@ -97,7 +97,7 @@ def away_from_hold(motion: Motion, contact: Contact) -> float:
     points = place(_points(motion, contact), positions, world)
     inside = np.abs(points[..., [0, 2]] - np.array(contact.panel)).max(axis=2) <= HALF_PANEL + 1e-6
     off = ~((points[..., 1] <= OFF_PANEL) & inside).any(axis=1)
-    return HOLD_STEP * max((end - first for first, end in intervals(off)), default=0)
+    return HOLD_STEP * max((end - first for first, end in runs(off)), default=0)
 
 
 def _points(motion: Motion, contact: Contact) -> tuple[BodyPoint, ...]:
@@ -164,7 +164,7 @@ def plant_slides(body: Body, skeleton: Skeleton) -> tuple[float, int]:
     balls = [body.joints[:, skeleton.index(f"{side}_metatarsal")] for side in "lr"]
     for side in (0, 1):
         soles = body.soles[:, side]
-        for first, end in intervals(body.standing[:, side]):
+        for first, end in runs(body.standing[:, side]):
             if end - first < 3:
                 continue
             piece = soles[first:end]

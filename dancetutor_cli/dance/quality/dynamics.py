@@ -7,13 +7,14 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.nonnegative import nonnegative_least_squares
-from dancetutor_cli.dance.quality.figures import GRAVITY, GROUND, Body, Figure, intervals
+from dancetutor_cli.dance.quality.figures import GRAVITY, GROUND, Body, Figure
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import mass_points, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import low_pass
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.play import runs
 
 # Inverse dynamics: the force and the moment at the root that no contact can supply, the residual.
 #
@@ -126,7 +127,7 @@ def flight_figures(body: Body) -> tuple[Figure, ...]:
     flying = np.asarray(~body.standing.any(axis=1))
     gravity, residual, apex = [], [], []
     height = body.mass[:, 1]
-    for first, end in intervals(flying):
+    for first, end in runs(flying):
         if end - first < SHORTEST or first == 0 or end == len(height):
             continue
         t = body.times[first:end] - body.times[first]

@@ -121,12 +121,6 @@ def over_ground(points: Array, ground: Ground | None) -> Array:
     return out
 
 
-def intervals(flags: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Runs of True as (n, 2) of first and one past the last index."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8)))
-    return edges.reshape(-1, 2)
-
-
 # Measures of motion that others publish, computed as their authors do, so that figures can be compared.
 #
 # Sources: docs/references.md. Skating ratio: Karunratanakul and others 2023 (GMD). PFC: Tseng and others 2023 (EDGE).

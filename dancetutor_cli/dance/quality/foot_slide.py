@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.motion import Motion, sample
-from dancetutor_cli.dance.quality.figures import SKATE_HEIGHT, SKATE_SPEED, Figure, intervals
+from dancetutor_cli.dance.quality.figures import SKATE_HEIGHT, SKATE_SPEED, Figure
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.units import Array
+from dancetutor_cli.feet.play import runs
 
 RATE = 60.0  # frames per second at which motion is looked at
 SHORTEST = 0.10  # seconds that a foot which stands is down
@@ -61,7 +62,7 @@ def stand_frames(times: Array, path: Array, margin: float = 1.0) -> NDArray[np.i
     step = float(times[1] - times[0])
     low = path[:, 1] < np.percentile(path[:, 1], 5) + margin * SKATE_HEIGHT
     slow = np.linalg.norm(np.gradient(path, step, axis=0), axis=1) < margin * SKATE_SPEED
-    spans = intervals(low & slow)
+    spans = runs(low & slow)
     return np.asarray(spans[(spans[:, 1] - spans[:, 0]) * step >= SHORTEST / margin])
 
 

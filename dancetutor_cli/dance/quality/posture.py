@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.motion import Contact
-from dancetutor_cli.dance.quality.figures import Body, Figure, intervals
+from dancetutor_cli.dance.quality.figures import Body, Figure
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.limbs import ANKLE, KNEE, THIGH, Capsule, arm_in_torso, depth, segment_distance
 from dancetutor_cli.dance.rig.skeleton import Skeleton, excess
 from dancetutor_cli.dance.smoothing import low_pass
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
-from dancetutor_cli.feet.play import StepKind
+from dancetutor_cli.feet.play import StepKind, runs
 
 # Whether the pose is possible: joints within their limits, parts of the body not inside each other.
 
@@ -237,7 +237,7 @@ def jump_knees(body: Body, knees: Array) -> Array:
 
     The least as the toes leave, the most in the middle of the flight, and the most as they give after it.
     """
-    flying = intervals(np.asarray(~body.standing.any(axis=1)))
+    flying = runs(np.asarray(~body.standing.any(axis=1)))
     mean, frames, out, landed = knees.mean(axis=1), body.rate, [], 0
     for first, end in flying:
         rested, landed = first - landed, end

@@ -57,17 +57,7 @@ def decode(music: Path, start: float, end: float) -> Samples:
     if end <= 0:
         return out
     cut = f"aresample={RATE}:async=0,atrim=start={max(0.0, start):.9f}:end={end:.9f}"
-    arguments = (
-        *ffmpeg.INPUT_GUARD,
-        *ffmpeg.MUSIC_ONLY,
-        "-i",
-        ffmpeg.local(music),
-        "-vn",
-        "-sn",
-        "-dn",
-        "-map",
-        "0:a:0",
-    )
+    arguments = (*ffmpeg.music_input(music), "-vn", "-sn", "-dn", "-map", "0:a:0")
     raw = ("-af", cut, "-ac", "2", "-f", "f32le", "-c:a", "pcm_f32le", "pipe:1")
     with ffmpeg.Process((*arguments, *raw), f"reading {music.name}", read=True) as process:
         data = process.read()
@@ -82,17 +72,7 @@ def decode(music: Path, start: float, end: float) -> Samples:
 def seconds_of(music: Path) -> float:
     """How long a music file plays; EncoderError if it is no music."""
     rate = 1000
-    arguments = (
-        *ffmpeg.INPUT_GUARD,
-        *ffmpeg.MUSIC_ONLY,
-        "-i",
-        ffmpeg.local(music),
-        "-vn",
-        "-sn",
-        "-dn",
-        "-map",
-        "0:a:0",
-    )
+    arguments = (*ffmpeg.music_input(music), "-vn", "-sn", "-dn", "-map", "0:a:0")
     raw = ("-ac", "1", "-ar", str(rate), "-f", "u8", "-c:a", "pcm_u8", "pipe:1")
     with ffmpeg.Process((*arguments, *raw), f"reading {music.name}", read=True) as process:
         data = process.read()

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.play import runs
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
 from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.notes import Cue
@@ -106,9 +107,8 @@ def _limb_names(play: Play, row: int, language: Language) -> tuple[str, ...]:
 
 def _stretches(play: Play, names: tuple[str, ...]) -> list[tuple[int, int]]:
     """First and last row of each run of rows that have one of these names."""
-    inside = np.array([False, *(any(name in moves for name in names) for moves in play.moves), False])
-    edges = np.diff(inside.astype(np.int8))
-    return list(zip(np.flatnonzero(edges == 1).tolist(), (np.flatnonzero(edges == -1) - 1).tolist(), strict=True))
+    inside = np.array([any(name in moves for name in names) for moves in play.moves], dtype=bool)
+    return [(first, after - 1) for first, after in runs(inside).tolist()]
 
 
 # Subtitles that name the moves, as an .srt file beside the film.
