@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart import cells as stepf2
 from dancetutor_cli.chart.cells import OTHERS_HEAD, ROW_OF_MINES, TAIL, Cells, report
 from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Kind, MeasureTable, ReadWarning, RowTable
+from dancetutor_cli.run.errors import plural
 
 _LF, _CR, _COMMA, _BRACKET = 10, 13, 44, 91
 BLANKS = b"\r\n\t "
@@ -179,7 +180,7 @@ class Grid:
         if part.letters is OF_PLAYERS:
             foreign.pop("X", None)
         for what, found_at in foreign.items():
-            message = f"{stepf2.TEXTS[what]}: {len(found_at)} row{'' if len(found_at) == 1 else 's'}"
+            message = f"{stepf2.TEXTS[what]}: {plural(len(found_at), 'row')}"
             code = "stepmaniax-note" if what == "D" else "stepf2-note"
             part.warnings.append(ReadWarning(code, message, found_at[0]))
         for (code, text), found_at in findings.items():

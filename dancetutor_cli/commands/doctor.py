@@ -12,7 +12,7 @@ from pathlib import Path
 import click
 
 from dancetutor_cli.commands.help_groups import GroupedCommand
-from dancetutor_cli.run.errors import DancetutorError, UnavailableError, install_command
+from dancetutor_cli.run.errors import DancetutorError, UnavailableError, install_command, plural
 from dancetutor_cli.run.foreign_text import json_without_commands
 
 # The checks of `doctor`: each looks at one thing that rendering needs, and never raises.
@@ -152,7 +152,7 @@ def _cache() -> Check:
 
 
 def _kernels(count: int) -> str:
-    return f"{count} kernel{'' if count == 1 else 's'}"
+    return plural(count, "kernel")
 
 
 def _font() -> Check:

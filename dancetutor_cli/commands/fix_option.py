@@ -16,7 +16,7 @@ from dancetutor_cli.lint.analysis import analyze_file
 from dancetutor_cli.lint.fix import FIXABLE, FixOutcome, FixTask, fix_file, pick
 from dancetutor_cli.lint.rule import rule_named
 from dancetutor_cli.reports.terminal import coloured, safe
-from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.errors import UsageError, plural
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.analysis import AnalyzeTask
@@ -101,7 +101,7 @@ def _of_file(result: FileResult, asked_for: FixRequest) -> tuple[tuple[Finding, 
     found = pick(findings, asked_for.rule, asked_for.number)
     if asked_for.number is not None and not found:
         many = len(pick(findings, asked_for.rule, None))
-        raise UsageError(f"{text}: {result.path} has {many} finding{'' if many == 1 else 's'} of {asked_for.rule}")
+        raise UsageError(f"{text}: {result.path} has {plural(many, 'finding')} of {asked_for.rule}")
     return found
 
 
@@ -147,8 +147,8 @@ class _Talk:
 
     def end(self) -> int:
         would = "would change" if self.diff else "changed"
-        edits = f"{self.changed} {would} by {self.fixed} edit{'' if self.fixed == 1 else 's'}"
-        text = f"{self.files} file{'' if self.files == 1 else 's'}: {edits if self.fixed else 'nothing to change'}"
-        text += f", {self.unfixed} finding{'' if self.unfixed == 1 else 's'} left alone" if self.unfixed else ""
+        edits = f"{self.changed} {would} by {plural(self.fixed, 'edit')}"
+        text = f"{plural(self.files, 'file')}: {edits if self.fixed else 'nothing to change'}"
+        text += f", {plural(self.unfixed, 'finding')} left alone" if self.unfixed else ""
         click.echo(text + (f", {self.failed} failed" if self.failed else ""), err=self.diff)
         return 2 if self.failed else int(bool(self.unfixed))

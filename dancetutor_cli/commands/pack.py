@@ -13,7 +13,7 @@ from dancetutor_cli.commands.arguments import GivenPath
 from dancetutor_cli.commands.chart_options import combined, number
 from dancetutor_cli.lint.findings import AUTO, SCALES
 from dancetutor_cli.reports.terminal import safe, safe_path
-from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.errors import UsageError, plural
 from dancetutor_cli.run.files import check_file, write_atomic
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ class PackReport:
     def summary_lines(self, tally: Tally) -> Iterator[str]:
         """What is said to standard error: the file that was written, and what is in it."""
         if self._html is not None and self._pack is not None:
-            yield f"{self._html}: {_plural(self._pack.songs, 'song')}; {tally.summary()}"
+            yield f"{self._html}: {plural(self._pack.songs, 'song')}; {tally.summary()}"
 
 
 def check_comparison(options: Mapping[str, Any]) -> None:
@@ -147,13 +147,9 @@ def _changes(options: Mapping[str, Any], most_rows: int | None) -> Iterator[str]
         return
     charts = sum(bool(change.chart) for change in found)
     files = len({change.file for change in found})
-    yield f"changed since {safe_path(before.label)}: {_plural(files, 'file')}, {_plural(charts, 'chart')}"
+    yield f"changed since {safe_path(before.label)}: {plural(files, 'file')}, {plural(charts, 'chart')}"
     for line in change_lines(found, most_rows):
         yield ("  " if line.startswith("  ") else "") + safe(line)
-
-
-def _plural(count: int, noun: str) -> str:
-    return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
 def report_tech_counts(tasks: Sequence[AnalyzeTask], options: Mapping[str, Any], output: IO[str]) -> int:

@@ -26,7 +26,7 @@ from dancetutor_cli.commands.chart_options import (
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.reports.terminal import JoinedWarnings, failures_table, safe, safe_path
-from dancetutor_cli.run.errors import DancetutorError, UsageError
+from dancetutor_cli.run.errors import DancetutorError, UsageError, plural
 from dancetutor_cli.run.files import check_file, check_folder, make_folder, plain_name, write_atomic
 
 if TYPE_CHECKING:
@@ -152,7 +152,7 @@ def _pages(request: PageRequest, folder: Path, options: PageOptions) -> None:
     failed = [(str(one.job.request.dance.path), one.job.entry.label, one.error) for one in ordered if one.error]
     if wanted and not options.quiet:
         made = len(ordered) - len(failed)
-        click.echo(f"{safe_path(str(folder / INDEX))}: {made} page{'' if made == 1 else 's'}")
+        click.echo(f"{safe_path(str(folder / INDEX))}: {plural(made, 'page')}")
     if failed or bad:
         failures_table([*((str(path), "", error) for path, error in bad), *failed])
         sys.exit(2)

@@ -13,6 +13,7 @@ from dancetutor_cli.chart.cells import PLAYERS
 from dancetutor_cli.chart.model import Chart, Kind, Song
 from dancetutor_cli.feet.limbs import MARKER, MEANING, Limb, NotationError, Part, Token, parse
 from dancetutor_cli.feet.overrides import CellOverride, FeetProblem
+from dancetutor_cli.run.errors import plural
 
 # Where feet stand in note data: the steps of each row, and the comments on the lines that open measures.
 
@@ -173,7 +174,7 @@ def _check_shape(tokens: list[Token], columns: list[list[int]]) -> None:
         raise NotationError(f"{len(tokens)} tokens for {len(columns)} rows with steps", at)
     for number, (token, cells) in enumerate(zip(tokens, columns, strict=True), 1):
         if len(token.letters) != len(cells):
-            many = f"{len(cells)} step{'' if len(cells) == 1 else 's'}"
+            many = plural(len(cells), "step")
             text = f"row {number} of its rows with steps has {many} but {len(token.letters)} letters"
             raise NotationError(text, token.at)
 

@@ -14,7 +14,7 @@ from dancetutor_cli.chart.model import TICKS_PER_MEASURE
 from dancetutor_cli.chart.timing import check_section, parse_section
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind
-from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.errors import UsageError, plural
 from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.schema import Bounds, NotNegative
 from dancetutor_cli.run.yaml_files import load
@@ -239,7 +239,7 @@ def _hardest(song: Song, chart: Chart, preset: Preset, number: int) -> tuple[flo
     play = solved_chart(song, chart, preset).play
     found = () if play is None else hardest(play, chart.timing)
     if not 1 <= number <= len(found):
-        many = f"{len(found)} passage{'' if len(found) == 1 else 's'}"
+        many = plural(len(found), "passage")
         raise UsageError(f"section hardest:{number}: the chart has only {many} harder than the rest of it")
     return max(0.0, found[number - 1].start), found[number - 1].end
 
@@ -252,7 +252,7 @@ def _around_finding(song: Song, chart: Chart, preset: Preset, rule: str, number:
     found = [one.beat for one in findings if one.rule == rule and one.beat is not None]
     if not 1 <= number <= len(found):
         has = ", ".join(sorted({one.rule for one in findings})) or "none at all"
-        many = f"{len(found)} finding{'' if len(found) == 1 else 's'}"
+        many = plural(len(found), "finding")
         raise UsageError(f"section {rule}:{number}: the chart has {many} of {rule}; it has: {has}")
     beat = found[number - 1]
     ends = chart.timing.seconds_of_beats(np.array([max(0.0, beat - AROUND), beat + AROUND]))

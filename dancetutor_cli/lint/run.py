@@ -25,7 +25,7 @@ from dancetutor_cli.lint.findings import Finding, Sync
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.lint.rule import PackRule, PackSong, all_rules
 from dancetutor_cli.lint.rule_settings import Settings
-from dancetutor_cli.run.errors import DancetutorError
+from dancetutor_cli.run.errors import DancetutorError, plural
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.findings import Finding
@@ -178,7 +178,7 @@ class LintRun:
             new.write()
             others = sum(new.allowed.values()) - len(self._found_keys)
             kept = f", {others} of other files and rules kept" if others else ""
-            return [f"{path}: {len(self._found_keys)} finding{'' if len(self._found_keys) == 1 else 's'} written{kept}"]
+            return [f"{path}: {plural(len(self._found_keys), 'finding')} written{kept}"]
         unused = self._baseline.unused()
         if not unused:
             return []

@@ -15,6 +15,7 @@ from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.reports.formats import Tally
 from dancetutor_cli.reports.terminal import safe, safe_path, terminal_of
 from dancetutor_cli.reports.text_report import STYLES
+from dancetutor_cli.run.errors import plural
 
 _COLOUR = re.compile("\x1b\\[[0-9;]*m")
 _SONG = 2  # files that are one song: its .sm and its .ssc
@@ -128,7 +129,7 @@ class BriefReport:
             rule = self._paint(f"{first.first.rule} {first.first.name}", STYLES[first.first.severity])
             charts = len({(one.path, one.chart and one.chart.index) for one in found})
             what = "file" if first.chart is None else "chart"
-            lines.append(f"{rule}: {_sum(found)} findings in {charts} {what}{'' if charts == 1 else 's'}, for example")
+            lines.append(f"{rule}: {_sum(found)} findings in {plural(charts, what)}, for example")
             lines += [
                 self._cut(f"  {self._entry_line(one, False)}") for one in sorted(found, key=lambda x: x.order)[:each]
             ]
@@ -193,8 +194,8 @@ _MOVES = {  # those that the line of a chart counts, by name
 
 def _counts(chart: ChartResult) -> str:
     found = [sum(f.severity == severity for f in chart.findings) for severity in ("error", "warning")]
-    words = [f"{n} {name}{'' if n == 1 else 's'}" for n, name in zip(found, ("error", "warning"), strict=True) if n]
-    counted = [f"{n} {name}{'' if n == 1 else 's'}" for move, name in _MOVES.items() if (n := chart.counts.get(move))]
+    words = [plural(n, name) for n, name in zip(found, ("error", "warning"), strict=True) if n]
+    counted = [plural(n, name) for move, name in _MOVES.items() if (n := chart.counts.get(move))]
     rows = f"{chart.row_count} rows" if chart.playable else "no pad"
     likes = [f"plays like {chart.estimate.short}"] if chart.estimate else []
     likes += [f"scores like {chart.score.short}"] if chart.score else []

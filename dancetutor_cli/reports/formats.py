@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from dancetutor_cli.lint.findings import RANKS
+from dancetutor_cli.run.errors import plural
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.results import FileResult
@@ -79,7 +80,7 @@ class Tally:
             return "no small edit would remove a finding"
         have = "has" if self.suggested == 1 else "have"
         fix = f"--fix {self.suggested_rule}"
-        return f"{_plural(self.suggested, 'finding')} {have} a small edit; `{fix}` writes it, `{fix} --diff` shows it"
+        return f"{plural(self.suggested, 'finding')} {have} a small edit; `{fix}` writes it, `{fix} --diff` shows it"
 
     def closing_lines(self) -> list[str]:
         """What stands below all findings: the page and the summary."""
@@ -87,15 +88,11 @@ class Tally:
 
     def summary(self) -> str:
         """ "2 files, 7 charts: 1 error, 3 warnings, 2 infos"."""
-        found = [_plural(self.severities[name], name) for name in reversed(RANKS) if self.severities[name]]
-        text = f"{_plural(self.files, 'file')}, {_plural(self.charts, 'chart')}: {', '.join(found) or 'no findings'}"
+        found = [plural(self.severities[name], name) for name in reversed(RANKS) if self.severities[name]]
+        text = f"{plural(self.files, 'file')}, {plural(self.charts, 'chart')}: {', '.join(found) or 'no findings'}"
         if files := self.unreadable - self.folders:
-            text += f"; {_plural(files, 'file')} could not be read"
-        return text + (f"; no file to read in {_plural(self.folders, 'folder')}" if self.folders else "")
-
-
-def _plural(count: int, noun: str) -> str:
-    return f"{count} {noun}{'' if count == 1 else 's'}"
+            text += f"; {plural(files, 'file')} could not be read"
+        return text + (f"; no file to read in {plural(self.folders, 'folder')}" if self.folders else "")
 
 
 # What a run prints: one class per format, all with the interface of `Report`.

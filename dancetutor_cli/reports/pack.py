@@ -14,6 +14,7 @@ from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.lint.techniques import TEN, ComparedChart, TechniqueComparison
 from dancetutor_cli.reports.terminal import safe, safe_path
+from dancetutor_cli.run.errors import plural
 
 # What is known of a pack: its charts, each once, and what is missing or stands out.
 
@@ -245,7 +246,7 @@ def pack_lines(pack: Pack, width: int) -> list[str]:
 
 def _meters_line(steps_type: str, charts: list[PackChart]) -> str:
     """How many charts, and the middle half of their meters and of the meters that they play like."""
-    count = f"{len(charts)} chart{'' if len(charts) == 1 else 's'}"
+    count = plural(len(charts), "chart")
     plays = [round(one.result.estimate.meter) for one in charts if one.result.estimate]
     like = f"; they play like meter {_middle(plays)}" if plays else ""
     half = "half of them have " if len(charts) > 1 else ""
@@ -293,7 +294,7 @@ def table_lines(found: TechniqueComparison) -> Iterator[str]:
         if number == 0:
             yield f"|{'-' * (widths[0] + 2)}|" + "".join(f"{'-' * (width + 1)}:|" for width in widths[1:])
     yield ""
-    count = f"{len(found.charts)} chart{'' if len(found.charts) == 1 else 's'}"
+    count = plural(len(found.charts), "chart")
     yield f"{count} of both; only ours: {found.only_ours}; only theirs: {found.only_theirs}"
 
 

@@ -84,3 +84,8 @@ PACKAGES: Mapping[Extra, str] = {
 def install_command(extra: Extra) -> str:
     """The command that adds an extra, for the end of a message."""
     return f"pip install {PACKAGES[extra]}"
+
+
+def plural(count: int, noun: str) -> str:
+    """A count for people: "1 chart", "2 charts"."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"
