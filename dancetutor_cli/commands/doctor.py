@@ -24,12 +24,12 @@ _ROOM = 2 * GIGABYTE  # a long song at best quality takes less
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """What was found. state : "ok", "without" (something optional is missing) or "broken"; mend : what to do, or ""."""
+    """What was found. state : "ok", "without" (optional) or "broken"; remedy : what to do, or ""."""
 
     name: str
     state: str
     message: str
-    mend: str = ""
+    remedy: str = ""
 
 
 def examine() -> list[Check]:
@@ -74,8 +74,8 @@ def _gl() -> Check:
     try:
         require_gl()
     except UnavailableError as error:
-        message, _, mend = str(error).partition(". ")
-        return Check("gl renderer", "without", message, mend)
+        message, _, remedy = str(error).partition(". ")
+        return Check("gl renderer", "without", message, remedy)
     device = gpu_device()
     if device is None:
         return Check("gl renderer", "ok", "OpenGL without a GPU; auto takes cpu, which is faster")
@@ -137,22 +137,18 @@ def _cache() -> Check:
     target = folder.root or PACKAGE
     counts = {place: count_kernels(place) for place in dict.fromkeys((target, PACKAGE))}
     usable = {place: fitting for place, (fitting, _) in counts.items() if fitting}
-    lines = [f"{_kernels(count)} in {place}" for place, count in usable.items()] or [_NOTHING]
+    lines = [f"{plural(count, 'kernel')} in {place}" for place, count in usable.items()] or [_NOTHING]
     if not folder.is_writable:
         lines.append("and none can be stored")
     elif target not in usable:
         lines.append(f"new ones go into {target}")
     if other := sum(others for _, others in counts.values()):
-        lines.append(f"{_kernels(other)} for another version of Python, numba or llvmlite: not used")
+        lines.append(f"{plural(other, 'kernel')} for another version of Python, numba or llvmlite: not used")
     message = ", ".join(lines)
     if folder.fault:
-        mend = f"set {VARIABLE} to a folder that can be written, then dancetutor warmup"
-        return Check("numba cache", "without", f"{folder.fault}; {message}", mend)
+        remedy = f"set {VARIABLE} to a folder that can be written, then dancetutor warmup"
+        return Check("numba cache", "without", f"{folder.fault}; {message}", remedy)
     return Check("numba cache", "ok" if usable else "without", message, "" if usable else "dancetutor warmup")
-
-
-def _kernels(count: int) -> str:
-    return plural(count, "kernel")
 
 
 def _font() -> Check:
@@ -163,8 +159,8 @@ def _font() -> Check:
         others = [Path(path).stem for path in system_fonts()]
         return Check("font", "ok", "Pillow's" + (f", for other letters {', '.join(others[:3])}" if others else ""))
     lost = ", ".join(name for name, letters in SCRIPTS.items() if set(letters) & set(missing))
-    mend = "install Noto Sans CJK and DejaVu Sans, or use --font FILE"
-    return Check("font", "without", f"no letters for {lost}", mend)
+    remedy = "install Noto Sans CJK and DejaVu Sans, or use --font FILE"
+    return Check("font", "without", f"no letters for {lost}", remedy)
 
 
 def _disk() -> Check:
@@ -192,7 +188,7 @@ def command(as_json: bool) -> None:
     if as_json:
         import json
 
-        rows = [{"name": c.name, "state": c.state, "message": c.message, "mend": c.mend} for c in checks]
+        rows = [{"name": c.name, "state": c.state, "message": c.message, "mend": c.remedy} for c in checks]
         text = json.dumps({"schema": 1, "checks": rows}, ensure_ascii=False, indent=1)
         click.echo(json_without_commands(text))
     else:
@@ -201,8 +197,8 @@ def command(as_json: bool) -> None:
             _print_entry(
                 f"{_SHOWN.get(check.state, check.state):<7} {check.name:<{width}}  ", check.message.rstrip(".")
             )
-            if check.mend:
-                _print_entry(" " * (width + 10), f"to repair: {check.mend}")
+            if check.remedy:
+                _print_entry(" " * (width + 10), f"to repair: {check.remedy}")
     if any(check.state == "broken" for check in checks):
         sys.exit(2)
 

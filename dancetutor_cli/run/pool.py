@@ -126,7 +126,7 @@ class SerialWorkers:
 
 TIMEOUT = 10  # seconds to find the scheduler
 RETRIES = 3  # how often a piece of work is begun again when its worker is lost
-_MEND = f"install it: {install_command('cluster')}"
+_INSTALL = f"install it: {install_command('cluster')}"
 
 
 def perform(task: Task) -> FinishedWork:
@@ -145,7 +145,7 @@ class ClusterWorkers:
         try:
             from distributed import Client, as_completed
         except ImportError as error:
-            raise UnavailableError(f"--scheduler needs the package 'distributed'; {_MEND}") from error
+            raise UnavailableError(f"--scheduler needs the package 'distributed'; {_INSTALL}") from error
         self._report, self._frames = report, frames
         try:
             self._client = Client(address, timeout=TIMEOUT)

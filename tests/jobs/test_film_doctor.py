@@ -26,8 +26,8 @@ def test_everything_a_film_needs_is_looked_at() -> None:
         assert found[name].state == "ok", found[name]
     assert {"gl renderer", "encoder nvenc", "encoder vaapi", "numba cache", "font", "disk"} <= set(found)
     for check in found.values():
-        assert "\n" not in check.message + check.mend
-        assert check.state == "ok" or check.mend, check
+        assert "\n" not in check.message + check.remedy
+        assert check.state == "ok" or check.remedy, check
 
 
 def test_a_hardware_encoder_is_tried_and_not_believed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -84,7 +84,7 @@ def test_no_opengl_is_no_fault(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(gl_available, "require_gl", missing)
     check = doctor._guarded("gl renderer", doctor._gl)
-    assert (check.state, check.message) == ("without", "No OpenGL found") and "apt-get" in check.mend
+    assert (check.state, check.message) == ("without", "No OpenGL found") and "apt-get" in check.remedy
 
 
 def test_fonts_and_disk_say_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -94,6 +94,6 @@ def test_fonts_and_disk_say_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> 
         check = doctor._font()
     finally:
         text._font_of.cache_clear()
-    assert check.state == "without" and "Western, Cyrillic, Japanese" in check.message and "--font" in check.mend
+    assert check.state == "without" and "Western, Cyrillic, Japanese" in check.message and "--font" in check.remedy
     monkeypatch.setattr(doctor, "_ROOM", 1e30)
     assert doctor._disk().state == "without" and str(Path.cwd()) in doctor._disk().message

@@ -67,7 +67,7 @@ def test_a_read_only_installation_and_home_leave_a_temporary_folder(
     announce_compiling(PresetChoice())
     assert capsys.readouterr().err == ""  # nothing is compiled
     check = _cache()
-    assert check.state == "without" and "cannot be written" in check.message and "NUMBA_CACHE_DIR" in check.mend
+    assert check.state == "without" and "cannot be written" in check.message and "NUMBA_CACHE_DIR" in check.remedy
 
 
 @pytest.mark.skipif(os.name == "nt", reason="the temporary folder of Windows is the user's own")
