@@ -34,8 +34,7 @@ from dancetutor_cli.lint.meter.estimate import (
     sized,
     tagged_scale,
 )
-from dancetutor_cli.lint.meter.features import Feature
-from dancetutor_cli.lint.meter.model import Curve, Interval, MeterModel, Scale, model_of
+from dancetutor_cli.lint.meter.model import Curve, Feature, Interval, MeterModel, Scale, model_of
 from dancetutor_cli.run.reading import config_path
 
 Floats = NDArray[np.float64]

@@ -12,7 +12,7 @@ from dancetutor_cli import chart as reader
 from dancetutor_cli.chart import find_files
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.lint.analysis import solved
-from dancetutor_cli.lint.meter.features import Feature, features
+from dancetutor_cli.lint.meter.model import Feature, features
 from dancetutor_cli.lint.meter.score import Oddities
 from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.run.errors import DancetutorError

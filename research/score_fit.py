@@ -24,8 +24,7 @@ from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 from dancetutor_cli.lint.meter.estimate import label_scales_of, level_of, sized
-from dancetutor_cli.lint.meter.features import Feature
-from dancetutor_cli.lint.meter.model import model_for
+from dancetutor_cli.lint.meter.model import Feature, model_for
 from dancetutor_cli.lint.meter.score import ODDITIES, TIMED, Level, Oddities, ScoreModel, Weight
 from dancetutor_cli.run.reading import config_path
 

@@ -23,8 +23,8 @@ from spoil_bvh import FAULTS, joints_of, spoiled
 
 from dancetutor_cli.dance.motion import Motion, sample
 from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, Wishes
+from dancetutor_cli.dance.quality.contact import stands
 from dancetutor_cli.dance.quality.figures import body_of
-from dancetutor_cli.dance.quality.foot_slide import stands
 from dancetutor_cli.dance.quality.posture import shape_figures, smoothness_figures
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton

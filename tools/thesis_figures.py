@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.pipeline import RagdollResult
 from dancetutor_cli.dance.physics.ragdoll import bend_and_twist, bones_of
-from dancetutor_cli.dance.quality.foot_slide import stands
+from dancetutor_cli.dance.quality.contact import stands
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.smoothing import low_pass

@@ -15,7 +15,7 @@ from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.solver.techniques import half_turned
 from dancetutor_cli.lint.findings import TECH_COUNTS
-from dancetutor_cli.lint.meter.features import Feature, features_of
+from dancetutor_cli.lint.meter.model import Feature, features_of
 from dancetutor_cli.lint.meter.score import played_oddities
 from dancetutor_cli.lint.plays import ALL_KINDS, Plays
 
@@ -197,7 +197,7 @@ class Candidates:
         self._features: dict[tuple[tuple[Feature, ...], float], list[list[float]]] = {}
 
     def features(self, number: int, wanted: Sequence[Feature], rate: float) -> list[float]:
-        """What the meter of one of the plays is estimated from, see `lint.meter.features`."""
+        """What the meter of one of the plays is estimated from, see `lint.meter.model`."""
         asked = tuple(wanted), rate
         if asked not in self._features:
             self._features[asked] = features_of(self.plays.plays, wanted, rate)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dancetutor_cli.dance.quality.foot_slide import stand_frames, stands_of
+from dancetutor_cli.dance.quality.contact import stand_frames, stands_of
 
 TIMES = np.arange(181) / 60.0
 

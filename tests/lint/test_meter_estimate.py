@@ -13,8 +13,7 @@ from dancetutor_cli.chart import load, parse
 from dancetutor_cli.feet import Play, load_preset
 from dancetutor_cli.lint.findings import Estimate
 from dancetutor_cli.lint.meter.estimate import MeteredChart, label_scales_of, on_scale, scales_of, size
-from dancetutor_cli.lint.meter.features import features
-from dancetutor_cli.lint.meter.model import model_for
+from dancetutor_cli.lint.meter.model import features, model_for
 from dancetutor_cli.lint.subject import solved_chart
 from dancetutor_cli.run.reading import charts_path
 

@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 
 from dancetutor_cli.chart import parse
 from dancetutor_cli.feet import Play, load_preset, solve_chart
-from dancetutor_cli.lint.meter.features import THINGS, Feature, features, features_of
-from dancetutor_cli.lint.meter.model import model_for
+from dancetutor_cli.lint.meter.model import THINGS, Feature, features, features_of, model_for
 
 ALL = [Feature(thing, seconds, "mean") for thing in THINGS for seconds in (1, 10, 60)]
 ALL += [Feature("steps", seconds, "peak") for seconds in (1, 10, 60)] + [Feature("steps", 0, "count")]

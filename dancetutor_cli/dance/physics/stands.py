@@ -14,7 +14,7 @@ import numpy as np
 
 from dancetutor_cli.dance.physics.plants import NEARLY, STEEPEST, Plants, Sole, cleared
 from dancetutor_cli.dance.physics.repin import AnkleTracks, Leg
-from dancetutor_cli.dance.quality.foot_slide import SHORTEST, stand_frames
+from dancetutor_cli.dance.quality.contact import SHORTEST, stand_frames
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import smooth

@@ -12,10 +12,9 @@ from dancetutor_cli.dance.physics.plants import PIVOT, Plants
 from dancetutor_cli.dance.physics.ragdoll import bend_and_twist, bones_of
 from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN
 from dancetutor_cli.dance.physics.style import NEUTRAL
-from dancetutor_cli.dance.quality.contact import bar_figures, contact_figures, ground_figures
+from dancetutor_cli.dance.quality.contact import bar_figures, contact_figures, ground_figures, slide_figures
 from dancetutor_cli.dance.quality.dynamics import balance_figures, dynamics_figures, flight_figures
 from dancetutor_cli.dance.quality.figures import Body, Figure, MotionReport, body_of, published_figures
-from dancetutor_cli.dance.quality.foot_slide import slide_figures
 from dancetutor_cli.dance.quality.liveliness import liveliness_figures
 from dancetutor_cli.dance.quality.posture import (
     PAST,

@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from dancetutor_cli.lint.findings import AUTO, Estimate
-from dancetutor_cli.lint.meter.features import Feature
-from dancetutor_cli.lint.meter.model import MeterModel, Scale, model_for
+from dancetutor_cli.lint.meter.model import Feature, MeterModel, Scale, model_for
 from dancetutor_cli.lint.meter.score import Level
 
 _WORTH = 0.1  # meters that a term has to add to have a term of its own; less goes into its "rest"
