@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -116,3 +118,24 @@ def test_what_the_parts_share_knows_none_of_them() -> None:
     for path in (PACKAGE / "film").glob("*.py"):
         if path.name not in WHOLE:
             assert not set(beginning(path, "dancetutor_cli.film")) & set(FILM_PARTS), path
+
+
+def loaded_by(module: str) -> set[str]:
+    """All that is there after a module of the package has been imported by a new Python."""
+    code = f"import sys, dancetutor_cli.{module}; print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    return set(run.stdout.split())
+
+
+@pytest.mark.parametrize(
+    ("module", "without"),
+    [
+        ("commands.analyze", ("yaml", "numpy", "run.schema", "lint.results", "lint.snapshots")),
+        ("film.work.planning", ("lint.rule", "lint.configuration", "dance.physics.simulation", "dance.grips")),
+    ],
+)
+def test_what_only_some_runs_need_is_loaded_by_them(module: str, without: tuple[str, ...]) -> None:
+    """`--help` reads no settings and no results; a film no rules, and no ragdoll or rail where none is asked for."""
+    loaded = loaded_by(module)
+    assert f"dancetutor_cli.{module}" in loaded
+    assert loaded & {*without, *(f"dancetutor_cli.{name}" for name in without)} == set()
