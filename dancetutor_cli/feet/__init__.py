@@ -1,4 +1,4 @@
-"""Who steps what: pads, limbs, what people said about them, cost presets, and the solver -> `Play`.
+"""Which limb steps which note: pads, limbs, feet that people have set, cost presets, and the solver -> `Play`.
 
     solved.solve_song             the one way to feet for every command
       |   pads, preset              where panels are; what each undesired thing costs; which preset a chart gets

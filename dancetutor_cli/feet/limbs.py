@@ -28,7 +28,7 @@ class Limb(IntEnum):
 
 
 class Part(IntEnum):
-    """Which part of a foot: only brackets (one foot on two panels) tell heel and toe apart."""
+    """Which part of a foot: only brackets (one foot on two panels) distinguish heel and toe."""
 
     WHOLE = 0
     HEEL = 1
@@ -82,7 +82,7 @@ class Token:
 
 
 class NotationError(ValueError):
-    """Text that is no row of tokens; `at` is where it stops making sense."""
+    """Text that is not a row of tokens; `at` is where it stops making sense."""
 
     def __init__(self, message: str, at: int) -> None:
         super().__init__(message)
@@ -90,7 +90,7 @@ class NotationError(ValueError):
 
 
 def letter(limb: int, part: int) -> str:
-    """The letter of who presses a panel."""
+    """The letter of the limb that presses a panel."""
     return _LETTERS.get((limb, part), UNKNOWN)
 
 
@@ -190,5 +190,5 @@ def limb_colours() -> LimbColours:
 
 @cache
 def partner_colours() -> PartnerColours:
-    """What configs/colours.yaml says about the second of two dancers; FileError names what is wrong."""
+    """The entry of configs/colours.yaml for the second of two dancers; FileError names what is wrong."""
     return load(config_path("colours.yaml"), _Colours).partner

@@ -1,4 +1,4 @@
-"""What people said about the feet of a chart, where it is wrong, and what of it nobody can dance."""
+"""Feet that people have set in a chart, mistakes in them, and those that nobody can dance."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
 from dancetutor_cli.feet import load_pad
 from dancetutor_cli.feet.limbs import Limb, Part
 
-# What people said about the feet of a chart: limbs they force, findings they do not want, and what was wrong in it.
+# Settings of people for the feet of a chart: limbs that they force, findings that they do not want, and mistakes in
+# both.
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +84,7 @@ class Ignores:
 
 @dataclass(frozen=True, slots=True)
 class FeetProblem:
-    """A contradiction in what a person said; the linter makes a finding of it.
+    """A contradiction in the feet that a person has set; the linter makes a finding of it.
 
     code : short stable name: "pin-count", "pin-syntax", "pin-far", "pin-twice", "pin-unplayable", "sme-unreadable", ...
     line, column : 1-based place in the chart file (None: another file, named in the message)
@@ -95,7 +96,7 @@ class FeetProblem:
     column: int | None = None
 
 
-# What nobody can dance: one foot on two far panels, one limb twice in a row, a foot that is needed in two places.
+# Feet that nobody can dance: one foot on two far panels, one limb twice in a row, a foot that is needed in two places.
 
 _NAMES = {
     Limb.LEFT_FOOT: "the left foot",
@@ -120,9 +121,9 @@ class CellOverride:
 
 
 def contradictions(chart: Chart, cells: Iterable[CellOverride]) -> tuple[list[CellOverride], list[FeetProblem]]:
-    """Split what was said into what can be danced and what contradicts itself.
+    """Divide the overrides into those that can be danced and those that contradict themselves.
 
-    A row that contradicts itself is dropped as a whole; a step that contradicts a hold which its foot is said to keep
+    A row that contradicts itself is dropped as a whole. A step that contradicts a hold which its foot must keep
     pressing is dropped alone.
     """
     ordered = sorted(cells, key=lambda s: (s.tick, s.column))

@@ -1,4 +1,6 @@
-"""Rows and who steps them: from the notes of a chart to what a solver sees, its result, notes that no person plays."""
+"""Rows and the limbs that step them: from the notes of a chart to the solver's input, its result, and notes that nobody
+can play.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,7 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.preset import HAND, LEAP, DropReason
 
-# The result of the solver: who steps what, and what it costs. Arrays with one entry per row.
+# The result of the solver: which limb steps which note, and what it costs. Arrays with one entry per row.
 
 
 class StepKind(IntEnum):
@@ -114,7 +116,8 @@ class Play:
         return int(self.cost.sum())
 
 
-# From the notes of a chart to the rows a solver sees: rolls become taps, what the game does not judge is left out.
+# From the notes of a chart to the rows of a solver: rolls become taps, and notes that the game does not judge are left
+# out.
 
 _STEP_OF_KIND = np.zeros(max(Kind) + 1, dtype=np.uint8)
 _STEP_OF_KIND[[Kind.TAP, Kind.LIFT, Kind.HOLD, Kind.ROLL]] = StepKind.TAP, StepKind.LIFT, StepKind.HOLD, StepKind.ROLL
@@ -224,7 +227,7 @@ def roll_gap(bpm: float, window: float) -> int:
     return _ROLL_GAPS[-1]
 
 
-# Notes that no person plays: which ones, and why. The dancer does not play them, and the linter reports them.
+# Notes that nobody can play: which ones, and why. The dancer does not play them, and the linter reports them.
 
 MOVE = "unplayable"  # what a row with such a note is called, as where the solver has no limb left
 SAME_TIME = 1e-6  # seconds
@@ -240,7 +243,7 @@ WORDS = {
 
 @dataclass(frozen=True, slots=True)
 class DroppedNote:
-    """A note that she does not play. second : of the music; row, column : of the play"""
+    """A note that the dancer does not play. second : of the music; row, column : of the play"""
 
     second: float
     row: int
@@ -251,10 +254,10 @@ class DroppedNote:
 def without_unplayable(
     play: Play, pad: Pad, before: Sequence[DroppedNote] = ()
 ) -> tuple[Play, tuple[DroppedNote, ...]]:
-    """The play in which no limb has those notes that no person plays, and these notes in order of time.
+    """The play without the notes that nobody can play, and these notes in order of time.
 
-    What is left over by the solver stays `Limb.UNPLAYED`, and what `too_quick` finds becomes so: the foot stays where
-    it is, the hand is up, and feet go on alone.
+    Notes that the solver left over stay `Limb.UNPLAYED`, and the notes that `too_quick` finds become so: the foot stays
+    where it is, the hand is up, and feet go on alone.
 
     play : its seconds are those of the music as it is heard; before : why notes are left over in it already
     """
@@ -273,11 +276,11 @@ def without_unplayable(
 
 
 def too_quick(play: Play, pad: Pad) -> Iterator[tuple[int, int, DropReason]]:
-    """Row and column of each note that has a limb, but one which cannot be there in time, and why.
+    """Row and column of each note whose limb cannot be there in time, and why.
 
-    A foot leaps if it steps within `LEAP` seconds of its last step, to no panel that touches one of that. A hand is let
-    go if it comes down within `HAND` seconds of the last note for it, played or not: of many the first is played. One
-    that stays there drums a roll, if she stands on a foot.
+    A foot leaps if it steps within `LEAP` seconds of its last step, to a panel that touches none of that step's. A hand
+    does not play a note within `HAND` seconds of the last note for it, played or not; of many notes, the first is
+    played. A hand that stays there drums a roll, if the dancer stands on a foot.
     """
     yield from _leaps(play, pad)
     yield from _hands(play)

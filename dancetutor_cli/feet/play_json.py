@@ -18,10 +18,10 @@ from dancetutor_cli.feet.play import Play, Rows, StepKind
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import read_json, shown_key
 
-# The rows of a play in the JSON of `analyze` (docs/formats.md): as text at once, for there are so many.
+# The rows of a play in the JSON of `analyze` (docs/formats.md): as text at once, because there are so many.
 #
-# Most rows look like others: what a row says besides its time, its line and its margin is written once for all rows of
-# a run that share it.
+# Most rows are like others: everything besides the time, the line and the margin of a row is written once for all rows
+# of a run that share it.
 
 _LIMBS = {int(limb): limb.name.lower() for limb in Limb if limb >= 0}
 _KINDS = {int(kind): kind.name.lower() for kind in StepKind}
@@ -91,7 +91,7 @@ def _end(margin: int, sure: float) -> str:
 
 
 def _looks(play: Play, shown: NDArray[np.intp]) -> list[str]:
-    """What each of some rows says of its steps, feet and moves."""
+    """The text of some rows about their steps, feet and moves."""
     moves = np.fromiter(map(id, play.moves), np.int64, len(play.moves)) if play.events is None else play.events
     known: dict[bytes, str] = {} if play.events is None else _row_text_cache(play.limb.shape[1])
     rows = play.rows
@@ -100,7 +100,7 @@ def _looks(play: Play, shown: NDArray[np.intp]) -> list[str]:
 
 
 def _costs(play: Play, shown: NDArray[np.intp]) -> list[str]:
-    """What each of some rows says of its cost."""
+    """The text of some rows about their costs."""
     return _cached_texts(
         _bytes(shown, play.cost), _cost_text_cache(play.terms), lambda at: _terms(play, int(shown[at]))
     )

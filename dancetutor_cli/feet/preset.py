@@ -1,4 +1,4 @@
-"""Cost presets: which rules of play hold, what each undesired thing costs, which preset a chart gets; dropped notes."""
+"""Cost presets: rules of play and costs, the preset that a chart gets, reasons why a note is not played."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from dancetutor_cli.run.yaml_files import read
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
 
-# Why no person plays a note, and how quick is too quick. Needs no numpy: the linter's rules name these.
+# Reasons why nobody can play a note, and limits of time. Needs no numpy: the linter's rules name these.
 
 LEAP = 0.08  # seconds: a foot that stepped so shortly before goes to no panel apart from the one it is on
 HAND = 0.40  # and a hand that came down so shortly before does not come down again
@@ -132,7 +132,7 @@ _Confidence = Annotated[
 
 @dataclass(eq=False, repr=False)
 class _PresetFile:
-    """What a preset's file may say; the names of switches, weights and curves are those of its model."""
+    """The keys of a preset's file; the names of switches, weights and curves are those of its model."""
 
     HYPHENS: ClassVar[bool] = True
     extends: Text | None = None

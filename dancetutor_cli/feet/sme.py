@@ -34,7 +34,7 @@ _CODES = {
 
 @dataclass(frozen=True, slots=True)
 class ChartData:
-    """What `data.sme` says about one chart. ignores : {tick: codes}"""
+    """The contents of `data.sme` for one chart. ignores : {tick: codes}"""
 
     cells: tuple[CellOverride, ...] = ()
     ignores: dict[int, frozenset[str]] = field(default_factory=dict)
@@ -42,7 +42,7 @@ class ChartData:
 
 
 def read_sme(song: Song, chart: Chart) -> ChartData:
-    """What the `data.sme` in the song's folder says about a chart; nothing if there is none. Never raises."""
+    """The contents of the `data.sme` in the song's folder for a chart; nothing if there is none. Never raises."""
     path = editor_file(song.path)
     if path is None:
         return ChartData()
@@ -72,7 +72,7 @@ def editor_file(song: Path) -> Path | None:
 
 
 def place_in_type(song: Song, chart: Chart) -> int:
-    """The place of a chart among those of its steps type, in file order: how `data.sme` tells charts apart."""
+    """The place of a chart among those of its steps type, in file order: `data.sme` distinguishes charts by it."""
     return [c.index for c in song.charts if c.steps_type == chart.steps_type].index(chart.index)
 
 

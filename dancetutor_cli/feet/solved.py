@@ -1,4 +1,4 @@
-"""Charts with their feet, the one way to them for every command: what people laid down holds, the rest is solved."""
+"""Charts with their feet, for every command: feet that people have set hold, and the rest is solved."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Solved:
 def solve_song(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart], Preset]) -> Iterator[Solved]:
     """Charts of a song with the cheapest plays that keep pinned measures and `data.sme`.
 
-    What contradicts itself in them is not kept; it is in `problems`, of which the linter makes findings.
+    Contradictions in them are not kept; they are in `problems`, of which the linter makes findings.
     """
     feet = SongFeet(song)
     for first in range(0, len(charts), _AT_ONCE):

@@ -1,4 +1,4 @@
-"""Other ways to step a chart: the next best plays and what decides, and why a foot has to step twice in a row."""
+"""Other ways to step a chart: the next best plays and the costs that decide; why a foot has to step twice."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from dancetutor_cli.feet.solver.store import ACTION, COST, FACTS, LIMBS, NEXT
 
 # The next best plays: the cheapest ways to step the rows that differ in at least one limb, and what decides.
 #
-# Each play found splits what is left: with the same limbs up to a row, and others there (Lawler's partition). The
-# cheapest rest of every state is known from one backward pass, so a split costs a look at one row.
+# Each play that is found divides the rest: the same limbs up to a row, and other limbs there (Lawler's partition). The
+# cheapest rest of every state is known from one backward pass, so a division costs a look at one row.
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,9 +182,9 @@ def _back(trail: list[_Reached], state: int) -> list[int]:
 
 # Why a foot has to step twice in a row: which hold, mine or jump forces it.
 #
-# A forced doublestep is forced by the hold of the other foot. For one that is not, the chart is solved again without
-# each of the holds, mines and jumps shortly before it: what makes the doublestep go away is to blame. Nothing is, if
-# the pattern of single steps itself asks for it.
+# A forced doublestep is forced by the hold of the other foot. For an unforced one, the chart is solved again without
+# each of the holds, mines and jumps shortly before it: the first that removes the doublestep is its cause. If none
+# does, the pattern of single steps itself asks for it.
 
 _ROWS_BEFORE = 16  # a cause is looked for in so many rows before the doublestep
 _ROWS_AFTER = 32  # and so many after it are solved along, so that the end of the excerpt decides nothing
@@ -259,7 +259,7 @@ def _culprit(play: Play, row: int, engine: Engine) -> Blame:
 
 
 class _Suspect(NamedTuple):
-    """What might be to blame: a cell, and the column that is named, for all steps of a jump that of the first one."""
+    """A possible cause: a cell, and the column that is named; for all steps of a jump the column of its first step."""
 
     cause: str
     row: int
@@ -267,14 +267,14 @@ class _Suspect(NamedTuple):
     named: int
 
     def instead(self, step: int, end: int, mine: int) -> tuple[int, int, int]:
-        """What the cell is without it: no mine, a hold as a tap, a jump as one step of it."""
+        """The cell without the cause: no mine, a hold as a tap, a jump as one step of it."""
         if self.cause == "mine":
             return step, end, 0
         return int(StepKind.TAP if self.cause == "hold" else StepKind.NONE), -1, mine
 
 
 def _suspects(rows: Rows, row: int) -> list[_Suspect]:
-    """What might be to blame for a doublestep, the nearest first."""
+    """The possible causes of a doublestep, the nearest first."""
     first = max(0, row - _ROWS_BEFORE + 1)
     steps, mines = rows.steps[first : row + 1].tolist(), rows.mines[first : row + 1].tolist()
     out = []

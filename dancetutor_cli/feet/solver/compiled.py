@@ -1,7 +1,7 @@
 """How the solver's kernels run: compiled, or as the Python that they are; found out without importing numba.
 
-Compiling takes ten to twenty seconds, once. A chart or two are solved quicker by the kernels' own Python, which is the
-same code: only what is so much work that compiling pays, now or in runs like this one, is worth the wait.
+Compiling takes ten to twenty seconds, once. The kernels' own Python, which is the same code, solves a chart or two
+sooner. So compiling is worth the wait only for more work, now or in runs like this one.
 """
 
 from __future__ import annotations
