@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from dancetutor_cli.chart.timing import Segments, Timing
@@ -82,13 +82,16 @@ def test_time_never_runs_backwards(timing: Timing) -> None:
 
 @given(TIMINGS)
 @settings(deadline=None, max_examples=60)
+@example(Timing(((0, Fraction(1, 1000)),), ((2, Fraction(1, 1000)), (4, Fraction(1, 1000))), (), ((0, 4), (1, 1))))
 def test_beats_undo_seconds(timing: Timing) -> None:
     ticks = np.arange(-50, LAST + 50)
     seconds = timing.seconds(ticks)
     again = timing.seconds_of_beats(timing.beats(seconds))
     stopped = {t for t, _ in (*timing.stops, *timing.delays)}
     outside = timing.judged(ticks) | (len(timing.warps) == 0)
-    plain = np.array([t not in stopped for t in ticks.tolist()]) & outside
+    # several ticks share a second in a warp; if one of them has a stop, the beat at the end of the stop may be this one
+    alone = (np.diff(seconds, append=np.inf) > 0.0) & (np.diff(seconds, prepend=-np.inf) > 0.0)
+    plain = np.array([t not in stopped for t in ticks.tolist()]) & outside & alone
     assert again[plain] == pytest.approx(seconds[plain], abs=1e-6)
 
 
