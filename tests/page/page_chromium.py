@@ -27,6 +27,7 @@ FLAGS = (
 STILL = """
 window.turned = 0;
 performance.now = () => window.turned;
+Object.defineProperty(Event.prototype, 'timeStamp', {get: () => window.turned});
 delete window.AudioContext;
 """
 
