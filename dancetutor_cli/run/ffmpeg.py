@@ -114,7 +114,7 @@ _START = ("-nostdin", "-hide_banner", "-loglevel", "error")
 
 
 def music_input(path: Path, *options: str) -> tuple[str, ...]:
-    """What ffmpeg is told of a music file that it reads. options : what goes before its name"""
+    """The arguments of ffmpeg for a music file that it reads. options : what goes before its name"""
     return (*INPUT_GUARD, *_MUSIC_ONLY, *options, "-i", local(path))
 
 
