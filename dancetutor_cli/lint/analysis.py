@@ -28,11 +28,11 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
 
-# What is reported of one chart of `analyze`: findings, and what else is wanted.
+# The report on one chart of `analyze`: findings, and the other things that the user asked for.
 
 
 def chart_result(subject: ChartSubject, task: AnalyzeTask) -> ChartResult:
-    """What a task wants to know of a chart."""
+    """The results for a chart that a task asks for."""
     from dancetutor_cli.chart.hash import chart_hash
     from dancetutor_cli.lint.figures import arrows, with_excerpts
 
@@ -72,7 +72,9 @@ def _rows(subject: ChartSubject) -> str:
 def _findings(
     subject: ChartSubject, task: AnalyzeTask, preset: Preset
 ) -> tuple[tuple[Finding, ...], tuple[Cause, ...] | None]:
-    """What the linter finds; causes of doublesteps and suggestions where somebody wants them: they take long."""
+    """The findings of the linter; causes of doublesteps and suggestions only if they are wanted, because they take
+    long.
+    """
     findings, causes = check_chart(subject, task.settings), None
     if task.want_rows or task.suggest:
         from dancetutor_cli.lint.figures import causes_of, with_causes
@@ -123,7 +125,7 @@ _OTHERS = 20  # charts of a file that are solved only because they give the scal
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ResultOptions:
-    """What the results of a run must hold besides findings; all of it but `want_rows` is part of a kept result's key.
+    """What the results of a run contain besides findings. All of it except `want_rows` is part of a kept result's key.
 
     want_rows : every row, for JSON; want_figures : densities and technical steps, for CSV
     want_excerpts : the rows around each finding, for text; suggest : the edit that would remove it
@@ -184,7 +186,7 @@ def analyze_files(tasks: Iterable[AnalyzeTask]) -> Iterator[FileResult]:
 
 
 class _Window:
-    """Files whose charts wait to be looked at together: most charts have few rows, and each question has its price."""
+    """Files whose charts wait to be checked together: most charts have few rows, and each question has a fixed cost."""
 
     def __init__(self) -> None:
         self._files: list[_File] = []
@@ -286,7 +288,7 @@ class _File:
         )
 
     def _with_meters(self) -> tuple[ChartResult, ...]:
-        """The charts with what only all of them together say: the scale of the meters."""
+        """The charts with the results that need all of them: the scale of the meters."""
         task = self._task
         for subject in _others(self._song, self._selected, task, self._meters):
             self._meters.add(subject, task.rate)
@@ -300,7 +302,9 @@ def _with_report(chart: ChartResult, report: MeterReport) -> ChartResult:
 
 
 def _others(song: Song, selected: tuple[Chart, ...], task: AnalyzeTask, meters: Meters) -> Iterator[ChartSubject]:
-    """Charts that were not asked for, solved nevertheless: a chart plays like the same meter whatever is asked for."""
+    """Charts that were not asked for but are solved: a chart must play like the same meter, whichever charts are asked
+    for.
+    """
     from dancetutor_cli.lint.subject import solved_chart
 
     kinds, meant = meters.ask_for_others(task.meter_scale), {chart.index for chart in selected}

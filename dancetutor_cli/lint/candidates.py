@@ -1,4 +1,4 @@
-"""Technical steps of several plays, and what rules would have to look at in each of them."""
+"""Technical steps of several plays, and the rows in each that rules have to look at."""
 
 from __future__ import annotations
 
@@ -171,7 +171,7 @@ def _crossovers(steps: _Steps) -> CandidateRows:
     return {"Crossovers": np.concatenate([halves, fulls]), "HalfCrossovers": halves, "FullCrossovers": fulls}
 
 
-# What rules would have to look at in each of several plays: most of them have nothing to look at in most plays.
+# The rows of several plays that rules have to look at: most rules have nothing to look at in most plays.
 
 _LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
 _HAND = 3  # panels that are down at once
@@ -205,7 +205,7 @@ class Candidates:
 
     @cached_property
     def oddities(self) -> list[list[float]]:
-        """What each play is scored by, see `lint.meter.oddities`."""
+        """The inputs for the score estimate of each play, see `lint.meter.oddities`."""
         found: list[list[float]] = played_oddities(self.plays).tolist()
         return found
 

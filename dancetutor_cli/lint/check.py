@@ -80,13 +80,13 @@ _rules_cache: dict[int, tuple[Mapping[str, Options], Rules]] = {}
 
 
 def check_rule(code: str, rules: Rules, subject: ChartSubject, settings: Settings) -> tuple[Finding, ...]:
-    """What one of the rules of a chart adds to `check_chart`; an ambiguity of other rules is reported again."""
+    """The findings that one rule adds to `check_chart`; an ambiguity of other rules is reported again."""
     results = _as_sure_as_they_are(_run_rule(rules[code], subject), subject, settings, rules.get(_AMBIGUITY))
     return tuple(finding for finding in results if not _silenced(finding, subject))
 
 
 def _run_rule(rule: ChartRule | ReaderRule, subject: ChartSubject) -> list[Finding]:
-    """What a rule finds; of a chart for two what is true of it as a whole is reported with the first player's."""
+    """The findings of a rule; in a chart for two, those about the whole chart are reported with the first player's."""
     if _is_about_others(rule, subject):
         return []
     found = rule.check(subject)
@@ -100,7 +100,7 @@ def _is_about_others(rule: Rule, subject: FileSubject | ChartSubject) -> bool:
 
 
 def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:
-    """What the linter finds in a chart, with the configuration that holds for its file."""
+    """The findings in a chart, with the configuration that holds for its file."""
     from dancetutor_cli.lint.configuration import load_configuration
 
     settings = load_configuration(find_settings_file(subject.song.path.absolute().parent), found=True).settings
@@ -120,9 +120,10 @@ def _rules_of_charts() -> Mapping[str, type[ChartRule] | type[ReaderRule]]:
 def _as_sure_as_they_are(
     findings: list[Finding], subject: ChartSubject, settings: Settings, ambiguity: ChartRule | ReaderRule | None
 ) -> Iterator[Finding]:
-    """The findings; those that are true only with other feet than players may have are no warnings.
+    """The findings; those that are true only with feet that players may not use are no warnings.
 
-    Where other feet cost next to nothing more it is an ambiguity (DT207, with its options if it runs), one for a row.
+    If other feet cost next to nothing more, the finding is an ambiguity (DT207, with its options if it runs), one for a
+    row.
     """
     known = {finding.beat for finding in findings if finding.rule == _AMBIGUITY}
     for finding in findings:
@@ -156,7 +157,7 @@ _REACH = {"DT201": 1, "DT202": 1, "DT204": 1, "DT207": 1, "DT209": 1, "DT215": 1
 
 
 def merged_by_foot(findings: tuple[Finding, ...], subject: ChartSubject) -> tuple[Finding, ...]:
-    """The findings without those that say of a foot what another rule says: the severest and plainest stays."""
+    """The findings without those that repeat another rule's report on a foot: the most severe and simplest stays."""
     if subject.play is None:
         return findings
     ticks, rows = subject.play.rows.tick, subject.step_rows

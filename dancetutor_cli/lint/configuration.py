@@ -43,7 +43,7 @@ class _Override(RulesKeys):
 
 @dataclass(eq=False, repr=False)
 class _ConfigurationFile(RulesKeys):
-    """What a configuration file may say; `feet` are checked by those who read them."""
+    """The keys of a configuration file; `feet` are checked by the code that reads them."""
 
     HYPHENS: ClassVar[bool] = True
     extends: Texts = ()
@@ -60,7 +60,7 @@ class _ConfigurationFile(RulesKeys):
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """Everything a configuration file may say.
+    """The contents of a configuration file.
 
     sources : the files it was read from, with what they extend
     preset : name or file of the cost preset for all charts, None: nothing is said
@@ -76,7 +76,7 @@ class Configuration:
 
     @property
     def presets(self) -> tuple[tuple[Condition, str], ...]:
-        """All that is said about presets; of the conditions that hold for a chart the last one counts."""
+        """All settings about presets; of the conditions that hold for a chart the last one counts."""
         return self.overridden if self.preset is None else ((Condition(), self.preset), *self.overridden)
 
 
@@ -168,7 +168,7 @@ def _extended(source: MarkedYaml, name: str) -> Path:
 
 
 def _apply(base: Configuration, source: MarkedYaml, *, confined: bool) -> Configuration:
-    """What a file says, on top of `base`. confined : it stays in its folder"""
+    """The settings of a file, on top of `base`. confined : it stays in its folder"""
     file, folder = convert(source, _ConfigurationFile), source.path.parent
     settings = base.settings.with_layer(layer_of(source, file, Condition(), ()))
     preset, overridden = base.preset, base.overridden

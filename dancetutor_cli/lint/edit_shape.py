@@ -1,8 +1,8 @@
-"""What of a chart's shape an edit leaves: jacks, figures that return, motifs that repeat, the unison of two dancers.
+"""The shape of a chart that an edit must keep: jacks, figures that return, motifs that repeat, two dancers in unison.
 
-Anyone who corrects a chart keeps its rhythm and its figures: no note lands on the panel of the one beside it, no jack
-is torn apart, a phrase that comes three times is corrected three times, and of several edits the one that is heard
-least is best.
+A correction keeps the rhythm and the figures of a chart: no note lands on the panel of the note beside it, no jack is
+broken, a phrase that comes three times is corrected three times, and of several edits the one that players notice least
+is best.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _MOTIF = 4  # rows before and after a note that make its motif
 _NEAR = 32  # rows in which a figure of four is heard to return
 _MARGIN = 2  # rows beside a phrase that belong to its motif
 _MOST_ALIKE = 12  # places of a motif; what comes more often is the pattern of the chart
-# What is heard and felt of an edit: the worst last. A note that moves alone counts 1.
+# How much players notice an edit: the worst last. A note that moves alone counts 1.
 _NOTE = 1.0
 _ACCENTS = (
     (TICKS_PER_MEASURE, 1.5),
@@ -150,7 +150,7 @@ class Shape:
         notes, tick = self._chart.notes, self._ticks[at]
         return bool(((notes.tick < tick) & (notes.end >= tick)).any())
 
-    # What an edit does to figures.
+    # The effect of an edit on figures.
 
     def _after(self, moves: Sequence[PanelMove]) -> Mapping[int, frozenset[int]]:
         """Place -> panels after the moves, of the rows that they are in."""
@@ -182,7 +182,7 @@ class Shape:
         return cost
 
     def _cost(self, moves: Sequence[PanelMove]) -> float:
-        """How much of some moves is heard and felt."""
+        """How much players notice some moves."""
         cost = self._returns(moves)
         for row, column, to in moves:
             at = self._place[row]

@@ -1,4 +1,4 @@
-"""What is reported of a chart besides findings: other ways to play it, causes of doublesteps, tech counts, excerpts."""
+"""The report on a chart besides findings: other ways to play it, causes of doublesteps, technique counts, excerpts."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def _letters(play: Play, row: int) -> str:
     return "".join(letter(int(play.limb[row, column]), int(play.part[row, column])) for column in columns)
 
 
-# What forces the doublesteps of a chart, as plain data and in words.
+# The causes of the doublesteps of a chart, as plain data and in words.
 
 _DOUBLESTEP = "DT201"
 
@@ -80,7 +80,7 @@ def causes_of(subject: ChartSubject, preset: Preset) -> tuple[Cause, ...]:
 
 
 def with_causes(findings: Sequence[Finding], causes: Sequence[Cause], panels: Sequence[str]) -> tuple[Finding, ...]:
-    """The findings, those about a doublestep with what makes it, where that is not the pattern itself."""
+    """The findings; those about a doublestep name its cause, unless it is the pattern itself."""
     by_beat = {cause.beat: cause for cause in causes if cause.at_beat is not None and cause.column is not None}
     results = []
     for finding in findings:

@@ -1,4 +1,4 @@
-"""What is reported of a chart, as plain data without numpy: findings, figures, and the terms of its meter."""
+"""The report on a chart, as plain data without numpy: findings, figures, and the terms of its meter."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-# What the linter found.
+# The findings of the linter.
 
 RANKS = {"info": 0, "warning": 1, "error": 2}  # severities, the least first
 
@@ -67,7 +67,7 @@ _EXCERPT = [field.name for field in fields(Finding)].index("excerpt")
 _VALUES = attrgetter(*(field.name for field in fields(Finding)))
 
 
-# What is reported of a chart besides its findings: figures, other ways to play it, what makes its doublesteps.
+# The report on a chart besides its findings: figures, other ways to play it, causes of its doublesteps.
 #
 # Imports neither numpy nor numba, so that kept results can be read back quickly.
 
@@ -115,7 +115,7 @@ class Cause:
 
 @dataclass(frozen=True, slots=True)
 class Figures:
-    """What `--format csv` reports of a chart.
+    """The values of a chart in `--format csv`.
 
     nps_mean, nps_peak, breakdown, stream_measures : see `chart.density.Density`
     tech : how often each of `TECH_COUNTS` happens
@@ -219,7 +219,7 @@ def _bill(
     return f"{meter}: {', '.join([*first, *parts][:most])}"
 
 
-# Beats against the audio, as it is kept and shown.
+# The sync of beats and music, as it is kept and shown.
 
 NULL, ITG = 0.0, 9.0  # ms; what packs are synced to
 SYNC_TOLERANCE = 3.0  # ms, to either side
@@ -228,7 +228,7 @@ SURE_SYNC = 0.8  # confidence from which on a bias is believed
 
 @dataclass(frozen=True, slots=True)
 class Sync:
-    """How the music lies under the beats.
+    """The sync of the music with the beats.
 
     bias_ms : the music's attack after the chart's beat; None: it could not be judged
     confidence : 0 to 1; drift_ms : bias of the last third less that of the first

@@ -1,4 +1,6 @@
-"""`analyze --fix` for one file: fixes go in one after the other, each proved by reading and solving the file again."""
+"""`analyze --fix` for one file: fixes are made one after the other, and each is checked by reading and solving the file
+again.
+"""
 
 from __future__ import annotations
 
@@ -61,7 +63,7 @@ class SkippedFinding:
 
 @dataclass(frozen=True, slots=True)
 class FixTask:
-    """What is to be fixed in one file.
+    """The fixes that are asked for in one file.
 
     task : the file, with its configuration; safe : the safe fixes are wanted
     findings : those that were asked for, each with the player of a chart for two in whose part it is, else 0
@@ -91,7 +93,7 @@ class FixOutcome:
 
 
 def fix_file(job: FixTask) -> FixOutcome:
-    """Correct one file, proved before it is written. Never raises for what is wrong with the file."""
+    """Correct one file; the result is checked before it is written. Never raises for errors in the file."""
     try:
         return _fix(job)
     except NoChartsError as error:  # music of a menu: nothing to fix
@@ -139,7 +141,7 @@ def _write(job: FixTask, old: bytes, new: bytes) -> None:
 
 
 def _notes(job: FixTask, session: FixSession) -> Iterator[str]:
-    """What else the author has to do, as far as something was changed that is played."""
+    """Other things that the author has to do, if something that is played was changed."""
     if all(one.fix.is_silent for one in session.fixed):
         return
     path = job.task.path
@@ -225,7 +227,7 @@ class FixSession:
         return self._latest
 
     def _try(self, state: _State, fixes: Sequence[Fix], finding: Finding | None = None) -> bool:
-        """Put fixes in if the file then reads as it must, the finding is gone and no other has come."""
+        """Make fixes if the file then reads as it must, the finding is gone and there is no new one."""
         splices = [splice for fix in fixes for splice in fix.splices]
         if len({splice.start for splice in splices}) < len(splices):
             return False

@@ -1,4 +1,4 @@
-"""Fixes as bytes: characters of notes replaced, what that must come to, and those that nobody hears."""
+"""Fixes as bytes: characters of notes that are replaced, the notes that must result, and fixes that nobody notices."""
 
 from __future__ import annotations
 
@@ -120,10 +120,10 @@ def move_notes(data: bytes, chart: Chart, finding: Finding, edit: Suggestion) ->
     return Fix(finding.rule, line, edit.words, replaced(cells), frozenset(gone), frozenset(come))
 
 
-# The fixes that nobody hears: mines under the head of a hold, halves of holds, notes less than 3 ms off the grid.
+# The fixes that nobody notices: mines between the ends of a hold, halves of holds, notes less than 3 ms off the grid.
 #
-# What of a chart these touch is what the games throw away, or what nobody can tell apart; so they need no solver to be
-# found. `fix` proves them by one nevertheless.
+# They change only what the games discard, or what nobody can distinguish, so finding them needs no solver. `fix` checks
+# them with the solver nevertheless.
 
 BROKEN_HOLD, OFF_GRID = "DT106", "DT401"
 RULES = (BROKEN_HOLD, OFF_GRID)

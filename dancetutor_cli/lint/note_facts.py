@@ -193,7 +193,7 @@ Key = tuple[str, str, int]
 
 
 def differences(song: Song) -> Iterator[tuple[str, int | None, int | None]]:
-    """Message, line and chart of everything that the .sm beside a .ssc has otherwise; nothing for a .sm."""
+    """Message, line and chart of every difference between a .ssc and the .sm beside it; nothing for a .sm."""
     other_path = twin(song.path) if song.format == "ssc" else None
     if other_path is None:
         return
@@ -233,7 +233,7 @@ def _by_key(song: Song) -> dict[Key, Chart]:
 
 
 def _difference(a: Chart, b: Chart) -> str:
-    """What is not the same in two charts: "notes", "a meter" or "times"; "" if nothing."""
+    """The difference of two charts: "notes", "a meter" or "times"; "" if there is none."""
     fields = ("tick", "column", "kind", "end")
     if any(not np.array_equal(getattr(a.notes, name), getattr(b.notes, name)) for name in fields):
         return "notes"

@@ -1,4 +1,4 @@
-"""Whether some other way to dance a passage crosses the feet less, and where a dancer may begin with either foot."""
+"""Whether another way to dance a passage crosses the feet less, and where a dancer may begin with either foot."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class Beginnings:
         return int(starts[after - 1]), int(starts[after]) - 1 if after < len(starts) else len(self._rows) - 1
 
 
-# Whether a passage goes as well on the other foot: after a rest or a jump players begin with whichever they like.
+# Whether a passage works as well on the other foot: after a rest or a jump, players begin with either foot.
 
 _CROSSED = 90.0 + 1e-6  # degrees
 
@@ -149,7 +149,7 @@ def exchanged_facings(
     return facings
 
 
-# Whether some other way to dance the steps around a row crosses the feet less: people choose a foot after a breath.
+# Whether another way to dance the steps around a row crosses the feet less: people choose a foot after a breath.
 
 _BEFORE, _AFTER = 16, 12  # steps to either side of the row, if no rest comes first
 _BREATH = 0.22  # seconds, at least: twice a shorter time is still a run
@@ -159,7 +159,7 @@ _UNKNOWN = -1
 
 
 class Freedom(NamedTuple):
-    """What else a dancer may do than step left and right in turn, beginning as she likes after a rest.
+    """What a dancer may do besides alternating left and right, with any foot first after a rest.
 
     quick : the longest time (s) between steps that the rule takes for quick; rest : seconds that are a breath after a
     quicker step alone, see `is_breath`; switch : from so many seconds the feet may change on a panel that
@@ -186,9 +186,9 @@ class _Stand(NamedTuple):
 
 
 def fewest_crossed(subject: ChartSubject, row: int, freedom: Freedom) -> float:
-    """How many steps of the phrase around a row leave the feet crossed, danced as well as the freedom allows.
+    """The least number of steps of the phrase around a row after which the feet are crossed, with this freedom.
 
-    Endless where no way goes, or where a hold or two panels at once stand in it.
+    Endless if there is no way, or if the phrase has a hold or two panels at once.
     """
     play, feet = subject.play, subject.feet
     if play is None or feet is None or subject.pad is None:
@@ -298,7 +298,7 @@ class _Step(NamedTuple):
         return found
 
     def _stood(self, stand: _Stand, foot: int, slipped: bool) -> _Stand | None:
-        """How she stands with this foot on the panel; None where she would turn on round."""
+        """The stance with this foot on the panel; None if the dancer would turn on around her back."""
         left, right = (self.column, stand.panels[1]) if foot == 0 else (stand.panels[0], self.column)
         if left == right and left != _UNKNOWN:  # the foot that was there makes room
             left, right = (left, _UNKNOWN) if foot == 0 else (_UNKNOWN, right)

@@ -178,7 +178,7 @@ def _weights(
 def _counts(
     play: Play, rows: NDArray[np.int64], stepped: NDArray[np.bool_], settings: PassageSettings
 ) -> dict[str, Any]:
-    """What happens in some rows, as in `Passage`; stepped : (rows, columns), where they have steps that are seen."""
+    """The counts of some rows, as in `Passage`; stepped : (rows, columns), where they have steps that are seen."""
 
     def count(*names: str) -> int:
         return int(_marks(play, rows, names).sum())
@@ -201,7 +201,7 @@ def _counts(
     }
 
 
-# Which part of a chart a motion or a film is about: the same for `animate` and `render`.
+# The part of a chart that a motion or a film shows: the same for `animate` and `render`.
 
 AROUND = 8  # beats before and after a finding
 _FINDING = re.compile(r"\s*(DT\d{3})\s*:\s*(\d+)\s*", re.IGNORECASE)

@@ -1,4 +1,4 @@
-"""Plays on one pad, one after the other, as arrays: what rules ask of every chart is worked out for all at once."""
+"""Plays on one pad, one after the other, as arrays: the rules' questions are answered for all of them at once."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 
-# Plays on one pad, one after the other: what rules ask of every chart is worked out for all of them at once.
+# Plays on one pad, one after the other: the answers to the rules' questions are computed for all of them at once.
 #
-# Most charts have few rows and most rules find nothing in them, so that to ask each chart takes many times as long as
-# to answer: a question here is an array over the rows of all plays, or one number for each.
+# Most charts have few rows and most rules find nothing in them, so a question for each chart would take many times as
+# long as its answer. Here a question is an array over the rows of all plays, or one number for each.
 
 EPSILON = 1e-6
 _PLAY = 40  # bits of a tick: a later play comes after every tick of the one before

@@ -1,4 +1,4 @@
-"""What `analyze` knows about a file after the work is done: plain data that pickles, as JSON behind a checksum."""
+"""The result of `analyze` for a file: plain data that pickles, as JSON after a checksum."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from dancetutor_cli.run.trust import results_folder
 if TYPE_CHECKING:
     from dancetutor_cli.lint.analysis import AnalyzeTask
 
-# What `analyze` knows about a file after the work is done: plain data that pickles and turns into JSON.
+# The result of `analyze` for a file: plain data that pickles and turns into JSON.
 #
 # Imports neither numpy nor numba, so that results can be read back quickly.
 
@@ -266,7 +266,7 @@ class ResultCache:
                 Path(name).unlink(missing_ok=True)
 
     def prune(self) -> None:
-        """Remove what nobody asked for in a long time."""
+        """Remove results that nobody has asked for in a long time."""
         with suppress(OSError):
             for path in self._folder.glob("*/*"):
                 if time.time() - path.stat().st_mtime > _KEEP_SECONDS:

@@ -67,7 +67,7 @@ class FileRule(Rule):
 
 
 class SyncRule(FileRule):
-    """A rule about music that was heard (`--sync`, or `sync: true`): about each sync of a file that is sure.
+    """A rule about music that was decoded (`--sync`, or `sync: true`): about each sync of a file that is sure.
 
     `tag` : of the file's tags the one that a finding stands at
     """
@@ -156,7 +156,7 @@ class ReaderRule(Rule):
 
 
 class Occurrence(NamedTuple):
-    """One time that what a rule is about happens: in a row, so many seconds after the step before (or what counts)."""
+    """One occurrence of what a rule is about: in a row, so many seconds after the step before (or what counts)."""
 
     row: int
     seconds: float
@@ -165,7 +165,7 @@ class Occurrence(NamedTuple):
 
 
 class TimedRule(ChartRule):
-    """A rule about moves that are worth a word only if they are quick.
+    """A rule about moves that are reported only if they are quick.
 
     Option `max_seconds` says how quick: a number, or "by-meter": what at most `share` per cent of the charts of this
     meter contain, see `lint.rule_settings`, but not more than `slowest`. `times` : what the move is called there.
@@ -211,7 +211,7 @@ class TimedRule(ChartRule):
         return subject.most_confident(rows) if self.about_feet else 0
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
-        """Whether who plays this chart expects what happens in these rows: never more than an info."""
+        """Whether players of this chart expect what happens in these rows; then it is never more than an info."""
         return False
 
     def passages(self, found: list[Occurrence], subject: ChartSubject) -> Iterable[list[Occurrence]]:

@@ -26,7 +26,7 @@ Options = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Layer:
-    """What one place says about rules.
+    """The settings of rules in one place.
 
     select : codes of the only rules that are to run, None: says nothing
     ignore : codes of rules that are not to run
@@ -154,7 +154,7 @@ def _worded(value: object) -> str:
 
 @dataclass(eq=False, repr=False)
 class RulesKeys:
-    """What a file, or an entry of its overrides, may say of rules; `rules` are checked by `layer_of`."""
+    """The keys about rules in a file, or in an entry of its overrides; `rules` are checked by `layer_of`."""
 
     select: Texts | None = None
     ignore: Texts = ()
@@ -219,9 +219,9 @@ def resolve_name(source: MarkedYaml, look_up: Callable[[str], _Meaning], name: s
         raise source.error(place, str(error)) from None
 
 
-# How quick a move has to be to be worth a word: configs/move_times.yaml says what share of charts contain it.
+# How quick a move must be to be reported: configs/move_times.yaml has the share of charts that contain it.
 #
-# What one chart in five of a meter has belongs to that meter; the same move twice as quick may be in none.
+# A move that one chart in five of a meter has belongs to that meter; the same move twice as quick may be in none.
 
 _OTHERS = "dance-single"  # the table that holds for pads nobody has measured
 

@@ -354,7 +354,7 @@ class PackSyncs:
         return (folder for folder in sorted(self._songs) if len(self._songs[folder]) >= _FEWEST)
 
     def result(self, folder: Path, settings: Settings) -> FileResult | None:
-        """What is found in the pack of a folder, as a result of that folder; None where nothing is."""
+        """The findings for the pack of a folder, as a result of that folder; None if there are none."""
         songs = [PackSong(*song) for _, song in sorted(self._songs[folder].items())]
         ini = read_pack_ini(folder)
         findings: list[Finding] = []

@@ -70,9 +70,10 @@ def tagged_scale(tag: str) -> str | None:
 def scales_of(charts: Sequence[MeteredChart], tag: str = "", scale: str = AUTO) -> list[tuple[str, bool]]:
     """The scale of each of a song's charts for one pad, and whether it is known.
 
-    What the user says; else the scale on which the labels of the other charts are missed least, clearly, of which it
-    takes two, unless a tag speaks for another. A chart's own label is not asked, that is what the estimate is for; but
-    where the scale is a guess: for lack of that, and of an Edit, which may be numbered unlike its song.
+    The user's scale; otherwise the scale on which the labels of the other charts have clearly the least error, for
+    which at least two are needed, unless a tag names another one. A chart's own label does not count, because the
+    estimate is compared with it. It counts if the scale is a guess: if there are too few labels, and for an Edit, which
+    may be numbered unlike its song.
     """
     if charts and len(charts[0].on) == 1:
         return [(next(iter(charts[0].on)), True)] * len(charts)
@@ -179,7 +180,7 @@ _BELIEVED = 3.0  # meters between a label and the estimate; of a label that is f
 
 
 def level_of(one: MeteredChart, scale: str) -> Level:
-    """The level, from the label by the scale that it is on; that of a label of 0, which is none, by the estimate alone.
+    """The level, from the label and its scale; for a label of 0, which is no label, from the estimate alone.
 
     one : of a pad that has the scale ddr
     """

@@ -105,7 +105,7 @@ def _of_one(steps: _Steps, first: int, after: int, wanted: Sequence[Feature], ra
 
 
 def _peak(before: NDArray[np.int64]) -> float:
-    """What 98 in 100 windows have no more rows than. before : rows in each, but for its last one"""
+    """The number of rows that 98 of 100 windows do not exceed. before : rows in each, but for its last one"""
     at = int(_PEAK * (len(before) - 1))
     before.partition(at)
     return float(before[at]) + 1.0

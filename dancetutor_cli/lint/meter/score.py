@@ -1,4 +1,4 @@
-"""How hard a chart is to score on: its level, and what it has that charts of its level do not; configs/score.yaml."""
+"""How hard a chart is to score on: its level, and what other charts of its level do not have; configs/score.yaml."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def played_oddities(plays: Plays) -> NDArray[np.float64]:
     return found
 
 
-# Of the timing: what a player has to know by heart, or to read in time.
+# The timing: what a player has to know by heart, or to read in time.
 
 _CHANGE = 0.05  # octaves between the tempos of two rows that are felt: 3.5 %
 _SAME_TEMPO = 0.1  # octaves; tempos that are nearer count as one
