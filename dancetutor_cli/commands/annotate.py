@@ -133,7 +133,7 @@ def command(paths: tuple[Path, ...], selection: Selection, options: AnnotateOpti
 
 
 def _items(paths: Sequence[Path], output: Path | None, files: Sequence[Path]) -> list[Item]:
-    """Where each file goes. Under -o DIR: a file into DIR, what lies in a folder at the same place below DIR."""
+    """The target of each file. With -o DIR, a file goes into DIR, a file of a folder to the same place below DIR."""
     from dancetutor_cli.markers.annotate import Item
 
     if output is None:

@@ -204,7 +204,7 @@ def command(as_json: bool) -> None:
 
 
 def _print_entry(head: str, text: str) -> None:
-    """One line, and more below its text where it is long; paths are never broken."""
+    """One line, and more below its text if it is long; paths are never broken."""
     lines = textwrap.wrap(text, WIDTH - len(head), break_long_words=False, break_on_hyphens=False)
     for number, line in enumerate(lines):
         click.echo(f"{head if number == 0 else ' ' * len(head)}{line}")

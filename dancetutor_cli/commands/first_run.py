@@ -59,7 +59,7 @@ def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = No
         )
 
 
-# What `dancetutor` alone prints: what it is, and what to try next, with a song that is at hand.
+# The output of `dancetutor` without a command: what it is, and what to try next, with a song that is at hand.
 
 _MOST = 2000  # entries of the folder that are looked at: it may be a disk
 

@@ -38,7 +38,7 @@ SUFFIXES = (".html", ".htm")
 
 @dataclass(frozen=True, slots=True)
 class PageOptions:
-    """What the options ask for, besides the charts and what is danced (`dance.request.DanceRequest`)."""
+    """The options besides those of the charts and of the dance (`dance.request.DanceRequest`)."""
 
     output: Path | None
     music: bool

@@ -44,7 +44,7 @@ class Animation:
 
 @dataclass(frozen=True)
 class AnimatedDancer:
-    """One dancer of an animation, as a format may want her; motion and moves are made when they are first wanted.
+    """One dancer of an animation, for a format; motion and moves are made when they are first needed.
 
     number : which one; character : who dances
     """

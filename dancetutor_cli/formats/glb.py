@@ -111,7 +111,7 @@ def _off(motion: Motion, joints: tuple[int, ...], regular: Mask) -> Array:
 
 
 def reaches(skeleton: Skeleton) -> Array:
-    """How far (j,) what hangs on each joint goes at most, metres; a bone at the end is as long as the one before."""
+    """How far (j,) the vertices of each joint move at most, metres; a bone at the end is as long as the one before."""
     length = np.linalg.norm(skeleton.offsets, axis=1)
     out = length.copy()
     for j in reversed(range(1, len(length))):

@@ -38,9 +38,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class AnnotateRequest:
-    """What is to be done with every file. Pickles.
+    """The work on every file. Pickles.
 
-    named : whether somebody asked for these styles; else files beside the song that are not ours are no error
+    named : whether the user asked for these styles; if not, other files beside the song are no error
     preset : name or file of the cost preset; None: what `feet.preset` finds for each chart
     write : whether files are written at all; diff : whether a diff is wanted; force : pinned measures too
     into_file : added charts instead of .edit files; backup : keep the old bytes beside a file that is changed
@@ -68,7 +68,7 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class AnnotateOutcome:
-    """What became of a file: lines for people, mostly.
+    """The result for a file: lines for people, mostly.
 
     problems : contradictions in what people said about feet; lacks : what is missing or stale
     changed : whether anything is or would be different; companions : such files beside the chart file
@@ -139,7 +139,7 @@ def _request_for_ucs(path: Path, request: AnnotateRequest) -> tuple[AnnotateRequ
 
 
 class _Work:
-    """One file on its way: what would change, then the changes themselves."""
+    """One file in work: the planned changes, then the changes themselves."""
 
     def __init__(self, item: Item, request: AnnotateRequest, song: Song, beside: tuple[str, ...]) -> None:
         self.item, self.request, self.song, self.beside = item, request, song, beside

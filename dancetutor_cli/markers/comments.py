@@ -17,7 +17,7 @@ from dancetutor_cli.feet.annotations import StepRows, markers_in, measure_lines
 from dancetutor_cli.feet.limbs import Limb, NotationError, Part, letter, marker, parse
 from dancetutor_cli.feet.play import Play
 
-# What the styles of annotation share: what is asked for, the feet of a chart, and the files that would change.
+# The common part of the styles of annotation: the request, the feet of a chart, and the files that would change.
 
 MEASURE, ROWS, SIDECAR, SMEDITOR, EDIT, THEME = "measure", "rows", "sidecar", "smeditor", "edit", "theme"
 TEXT = "text"  # what `measure` and `rows` are for a file that takes no comments
@@ -61,7 +61,7 @@ class Lack:
     column: int | None = None
 
     def at(self, path: Path) -> str:
-        """For people: file, place and what lacks."""
+        """For people: file, place and what is missing."""
         place = "".join(f":{n}" for n in (self.line, self.column) if n is not None)
         return f"{path}{place}: {self.message}"
 
@@ -105,7 +105,7 @@ def row_letters(chart: Chart, rows: StepRows, play: Play) -> list[str]:
 
 
 class State(Enum):
-    """What stands in a file compared with what should."""
+    """The content of a file compared with what it should be."""
 
     CURRENT = "current"
     MISSING = "missing"

@@ -1,4 +1,6 @@
-"""What would change in a chart file and beside it: its charts solved, every style asked, the result read back."""
+"""The planned changes of a chart file and the files beside it: charts are solved, every style is asked, the result is
+read back.
+"""
 
 from __future__ import annotations
 
@@ -136,12 +138,12 @@ def _read(path: Path) -> bytes | None:
         return None
 
 
-# What would change in a chart file: its charts solved, every style asked, the result read back and compared.
+# The planned changes of a chart file: charts are solved, every style is asked, the result is read back and compared.
 
 
 @dataclass(slots=True)
 class MarkerPlan:
-    """What became of one file. data : its new bytes; the rest is for people.
+    """The plan for one file. data : its new bytes; the rest is for people.
 
     counts : measures by what was done about them; lacks : what `--check` reports
     """

@@ -1,4 +1,4 @@
-"""What a run prints: text, JSON, CSV, SARIF and other formats, the page of a pack, the chart sheet.
+"""The output of a run: text, JSON, CSV, SARIF and other formats, the page of a pack, the chart sheet.
 
 formats                       formats of `analyze` by name, and what each of them implements
 brief, text_report            for people: a screen, or all of it; terminal makes text safe and coloured

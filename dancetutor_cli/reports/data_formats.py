@@ -118,7 +118,7 @@ class JsonReport:
 
 
 def file_texts(result: FileResult) -> Iterator[str]:
-    """One entry of `files`, in pieces, for it may be long; findings about the file itself follow its charts."""
+    """One entry of `files`, in pieces, because it may be long; findings about the file itself follow its charts."""
     head = _members({"path": result.path, "error": result.error, "warnings": list(result.warnings)})
     sync = {} if result.sync is None else {"sync": sync_object(result.sync)}
     tail = _members({**sync, "findings": [finding_object(finding) for finding in result.findings]})
@@ -346,7 +346,7 @@ def _estimated(chart: ChartResult | None) -> Mapping[str, Any]:
 
 
 def _scored(chart: ChartResult | None) -> Mapping[str, Any]:
-    """How hard it is to score on; empty where nobody has rated charts of the pad."""
+    """The score estimate; empty if nobody has rated charts of the pad."""
     estimate = chart.score if chart else None
     return {
         "scores_like": round(estimate.meter, 3) if estimate else "",

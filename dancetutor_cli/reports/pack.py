@@ -16,7 +16,7 @@ from dancetutor_cli.lint.techniques import TEN, ComparedChart, TechniqueComparis
 from dancetutor_cli.reports.terminal import safe, safe_path
 from dancetutor_cli.run.errors import plural
 
-# What is known of a pack: its charts, each once, and what is missing or stands out.
+# The contents of a pack: its charts, each once, what is missing and what stands out.
 
 # What a pack's charts are sorted by: name -> the moves that it is.
 TECHNIQUES = {
@@ -59,7 +59,7 @@ class PackChart:
 
 @dataclass(frozen=True, slots=True)
 class FileNeed:
-    """What of a file needs action. what : a rule of a chart each, errors first"""
+    """The parts of a file that need action. what : a rule of a chart each, errors first"""
 
     file: str
     errors: int

@@ -37,7 +37,7 @@ def safe_path(path: str) -> str:
     return _UNSAFE.sub("?", name.decode("utf-8", "replace"))
 
 
-# How wide and in which colours a stream is written to; rich is asked only where it may be a terminal.
+# The width and colours of a stream; rich is asked only if the stream may be a terminal.
 
 _WITHOUT_TERMINAL = 100  # characters of a line
 _SAY_MORE = ("FORCE_COLOR", "TTY_COMPATIBLE", "COLUMNS")  # variables that rich looks at for any stream

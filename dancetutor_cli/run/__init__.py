@@ -1,4 +1,4 @@
-"""What every package stands on; nothing here knows of charts. Read `errors` and `files` first.
+"""The base of every package; nothing here knows of charts. Read `errors` and `files` first.
 
 errors, foreign_text    one line for each error; text of strangers made harmless in CSV and in logs of CI
 reading, files          bytes in, bounded in size and kind; files out, whole or not at all

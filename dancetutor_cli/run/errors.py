@@ -67,7 +67,7 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f" (did you mean {names[near[0]]}?)" if near else ""
 
 
-# What is large and not needed by everybody is an extra: which packages that is, and what to say without them.
+# Large parts that not everybody needs are extras: the packages of each, and the message if they are missing.
 #
 # A message names the packages themselves: `pip install NAME` works in whatever way dancetutor itself was installed, and
 # fetches no stranger's package that happens to be called dancetutor.

@@ -131,7 +131,7 @@ def temporary_name(target: Path) -> Path:
 
 
 def place_of(path: Path) -> Path:
-    """Where `path` is really written, links followed. FileError for what must not be replaced."""
+    """The place where `path` is really written, links followed. FileError for what must not be replaced."""
     target = _target(path)
     _status(path, target)
     return target
@@ -150,7 +150,7 @@ def _target(path: Path) -> Path:
 
 
 def _status(path: Path, target: Path) -> os.stat_result | None:
-    """What the file is now, None if it is not there; refuses what must not be replaced."""
+    """The status of the file now, None if it is not there; refuses what must not be replaced."""
     try:
         status = target.stat()
     except FileNotFoundError:
@@ -304,7 +304,7 @@ def _sync_folder(folder: Path) -> None:
             os.close(descriptor)
 
 
-# Where results go, asked before the work: a file wants its folder to be there, a folder is made with those above.
+# The places of results, checked before the work: the folder of a file must exist, a folder is made with those above.
 
 _DENIED = os.strerror(errno.EACCES)
 

@@ -118,7 +118,7 @@ def drop_output() -> None:
 
 
 def os_error_message(error: OSError) -> str:
-    """What the system said, in one line: where, what, and what to do about a full disk."""
+    """The error of the system in one line: where, what, and what to do about a full disk."""
     where = f"{error.filename}: " if error.filename else ""
     line = f"{where}{error.strerror or error}"
     if error.filename == OUTPUT and error.errno in _FULL:
@@ -176,7 +176,7 @@ def end_at_once(status: int) -> NoReturn:
 
 
 def is_interruption(error: BaseException) -> bool:
-    """Whether a Ctrl-C lies behind what was raised: it fell into a callback, or into a kernel as it came back."""
+    """Whether an exception comes from Ctrl-C, which may fall into a callback, or into a kernel as it comes back."""
     hook = sys.unraisablehook
     return (isinstance(hook, _Hook) and hook.interrupted) or _came_of_one(error)
 

@@ -51,7 +51,7 @@ class Meaning:
 
 
 class Parsed(Meaning):
-    """What a value is turned into before its type is checked.
+    """The conversion of a value before its type is checked.
 
     parse : raises ValueError, with what is wrong if there is more to say than `what`
     what : in words, what the value must be; empty: what the type says
@@ -160,7 +160,7 @@ class MarkedYaml:
 
 
 def convert(source: MarkedYaml, kind: type[T], keys: Keys = (), base: T | None = None) -> T:
-    """What stands at a key path, as a dataclass or another type; FileError with the line says what is wrong.
+    """The value at a key path, as a dataclass or another type; FileError with the line names what is wrong.
 
     kind : its fields are the keys that there may be (`HYPHENS = True`: with "-" in place of "_"), its hints what they
         hold: numbers, text, `bool`, `Literal`, `tuple` for lists, `dict`, dataclasses, `X | None`, all of them with

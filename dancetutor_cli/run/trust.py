@@ -161,7 +161,9 @@ def _trees() -> list[str]:
 
 
 def _fault(status: os.stat_result, *, may_be_shared: bool = False) -> str:
-    """Who else can change a file or folder; "" if nobody. may_be_shared : each with files of their own, as in /tmp."""
+    """The other users who can change a file or folder; "" if there are none. may_be_shared : each with files of their
+    own, as in /tmp.
+    """
     if not hasattr(os, "geteuid"):
         return ""
     if status.st_uid not in (0, os.geteuid()):

@@ -72,7 +72,7 @@ class Kernel:
         self._lock = Lock()
 
     def __call__(self, *args: Any) -> Any:
-        """What the function gives. DancetutorError if it raises: machine code cannot say what."""
+        """The result of the function. DancetutorError if it raises: machine code cannot report more."""
         arguments: list[Any] = []
         _open(args, arguments)
         words = _words(arguments, self._last)

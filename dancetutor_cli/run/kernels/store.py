@@ -1,4 +1,4 @@
-"""Where compiled kernels are kept, and in which form: found out without importing numba.
+"""The place and form of compiled kernels, found without importing numba.
 
 Beside the modules where that can be written, else in the user's cache, else in a temporary folder of the user's own:
 compiling takes the better part of a minute, and an installation may be read-only and its user without a home. Only
@@ -136,7 +136,7 @@ def _roots() -> Iterator[tuple[Path | None, str]]:
 
 
 def count_kernels(folder: Path) -> tuple[int, int]:
-    """How many kernels a folder and those below it hold that fit here, and how many that something else compiled."""
+    """How many usable kernels a folder and those below it hold, and how many that another version compiled."""
     kernels = {(path.parent, *path.name.split(".")[:2]): path for path in folder.rglob(f"*{SUFFIX}")}
     fits = [_head_of(path)[CHECKSUM:] == maker() for path in kernels.values()]
     return sum(fits), len(fits) - sum(fits)
@@ -179,7 +179,7 @@ def source_modules(source: Path, package: Path = PACKAGE) -> list[Path]:
     return sorted(found)
 
 
-# For which processor kernels are compiled, and by what: known without importing numba.
+# The processor for which kernels are compiled, and their compiler: known without importing numba.
 #
 # numba compiles for the very processor that it runs on, so what it has compiled fits few others. Here all of them that
 # can do what most have done since 2013 get the same code: what came compiled with the package fits, a cache in a shared
@@ -223,7 +223,9 @@ def processor() -> tuple[str, str]:
 
 
 def is_portable() -> bool:
-    """Whether what this process compiles fits others: the portable processor, and no settings of numba's."""
+    """Whether the kernels that this process compiles work elsewhere: for the portable processor, without numba
+    settings.
+    """
     return not _settings() and processor() == _PORTABLE
 
 
@@ -249,7 +251,7 @@ def _version(name: str) -> str:
 
 @cache
 def _is_able() -> bool:
-    """Whether this processor can run what is compiled for the portable one."""
+    """Whether this processor can run kernels for the portable one."""
     is_x86 = platform.machine().lower() in ("x86_64", "amd64")
     return is_x86 and {f"+{one}" for one in _ABILITIES} <= set(_host_features().split(","))
 
