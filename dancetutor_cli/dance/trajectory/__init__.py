@@ -1,1 +1,1 @@
-"""From a plan to the body over the feet: its way over the ground, its height, how it turns, leans and bends."""
+"""From a plan to the body over the feet: its path over the ground, its height, its turns, leans and bends."""

@@ -1,4 +1,4 @@
-"""Where the centre of mass travels, so that she keeps her balance: soles as support, limbs that swing, zero moment."""
+"""The path of a centre of mass that keeps the dancer's balance: soles as support, swinging limbs, zero moment."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def support_of(feet: Feet, heel_down: float) -> Support:
 
 
 def _sole(foot: FootPath, heel_down: float) -> Array:
-    """Corners (n, 4, 2) of what of a foot carries, once round."""
+    """Corners (n, 4, 2) of the part of a foot that carries, once round."""
     ahead = np.column_stack((np.sin(foot.yaw), np.cos(foot.yaw)))
     aside = SOLE_HALF_WIDTH * np.column_stack((ahead[:, 1], -ahead[:, 0]))
     back = np.where(foot.pitch < heel_down, SOLE_BACK_HEEL, SOLE_BACK_TOES)[:, None]
@@ -74,8 +74,9 @@ def _sole(foot: FootPath, heel_down: float) -> Array:
 def _sides(feet: Feet, soles: list[Array]) -> Array:
     """Unit vectors (n, 5, 2) square to the sides of a hull of the soles that stand.
 
-    Of one foot its own two; of two those that touch both soles, and at the ends of the line between them.
-    With the same directions at all times the hull of a turned foot would be centimetres wider than the foot.
+    For one foot these are its own two sides; for two feet those that touch both soles, and the sides at the ends of the
+    line between them. With the same directions at all times, the hull of a turned foot would be centimetres wider than
+    the foot.
     """
     line = soles[0].mean(axis=1) - soles[1].mean(axis=1)
     left, right = feet[0].down, feet[1].down
@@ -106,9 +107,9 @@ def along_sides(across: Array, places: Array) -> Array:
 
 # How far limbs that swing about the centre of mass move the zero-moment point.
 #
-# The cart-table model knows the body as one point. A body whose parts turn about that point with the momentum L pushes
-# with the moment L', and the ground holds against it farther away by  (L'_z, -L'_x) / (m (y'' + g))  (Popovic, Goswami
-# and Herr, 2005). In streams that are decimetres, of which the soles give centimetres.
+# In the cart-table model the body is one point. A body whose parts turn about that point with the momentum L pushes
+# with the moment L', and the ground balances it farther away by (L'_z, -L'_x) / (m (y'' + g)) (Popovic, Goswami and
+# Herr, 2005). In streams these are decimetres, of which the soles can give centimetres.
 
 AGAINST = 0.7  # of the way from the middle of the soles to their edge: nearer to it balance is lost
 FARTHEST = 0.03  # metres that it goes at most; farther, ankles of wide stands bend too far before a leap
@@ -133,9 +134,10 @@ def rotation_zmp_offset(skeleton: Skeleton, positions: Array, world: Array, rate
 
 
 def counter_rotation_zmp(support: Support, turning: Array) -> Array:
-    """Where (n, 2) the mass's own zero-moment point is best, so that with `turning` (n, 2) it is in the soles' middle.
+    """The best place (n, 2) of the mass's own zero-moment point, so that with `turning` (n, 2) it is in the soles'
+    middle.
 
-    Not all the way: the own point, too, stays well within the soles.
+    It does not go all the way, because the own point, too, must stay well within the soles.
     """
     along, middle = along_sides(support.across, turning), along_sides(support.across, support.middle)
     room = np.where(along > 0.0, middle - support.low, support.high - middle)
@@ -145,12 +147,12 @@ def counter_rotation_zmp(support: Support, turning: Array) -> Array:
     return np.asarray(support.middle - np.minimum(most.min(axis=1), far)[:, None] * turning)
 
 
-# Where the centre of mass travels over the ground, so that the dancer keeps her balance.
+# The path of the centre of mass over the ground, which keeps the dancer's balance.
 #
-# The cart-table model (Kajita 2003): the zero-moment point is  x - y / (y'' + g) x'' . It has to stay under the feet
-# that stand, and the pelvis where both legs reach their feet; within that the pelvis, which swinging legs throw, has
-# the least jerk. In flight nothing pushes sideways, so the path is straight. Where a song asks for the impossible,
-# limits give way by as little as they must.
+# The cart-table model (Kajita 2003): the zero-moment point is x - y / (y'' + g) x'' . It must stay under the standing
+# feet, and the pelvis where both legs reach their feet. Within these limits the pelvis, which swinging legs throw, has
+# the least jerk. In flight nothing pushes sideways, so the path is straight. If a song asks for the impossible, limits
+# give way by as little as possible.
 
 NODE_RATE, ROUGH_RATE = 80.0, 40.0  # nodes per second of the path, and of one that is not tightened
 UNIT = 0.03  # metres; scales the programme
@@ -256,7 +258,7 @@ class _PathGoals:
 
 
 def _room(feet: Feet, back: float, farthest: float) -> tuple[Array, Array]:
-    """Lowest and highest place (n, 2) of the pelvis from which both legs reach; back : from ball to ankle, metres."""
+    """Lowest and highest place (n, 2) of the pelvis at which both legs reach; back : from ball to ankle, metres."""
     ankles = [f.ball[:, [0, 2]] - back * np.column_stack((np.sin(f.yaw), np.cos(f.yaw))) for f in feet]
     return np.maximum(*ankles) - farthest, np.minimum(*ankles) + farthest
 
@@ -298,7 +300,7 @@ def _sway(feet: Feet, times: Array, layers: LayerSettings) -> Array:
 
 
 def _shifted(feet: Feet, onto: float, shift: Array, slowness: Array, rate: float) -> Array:
-    """(n, 2): how the zero-moment point goes so that the weight goes `shift` (n,) metres towards the left foot.
+    """(n, 2): the way of the zero-moment point that moves the weight by `shift` (n,) metres towards the left foot.
 
     onto : the part of the way to the middle of a foot that it goes at most
     """
@@ -319,8 +321,8 @@ def _zero_moment(path: Array, slowness: Array, rate: float) -> Array:
 def _tightened(want: _PathGoals, given: Support, zmp: Array, flight: NDArray[np.bool_]) -> _PathGoals:
     """Limits moved inward by as much as a zero-moment point (n, 2) is beyond the given ones.
 
-    What people see of a body, and what the quality report measures, has no trembling above 10 Hz; but as the weight
-    goes from foot to foot within a few hundredths of a second, some of that is needed to arrive in time.
+    People see no trembling above 10 Hz, and the quality report does not measure it. But as the weight goes from foot to
+    foot within a few hundredths of a second, some of it is needed to arrive in time.
     """
     low, high, tight = given.low, given.high, want.support
     along = along_sides(given.across, zmp)

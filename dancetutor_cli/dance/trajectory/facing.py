@@ -1,4 +1,4 @@
-"""Which way pelvis, chest and head face; how she bends for palms, turns for the bar and leans on it."""
+"""Which way pelvis, chest and head face; how the body bends for palms, turns for the bar and leans on it."""
 
 from __future__ import annotations
 
@@ -80,14 +80,14 @@ def wrapped(angle: Array) -> Array:
     return np.asarray((angle + np.pi) % (2 * np.pi) - np.pi)
 
 
-# Turns in which the far hand crosses over to the bar: meanwhile trunk and chest turn and lean to it.
+# Turns in which the far hand crosses over to the bar: meanwhile, trunk and chest turn and lean to it.
 
 
 def crossing_share(grips: tuple[Grip, ...], times: Array, numbers: AcrossSettings) -> Array:
     """How far (n,) the body has turned and leaned for a hand that crosses over, -1 to 1.
 
-    Wholly a little before the hand is there, until a little after; positive where she is turned to the left, so that
-    the right hand is the far one.
+    In full from a little before the hand is there until a little after; positive if the dancer is turned to the left,
+    so that the right hand is the far one.
     """
     out, ease = np.zeros(len(times)), max(numbers.ease, 1e-6)
     for grip in grips:
@@ -140,8 +140,8 @@ def screen_yaw(ground: Array, settings: MotionSettings) -> Array:
 
 
 def chest_and_head(plan: Plan, course: Course, ahead: Array, settings: MotionSettings) -> tuple[Array, Array]:
-    """Yaws (n,) of chest and head: they keep to the screen as far as they can; turned farther away, she looks whereto
-    she turns.
+    """Yaws (n,) of chest and head. They stay on the screen as far as they can; turned farther away, the dancer looks
+    where she turns.
 
     ahead (n,) : how much she looks where she walks and not at the screen
     """
@@ -168,8 +168,9 @@ def chest_and_head(plan: Plan, course: Course, ahead: Array, settings: MotionSet
 
 
 def limit_head_yaw(head: Array, chest: Array, rate: float, settings: MotionSettings) -> Array:
-    """Yaw (n,) of a head whose neck can follow: it turns from the chest, which has turned against the legs and with the
-    beat meanwhile, no faster and no farther than necks do; rate : samples per second."""
+    """Yaw (n,) of a head whose neck can follow. It turns from the chest, which has turned against the legs and with the
+    beat, no faster and no farther than necks do; rate : samples per second.
+    """
     look, neck = settings.look, head - chest
     most = np.radians(look.head_limit)
     held = no_faster(np.clip(neck, -most, most), rate, np.radians(look.head_rate))
@@ -191,12 +192,12 @@ def _head(gap: Array, course: Course, settings: MotionSettings) -> Array:
 
 
 def away_from_screen(gap: Array, settings: MotionSettings) -> Array:
-    """How far (n,) she has given up looking at a screen that is `gap` (n,) radians from her chest, 0 to 1."""
+    """How far (n,) the dancer has given up looking at a screen that is `gap` (n,) radians from her chest, 0 to 1."""
     first, last = np.radians(settings.look.away_from), np.radians(settings.look.away_to)
     return np.asarray(smooth((np.abs(gap) - first) / (last - first)))
 
 
-# How the body leans on the bar: it stays within reach of it while hands hold it.
+# How the body leans on the bar: it stays within reach of the bar while hands hold it.
 
 
 def leaning_share(grips: tuple[Grip, ...], times: Array, settings: BarSettings) -> Array:

@@ -1,4 +1,4 @@
-"""She hears the music: a give on every beat, and a trunk that turns and leans with jacks and slow steps."""
+"""The dancer hears the music: a give on every beat, and a trunk that turns and leans with jacks and slow steps."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_body import GrooveSettings, LayerSettings
 from dancetutor_cli.dance.smoothing import smooth, smooth_path
 
-# She hears the music: between slow steps and while she waits, knees and chest give a little on every beat.
+# The dancer hears the music: between slow steps and in waits, knees and chest give a little on every beat.
 
 Array = NDArray[np.float64]
 
 
 @lru_cache(maxsize=8)
 def heard_beats(beats: tuple[float, ...], shortest: float) -> Array:
-    """Those beats (k,) that she moves to: of quick ones every second one, or a later one; seconds.
+    """The beats (k,) to which the dancer moves, seconds: quick beats only every second one, or fewer.
 
     Not to be changed.
     """
@@ -33,7 +33,8 @@ def heard_beats(beats: tuple[float, ...], shortest: float) -> Array:
 
 
 def beat_bounce(context: Context, times: Array, tempo: Array, busy: Array) -> Array:
-    """How far (n,) she has given way to the beat, 0 between beats to 1 on each; 0 when feet are quick or hands busy.
+    """How far (n,) the dancer has given way to the beat, 0 between beats to 1 on each; 0 when feet are quick or hands
+    busy.
 
     tempo : (n,) as in `height`; busy : (n,) 0 to 1
     """
@@ -55,7 +56,7 @@ def dancing(tempo: Array, busy: Array, layers: LayerSettings) -> Array:
     return np.asarray(smooth(1.0 - tempo / layers.beat_fade) * (1.0 - np.clip(busy, 0.0, 1.0)))
 
 
-# Her trunk in jacks and slow steps: she leans and turns from side to side with the beat, never twice alike.
+# The trunk in jacks and slow steps: the dancer leans and turns from side to side with the beat, never twice alike.
 
 SEED = 20020716
 OVERSHOOT = 0.1  # how far a smooth path may go beyond what it is near to: 0.06 has been seen
@@ -84,7 +85,7 @@ class Groove:
 
 @dataclass(frozen=True, slots=True)
 class Occupation:
-    """What else she does at n times, (n,) each.
+    """The other activities of the dancer at n times, (n,) each.
 
     tempo : how quick her steps are, as in `height`; busy, waits : 0 to 1, how busy hands are and how much
     she waits
@@ -132,8 +133,9 @@ def leisure(plan: Plan, times: Array, numbers: GrooveSettings) -> Array:
 
 
 def stance(plan: Plan, times: Array, context: Context) -> Array:
-    """How far (n,) her weight must be towards the left foot, metres, at even times: at leisure it goes onto the foot
-    that has landed and stays there until the next one has; not near jumps, nor at the bar."""
+    """How far (n,) the weight must be towards the left foot, metres, at even times. If there is time, it goes onto the
+    foot that has landed and stays there until the next one has landed; not near jumps, nor at the bar.
+    """
     numbers = context.settings.groove
     if context.bar is not None:
         return np.zeros(len(times))
@@ -153,7 +155,7 @@ def _to(move: Move) -> bool:
 
 
 def _grounded(plan: Plan, times: Array, settings: MotionSettings) -> Array:
-    """How far (n,) jumps are off, 0 to 1: she goes straight up from both legs."""
+    """How far away (n,) jumps are, 0 to 1: the dancer goes straight up from both legs."""
     out, around = np.ones(len(times)), 3.0 * settings.groove.ease
     for start, end in plan.flights:
         near = slice(*np.searchsorted(times, (start - around, end + around)).tolist())
@@ -163,9 +165,9 @@ def _grounded(plan: Plan, times: Array, settings: MotionSettings) -> Array:
 
 
 def repeated(plan: Plan, times: Array, settings: MotionSettings) -> Array:
-    """How much (n,) one foot taps again and again where it is, at even times, 0 to 1: in jacks.
+    """How much (n,) one foot taps again and again in its place, at even times, 0 to 1: in jacks.
 
-    Several times on end: one such step in a stream is nothing.
+    It needs several such steps in a row: one in a stream does not count.
     """
     groove, out = settings.groove, np.zeros((len(times), 1))
     places = [np.array(track.start) for track in plan.feet]
@@ -183,10 +185,10 @@ def repeated(plan: Plan, times: Array, settings: MotionSettings) -> Array:
 
 
 def sway(plan: Plan, times: Array, context: Context) -> Array:
-    """Where (n,) she sways to, about -1 to 1, positive left: to one side on a beat, to the other on the next.
+    """Where (n,) the dancer sways to, about -1 to 1, positive left: to one side on a beat, to the other on the next.
 
-    Some are danced farther than others, and sometimes she stays on a side. For the mirror image of a play the other
-    way round.
+    Some beats are danced farther than others, and sometimes she stays on a side. In the mirror image of a play it is
+    the other way round.
     """
     numbers = context.settings.groove
     at = heard_beats(context.beats, max(numbers.shortest, 0.1))
@@ -201,16 +203,16 @@ def sway(plan: Plan, times: Array, context: Context) -> Array:
     return np.asarray(plan.hand * (place[k] + share * (place[k + 1] - place[k])))
 
 
-# Arms are carried otherwise in each phrase of the music: a large way, and a slow one, which no beat shakes.
+# Arms are carried differently in each phrase of the music: a large way, and a slow one, which no beat shakes.
 
 ARMS = 2  # of the seeds: other draws than those of `sway`
 
 
 def carriage(plan: Plan, times: Array, context: Context) -> Array:
-    """How far aside (n, 2) the left and the right hand are carried, about -1 to 1: from phrase to phrase otherwise.
+    """How far aside (n, 2) the left and the right hand are carried, about -1 to 1; different in each phrase.
 
-    A phrase is so many measures of four beats that it lasts `groove.phrase` at least. A hand is aside and ahead by
-    turns, never twice as far; which of them go together is drawn. For the mirror image of a play with hands changed.
+    A phrase has as many measures of four beats as last `groove.phrase` at least. A hand is aside and ahead in turn,
+    never twice as far; which hands go together is random. In the mirror image of a play the hands are exchanged.
     """
     numbers, beats = context.settings.groove, np.array(context.beats)
     at = np.array(heard_beats(tuple(beats[::4].tolist()), numbers.phrase))

@@ -1,4 +1,4 @@
-"""The height of the centre of mass over the whole song as one quadratic programme, and how low she crouches."""
+"""The height of the centre of mass over the whole song as one quadratic programme, and how low the dancer crouches."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from dancetutor_cli.dance.settings_body import BodySettings
 from dancetutor_cli.dance.settings_feet import JumpSettings
 from dancetutor_cli.dance.smoothing import smooth, smooth_path
 
-# How low she stands: on bent knees in streams, lower before and after jumps, and the lean that goes with it.
+# How low the dancer stands: on bent knees in streams, lower before and after jumps, and the lean that goes with it.
 
 Array = NDArray[np.float64]
 
@@ -48,9 +48,9 @@ def time_for_jumps(flights: Array, jump: JumpSettings) -> tuple[Array, Array]:
 
 
 def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
-    """How much lower (n,) she is before and after jumps, metres: deeper for higher jumps, less if time is short.
+    """How much lower (n,) the dancer is before and after jumps, metres: deeper for higher jumps, less if time is short.
 
-    A run of quick jumps has no time for that; there she is a little lower all the time.
+    A run of quick jumps leaves no time for that; in it she is a little lower all the time.
     """
     flights = plan.flights
     if not len(flights):
@@ -92,9 +92,9 @@ def landing_give(plan: Plan, times: Array, body: BodySettings) -> Array:
 
 
 def jump_drive(plan: Plan, times: Array, jump: JumpSettings) -> tuple[Array, Array]:
-    """Legs that push off and catch: how much (n, 2) of each there is, take-offs and landings, 0 to 1.
+    """How much (n, 2) legs push off and catch, at take-offs and landings, 0 to 1.
 
-    Where there was no time to crouch for it, or is none to give way after it, there is little.
+    It is little if there was no time to crouch before it, or is none to give way after it.
     """
     flights = plan.flights
     out = np.zeros((len(times), 2))
@@ -111,7 +111,8 @@ def jump_drive(plan: Plan, times: Array, jump: JumpSettings) -> tuple[Array, Arr
 
 
 def jump_swing(plan: Plan, times: Array, jump: JumpSettings) -> Array:
-    """Where arms are (n,) that help a jump: -1 back as she crouches, 1 ahead and up in the air, back as she lands.
+    """Where arms (n,) that help a jump are: -1 back as the dancer crouches, 1 ahead and up in the air, back as she
+    lands.
 
     As far as the jump is high, and as there is time for it.
     """
@@ -154,9 +155,10 @@ def jump_lean(plan: Plan, times: Array, jump: JumpSettings) -> Array:
 
 # The height of the centre of mass over the whole song as one quadratic programme.
 #
-# Unknown is the height at nodes in time; take-offs and landings are nodes. In flight it falls with g, exactly. On the
-# ground the jerk is least, while the height stays near a wanted one, below what the legs reach, and the ground pushes
-# with a force that legs can give. A landing and the next move share one ground phase: they overlap by themselves.
+# The unknowns are heights at nodes in time; take-offs and landings are nodes. In flight the height falls with g,
+# exactly. On the ground the jerk is least, while the height stays near a wanted one and below what the legs reach, and
+# the ground pushes with a force that legs can give. A landing and the next move share one ground phase, so they overlap
+# by themselves.
 
 NODE_RATE = 80.0  # nodes per second
 UNIT = 0.02  # metres; heights differ by about so much, which scales the programme
@@ -196,7 +198,7 @@ class HeightPath:
 
 @dataclass(frozen=True, slots=True)
 class HeightWish:
-    """What is asked of the height of the centre of mass at n even times, metres.
+    """The targets and limits of the height of the centre of mass at n even times, metres.
 
     times : (n,) seconds; target : (n,) where it would like to be; highest : (n,) where it may be
     above : (n,) how far it is over the pelvis, whose jerk on the ground is least

@@ -1,4 +1,4 @@
-"""Where the body goes over its legs: its course, how high legs let it be, heels as she takes off."""
+"""The body over its legs: its course, how high legs let it be, heels at take-off."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.trajectory.height import time_for_jumps
 
-# Where the body goes over the ground and which way it faces: what its height, its chest and its arms go by.
+# Where the body goes over the ground and which way it faces; its height, chest and arms follow from this.
 
 Array = NDArray[np.float64]
 
@@ -83,11 +83,11 @@ def ankle_of(foot: FootPath, skeleton: Skeleton, side: int) -> Array:
     return out
 
 
-# Heels that rise unevenly as she takes off: the leg with the farther way gets its length from its foot.
+# Heels that rise unevenly at take-off: the leg with the farther way gets its length from its foot.
 #
-# Over feet that stand apart one hip is farther from its ankle than the other. What one leg reaches holds the body down,
-# and the other leg would leave the ground on a bent knee. So the heel of the farther foot rises farther, until both
-# legs are equally long as the toes leave.
+# Over feet that stand apart, one hip is farther from its ankle than the other. The reach of one leg holds the body
+# down, and the other leg would leave the ground on a bent knee. So the heel of the farther foot rises farther, until
+# both legs are equally long as the toes leave.
 
 STEP = np.radians(0.25)  # between pitches that are tried
 JUMP_WINDOW = 0.05  # seconds between the feet; if one leaves earlier, the other one pushes alone

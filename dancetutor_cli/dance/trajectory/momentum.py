@@ -1,4 +1,4 @@
-"""What answers the legs: trunk and arms turn against the momentum of legs that swing and of a mass that travels.
+"""Trunk and arms answer the legs: they turn against the momentum of swinging legs and of a mass that travels.
 
 In people who walk, the momentum of the whole body about its centre of mass stays small though that of its parts is
 not: the parts cancel each other (Herr and Popovic, *Angular momentum in human walking*, 2008). So the momentum L(t) of
@@ -8,8 +8,8 @@ I about each axis is the one of least
     sum over time of   | T (q' + c L / I) |^2  +  e | q |^2  +  | S^3 q''' |^2 :
 
 momentum that is left, effort (of a posture off the upright one; more where gaze or hands need the trunk), and jerk.
-What is quicker than T is answered, by the part c of it; slower turns are left to the dance. Arms take a part of each
-turn with their own levers, which is where they swing and rise.
+Turns quicker than T are answered, by their part c; slower turns are left to the dance. Arms take a part of each turn
+with their own levers, so they swing and rise.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def least_effort(rate_wanted: Array, effort: Array, rate: float, arms: ArmSettin
 def lower_momentum(feet: Feet, course: Course, height: Array, skeleton: Skeleton) -> Array:
     """Momentum (n, 3) about the centre of mass of both legs and of what they carry, m^2/s per mass of the body.
 
-    The legs are straight lines from the hips of an upright body; the middle of what they carry is where the centre of
+    The legs are straight lines from the hips of an upright body; the middle of the carried part is where the centre of
     mass needs it.
     """
     mass = np.column_stack((course.mass[:, 0], height, course.mass[:, 1]))

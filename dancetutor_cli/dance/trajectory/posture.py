@@ -87,7 +87,7 @@ class Trajectory:
 
 @dataclass(frozen=True, slots=True)
 class RoughBake:
-    """What a rough bake has shown. trajectory : that it was of
+    """The results of a rough bake. trajectory : that it was of
 
     above : (n, 3), centre of mass minus root
     turning : (n, 2) as of `balance.rotation_zmp_offset`, or None if it is not known
@@ -169,9 +169,10 @@ def body_trajectory(
 
 
 def _pelvic_list(feet: Feet, rate: float, body: BodySettings) -> Array:
-    """How much lower (n,) the right hip is than the left one, radians: the pelvis sinks on the side whose leg bears
-    nothing (the pelvic list of Saunders, Inman and Eberhart, *The major determinants in normal and pathological gait*,
-    1953)."""
+    """How much lower (n,) the right hip is than the left one, radians: the pelvis sinks on the side of the leg without
+    weight (the pelvic list of Saunders, Inman and Eberhart, *The major determinants in normal and pathological gait*,
+    1953).
+    """
     bears = feet[0].down.astype(np.float64) - feet[1].down
     over = smooth_path(bears[:, None], np.ones(len(bears)), rate, body.list_time)[:, 0]
     return np.asarray(np.radians(body.list) * over)
@@ -185,7 +186,7 @@ def _neck_room(turned: Array, look: LookSettings) -> Array:
 def _course(
     plan: Plan, times: Array, feet: Feet, context: Context, known: RoughBake | None
 ) -> tuple[Course, tuple[str, ...]]:
-    """Where the body goes over the ground, and what of that had to be softened."""
+    """Where the body goes over the ground, and which limits had to be softened."""
     settings = context.settings
     above = np.tile(above_at_rest(context.skeleton), (len(times), 1)) if known is None else known.above
     yaw = pelvis_yaw(plan, times, settings)
@@ -211,7 +212,7 @@ def _course(
 
 
 def _pendulum(times: Array, known: RoughBake | None, above: Array) -> Pendulum:
-    """The inverted pendulum that she is; standing still as long as the height of her centre of mass is not known."""
+    """The inverted pendulum of the body; it stands still as long as the height of its centre of mass is not known."""
     offset = above[:, [0, 2]]
     if known is None:
         still = np.full(len(times), STANDING_HEIGHT / GRAVITY)
@@ -232,7 +233,7 @@ def _slowness(y: Array, acceleration: Array, least: float) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class LegWish:
-    """How she would like to stand at n times.
+    """The wanted stance at n times.
 
     length : (n,) hip to ankle; most : (n,) at most; sink : (n,) how far a plant or a beat lets her sink, metres
     bent : (n, 2) as in `facing.bent_down`; firm, tempo : (n,) as in `HeightWish`
@@ -247,7 +248,7 @@ class LegWish:
 
 
 def _wish(feet: Feet, course: Course, context: Context, legs: LegWish) -> HeightWish:
-    """How high the centre of mass would like to be and may be."""
+    """The wanted and the highest allowed height of the centre of mass."""
     settings, above = context.settings, course.above[:, 1]
     wanted = np.full(len(course.yaw), np.inf)
     highest = np.full(len(course.yaw), np.inf)
