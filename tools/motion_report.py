@@ -6,7 +6,8 @@ usage: tools/motion_report.py [--count 100] [--seed 6] [--section 40] [--part I/
 Without paths: COUNT charts of the corpus, by turns of each meter from 1 to 20 and more and of each steps type, the same
 ones for the same seed, and of each a section of so many seconds at a place that the seed says. With paths: every chart
 there that has a pad. --section 0 takes whole charts; --part 2/5 every fifth chart, from the second one on.
-Writes OUT.txt (worst charts first) and OUT.json, and prints the summary. Exit status 1 if a chart breaks.
+Writes OUT.txt (worst charts first) and OUT.json, and prints the summary: each goal, and how many meet it by speed of
+the steps and of hard singles (one pad, meter 9 and more). Exit status 1 if a chart breaks.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import sys
 import time
 from collections import defaultdict
 from dataclasses import asdict, dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +36,8 @@ HIGHEST = 20  # this meter and all above it are one group
 AROUND = 2.0  # seconds before the first note and after the last one that may be in a section
 FEWEST = 20  # rows with steps; a chart with fewer says little
 FAST = 12.0  # steps per second over which a goal may be missed, with a reason
+BANDS = (0.0, 2.0, 4.0, 6.0, 8.0, math.inf)  # steps per second on average, between which charts are counted together
+HARD = 9  # meter from which on a chart of one pad is a hard single
 
 
 @dataclass(frozen=True)
@@ -66,6 +70,16 @@ class Measured:
     @property
     def missed(self) -> list[dict[str, Any]]:
         return [f for f in self.figures if f["met"] is False]
+
+    @property
+    def pace(self) -> float:
+        """Steps per second on average, from the first one to the last one."""
+        return (self.steps - 1) / max(self.seconds, 1e-3)
+
+    @property
+    def hard_single(self) -> bool:
+        kind, *_, meter = self.label.split()
+        return kind.endswith("-single") and meter.isdigit() and int(meter) >= HARD
 
     @property
     def badness(self) -> tuple[bool, int, float]:
@@ -215,14 +229,34 @@ def summary(results: list[Measured]) -> str:
     for name, group in ((f"at most {FAST:g} steps/s", slow), (f"faster than {FAST:g} steps/s", fast)):
         lines.append(f"  {name}: {sum(not m.missed for m in group)} of {len(group)} meet every goal")
     lines += [f"  broken: {m.path} {m.label}: {m.error}" for m in results if m.error]
-    names = [f["name"] for m in slow[:1] or fast[:1] for f in m.figures if f["goal"] is not None]
+    names = list(dict.fromkeys(f["name"] for m in results for f in m.figures if f["goal"] is not None))
     lines.append(f"{'figure':32}{'goal':>9}{'missed by':>12}{'of these slow':>15}{'median':>10}{'worst':>10}  on")
     for name in names:
         rows = [(m, f) for m in results for f in m.figures if f["name"] == name and f["value"] is not None]
         rows = [(m, f) for m, f in rows if f["goal"] is not None]
         if rows:
             lines.append(_figure_line(name, rows))
-    return "\n".join(lines)
+    return "\n".join((*lines, "", *by_speed(results, names)))
+
+
+def by_speed(results: list[Measured], names: list[str]) -> list[str]:
+    """A table: of the charts of each band of speed, and of hard singles, how many meet each goal that they have."""
+    whole = [m for m in results if not m.error]
+    groups = {
+        (f"{low:g} to {high:g}" if high < math.inf else f"{low:g} on"): [m for m in whole if low <= m.pace < high]
+        for low, high in pairwise(BANDS)
+    }
+    groups["hard singles"] = [m for m in whole if m.hard_single]
+
+    def line(name: str, met: list[list[bool]]) -> str:
+        return f"{name:40}" + "".join(f"{f'{sum(m)} of {len(m)}' if m else '-':>14}" for m in met)
+
+    out = [f"{'met, by steps/s on average':40}" + "".join(f"{name:>14}" for name in groups)]
+    out.append(line("every goal", [[not m.missed for m in group] for group in groups.values()]))
+    for name in names:
+        of = [[f["met"] for m in group for f in m.figures if f["name"] == name] for group in groups.values()]
+        out.append(line(name, [[met for met in group if met is not None] for group in of]))
+    return out
 
 
 def _figure_line(name: str, rows: list[tuple[Measured, dict[str, Any]]]) -> str:

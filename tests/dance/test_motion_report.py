@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import module_file
 import numpy as np
@@ -36,6 +38,20 @@ def test_a_chart_is_measured_and_the_worst_comes_first(tool: ModuleType, tmp_pat
     assert "at most 12 steps/s: 1 of 1 meet every goal" in text and "faster than 12 steps/s: 0 of 1" in text
     line = next(line for line in text.splitlines() if line.startswith("balance"))
     assert line.split()[:4] == ["balance", "98", "1", "0"] and "x #0 dance-single Hard 9" in line
+
+
+def test_goals_are_counted_by_speed_and_of_hard_singles(tool: ModuleType) -> None:
+    def measured(label: str, steps: int, met: bool | None) -> Any:
+        figures = [{"name": "bounce", "value": 1.0, "goal": None if met is None else 1.8, "met": met, "at_least": True}]
+        return tool.Measured("x.sm", 0, label, steps, 10.0, 9.0, 1.0, "", figures)
+
+    slow, idle = measured("dance-single Easy 3", 11, True), measured("pump-double Edit 20", 16, None)
+    hard = [measured("pump-single Hard 9", 51, met) for met in (True, False)]
+    head, every, bounce = tool.by_speed([idle, slow, *hard, measured("dance-double Hard 9", 100, False)], ["bounce"])
+    assert re.split(r"  +", head)[1:] == ["0 to 2", "2 to 4", "4 to 6", "6 to 8", "8 on", "hard singles"]
+    assert re.split(r"  +", every)[1:] == ["2 of 2", "-", "1 of 2", "-", "0 of 1", "1 of 2"]
+    assert re.split(r"  +", bounce)[1:] == ["1 of 1", "-", "1 of 2", "-", "0 of 1", "1 of 2"]
+    assert "bounce " in tool.summary([idle, slow]), "the first chart has no goal for it, another one has"
 
 
 def test_the_pick_is_even_over_meters_and_types_and_one_for_a_seed(
