@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dancetutor_cli.dance.physics.repin import restrained
+from dancetutor_cli.dance.physics.repin import feet_of, repinned, restrained
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import LIMITS, beyond, dancer_skeleton
 
@@ -33,3 +33,18 @@ def test_a_joint_that_goes_too_far_slows_down_before_its_limit() -> None:
 def test_what_is_within_its_limits_stays_to_the_bit() -> None:
     given = swung(10 * np.sin(2 * np.pi * TIMES), "vt10")
     np.testing.assert_array_equal(restrained(SKELETON, given, TIMES), given)
+
+
+def test_a_leg_that_a_rising_hip_stretches_does_not_snap_straight() -> None:
+    """The root goes up at 1 m/s from where knees are bent by 40 degrees to beyond what legs reach; feet stay."""
+    skeleton, frames = SKELETON, 120
+    still = np.tile(quat.IDENTITY, (frames, len(skeleton.names), 1))
+    low = np.tile(skeleton.rest[0], (frames, 1))
+    feet = feet_of(skeleton, still, low - [0.0, 0.05, 0.0])  # of a body 5 cm lower: their legs are straight
+    rises = low - [0.0, 0.10, 0.0] + np.linspace(0.0, 0.12, frames)[:, None] * [0.0, 1.0, 0.0]
+    rotations, root = repinned(skeleton, (still, rises), feet)
+    ankles = feet_of(skeleton, rotations, root).places
+    np.testing.assert_allclose(ankles, feet.places, atol=1e-4)
+    knee = np.degrees(quat.angle_between(rotations[:, skeleton.index("l_knee")], quat.IDENTITY))
+    assert np.ptp(knee) > 20.0
+    assert np.abs(np.diff(knee)).max() < 1.5  # 0.8 as measured; 2.2 with a stop

@@ -25,6 +25,7 @@ from dancetutor_cli.dance.units import Array, Poses
 
 STRAIGHTEST = np.radians(6.0)  # a knee stays bent by so much
 REACH_ROUNDS = 40  # rounds of pulling the pelvis until both legs reach
+SOFT = 0.003  # metres over which a leg comes to its stretch: a knee that snaps straight sinks the foot between two keys
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,12 +101,13 @@ def _pull(skeleton: Skeleton, pelvis: Array, root: Array, legs: list[Leg], goals
     """Metres (f, 3) by which the root must move so that both ankles are within reach of their legs."""
     by = np.zeros_like(root)
     hips = [root + quat.rotate(pelvis, skeleton.offsets[leg.hip]) for leg in legs]
-    for _ in range(REACH_ROUNDS):
+    for first in (True, *[False] * REACH_ROUNDS):
         missing = 0.0
         for leg, hip, goal in zip(legs, hips, goals, strict=True):
             way = goal - hip - by
             far = np.linalg.norm(way, axis=1)
-            short = np.maximum(far - leg.longest, 0.0)
+            past = far - leg.longest
+            short = SOFT * np.logaddexp(0.0, past / SOFT) if first else np.maximum(past, 0.0)
             by += way / np.maximum(far, 1e-9)[:, None] * short[:, None]
             missing = max(missing, float(short.max()))
         if missing < 1e-6:
