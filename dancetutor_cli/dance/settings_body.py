@@ -40,7 +40,9 @@ class BodySettings:
     lean_time: Seconds
     pelvis_lean: Ratio
     list: Degrees
+    list_stream: Degrees
     list_time: Seconds
+    list_early: Seconds
     pelvis_bend: Ratio
     deep_bend: Degrees
     stream_time: Seconds

@@ -212,3 +212,16 @@ def test_nobody_sinks_into_the_pad_for_a_palm_out_of_reach() -> None:
     """Feet on the left pad's left side, a hand on the right pad's right panel: 1.4 metres away."""
     danced = play([(2.0, {0: L}), (2.5, {1: R}), (4.5, {0: L, 1: R, 7: RH}), (6.5, {0: L})], True)
     assert body_of(bake(chart().timing, danced, pad(True))).joints[:, 0, 1].min() > 0.2
+
+
+def test_a_hip_has_come_up_as_its_foot_lands_and_the_knee_gives() -> None:
+    """Steps for 22 seconds, 3.7 a second, round the pad: before, the hip came up as the knee was to give."""
+    events = [(1.0 + 0.27 * k, {(0, 1, 3, 2)[k % 4]: (L, R)[k % 2]}) for k in range(84)]
+    late = replace(SETTINGS, body=replace(SETTINGS.body, list_early=0.0))
+    gives, tilts = [], []
+    for settings in (SETTINGS, late):
+        found = report(bake(chart().timing, play(events), pad(), settings=settings))
+        gives.append(found["give of the knee at landings, median"].value)
+        tilts.append(found["tilt of the hips, deviation"].value)
+    assert gives[0] > gives[1] + 2.0, gives
+    assert min(tilts) > 3.0

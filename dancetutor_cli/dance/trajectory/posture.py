@@ -163,19 +163,20 @@ def body_trajectory(
     return Trajectory(
         times, course.mass, mass_height, course.ground, height, course.yaw, chest, head, tilt, reached,
         np.zeros((len(times), 2)), np.zeros((len(times), 2)), groove.beat, groove.sway,
-        loose * _pelvic_list(feet, course.rate, settings.body), arms,
+        loose * _pelvic_list(feet, tempo, course.rate, settings.body), arms,
         (*softened, *((HEIGHT,) if mass_height.softened else ())),
     )  # fmt: skip
 
 
-def _pelvic_list(feet: Feet, rate: float, body: BodySettings) -> Array:
+def _pelvic_list(feet: Feet, tempo: Array, rate: float, body: BodySettings) -> Array:
     """How much lower (n,) the right hip is than the left one, radians: the pelvis sinks on the side of the leg without
     weight (the pelvic list of Saunders, Inman and Eberhart, *The major determinants in normal and pathological gait*,
     1953).
     """
     bears = feet[0].down.astype(np.float64) - feet[1].down
     over = smooth_path(bears[:, None], np.ones(len(bears)), rate, body.list_time)[:, 0]
-    return np.asarray(np.radians(body.list) * over)
+    early = np.clip(np.arange(len(over)) + round(body.list_early * rate), 0, len(over) - 1)
+    return np.asarray(np.radians(body.list + body.list_stream * tempo) * over[early])
 
 
 def _neck_room(turned: Array, look: LookSettings) -> Array:
