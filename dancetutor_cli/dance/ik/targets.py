@@ -249,9 +249,9 @@ def _behind_the_chest(hands: tuple[Array, Array], yaw: Array, rate: float, arms:
     late = smooth_path(yaw[:, None], ones, rate, arms.turn_time)[:, 0] - yaw
     late = most * np.tanh(late / most)
     quick = np.abs(np.gradient(yaw)) * rate
-    drawn = smooth((quick - np.radians(arms.turn_easy)) / np.radians(arms.turn_quick))[:, None]
-    drawn = smooth_path(drawn, ones, rate, arms.turn_time)
-    near = hang - 0.7 * drawn[..., None] * way
+    drawn = smooth((quick[:, None] - np.radians([arms.turn_easy, arms.turn_let_go])) / np.radians(arms.turn_quick))
+    drawn, let_go = np.split(smooth_path(drawn, ones, rate, arms.turn_time), 2, axis=1)
+    near = hang - let_go[..., None] * way
     near[..., 0] -= arms.drawn_in * drawn * np.array([1.0, -1.0])
     near[..., 2] *= 1.0 - arms.drawn_back * drawn
     return quat.rotate(quat.from_axis_angle(UP, late)[:, None], near)

@@ -119,8 +119,7 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     sink = np.maximum(sink, numbers.stream_sink * (1.0 - slow) * grounded * pulse)
     to_side = sway(plan, times, context)
     free = np.clip(1.0 - share - occupation.busy - occupation.waits, 0.0, 1.0)
-    loose = np.clip(1.0 - occupation.busy - occupation.waits, 0.0, 1.0) * _among_steps(plan, times, numbers)
-    loose *= slow * (1.0 + grounded) / 2.0
+    loose = np.clip(1.0 - occupation.busy - occupation.waits, 0.0, 1.0) * _among_steps(plan, times)
     carried = loose[:, None] * carriage(plan, times, context)
     return Groove(beat, sink, share * to_side, free * grounded * to_side, grounded, carried)
 
@@ -208,6 +207,7 @@ def sway(plan: Plan, times: Array, context: Context) -> Array:
 
 # Arms are carried differently in each phrase of the music: a large way, and a slow one, which no beat shakes.
 
+AMONG = 1.8  # seconds from a step from which on arms are carried
 ARMS = 2  # of the seeds: other draws than those of `sway`
 
 
@@ -215,25 +215,27 @@ def carriage(plan: Plan, times: Array, context: Context) -> Array:
     """How far aside (n, 2) the left and the right hand are carried, about -1 to 1; different in each phrase.
 
     A phrase has as many measures of four beats as last `groove.phrase` at least. A hand is aside and ahead in turn,
-    never twice as far; which hands go together is random. In the mirror image of a play the hands are exchanged.
+    never twice as far, and mostly the other one is elsewhere: both aside would be wings. In the mirror image of a play
+    the hands are exchanged.
     """
     numbers, beats = context.settings.groove, np.array(context.beats)
     at = np.array(heard_beats(tuple(beats[::4].tolist()), numbers.phrase))
     if len(at) < 2:
         return np.zeros((len(times), 2))
     chance = chance_of(SEED, ARMS, *plan.song, *context.own)
-    far, stays = chance.uniform(0.6, 1.0, (len(at), 2)), chance.random((len(at), 2)) < numbers.phrase_stays
-    stays[1:] &= ~stays[:-1]
-    place = far * np.cumprod(np.where(stays, 1.0, -1.0), axis=0)
+    far, draws = chance.uniform(0.6, 1.0, (len(at), 2)), chance.random((len(at), 2)) < numbers.phrase_stays
+    draws[1:] &= ~draws[:-1]
+    first = np.cumprod(np.where(draws[:, 0], 1.0, -1.0))
+    place = far * first[:, None] * np.column_stack((np.ones(len(at)), np.where(draws[:, 1], 1.0, -1.0)))
     k = np.clip(np.searchsorted(at, times, side="right") - 1, 0, len(at) - 2)
     since = (times - at[k]) / np.minimum(at[k + 1] - at[k], numbers.phrase_ease)
     out = place[k] + smooth(since)[:, None] * (place[k + 1] - place[k])
     return np.asarray(out if plan.hand > 0.0 else out[:, ::-1])
 
 
-def _among_steps(plan: Plan, times: Array, numbers: GrooveSettings) -> Array:
-    """Whether (n,) there are steps before and after, 0 to 1: where there are none for a phrase, arms hang."""
+def _among_steps(plan: Plan, times: Array) -> Array:
+    """Whether (n,) there are steps before and after, 0 to 1: where there are none for some time, arms hang."""
     lands = np.array([-np.inf, *sorted(touch.start for touch in plan.touches), np.inf])
     k = np.searchsorted(lands, times)
     away = np.minimum(times - lands[k - 1], lands[np.minimum(k, len(lands) - 1)] - times)
-    return smooth((numbers.phrase - away) / numbers.phrase_ease)
+    return smooth(1.0 - away / AMONG)

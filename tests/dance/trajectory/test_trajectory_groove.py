@@ -128,6 +128,16 @@ def test_arms_are_carried_differently_from_phrase_to_phrase_and_slowly() -> None
     assert np.abs(carried[:, 0] - carried[:, 1])[inside].max() > 0.2, "each in its own way"
 
 
+def test_arms_are_carried_in_streams_too_and_mostly_one_aside_and_one_ahead() -> None:
+    """Both aside are wings. Each length of a song draws otherwise."""
+    np.testing.assert_array_equal(groove(stream(0.25, 36), tempo=1.0).carried, groove(stream(0.25, 36)).carried)
+    inside, apart = (TIMES > 3.0) & (TIMES < 9.0), []
+    for count in range(30, 42):
+        carried = groove(stream(0.25, count), tempo=1.0).carried[inside]
+        apart.append(float((np.sign(carried[:, 0]) != np.sign(carried[:, 1])).mean()))
+    assert np.mean(apart) > 0.65, apart  # half of the time if each went its own way
+
+
 def test_arms_hang_where_there_are_no_steps_or_hands_are_busy() -> None:
     carried = groove(stream(0.25, 8)).carried
     assert np.abs(carried[(TIMES > 2.5) & (TIMES < 3.5)]).max() > 0.3
