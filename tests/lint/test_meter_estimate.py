@@ -50,7 +50,10 @@ def test_the_terms_add_up_and_are_printed_in_order() -> None:
         assert told.low <= told.meter <= told.high
         assert told.bill.startswith(f"{told.meter:.1f} on the ")
     one = Estimate(11.4, 10, 13, "itg", True, (("streams", 3.1), ("rest", 0.02)))
-    assert one.bill == "11.4 on the ITG scale (10.0 to 13.0): streams +3.1" and one.most(1) == "11.4 on the ITG scale: streams +3.1"
+    assert (
+        one.bill == "11.4 on the ITG scale (10.0 to 13.0): streams +3.1"
+        and one.most(1) == "11.4 on the ITG scale: streams +3.1"
+    )
 
 
 @pytest.mark.parametrize("scale", ["itg", "ddr", "low"])

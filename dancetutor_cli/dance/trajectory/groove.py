@@ -114,7 +114,7 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     late = np.interp(times - settings.layers.beat_late, times, beat)
     deeper = np.maximum(numbers.deeper * jacks, numbers.leisure * np.maximum(easy, occupation.waits))
     sink = (1.0 + deeper) * settings.layers.bounce * late
-    hands_free = np.clip(engaged.busy + engaged.waits, 0.0, 1.0)
+    hands_free = np.clip(occupation.busy + occupation.waits, 0.0, 1.0)
     pulse = beat_bounce(context, times - settings.layers.beat_late, np.zeros(len(times)), hands_free)
     sink = np.maximum(sink, numbers.stream_sink * (1.0 - slow) * grounded * pulse)
     to_side = sway(plan, times, context)
