@@ -65,8 +65,9 @@ class ArmSettings:
     turn_time: Seconds
     turn_late: Degrees
     turn_easy: DegreesPerSecond
-    turn_let_go: DegreesPerSecond
     turn_quick: DegreesPerSecond
+    spin_easy: DegreesPerSecond
+    spin_quick: DegreesPerSecond
     drawn_in: Metres
     drawn_back: Ratio
     quick: MetresPerSecond

@@ -66,6 +66,7 @@ SUNK = 1.8  # a hand sinks so much farther, because its elbow comes down with it
 ELBOWS_IN = 0.62
 GIVEN_WAY = 0.145  # metres that a hand gives way to another dancer with which its elbow turns to the body
 SIDEWAYS = np.array([[1.0, 1.0], [-1.0, 1.0]])  # outward and up, of both hands
+SPUN = 0.5  # seconds before and after over which a spin is looked for
 ASKEWED = 1.6  # about how far `_wandering` goes up and down
 
 
@@ -249,9 +250,11 @@ def _behind_the_chest(hands: tuple[Array, Array], yaw: Array, rate: float, arms:
     late = smooth_path(yaw[:, None], ones, rate, arms.turn_time)[:, 0] - yaw
     late = most * np.tanh(late / most)
     quick = np.abs(np.gradient(yaw)) * rate
-    drawn = smooth((quick[:, None] - np.radians([arms.turn_easy, arms.turn_let_go])) / np.radians(arms.turn_quick))
-    drawn, let_go = np.split(smooth_path(drawn, ones, rate, arms.turn_time), 2, axis=1)
-    near = hang - let_go[..., None] * way
+    drawn = smooth((quick - np.radians(arms.turn_easy)) / np.radians(arms.turn_quick))[:, None]
+    drawn = smooth_path(drawn, ones, rate, arms.turn_time)
+    spin = np.abs(lately(np.gradient(yaw) * rate, rate, SPUN))  # on and on, not to and fro
+    let_go = smooth((spin - np.radians(arms.spin_easy)) / np.radians(arms.spin_quick))[:, None]
+    near = hang - np.maximum(0.7 * drawn, let_go)[..., None] * way
     near[..., 0] -= arms.drawn_in * drawn * np.array([1.0, -1.0])
     near[..., 2] *= 1.0 - arms.drawn_back * drawn
     return quat.rotate(quat.from_axis_angle(UP, late)[:, None], near)
