@@ -8,6 +8,7 @@ soles stand where hers do.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,13 +19,21 @@ from dancetutor_cli.dance.rig.body import local_rotations, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import upper_envelope
 from dancetutor_cli.dance.units import Array
+from dancetutor_cli.feet.limbs import Limb
 
 STRETCH = 0.995  # of the leg's length: the knee never locks
 SINK = 0.3  # seconds over which a character with short legs sinks into a wide stance
 HAND_BLEND = 0.25  # seconds over which a hand leaves its own way for the panel
 _LEG, _ARM = ("hip", "knee", "talocrural"), ("shoulder", "elbow", "radiocarpal")
-_LEFT_HAND = 2  # play.played.Limb
-Limb = tuple[str, tuple[str, str, str], Array, Array]  # side, chain, target (f, 3) of its end, weight (f,)
+
+
+class _LimbGoal(NamedTuple):
+    """Where a limb must end. side : "l" or "r"; chain : three joints; target : (f, 3); weight : (f,), 0 to 1."""
+
+    side: str
+    chain: tuple[str, str, str]
+    target: Array
+    weight: Array
 
 
 def retarget(motion: Motion, character: Character) -> Motion:
@@ -43,11 +52,11 @@ def onto(motion: Motion, own: Skeleton) -> Motion:
     source = {name: (positions[:, j], world[:, j]) for j, name in enumerate(motion.skeleton.names)}
     turned = _world_rotations(own, source, len(motion.times))
     always = np.ones(len(motion.times))
-    limbs = [(side, _LEG, _ankle_target(motion.skeleton, own, source, side), always) for side in "lr"]
+    limbs = [_LimbGoal(side, _LEG, _ankle_target(motion.skeleton, own, source, side), always) for side in "lr"]
     for number, side in enumerate("lr"):
-        weight = _hand_weight(motion, _LEFT_HAND + number)
+        weight = _hand_weight(motion, Limb.LEFT_HAND + number)
         if weight.any():
-            limbs.append((side, _ARM, source[f"{side}_radiocarpal"][0], weight))
+            limbs.append(_LimbGoal(side, _ARM, source[f"{side}_radiocarpal"][0], weight))
     root = _root(motion, own, turned, limbs)
     for limb in limbs:
         turned = _limb(own, turned, root, limb, source)
@@ -81,30 +90,30 @@ def _under_ball(skeleton: Skeleton, side: str) -> Array:
     return np.array([0.0, -ankle[1], ahead])
 
 
-def _root(motion: Motion, own: Skeleton, turned: Array, limbs: list[Limb]) -> Array:
+def _root(motion: Motion, own: Skeleton, turned: Array, limbs: list[_LimbGoal]) -> Array:
     """Root positions (f, 3): her height and her sway between the feet in proportion to the legs, within their reach.
 
     She sinks for a wide stance, early and smoothly; only what is left is a pull towards the target.
     """
     share = min(1.0, own.rest[0, 1] / motion.skeleton.rest[0, 1])
-    middle = np.mean([target for _, chain, target, _ in limbs if chain is _LEG], axis=0)
+    middle = np.mean([limb.target for limb in limbs if limb.chain is _LEG], axis=0)
     root: Array = middle + (motion.root - middle) * share
     root[:, 1] = motion.root[:, 1] * own.rest[0, 1] / motion.skeleton.rest[0, 1]
     places, _ = world_transforms(own, local_rotations(own, turned), np.zeros_like(root))
-    starts = [places[:, own.index(f"{side}_{chain[0]}")] for side, chain, _, _ in limbs]
-    reach = [STRETCH * sum(_lengths(own, side, chain)) for side, chain, _, _ in limbs]
+    starts = [places[:, own.index(f"{limb.side}_{limb.chain[0]}")] for limb in limbs]
+    reach = [STRETCH * sum(_lengths(own, limb.side, limb.chain)) for limb in limbs]
     sink = np.zeros(len(root))
-    for start, length, (_, chain, target, _) in zip(starts, reach, limbs, strict=True):
-        if chain is _LEG:
-            way = root + start - target
+    for start, length, limb in zip(starts, reach, limbs, strict=True):
+        if limb.chain is _LEG:
+            way = root + start - limb.target
             aside = np.minimum(np.hypot(way[:, 0], way[:, 2]), 0.85 * length)
             sink = np.maximum(sink, way[:, 1] - np.sqrt(length**2 - aside**2))
     root[:, 1] -= upper_envelope(motion.times, sink, SINK)
     for _ in range(16):
-        for start, length, (_, _, target, weight) in zip(starts, reach, limbs, strict=True):
-            way = root + start - target
+        for start, length, limb in zip(starts, reach, limbs, strict=True):
+            way = root + start - limb.target
             distance = np.linalg.norm(way, axis=1)
-            over = weight * np.maximum(distance - length, 0.0)
+            over = limb.weight * np.maximum(distance - length, 0.0)
             root = root - way * (over / np.maximum(distance, 1e-9))[:, None]
     return root
 
@@ -114,7 +123,7 @@ def _lengths(skeleton: Skeleton, side: str, chain: tuple[str, str, str]) -> tupl
     return float(np.linalg.norm(b - a)), float(np.linalg.norm(c - b))
 
 
-def _limb(own: Skeleton, turned: Array, root: Array, limb: Limb, source: dict[str, tuple[Array, Array]]) -> Array:
+def _limb(own: Skeleton, turned: Array, root: Array, limb: _LimbGoal, source: dict[str, tuple[Array, Array]]) -> Array:
     """World rotations with one limb solved: its end at `target` where weight (f,) is 1, its bend as the dancer's.
 
     The cosine law gives the bend; the twist of both bones stays the dancer's. The last joint keeps its world rotation.
@@ -161,7 +170,7 @@ def _hand_weight(motion: Motion, limb: int) -> Array:
     """1 while the hand presses a panel or holds the bar, easing in and out over `HAND_BLEND`; (f,)."""
     out = np.zeros(len(motion.times))
     spans = [(c.start, c.end) for c in motion.contacts if c.limb == limb]
-    spans += [(g.start, g.end) for g in motion.grips if g.side == limb - _LEFT_HAND]
+    spans += [(g.start, g.end) for g in motion.grips if g.side == limb - Limb.LEFT_HAND]
     for start, end in spans:
         early = np.clip(1 - (start - motion.times) / HAND_BLEND, 0, 1)
         late = np.clip(1 - (motion.times - end) / HAND_BLEND, 0, 1)

@@ -17,7 +17,7 @@ from dancetutor_cli.chart.model import Kind, ReadWarning
 # are steps, and x, y and z heads of holds, of the first, second and third player of a chart for several; the game shows
 # each player's in a colour of their own. A chart with steps of the first and the second player and none of a third one
 # is read as one for two. What else stands in it (the third one's holds, plain notes) is for anyone who has that half of
-# the pad. One with steps of all three is for them and more, see `chart.cells`.
+# the pad. One with steps of all three is for them and more, see `parts_of`.
 
 PLAYERS = b"XYZxyz"
 TEXTS = {

@@ -114,7 +114,8 @@ def _solve_one(factor: Array, right: Array) -> Array:
     return x
 
 
-# Quadratic programmes over long sequences: least squares as in `banded`, with limits on sums of neighbouring nodes.
+# Quadratic programmes over long sequences: least squares as `BandedLeastSquares` solves them, with limits on sums of
+# neighbouring nodes.
 #
 # Limits may give way at a cost, so that one impossible place in a song does not leave it without a solution. An
 # interior-point method (Mehrotra 1992) solves them; every step solves one banded system, so the cost is linear in the

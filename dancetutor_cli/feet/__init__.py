@@ -1,6 +1,6 @@
 """Which limb steps which note: pads, limbs, feet that people have set, cost presets, and the solver -> `Play`.
 
-    solved.solve_song             the one way to feet for every command
+    solved.solve_song             the way to feet of a song's charts; `markers` goes it chart by chart: solver.solve
       |   pads, preset              where panels are; what each undesired thing costs; which preset a chart gets
       |   song_feet                 what people laid down: annotations in the file, sme (SMEditor), dancetutor.yaml
       |   overrides                 the same for one chart, and what of it cannot be danced

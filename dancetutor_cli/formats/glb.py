@@ -17,6 +17,7 @@ from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.units import Array
+from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.run.files import write_atomic
 from dancetutor_cli.run.pictures import texture_bytes
 
@@ -31,7 +32,6 @@ FREE = 0.002  # metres that a part of the body which touches nothing may be off 
 GRIPPING = 0.0003  # the same for a hand on the bar
 WAVING = 0.03  # and for hair, which is thrown about by what is so fast
 TOUCH = 0.06  # seconds around the touch of a palm in which its arm keeps all keys: contacts are measured there
-FIRST_HAND = 2  # play.played.Limb
 _ANKLES, _WRISTS, _HAIR = ("l_talocrural", "r_talocrural"), ("l_radiocarpal", "r_radiocarpal"), "braid"
 
 
@@ -87,7 +87,7 @@ def _touches(motion: Motion) -> tuple[Mask, Mask]:
     """Keys (f,) near a palm's touch, and those at which a hand holds the bar."""
     held, gripped = np.zeros((2, len(motion.times)), dtype=bool)
     for contact in motion.contacts:
-        if contact.limb >= FIRST_HAND:
+        if contact.limb >= Limb.LEFT_HAND:
             first, last = np.searchsorted(motion.times, (contact.start - TOUCH, contact.end + TOUCH))
             held[first:last] = True
     for grip in motion.grips:

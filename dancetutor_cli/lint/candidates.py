@@ -205,7 +205,7 @@ class Candidates:
 
     @cached_property
     def oddities(self) -> list[list[float]]:
-        """The inputs for the score estimate of each play, see `lint.meter.oddities`."""
+        """The inputs for the score estimate of each play, see `lint.meter.score`."""
         found: list[list[float]] = played_oddities(self.plays).tolist()
         return found
 

@@ -219,7 +219,7 @@ _KEEP_SECONDS = 30 * 24 * 3600  # results nobody asked for in so long are remove
 
 
 class ResultCache:
-    """A folder of results, see `result_file`. One that cannot be read or written is no result, never an error."""
+    """A folder of results, in files named by `key`. One that cannot be read or written is no result, never an error."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder

@@ -14,14 +14,14 @@ from dancetutor_cli.character.mesh import partner_of
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import palm_points
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.feet.limbs import hex_colour, limb_colours
+from dancetutor_cli.feet.limbs import Limb, hex_colour, limb_colours
 from dancetutor_cli.feet.solver.techniques import moves_and_turns
 from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.film.scene.geometry import ABOVE, PackedMeshes, pack
 from dancetutor_cli.film.scene.props import JOINT, bar_matrix, with_bar
 from dancetutor_cli.film.scene.renderer import RING_SHARE, SHADOW_FADE
 from dancetutor_cli.film.scene.scene import PANEL, SOLE_RADIUS, Scene
-from dancetutor_cli.formats.glb import FIRST_HAND, joint_groups, reaches
+from dancetutor_cli.formats.glb import joint_groups, reaches
 from dancetutor_cli.page.document import Blob
 from dancetutor_cli.run.languages import load_language
 from dancetutor_cli.run.pictures import texture_bytes
@@ -129,7 +129,7 @@ def pack_motion(blob: Blob, motion: Motion, name: str) -> dict[str, Any]:
     joint never turns far, w is left out, for it follows from the rest.
     """
     groups, every = [], joint_groups(motion.skeleton)
-    touching = bool(motion.grips) or any(contact.limb >= FIRST_HAND for contact in motion.contacts)
+    touching = bool(motion.grips) or any(contact.limb >= Limb.LEFT_HAND for contact in motion.contacts)
     clocks = ((FAST, FINEST), (FAST, GRIPPING) if touching else (MEDIUM, COARSEST), (SLOW, HAIR), (SLOW, COARSEST))
     for number, (joints, (rate, off)) in enumerate(zip(every, clocks, strict=True)):
         if not joints:

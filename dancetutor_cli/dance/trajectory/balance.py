@@ -158,7 +158,7 @@ NODE_RATE, ROUGH_RATE = 80.0, 40.0  # nodes per second of the path, and of one t
 UNIT = 0.03  # metres; scales the programme
 NARROWER, NARROWEST = 0.05, 0.01  # metres: a limit moves at most so much a round, and both stay so far apart
 NEAR, END = 1e-5, 0.1  # how much being over the middle of the soles counts, and at both ends: no drifting off there
-GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of stretching, see `qp.Limits`
+GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of stretching, see `quadratic.Limits`
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,7 +186,7 @@ def balanced_path(
     hand: float = 1.0,
     shift: Array | None = None,
 ) -> tuple[Array, bool]:
-    """Path (n, 2) of the centre of mass over the ground, and whether its limits were softened, as in `qp.Solution`.
+    """Path (n, 2) of the centre of mass over the ground; whether its limits were softened, see `quadratic.Solution`.
 
     The body is a cart on a table (Kajita and others 2003): with x the centre of mass over the ground, y its height and
     g gravity the zero-moment point is  z = x - y / (y'' + g) x'' . On nodes k

@@ -162,7 +162,10 @@ def jump_lean(plan: Plan, times: Array, jump: JumpSettings) -> Array:
 
 NODE_RATE = 80.0  # nodes per second
 UNIT = 0.02  # metres; heights differ by about so much, which scales the programme
-GIVE_FORCE, GIVE_ROOM = 1e-5, 1e-4  # prices of pushing harder than legs do and of stretching them, see `qp.Limits`
+GIVE_FORCE, GIVE_ROOM = (
+    1e-5,
+    1e-4,
+)  # prices of pushing harder than legs do and of stretching them, see `quadratic.Limits`
 LOOSE = 1e-3  # how much the wanted height counts in flight
 LEAST_STAND = 0.012  # seconds; a flight that begins so soon after another one is left out
 
@@ -178,7 +181,7 @@ class Height(Protocol):
 class HeightPath:
     """Piecewise cubic through nodes: times (n,) seconds, values (n,) metres, slopes (n,) metres per second.
 
-    softened : whether legs reach farther or push harder there than they should, as in `qp.Solution`
+    softened : whether legs reach farther or push harder there than they should, as in `quadratic.Solution`
     """
 
     times: Array

@@ -316,7 +316,7 @@ def _solver(name: str, rules_of_model: Any) -> Any:
     def solve(rows, start, t, nodes, making, found):  # type: ignore[no-untyped-def]
         """Go on from the row `start` to the end of the rows. Returns the row reached and what has no room, or DONE.
 
-        From `TELL` on: write what the rows of `found.move` cost, and what happens in them, into `found`.
+        From `EXPLAIN`: solve nothing, only write what the rows of `found.move` cost, and what happens in them.
         With edits: each is tried alone, from the `start`-th on; returns the first after which no doublestep is left in
         its row, or their number.
         """

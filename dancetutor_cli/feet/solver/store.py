@@ -34,7 +34,7 @@ FACTS_MASK = (1 << EDGE_COST_SHIFT - FACTS_SHIFT) - 1
 COST_SHIFT = 32  # in `RowStates.node`: an edge below, the cost from here on; the least is the cheapest, then the first
 EDGE_MASK = (1 << COST_SHIFT) - 1
 FIRST, BASE = range(2)  # columns of `RowStates.row`
-# columns of `Found.edit`: a cell, what must be in it instead, and the row in which a doublestep is looked for
+# columns of `SolverPath.edit`: a cell, what must be in it instead, and the row in which a doublestep is looked for
 EDIT_ROW, EDIT_COLUMN, EDIT_STEP, EDIT_END, EDIT_MINE, EDIT_OF = range(6)
 START = 0  # number of the layer and the state before the first row
 # what a kernel wants before it can go on

@@ -172,7 +172,7 @@ def file_name(template: str, song: Song, chart: Chart) -> str:
 #
 # The film of each chart is prepared, drawn in segments and joined by separate pieces of work, so that all workers stay
 # busy to the end of a pack. Finished segments stay when a run is interrupted. A finished film is known by a hash of
-# everything that it is made of, and is not made again. This process writes these records (`film_records`).
+# everything that it is made of, and is not made again. This process writes these records (`records`).
 
 
 @dataclass

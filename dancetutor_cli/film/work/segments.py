@@ -173,7 +173,7 @@ def _report_frames(frames: Iterator[Frame], report: Callable[[int], None]) -> It
     report(waiting)
 
 
-# The pieces of work of whole films: open one, close it, and what becomes of it; `film_segments` is between them.
+# The pieces of work of whole films: open one, close it, and what becomes of it; `render_segment` draws it in between.
 
 
 @dataclass(frozen=True, slots=True)

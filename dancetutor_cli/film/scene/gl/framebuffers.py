@@ -247,7 +247,7 @@ class Patches:
 class StandingTarget:
     """What `cpu.standing.Background` holds, for the shader ground.frag; `target` has the picture to copy.
 
-    tiles : what squares of it hold, for `patches`; has_ground : bool (t, u), which of them hold any
+    tiles : what squares of it hold, for patches.vert; has_ground : bool (t, u), which of them hold any
     """
 
     def __init__(self, scene: Scene, camera: Camera, size: tuple[int, int], samples: int) -> None:
