@@ -19,6 +19,16 @@ In this package "she" is the dancer, whatever character is drawn.
 No stage calls a later one. `settle` repeats trajectory and inverse kinematics until both fit, and returns how well they
 do (its residuals). `grips` places hands on the bar after a rough bake. Hair (`physics.hair`) comes last.
 
+    units, context, settings      types; panels, bar and skeleton around the dancer; numbers of `configs/motion.yaml`,
+                                  a class for each section: settings_feet, settings_body, settings_arms
+    changes                       numbers that change over a song
+    clearance, gait               a foot's path in the air, for `foot_path`; how the body goes with steps of a walk
+    waits, face                   what she does while she waits; lids, smiles and eyes
+    request, two, performance     what the user wants; two on one pad; who dances a chart, and how
+    pieces, bake, ends            songs in pieces; the order of work of a piece; where a cut begins and ends
+    smoothing                     paths over time
+    quadratic, nonnegative        least squares in bands, with limits, and without negative unknowns
+
 The mirror image of a play gives the mirror image of the motion: where both sides are equal, the leading foot decides
 (`Plan.lead`). Numbers are in `configs/motion.yaml` (`settings`) and `configs/gaits` (`gait`), or follow from the rig.
 """
