@@ -215,7 +215,10 @@ class Plan:
 
     @property
     def hand(self) -> float:
-        """1 for a plan that the left foot leads, -1 for its mirror image: the sign of random choices."""
+        """1 for a plan that the left foot leads, -1 for its mirror image: the handedness, not a hand of the dancer's.
+
+        What chance chooses (to sway left or right) is multiplied by it, so that a mirrored play is danced mirrored.
+        """
         return 1.0 - 2.0 * self.lead
 
     @property

@@ -18,9 +18,10 @@ from dancetutor_cli.character.retarget import onto, retarget
 from dancetutor_cli.dance.physics.blend import load_choice
 from dancetutor_cli.dance.physics.captured import on_body, upright
 from dancetutor_cli.dance.physics.hair import add_hair
-from dancetutor_cli.dance.physics.pipeline import Tuning, through_ragdoll, tuned
+from dancetutor_cli.dance.physics.pipeline import through_ragdoll
 from dancetutor_cli.dance.physics.ragdoll import bones_of, place_points, points_of
 from dancetutor_cli.dance.physics.style import NEUTRAL, load_style
+from dancetutor_cli.dance.physics.tuning import Tuning, tuned
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton

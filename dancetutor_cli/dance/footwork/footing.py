@@ -196,6 +196,8 @@ class TakeOff:
 class Footing:
     """Both feet and the unwrapped feet normal, degrees, and how body and toes follow from them.
 
+    normal : the feet normal: which way is at a right angle to the line from the left foot's panel to the right foot's,
+    as in `Play.facing`, but whole turns count; 0 faces the screen, positive is left
     lead : the foot that leads, as in `Plan`; aim : which way the body would face; faced : which way it faced after the
     last row, radians
     resting : feet that stand where the dancer went home, until each steps again

@@ -1,10 +1,10 @@
-"""Input skeleton -> ragdoll -> output skeleton; springs and densities searched for a body not seen before."""
+"""Input skeleton -> ragdoll -> output skeleton: a motion goes in, and what the ragdoll makes of it comes out."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,21 +28,17 @@ from dancetutor_cli.dance.physics.pushes import (
     recovered,
     with_push_notes,
 )
-from dancetutor_cli.dance.physics.ragdoll import NOMINAL, bones_of, place_points, points_of
+from dancetutor_cli.dance.physics.ragdoll import bones_of, place_points, points_of
 from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, pin_hands, repinned, restrained
-from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN, Ragdoll, follow_all, simulate
+from dancetutor_cli.dance.physics.simulation import Ragdoll, follow_all, simulate
 from dancetutor_cli.dance.physics.stands import keep_feet_still
-from dancetutor_cli.dance.physics.style import PARTS, Spring, Style
+from dancetutor_cli.dance.physics.style import Style
 from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.dance.rig.body import PARTS as MASSES
 from dancetutor_cli.dance.rig.body import world_transforms
-from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond
+from dancetutor_cli.dance.rig.skeleton import beyond
 from dancetutor_cli.dance.smoothing import cubic, smooth, upper_envelope
 from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.feet.limbs import Limb
-from dancetutor_cli.run.errors import DancetutorError
-
-# Input skeleton -> ragdoll -> output skeleton: a motion goes in, and the motion that the ragdoll makes of it comes out.
 
 CORRECTIONS = ("knees", "feet", "limits")
 GIVING_BACK = 8  # rounds of giving way less where hips or ankles are at their limits
@@ -103,61 +99,94 @@ def through_ragdoll(motion: Motion, blend: Blend, wishes: Wishes = Wishes()) -> 
     unless she is pushed or caught so that she misses them: then the motion's notes say which.
     Raises DancetutorError with time and joint where the simulation fails, UsageError for points that there are not or
     a push outside of the motion.
+
+    The order of work (docs/physics.md):
+
+    1. Pushes and trips change the input; the ragdoll of each style follows it, and the mean of all is taken.
+    2. Near a palm that presses a panel the input replaces it. Joints come within their limits where a style wants that.
+    3. With `own_legs` this is all, unless feet are corrected or something befalls her.
+    4. Feet get the places of the input, but for those where a push makes her stagger.
+    5. A dance has arms, weight and palms put back (`_put_back`), captured motion is corrected (`_corrected`).
     """
-    skeleton, corrections = motion.skeleton, wishes.corrections
-    motion, blows = disturbed(motion, wishes.pushes, wishes.trips)
-    styles, shares = blend.within(motion.times)
-    runs = [_followed(motion, one, wishes, blows) for one in styles]
-    first, limits = runs[0], any(one.limits for one in styles)
-    rotations, root = mean_poses([_read(run.at, *run.made, motion.times) for run in runs], shares)
-    distances = mean_distances([run.distances for run in runs], motion.times, shares)
-    share = 1.0 - _pressing(motion)
-    rotations = quat.slerp(motion.rotations, rotations, share[:, None])
-    root = motion.root + share[:, None] * (root - motion.root)
+    given, blows = disturbed(motion, wishes.pushes, wishes.trips)
+    styles, shares = blend.within(given.times)
+    limits = any(style.limits for style in styles)
+    runs = [_followed(given, style, wishes, blows) for style in styles]
+    distances = mean_distances([run.distances for run in runs], given.times, shares)
+    free, calm = 1.0 - _pressing(given), _undisturbed(given, wishes)
+    rotations, root = mean_poses([_read(run.at, *run.made, given.times) for run in runs], shares)
+    rotations = quat.slerp(given.rotations, rotations, free[:, None])
+    root = given.root + free[:, None] * (root - given.root)
     if limits:
-        rotations = restrained(skeleton, rotations, motion.times, share * _undisturbed(motion, wishes))
-    if wishes.own_legs and not (wishes.pushes or wishes.trips or "feet" in corrections):
-        done = replace(motion, rotations=quat.continuous(rotations), root=root)
-        return RagdollResult(done, distances)
-    feet, held, plants = feet_of(skeleton, motion.rotations, motion.root), np.ones((len(root), 2)), None
-    motion, feet, missed = recovered(motion, feet, root, wishes.pushes)
-    if first.soles is not None:
-        plants = let_go(skeleton, feet, _at_keys(first.soles.plants(), first.at, motion.times))
+        rotations = restrained(given.skeleton, rotations, given.times, free * calm)
+    if wishes.own_legs and not (wishes.pushes or wishes.trips or "feet" in wishes.corrections):
+        return RagdollResult(_with_poses(given, (rotations, root)), distances)
+    feet = feet_of(given.skeleton, given.rotations, given.root)
+    goal, feet, missed = recovered(given, feet, root, wishes.pushes)
+    if wishes.corrections:
+        poses, plants = _corrected(goal, (rotations, root), feet, runs[0], wishes.corrections, limits)
+    else:
+        poses, plants = _put_back(goal, (rotations, root), feet, calm, free), None
+    noted = with_push_notes(_with_poses(goal, poses), goal.root, wishes.pushes, missed)
+    return RagdollResult(noted, distances, plants)
+
+
+def _with_poses(motion: Motion, poses: Poses) -> Motion:
+    return replace(motion, rotations=quat.continuous(poses[0]), root=poses[1])
+
+
+def _put_back(goal: Motion, poses: Poses, feet: AnkleTracks, calm: Array, free: Array) -> Poses:
+    """Poses of a dance with arms clear of the body, the centre of mass on its path, hips and ankles within their
+    limits, and palms on the bar; legs end in `feet`.
+
+    goal : the input; calm, free : (f,) how undisturbed she is, and how far she need not be as in the input, 0 to 1
+    """
+    skeleton = goal.skeleton
+    rotations = clear_arms(skeleton, goal.rotations, poses, feet, goal.times)
+    path = (goal.times, mass_of(skeleton, (goal.rotations, goal.root)))
+    poses = restore_mass_path(skeleton, (rotations, poses[1]), feet, path, calm, free)
+    if goal.grips:  # arms that are moved there have mass
+        poses = restore_mass_path(skeleton, pin_hands(goal, poses, feet), feet, path, calm, free)
+    return pin_hands(goal, _possible(goal, poses, feet), feet)
+
+
+def _corrected(
+    goal: Motion, poses: Poses, feet: AnkleTracks, run: _Run, corrections: Sequence[str], limits: bool
+) -> tuple[Poses, Plants | None]:
+    """Captured motion with the corrections asked for, and where its feet are held: None if feet are not corrected.
+
+    Feet stand still first, for knees, the height of the root and ankles follow from them. Then come palms on the bar,
+    arms out of the trunk, and flat toes. goal : the input; run : the ragdoll's; limits : whether a style has limits
+    """
+    skeleton, times = goal.skeleton, goal.times
+    rotations, root = poses  # the turns of toes are changed in place
+    held, plants = np.ones((len(root), 2)), None
+    if run.soles is not None:
+        plants = let_go(skeleton, feet, _at_keys(run.soles.plants(), run.at, times))
         feet, _ = planted(skeleton, feet, plants)
         hips = world_transforms(skeleton, rotations, root)[0][:, [skeleton.index(f"{s}_hip") for s in "lr"]]
-        feet, plants, held = keep_feet_still(skeleton, feet, plants, motion.times, hips)
+        feet, plants, held = keep_feet_still(skeleton, feet, plants, times, hips)
         feet = flatten_toes(skeleton, rotations, feet, plants, held)
-    free = root
+    sunk = root
     if "knees" in corrections:
-        root, feet = soft_legs(skeleton, (rotations, free), feet, held, motion.times)
-    if wishes.corrections:
-        poses = repinned(skeleton, (rotations, root), feet)
-    else:
-        rotations = clear_arms(skeleton, motion.rotations, (rotations, root), feet, motion.times)
-        path = (motion.times, mass_of(skeleton, (motion.rotations, motion.root)))
-        calm = _undisturbed(motion, wishes)
-        poses = restore_mass_path(skeleton, (rotations, root), feet, path, calm, share)
-        if motion.grips:  # arms that are moved there have mass
-            poses = restore_mass_path(skeleton, pin_hands(motion, poses, feet), feet, path, calm, share)
+        sunk, feet = soft_legs(skeleton, (rotations, root), feet, held, times)
+    poses = repinned(skeleton, (rotations, sunk), feet)
     if plants is not None:
-        up = risen(skeleton, poses, feet, plants, motion.times) - poses[1]
+        up = risen(skeleton, poses, feet, plants, times) - poses[1]
         poses = repinned(skeleton, (rotations, poses[1] + up), feet)
-        poses, feet, plants = eased_ankles(skeleton, poses, feet, plants, held, motion.times)
+        poses, feet, plants = eased_ankles(skeleton, poses, feet, plants, held, times)
         if "knees" in corrections:  # feet that were turned need other lengths of their legs
-            root, feet = soft_legs(skeleton, (poses[0], free + up), feet, held, motion.times)
-            poses = repinned(skeleton, (poses[0], root), feet)
-            poses, feet, plants = eased_ankles(skeleton, poses, feet, plants, held, motion.times)
-    if not wishes.corrections:
-        poses = _possible(motion, poses, feet)
-    rotations, root = pin_hands(motion, poses, feet)
+            sunk, feet = soft_legs(skeleton, (poses[0], root + up), feet, held, times)
+            poses = repinned(skeleton, (poses[0], sunk), feet)
+            poses, feet, plants = eased_ankles(skeleton, poses, feet, plants, held, times)
+    turned, place = pin_hands(goal, poses, feet)
     if "limits" in corrections:
-        rotations = push_arms_out(skeleton, (rotations, root), motion.times)
+        turned = push_arms_out(skeleton, (turned, place), times)
     if plants is not None:
-        flatten_toes(skeleton, rotations, feet, plants, held)
+        flatten_toes(skeleton, turned, feet, plants, held)
         if limits:
-            rotations = restrained(skeleton, rotations, motion.times)
-    done = replace(motion, rotations=quat.continuous(rotations), root=root)
-    return RagdollResult(with_push_notes(done, motion.root, wishes.pushes, missed), distances, plants)
+            turned = restrained(skeleton, turned, times)
+    return (turned, place), plants
 
 
 def _undisturbed(motion: Motion, wishes: Wishes) -> Array:
@@ -249,129 +278,3 @@ def _pressing(motion: Motion) -> Array:
             away = np.maximum(np.maximum(contact.start - motion.times, motion.times - contact.end), 0.0)
             out = np.maximum(out, smooth((PALM_FADE - away) / (PALM_FADE - PALM_EXACT)))
     return out
-
-
-# Springs and densities for a body not seen before: a short search on a standard clip.
-#
-# Densities give each part the share of the body's mass that it has in a person. Then the search finds the frequency and
-# the damping of all springs with which the ragdoll follows the clip most closely, by the goals of one-on-one
-# simulation.
-
-FREQUENCIES, DAMPINGS = (24.0, 28.0, 32.0, 36.0, 40.0), (0.4, 0.5, 0.65)
-STURDY = 22.0  # kg/m^2: a body's mass is this times the square of its height
-DENSITIES = (400.0, 3000.0)  # kg/m^3 that a part may have
-OVER_SKULL = 0.17  # metres from the joint of the skull to the crown
-_ROUND = 0.6  # seconds of one swing of the standard clip
-
-
-@dataclass(frozen=True, slots=True)
-class Tuning:
-    """What a body changes of a style. stretch : factor of all frequencies; damping : of all dampings
-
-    density : by part, kg/m^3 where the style has 1000
-    """
-
-    stretch: float
-    damping: float
-    density: Mapping[str, float]
-
-    def of(self, style: Style) -> Style:
-        """The style for this body."""
-        springs, points = (
-            {
-                name: Spring(
-                    (s.frequency[0] * self.stretch, s.frequency[1] * self.stretch, s.frequency[2] * self.stretch),
-                    (s.damping[0] * self.damping, s.damping[1] * self.damping, s.damping[2] * self.damping),
-                )
-                for name, s in given.items()
-            }
-            for given in (style.springs, style.points)
-        )
-        density = {part: value * self.density[part] / NOMINAL for part, value in style.density.items()}
-        return replace(style, springs=springs, points=points, density=density)
-
-    def as_json(self) -> dict[str, Any]:
-        """Plain data."""
-        return asdict(self)
-
-    @classmethod
-    def from_json(cls, data: Any) -> Tuning | None:
-        """The tuning in plain data; None if it is none."""
-        try:
-            density = {part: float(data["density"][part]) for part in PARTS}
-            values = (float(data["stretch"]), float(data["damping"]), *density.values())
-        except (KeyError, TypeError, ValueError):
-            return None
-        return cls(values[0], values[1], density) if all(0 < v < 1e5 for v in values) else None
-
-
-def tuned(body: Skeleton, neutral: Style) -> Tuning:
-    """Search. body : named as the rig's; raises DancetutorError if the ragdoll follows with no springs at all."""
-    density, clip = _densities(body), standard_clip(body)
-    base = neutral.springs["chest"]
-    best: tuple[float, Tuning] | None = None
-    for damping in (base.damping[0], *(d for d in DAMPINGS if d != base.damping[0])):
-        stretches = FREQUENCIES if best is None else (best[1].stretch * base.frequency[0],)
-        for frequency in stretches:
-            tuning = Tuning(frequency / base.frequency[0], damping / base.damping[0], density)
-            score = _score(clip, tuning.of(neutral))
-            if best is None or score < best[0]:
-                best = score, tuning
-    assert best is not None
-    if not np.isfinite(best[0]):
-        raise DancetutorError("no ragdoll of this body can follow the motion; use another character")
-    return best[1]
-
-
-def _score(clip: Motion, style: Style) -> float:
-    """The worst of the three figures in parts of its goal; infinite where the simulation fails."""
-    try:
-        mean, deviation, largest = through_ragdoll(clip, Blend.of(style)).distances.worst
-    except DancetutorError:
-        return float("inf")
-    return max(mean / MEAN, deviation / DEVIATION, largest / LARGEST)
-
-
-def _densities(body: Skeleton) -> dict[str, float]:
-    """Kilograms per cubic metre with which each part weighs its share (de Leva's) of a sturdy person of this height."""
-    height = float(body.rest[body.index("skullbase")][1]) + OVER_SKULL
-    own: dict[str, float] = dict.fromkeys(PARTS, 0.0)
-    for bone in bones_of(body):
-        own[bone.part] += bone.mass
-    part_of = {bone.name: bone.part for bone in bones_of(body)}
-    wanted: dict[str, float] = dict.fromkeys(PARTS, 0.0)
-    total = 0.0
-    for name, share, _ in MASSES:
-        times = 2 if name.startswith("l_") else 1
-        wanted[part_of[name]] += share * times
-        total += share * times
-    mass = STURDY * height**2
-    wanted["clavicles"], wanted["spine"] = 0.05 * total, wanted["spine"] - 0.05 * total  # de Leva has them in the trunk
-    return {p: float(np.clip(NOMINAL * mass * wanted[p] / total / own[p], *DENSITIES)) for p in PARTS}
-
-
-def standard_clip(body: Skeleton) -> Motion:
-    """Treading on the spot just over the floor: knees, arms, forearms, trunk and head swing at their own paces."""
-    fps, seconds = 60, 2.4
-    t = np.arange(round(seconds * fps) + 1) / fps
-    w = 2 * np.pi * t / (2 * _ROUND)
-    rotations = np.zeros((len(t), len(body.names), 4))
-    rotations[..., 0] = 1
-    x, y, z = np.eye(3)
-
-    def turn(name: str, axis: Any, degrees: Any) -> None:
-        j = body.index(name)
-        rotations[:, j] = quat.multiply(rotations[:, j], quat.from_axis_angle(axis, np.radians(degrees)))
-
-    for s, sign in (("l", 1), ("r", -1)):
-        bend = 45 + 40 * np.sin(w) * sign
-        turn(f"{s}_hip", x, -bend / 2)
-        turn(f"{s}_knee", x, bend)
-        turn(f"{s}_talocrural", x, -bend / 2)
-        turn(f"{s}_shoulder", x, 25 * sign * np.sin(w))
-        turn(f"{s}_elbow", np.cross(body.offsets[body.index(f"{s}_elbow")], z), 40 + 25 * np.sin(1.3 * w))
-    turn("vl5", y, 12 * np.sin(w))
-    turn("vt10", x, 8 + 6 * np.sin(2 * w))
-    turn("skullbase", y, 25 * np.sin(0.7 * w))
-    root = body.rest[0] + np.column_stack((0.05 * np.sin(w / 2), 0.02 * np.sin(2 * w) + 0.025, 0.03 * np.cos(w / 2)))
-    return Motion(body, float(fps), t, rotations, root, ())
