@@ -35,7 +35,7 @@ def test_the_first_notes_are_in_sight_and_playing_leaves_time_to_get_ready(opene
     assert float(opened.run(NOW)) == pytest.approx(0.75, abs=0.05)
 
 
-def test_three_ways_to_begin(opened: Browser) -> None:
+def test_four_ways_to_begin(opened: Browser) -> None:
     opened.key("End")
     opened.click(".way.watch")
     opened.turn(0.06 + 0.5)
@@ -44,6 +44,13 @@ def test_three_ways_to_begin(opened: Browser) -> None:
     assert shown(opened, ".standing")
     opened.turn(0.06 + 0.5)
     assert float(opened.run(NOW)) == pytest.approx(0.5, abs=0.02)
+    opened.click(".way.waits")
+    opened.turn(0.06 + 30)  # the first row waits for whoever plays
+    assert float(opened.run(NOW)) == pytest.approx(2.0, abs=0.02) and said(opened).startswith("waiting for you")
+    assert pressed(opened) == "waits" and shown(opened, ".standing")
+    opened.click(".way.step")
+    opened.turn(0.06 + 2.5)
+    assert pressed(opened) == "step" and float(opened.run(NOW)) == pytest.approx(2.5, abs=0.02)  # nothing waits
     opened.click(".way.coached")
     assert "coach: not passed yet, begins at 70 %" in said(opened)
     opened.click(".way.watch")  # no loop and no coach is left of it
@@ -81,7 +88,7 @@ def test_a_song_that_is_over_shows_its_result_and_what_to_practise(opened: Brows
     )
     assert opened.run("document.querySelector('.result .main').id") == "again-missed"  # so many were missed
     opened.click("#again-missed")
-    assert not shown(opened, ".result") and said(opened).startswith("loop measure")
+    assert not shown(opened, ".result") and said(opened).startswith("coach: ") and "loop measure" in said(opened)
     opened.key("x", "KeyX")  # no loop: it would be kept
     opened.click(".way.step")
     for _ in range(4):

@@ -29,17 +29,29 @@ export class Coach {
     return null;
   }
 
-  async start() {
+  /** The loop that there is, at the speed at which it was passed. @returns {Target | null} */
+  looped() {
+    const { transport: { loop }, chart, record } = this.app;
+    if (!loop) return null;
+    const [from, to] = [chart.beatAt(loop.a), chart.beatAt(loop.b)];
+    const same = missedOf(record, chart.rows).find((one) => whereOf(one.from, one.to) === whereOf(from, to));
+    const best = (record.best[whereOf(from, to)] ?? 0) / 100;
+    return same ?? { from, to, rate: best || FIRST, passed: best > 0 };
+  }
+
+  /** @param {Target | null} [target] else the loop that there is, else what comes next */
+  async start(target = this.looped()) {
     const { app, practice } = this;
     practice.keep();
-    const target = this.next();
-    if (!target) {
+    const found = target ?? this.next();
+    if (!found) {
       app.notice = app.t("coachNothing");
       return app.tell("coach");
     }
+    practice.setWait(false); // what waits does not count
     if (!practice.along) practice.setAlong(true);
-    await app.loopBeats(target.from, target.to);
-    this.take(target);
+    await app.loopBeats(found.from, found.to);
+    this.take(found);
   }
 
   stop() {

@@ -50,25 +50,30 @@ function resumePart(app) {
   const day = new Date(`${last.day}T12:00`).toLocaleDateString(language, { day: "numeric", month: "short" });
   const where = missed ? stretch(t, missed.from / 4, missed.to / 4) : "";
   box.append(el("p", {}, el("strong", {}, t("lastTime", { day })), ` · ${[t("lastScore", { percent: Math.round(100 * scoreShare(last)) }), where ? t("lastMissed", { where }) : t("nothingMissed")].join(" · ")}`));
-  if (missed) box.append(el("button", { type: "button", id: "go-on", class: "main", onclick: () => void practice.begin(missed) }, t("goOn", { where })));
+  if (missed) box.append(el("button", { type: "button", id: "go-on", class: "main", onclick: () => void practice.coach.start(missed) }, t("goOn", { where })));
   app.listeners.add((what) => { if (what === "clock" && app.played) box.hidden = true; }); // from then on there is something newer
   return box;
 }
 
-/** The three ways to begin. @param {import("./app.js").App} app */
+/** The four ways to begin. @param {import("./app.js").App} app */
 function startPart(app) {
   const { t, practice } = app;
   const watch = () => {
     practice.setAlong(false);
     void app.begin();
   };
+  const step = (/** @type {boolean} */ wait) => {
+    practice.setWait(wait);
+    void app.beginAlong();
+  };
   const ways = /** @type {[string, string, string, () => void][]} */ ([
-    ["watch", "▶", t("watch"), watch], ["step", "✥", t("along"), () => void app.beginAlong()], ["coached", "↻", t("coach"), () => void practice.coach.start()],
+    ["watch", "▶", t("watch"), watch], ["step", "✥", t("along"), () => step(false)], ["waits", "◷", t("wait"), () => step(true)],
+    ["coached", "↻", t("coach"), () => void practice.coach.start()],
   ]);
   const buttons = ways.map(([name, sign, text, run]) =>
-    el("button", { type: "button", class: `way ${name}`, onclick: run }, el("span", { class: "icon", "aria-hidden": "true" }, sign), el("strong", {}, text), el("span", { class: "text" }, t(`way-${name}`))));
+    el("button", { type: "button", class: `way ${name}`, title: name === "coached" ? t("coachHint") : "", onclick: run }, el("span", { class: "icon", "aria-hidden": "true" }, sign), el("strong", {}, text), el("span", { class: "text" }, t(`way-${name}`))));
   const show = () => {
-    const mode = practice.coach.on ? "coached" : practice.along ? "step" : "watch";
+    const mode = practice.coach.on ? "coached" : practice.wait ? "waits" : practice.along ? "step" : "watch";
     buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(ways[k][0] === mode)));
   };
   app.listeners.add((what) => { if (what !== "frame") show(); });

@@ -7,6 +7,7 @@ import { FEET, HELPS } from "./settings.js";
 
 const STRAY = 5000; // milliseconds that the keys are said
 export const SHOWN = 400; // milliseconds in which a verdict above the receptors fades
+const LOST = 10; // notes missed in a row after which something easier is offered
 const MARKS = 24; // presses on the scale of errors
 
 /** @typedef {{verdict: string, column: number, at: number, run: number, error: number | undefined}} Feedback of the last press, or of a miss (column -1); at: ms; run: notes in a row; error: seconds late */
@@ -40,7 +41,13 @@ export class Practice {
     this.feedback = null;
     this.run = 0; // notes in a row without a miss or a wrong press
     this.longest = 0; // the longest such run
+    this.lost = 0; // notes missed in a row
     this.topBefore = 0; // % of the best play before this one
+  }
+
+  /** Whether it is too hard as it is: something easier is offered. */
+  get struggles() {
+    return this.lost >= LOST && !this.wait && !this.coach.on && this.app.transport.playing;
   }
 
   /** What was hit in the loop, or in all, since rows are asked for. */
@@ -118,12 +125,6 @@ export class Practice {
     this.app.tell("along");
   }
 
-  /** Play along in a stretch that was missed, at its speed. @param {import("./record.js").Missed} missed */
-  async begin({ from, to, rate }) {
-    if (!this.along) this.setAlong(true);
-    await this.app.loopBeats(from, to, rate);
-  }
-
   /** Play along, or only watch. @param {boolean} on */
   setAlong(on) {
     this.keep();
@@ -135,6 +136,7 @@ export class Practice {
     this.feedback = null;
     this.errors = [];
     if (!on) this.wait = false;
+    this.lost = 0;
     this.judge.restart(on ? this.app.transport.second() : -Infinity);
     if (!on) this.judge.verdicts.clear();
     this.updateHold();
@@ -146,6 +148,7 @@ export class Practice {
     this.keep();
     if (on && !this.along) this.setAlong(true);
     this.wait = on;
+    this.lost = 0;
     if (this.along) this.restart(this.app.transport.second());
     this.updateHold();
     this.app.tell("along");
@@ -176,13 +179,14 @@ export class Practice {
     if (!this.along) return;
     const { transport, sound, settings } = this.app;
     const { rate } = transport;
+    if (!transport.playing) return this.idle();
     if (this.stray === "now") this.stray = "said";
     if (this.wait) {
       const row = this.judge.open(-Infinity);
       if (!row || row.second - transport.second() > EARLY * rate) return;
       this.show(this.judge.press(column, row.second, rate, true), column);
       this.updateHold();
-    } else if (transport.playing) {
+    } else {
       this.show(this.judge.press(column, transport.second() - (ago + sound.latency + settings.latency) * rate, rate), column);
     }
     this.app.tell("hits");
@@ -192,7 +196,9 @@ export class Practice {
   advance(second) {
     const { transport, settings } = this.app;
     if (!transport.playing || !this.along || this.wait) return;
-    if (!this.judge.advance(second - (settings.latency + settings.sight) * transport.rate, transport.rate)) return;
+    const missed = this.judge.advance(second - (settings.latency + settings.sight) * transport.rate, transport.rate);
+    if (!missed) return;
+    this.lost += missed;
     this.show("miss", -1);
     this.app.tell("hits");
   }
@@ -202,6 +208,7 @@ export class Practice {
     if (!verdict) return;
     this.run = verdict === "miss" || verdict === "wrong" ? 0 : this.run + 1;
     this.longest = Math.max(this.longest, this.run);
+    if (this.run) this.lost = 0;
     const error = verdict === "miss" || verdict === "wrong" ? undefined : this.judge.lastError;
     if (error !== undefined) this.errors = [...this.errors, error].slice(-MARKS);
     this.feedback = { verdict, column, at: performance.now(), run: this.run, error };
@@ -213,9 +220,10 @@ export class Practice {
     return this.feedback;
   }
 
-  /** A panel was pressed while nobody plays along: that nothing is judged is said. */
+  /** A panel was pressed that nothing judges, for nobody plays along or nothing plays: that is said. */
   idle() {
-    this.app.notice = this.app.t("padIdle", { key: this.app.input.keyless ? "" : " (p)" });
+    const { t, input: { keyless } } = this.app;
+    this.app.notice = this.along ? t("paused", { keys: keyless ? "▶" : `${t("space")}, ▶` }) : t("padIdle", { key: keyless ? "" : " (p)" });
     this.idleNotice = this.app.notice;
     this.strayAt = performance.now();
     this.app.tell("along");
@@ -246,6 +254,7 @@ export class Practice {
   finish() {
     if (!this.along) return;
     this.judge.advance(Infinity, this.app.transport.rate);
+    this.lost = 0;
     this.over = this.tally();
     this.topBefore = this.app.record.top;
     const whole = this.judge.from <= this.app.chart.first && this.judge.foot < 0 && !this.wait && !isIdle(this.over);

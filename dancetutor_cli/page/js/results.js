@@ -108,7 +108,7 @@ function missed(app) {
   const list = missedOf(record, chart.rows);
   if (!list.length) return el("p", {}, t("nothingMissed"));
   return el("section", {}, el("h3", {}, t("missedTitle")), el("ol", { class: "cards" }, ...list.map((one) => el("li", {},
-    el("button", { type: "button", class: "card missed", onclick: () => void app.practice.begin(one) },
+    el("button", { type: "button", class: "card missed", onclick: () => void app.practice.coach.start(one) },
       el("strong", {}, el("span", {}, stretch(t, one.from / 4, one.to / 4))), el("span", { class: "figure" }, t("startsAt", { rate: Math.round(100 * one.rate) })),
       el("span", { class: "text" }, `${t("missedRows", { count: one.misses })} · ${t(one.passed ? "missedPassed" : "missedNew")}`))))));
 }

@@ -79,7 +79,7 @@ export function resultCard(app) {
   const again = el("button", { type: "button", id: "again-play", onclick: () => void app.begin() }, t("again-play"));
   const slow = el("button", { type: "button", id: "again-missed", onclick: () => {
     practice.over = null;
-    void practice.begin(missed());
+    void practice.coach.start(missed());
   } }, t("again-missed"));
   const close = el("button", { type: "button", class: "sign shut", "aria-label": t("close"), title: t("close"), onclick: () => { practice.over = null; app.tell("hits"); } }, "✕");
   const card = el("section", { class: "result", "aria-label": t("tab-results"), hidden: true }, el("h2", {}, t("tab-results")), part, share, el("p", { class: "scored" }, t("score")), line.bar, shares, best, row, mean, feet, el("p", { class: "group" }, again, slow), close);
