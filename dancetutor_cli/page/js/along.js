@@ -1,7 +1,7 @@
-// The panel of playing along: keys and pads, waiting, help that fades, calibration, and how it went.
+// The panel of playing along: keys and pads, one foot, help that fades, calibration, and how it went.
 
 import { calibrateDialog } from "./calibrate.js";
-import { el, toggle } from "./dom.js";
+import { el } from "./dom.js";
 import { CONTROLS } from "./input.js";
 import { GOOD, WINDOW } from "./judge.js";
 import { panelName } from "./labels.js";
@@ -11,9 +11,6 @@ import { FEET, HELPS } from "./settings.js";
 /** @param {import("./app.js").App} app */
 export function alongPanel(app) {
   const { t, settings } = app;
-  const along = toggle(t("along"), app.practice.along, (on) => app.practice.setAlong(on), "p");
-  const wait = toggle(t("wait"), app.practice.wait, (on) => app.practice.setWait(on), "w");
-  const coach = toggle(t("coach"), false, (on) => (on ? void app.practice.coach.start() : app.practice.coach.stop()), "c");
   const help = el("select", { id: "feet-help" }, ...HELPS.map((name) => el("option", { value: name }, t(`help-${name}`))));
   help.addEventListener("change", () => app.set("help", help.value));
   const foot = el("select", { id: "foot" }, ...FEET.map((name) => el("option", { value: name }, t(`foot-${name}`))));
@@ -32,9 +29,6 @@ export function alongPanel(app) {
   };
   const refresh = () => {
     show();
-    along.setAttribute("aria-pressed", String(app.practice.along));
-    wait.setAttribute("aria-pressed", String(app.practice.wait));
-    coach.setAttribute("aria-pressed", String(app.practice.coach.on));
     help.value = settings.help;
     foot.value = settings.foot;
     const plugged = app.input.pads().map((pad) => pad.id.slice(0, 40));
@@ -45,7 +39,7 @@ export function alongPanel(app) {
   app.listeners.add((what) => { if (what !== "frame") refresh(); });
   refresh();
   return el("div", {},
-    el("div", { class: "modes" }, along, wait, coach), el("p", { class: "hint" }, t("alongHint")), score,
+    el("p", { class: "hint" }, t("alongHint")), score,
     keys, pads, el("div", { class: "modes two" }, assign, calibrate),
     el("p", { class: "field whole" }, el("label", { for: "foot" }, t("foot")), foot),
     el("p", { class: "field whole" }, el("label", { for: "feet-help" }, t("feetHelp")), help),

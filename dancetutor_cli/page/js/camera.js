@@ -6,7 +6,9 @@ const NEAR = 0.05;
 const FAR = 100;
 const WAIST = 0.85; // metres; where the free camera looks from afar
 const ARM = 0.42; // metres beside her middle that are to be seen of her
-const LEAST_ARMS = 0.2; // of the room for arms beside the pad that is kept in a picture half as wide as all of it: she would be tiny
+const TALL = 0.5; // width by height of a picture in which she is low: a phone's
+const FLOOR = 0.4; // of the room above and below her, that goes above: at most a half
+const LEAST_ARMS = 0.05; // of the room for arms beside the pad that is kept in a picture half as wide as all of it: she would be tiny
 
 /**
  * @typedef {object} Camera
@@ -84,6 +86,7 @@ export function preset(doc, name, width, height) {
   }
   const position = plus(target, away, far);
   const centre = fit(box, target, position, focal, width / height) || /** @type {[number, number]} */ ([0.5, 0.5]);
+  if (!about.feet_only && width / height < TALL) centre[1] += lower(box, { position, target }, focal);
   return { position, target, focal, centre, feetOnly: about.feet_only, mirror: false };
 }
 
@@ -159,6 +162,16 @@ function corners(doc, about) {
     for (const x of [low[0] - wider, high[0] + wider]) out.push([x, y, near], [x, y, far]);
   }
   return out;
+}
+
+/**
+ * How far a box in the middle goes down, in picture heights, so that most of the floor below it is not seen.
+ * @param {number[][]} box @param {{position: [number, number, number], target: [number, number, number]}} camera @param {number} focal
+ */
+function lower(box, { position, target }, focal) {
+  const { up, forward } = axes({ position, target });
+  const heights = box.map((point) => minus(point, position)).map((p) => (focal * dot(p, up)) / dot(p, forward));
+  return FLOOR * Math.max(0, 1 - (Math.max(...heights) - Math.min(...heights)));
 }
 
 /**

@@ -68,11 +68,9 @@ export class Highway {
     const { columns, beats } = this.chart;
     const finger = this.along && window.innerWidth <= NARROW;
     const numbers = finger && columns > 5 ? 0 : (8 + 7 * String(beats.length >> 2).length) * ratio; // room left of the lanes, for the last measure's number
-    const wide = !this.along && width > 200 * ratio; // else there is no room for words, and lanes are worth more; who plays has them in the middle
-    const words = wide ? clamp((columns > 5 ? 0.12 : 0.34) * width, 46 * ratio, 80 * ratio) : this.along ? numbers : 8 * ratio; // and right of them
-    const lane = Math.min((width - numbers - words) / columns, 72 * ratio);
-    const free = width - lane * columns;
-    const left = clamp(0.5 * free, numbers, Math.max(numbers, free - words)); // in the middle, if words leave it room
+    const beside = finger ? 0 : Math.min(numbers, 8 * ratio); // and right of them
+    const lane = Math.min((width - numbers - beside) / columns, WIDEST * ratio);
+    const left = Math.max(numbers, 0.5 * (width - lane * columns));
     const above = this.along ? Math.min(VERDICT * ratio, SHARE * height) : 0;
     return { ratio, above, width, height, lane, left, receptor: Math.max(0.11 * height, 0.62 * lane + above), size: 0.92 * lane };
   }
@@ -113,7 +111,7 @@ export class Highway {
       if (chart.second[n] > until || chart.end[n] < from) continue;
       this.drawNote(n, m, scene, y);
     }
-    this.drawLabels(m, y, from, until);
+    this.drawLabels(m, y, scene.along ? scene.second : from, until, scene.mirror);
     const x = m.left + 0.5 * m.lane * chart.columns;
     if (scene.along) drawErrors(c, scene.errors, { x, y: m.receptor - 0.62 * m.lane - 0.26 * m.above, width: Math.min(0.8 * m.lane * chart.columns, 220 * m.ratio), ratio: m.above / VERDICT });
     if (feedback) this.drawFeedback(feedback, x, m);
@@ -228,6 +226,7 @@ export class Highway {
       const limb = changed ? /** @type {number} */ (scene.feet.get(n)) : chart.limb[n];
       const row = this.rowOf.get(n);
       const mark = markerAt(this.way(column, scene.mirror), m.size, style.mark);
+      if (m.size < SMALL * m.ratio) mark.size *= LARGER; // on a double letters would be too small to read
       if (!fake && limb >= 0 && (changed || scene.marked(limb, row))) {
         drawMarker(c, { limb, colour: style.limbs[limb], changed }, x + mark.x, top + mark.y, mark.size);
       } else if (!fake && limb === UNPLAYED) {
@@ -244,25 +243,30 @@ export class Highway {
     c.globalAlpha = 1;
   }
 
-  /** @param {ReturnType<Highway["measure"]>} m @param {(s: number) => number} y @param {number} from @param {number} until */
-  drawLabels(m, y, from, until) {
+  /**
+   * Words lie on the lanes that are free in their row: where most of them are, beside its notes.
+   * @param {ReturnType<Highway["measure"]>} m @param {(s: number) => number} y @param {number} from @param {number} until @param {boolean} mirror
+   */
+  drawLabels(m, y, from, until, mirror) {
     const c = this.context;
-    const x = m.left + m.lane * this.chart.columns + 5 * m.ratio;
-    const room = m.width - x - 2 * m.ratio;
-    if (room < WORD * m.ratio) return; // they would be cut
+    const pad = 5 * m.ratio;
+    c.font = `600 ${Math.round(LEAST * m.ratio)}px system-ui, sans-serif`;
     c.textAlign = "left";
     c.textBaseline = "middle";
-    for (const { second, text, short, severity } of this.labels) {
+    for (const { second, text, short, severity, columns } of this.labels) {
       if (second < from || second > until) continue;
+      const [left, right] = widestGap(columns.map((column) => this.laneX(column, m, mirror)), 0.5 * m.lane, m.width);
+      const fits = (/** @type {string} */ line) => c.measureText(line).width <= right - left - 2 * pad;
+      let shown = fits(text) ? text : short; // shorter, before it is cut; never smaller
+      while (shown.length > 3 && !fits(shown)) shown = `${shown.slice(0, -2)}…`;
+      const wide = c.measureText(shown).width + 2 * pad;
+      const x = right >= m.width ? left : left <= 0 ? right - wide : 0.5 * (left + right - wide);
+      c.fillStyle = "rgba(12, 14, 26, 0.82)";
+      c.beginPath();
+      c.roundRect(x, y(second) - 0.75 * LEAST * m.ratio, wide, 1.5 * LEAST * m.ratio, 4 * m.ratio);
+      c.fill();
       c.fillStyle = this.style.callout[severity];
-      c.font = `600 ${Math.round(LEAST * m.ratio)}px system-ui, sans-serif`;
-      const fits = (/** @type {string} */ line) => c.measureText(line).width <= room;
-      const whole = linesOf(text, fits); // in two lines, or shorter, before it is cut; never smaller
-      if (whole.length > 2 || !whole.every(fits)) {
-        let shown = short;
-        while (shown.length > 3 && !fits(shown)) shown = `${shown.slice(0, -2)}…`;
-        c.fillText(shown, x, y(second));
-      } else whole.forEach((line, k) => c.fillText(line, x, y(second) + (k - (whole.length - 1) / 2) * 1.05 * LEAST * m.ratio));
+      c.fillText(shown, x + pad, y(second));
     }
   }
 
@@ -295,24 +299,23 @@ export class Highway {
 export const passedAlpha = (above, lane) => clamp(1.5 - (2 * above) / lane, 0, 1);
 
 /**
- * A text's words in lines that fit. @param {string} text @param {(line: string) => boolean} fits
+ * Where most room is beside notes; as much on the right as on the left is on the right.
+ * @param {number[]} middles of the notes @param {number} half their width @param {number} end of the room
+ * @returns {[number, number]}
  */
-export function linesOf(text, fits) {
-  /** @type {string[]} */
-  const lines = [];
-  for (const word of text.split(" ")) {
-    const last = lines[lines.length - 1];
-    if (last !== undefined && fits(`${last} ${word}`)) lines[lines.length - 1] = `${last} ${word}`;
-    else lines.push(word);
-  }
-  return lines;
+export function widestGap(middles, half, end) {
+  const sorted = [...middles].sort((a, b) => a - b);
+  const gaps = [...sorted, end + half].map((x, k) => /** @type {[number, number]} */ ([k ? sorted[k - 1] + half : 0, x - half]));
+  return gaps.reduce((best, gap) => (gap[1] - gap[0] >= best[1] - best[0] ? gap : best));
 }
 
 const LEAST = 12; // pixels of the smallest words
 const NARROW = 860; // pixels of a phone's window, as in page.css
 const VERDICT = 68; // pixels above the receptors for a verdict and the scale of errors
 const SHARE = 0.15; // of a low canvas that they take at most
-const WORD = 42; // pixels of the shortest words
+const WIDEST = 96; // pixels of a lane
+const SMALL = 48; // pixels of a note below which its letter is larger, and how much
+const LARGER = 1.3;
 const RUN = 4; // notes in a row from which their number is shown
 const ARROWS = "←↑→↓↖↗↘↙";
 const GROUND = "#171a30"; // beside the lanes: that of the panels

@@ -1,6 +1,6 @@
 // Words for moves and findings: in the page's language where its file has them, else as the solver and the linter say.
 
-/** @typedef {{second: number, text: string, short: string, severity: string}} Label short: where there is little room */
+/** @typedef {{second: number, text: string, short: string, severity: string, columns: number[]}} Label short: where there is little room; columns: the row's notes */
 
 /** A panel's name. @param {import("./words.js").Translate} t @param {string} name */
 export function panelName(t, name) {
@@ -82,7 +82,7 @@ export function labelsOf(doc, chart, t) {
     const fresh = [...now].filter(([word]) => !before.includes(word));
     before = [...now.keys()];
     if (!fresh.length) continue;
-    const label = { second: row.second, text: fresh.map(([word]) => word).join(", "), short: fresh[0][1], severity: "move" };
+    const label = { second: row.second, text: fresh.map(([word]) => word).join(", "), short: fresh[0][1], severity: "move", columns: row.steps.map((step) => step.column) };
     out.push(label);
     at.set(Math.round(1000 * row.second), label);
   }
@@ -90,7 +90,7 @@ export function labelsOf(doc, chart, t) {
     if (one.second === null || one.column === null) continue;
     const same = at.get(Math.round(1000 * one.second));
     if (same) same.severity = one.severity;
-    else out.push({ second: one.second, text: findingWords(t, one)[0], short: shortName(t, one.rule), severity: one.severity });
+    else out.push({ second: one.second, text: findingWords(t, one)[0], short: shortName(t, one.rule), severity: one.severity, columns: [one.column] });
   }
   return out;
 }

@@ -8,7 +8,7 @@ import { el } from "./dom.js";
 import { findingsPanel, passagesPanel, settingsPanel } from "./panels.js";
 import { resultsPanel } from "./results.js";
 import { CAMERAS, FIRST_VIEW } from "./settings.js";
-import { resultCard, standing } from "./scores.js";
+import { resultCard, slimStanding, standing } from "./scores.js";
 import { besideCaption, besideText, countOf, musicText, passedOf, quiet, saidOf } from "./said.js";
 
 /**
@@ -60,13 +60,13 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   const count = el("p", { class: "count", "aria-hidden": "true" }); // it is heard too
   const passed = el("p", { class: "passed", role: "status" });
   for (const old of stage.querySelectorAll(":scope > :not(canvas)")) old.remove();
-  stage.append(cameraButtons(app), count, passed, ...captions, standing(app), chips(app), resultCard(app));
+  stage.append(cameraButtons(app), count, ...captions, el("div", { class: "scores" }, standing(app), passed), chips(app), resultCard(app));
   const flat = el("p", { class: "flat", hidden: true }, t("noWebgl"));
   stage.append(flat);
   const note = el("p", { class: "unseen", role: "status" });
   app.listeners.add((what) => { if (what === "feet") note.textContent = app.chosen >= 0 ? noteText(app, app.chosen) : ""; });
   const root = /** @type {HTMLElement} */ (document.getElementById("app"));
-  const main = el("main", { class: app.chart.columns > 5 ? "wide" : "" }, stage, el("section", { class: "notes", "aria-label": t("notes") }, lanes, note), tabs.side);
+  const main = el("main", { class: app.chart.columns > 5 ? "wide" : "" }, stage, el("section", { class: "notes", "aria-label": t("notes") }, lanes, slimStanding(app), note), tabs.side);
   root.replaceChildren(
     el("header", {}, el("div", { class: "song" }, el("h1", {}, words.title), badge, app.doc.pair ? players(style) : null,
       el("p", { class: "about" }, about.filter(Boolean).join(" · "))), said, pick),
@@ -81,6 +81,9 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
     }
     said.textContent = said.title = saidOf(app);
     said.classList.toggle("quiet", quiet(app));
+    const lasts = app.transport.loop !== null || app.practice.wait; // on a phone that has a place of its own; what passes lies on the picture
+    said.classList.toggle("lasts", lasts);
+    said.classList.toggle("brief", !lasts && !quiet(app));
     said.classList.toggle("shown", app.practice.along && app.practice.over !== null && !app.notice); // the card shows it
     count.textContent = countOf(app);
     const now = passedOf(app);

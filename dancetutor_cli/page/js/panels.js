@@ -8,6 +8,8 @@ import { missedOf, scoreShare, whereOf } from "./record.js";
 import { recordPart } from "./results.js";
 import { musicText, scoreText } from "./said.js";
 
+const TAGS = 2; // of a passage that stand out
+
 /** The hardest passages; a click loops one. @param {import("./app.js").App} app */
 export function passagesPanel(app) {
   const { t, doc } = app;
@@ -16,7 +18,7 @@ export function passagesPanel(app) {
     const button = el("button", { type: "button", class: "card", "aria-pressed": "false", onclick: () => void app.loopPassage(k) },
       el("strong", {}, el("span", { class: "number", title: `--section hardest:${passage.number}` }, `${k + 1}`), el("span", {}, stretch(t, passage.from, passage.to))),
       el("span", { class: "figure" }, t("rate", { rate: Math.round(10 * passage.rate) / 10 })),
-      el("span", { class: "tags" }, ...[passage.player ? [`P${passage.player}`] : [], passage.tags.map(([name, count]) => t(`tag-${name}`, { count }))].flat().flatMap((tag) => [el("span", {}, tag), " "])),
+      el("span", { class: "tags" }, ...tagsOf(app, passage).flatMap((tag, n) => [el("span", n < TAGS ? {} : { class: "rest" }, tag), " "])),
       passage.again.length ? el("span", { class: "text" }, t("again", { where: passage.again.map((/** @type {[number, number]} */ one) => stretch(t, ...one)).join("; ") })) : null,
       el("span", { class: "hits" }));
     list.append(el("li", {}, button));
@@ -38,6 +40,11 @@ export function passagesPanel(app) {
   });
   const empty = doc.passages.length ? null : el("p", {}, t("noPassages"));
   return el("div", {}, resumePart(app), startPart(app), el("h3", {}, t("passagesTitle")), el("p", { class: "hint" }, doc.passages.length ? t("passagesHint") : ""), empty, list, loopsPart(app));
+}
+
+/** Whose a passage is, and what feet do in it, the most important first. @param {import("./app.js").App} app @param {import("./doc.js").Passage} passage */
+function tagsOf({ t }, { player, tags }) {
+  return [...(player ? [`P${player}`] : []), ...tags.map((/** @type {[string, number]} */ [name, count]) => t(`tag-${name}`, { count }))];
 }
 
 /** How it went the last time, and a click to go on with what was missed. @param {import("./app.js").App} app */
@@ -82,11 +89,11 @@ function startPart(app) {
 }
 
 /**
- * What the linter found; can be ticked off. It speaks English: in another language the rule's meaning stands in its place.
+ * What the linter found, in the words of players; its own message, which is English, is the tooltip. Can be ticked off.
  * @param {import("./app.js").App} app
  */
 export function findingsPanel(app) {
-  const { t, doc, language } = app;
+  const { t, doc } = app;
   if (!doc.findings.length) return el("p", {}, t("noFindings"));
   const list = el("ul", { class: "cards" });
   for (const one of doc.findings) {
@@ -95,12 +102,12 @@ export function findingsPanel(app) {
     const box = el("input", { type: "checkbox", "aria-label": t("tickOff", { rule: one.rule, place: one.beat === null ? "" : placeOf(t, one.beat) }) });
     box.checked = app.notes.ticked.includes(key);
     const go = el("button", {
-      type: "button", class: "card", title: about, disabled: one.second === null,
+      type: "button", class: "card", title: `${one.rule}: ${one.message}`, disabled: one.second === null,
       onclick: () => { app.transport.pause(); app.seek(one.second ?? 0); },
     },
-      el("strong", {}, el("span", { class: "sign-of" }, SIGNS[/** @type {keyof typeof SIGNS} */ (one.severity)] ?? ""), el("span", {}, name)),
-      el("span", { class: "figure" }, [one.beat === null ? "" : placeOf(t, one.beat), one.rule].filter(Boolean).join(" · ")),
-      language !== "en" && about ? el("span", { class: "text" }, `${about} ${findingFigures(t, one)}`.trim()) : el("span", { class: "text", lang: "en" }, one.message));
+      el("strong", {}, el("span", { class: "sign-of" }, SIGNS[/** @type {keyof typeof SIGNS} */ (one.severity)] ?? ""),
+      about ? el("span", { class: "says" }, `${about} ${findingFigures(t, one)}`.trim()) : el("span", { class: "says", lang: "en" }, one.message)),
+      el("span", { class: "figure" }, [one.beat === null ? "" : placeOf(t, one.beat), name, one.rule].filter(Boolean).join(" · ")));
     const item = el("li", { class: `finding ${one.severity}` }, box, go);
     const show = () => item.classList.toggle("done", box.checked);
     box.addEventListener("change", () => { app.tick(key, box.checked); show(); });

@@ -1,8 +1,9 @@
-// The panel of results: errors by foot, days, rows that go wrong, what was missed, the coach, and a file of it all.
+// The panel of results: errors by foot, days, rows that go wrong, what was missed, and a file of it all.
 
-import { bars, download, el, toggle } from "./dom.js";
+import { countsOf } from "./counts.js";
+import { bars, download, el } from "./dom.js";
 import { placeInMeasure, stretch } from "./places.js";
-import { BIN, BINS, LARGEST, dayOf, fromFile, hitShare, missedOf, missesThrough, panelShare, scoreShare, streakOf, toFile } from "./record.js";
+import { BIN, BINS, LARGEST, dayOf, fromFile, missedOf, missesThrough, scoreShare, streakOf, toFile } from "./record.js";
 import { lateText } from "./said.js";
 import { allRecords, loadRecord, saveRecord, takeRecords } from "./settings.js";
 
@@ -13,12 +14,10 @@ const OFF = 30; // ms beside the note on average from which a row is listed that
 
 /** @param {import("./app.js").App} app */
 export function resultsPanel(app) {
-  const { t, practice } = app;
+  const { t } = app;
   const panel = el("div", { class: "results" });
-  const coach = toggle(t("coach"), false, (on) => (on ? void practice.coach.start() : practice.coach.stop()), "c");
   const body = el("div");
   const show = () => {
-    coach.setAttribute("aria-pressed", String(practice.coach.on));
     const today = app.record.days.find(({ day }) => day === dayOf(new Date()));
     const parts = app.record.days.length ? [summary(app), histogram(app, today), missed(app), through(app), rowsOf(app), days(app)] : [el("p", {}, t("noResults"))];
     body.replaceChildren(...parts.filter((part) => part !== null));
@@ -26,7 +25,7 @@ export function resultsPanel(app) {
   app.listeners.add((what) => {
     if (["record", "coach", "settings", "pass", "along"].includes(what)) show();
   });
-  panel.append(el("p", { class: "group" }, coach), el("p", { class: "hint" }, t("coachHint")), body);
+  panel.append(body);
   show();
   return panel;
 }
@@ -63,14 +62,19 @@ async function takeFile(app, file) {
   return app.t(records.has(app.id) ? "recordTaken" : "recordTakenOthers", { charts: records.size });
 }
 
-/** @param {import("./app.js").App} app */
-function summary({ t, record }) {
+/** The score of today, as on the card at a song's end, and days in a row. @param {import("./app.js").App} app */
+function summary(app) {
+  const { t, record } = app;
   const today = dayOf(new Date());
   const one = record.days.find(({ day }) => day === today);
   const streak = streakOf(record.days, today);
-  const played = one ? one.hit + one.early + one.late + one.miss : 0;
-  return el("p", { class: "score" }, one ? t("today", { notes: played, score: Math.round(100 * scoreShare(one)), panel: Math.round(100 * panelShare(one)), percent: Math.round(100 * hitShare(one)) }) : t("todayNone"), " ",
-    streak.now ? t("streak", { days: streak.now, most: streak.most }) : "");
+  const row = streak.now ? t("streak", { days: streak.now, most: streak.most }) : "";
+  if (!one) return el("p", {}, [t("todayNone"), row].join(" "));
+  const counts = countsOf(app);
+  counts.show(one);
+  const notes = one.hit + one.early + one.late + one.miss;
+  return el("section", { class: "today" }, el("h3", {}, t("today", { notes })), el("p", { class: "scored" }, counts.share, el("span", {}, t("score"))),
+    counts.bar, counts.shares, counts.row, el("p", { class: "hint" }, row));
 }
 
 /** Errors of left and right foot, of today if anything was played, else of all days. @param {import("./app.js").App} app @param {import("./record.js").Day} [today] */
