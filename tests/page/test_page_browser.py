@@ -323,7 +323,7 @@ def test_another_language_is_spoken_at_once(browser: Browser) -> None:
     assert browser.run("window.kept") == 1 and second(browser) == at
     assert browser.run("document.querySelector('#tab-settings').getAttribute('aria-selected')") == "true"
     assert browser.run("document.activeElement.id") == "language"
-    told = browser.run("[...document.querySelectorAll('.finding .text:not([lang])')].map(e => e.textContent)")
+    told = browser.run("[...document.querySelectorAll('.finding .says:not([lang])')].map(e => e.textContent)")
     assert told and all(line.endswith((".", ")")) for line in told)
     assert browser.run("document.querySelectorAll('.finding [lang=en]').length") == 0  # and not in English besides
     keys = browser.run("[...document.querySelectorAll('.sheet kbd')].map(e => e.textContent)")

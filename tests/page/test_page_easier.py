@@ -1,4 +1,4 @@
-"""What the page offers to whoever plays along and fails: a word while it stands, an easier way, the coach in any loop."""
+"""What the page offers to whoever plays along and fails: a word while it stands, an easier way, the coach anywhere."""
 
 from __future__ import annotations
 

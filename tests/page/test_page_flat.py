@@ -130,12 +130,9 @@ def test_lanes_are_panels_for_a_finger(flat: Browser, page_file: Path) -> None:
     flat.turn(9)
     assert text(flat, ".said").startswith("waiting")
     x, y, w, h = flat.box(".lanes")
-    numbers, words = (
-        8 + 7 * 2,
-        min(max((0.34 if w > 200 else 0.24) * w, 46), 80),
-    )  # room at both sides: as `Highway.measure`
-    lane = min(72, (w - numbers - words) / 4)
-    left = x + numbers + 0.28 * (w - numbers - words - 4 * lane)
+    numbers = 8 + 7 * 2  # room left of the lanes, and a little right of them: as `Highway.measure`
+    lane = min(96, (w - numbers - 8) / 4)
+    left = x + max(numbers, 0.5 * (w - 4 * lane))
     for column in (3, 0):  # right does nothing, left is the row
         for kind in ("mousePressed", "mouseReleased"):
             flat.mouse(kind, left + (column + 0.5) * lane, y + h / 2)

@@ -77,7 +77,7 @@ def test_a_pass_is_kept_by_foot_row_and_day_and_stays(opened: Browser, page_file
     assert sum(left) + sum(right) == 3 and left[9 + 4] + right[9 + 4] == 3  # 60 ms are the fourth bar of 15 ms
     assert [one["missed"] for one in record["rows"].values()] == [False] * 3 + [True] * 5
     shown = results(opened)
-    assert "Today: 8 notes, score 19 %; 38 % pressed, 0 % on time." in shown and "Days in a row: 1" in shown
+    assert "Today: 8 notes19 %scoreof the notes: 38 % pressed, 0 % on time" in shown and "Days in a row: 1" in shown
     assert (
         "measure 1start at 70 % speed5 rows missed · not passed yet" in shown
     )  # and the speed to begin at: what was hit at 100 % does not make it passed
@@ -90,7 +90,7 @@ def test_a_pass_is_kept_by_foot_row_and_day_and_stays(opened: Browser, page_file
                       ".map(b => b.getBoundingClientRect().height)) > 5)")  # fmt: skip
     assert tall == [k == 13 for k in range(19)]
     opened.open(page_file)
-    assert "Today: 8 notes, score 19 %; 38 % pressed, 0 % on time." in results(opened)
+    assert "Today: 8 notes19 %scoreof the notes: 38 % pressed, 0 % on time" in results(opened)
     opened.click(".missed")
     assert said(opened).startswith("coach: not passed yet, begins at 70 % speed · loop measure 1,")
     assert opened.problems == []
@@ -158,7 +158,7 @@ def test_a_file_takes_results_to_another_browser(opened: Browser, page_file: Pat
     for _ in range(2):  # twice is once
         assert load_file(opened, json.dumps(content)) == "Loaded 1 chart, this one among them."
         assert opened.run(RECORD) == before
-    assert "Today: 8 notes, score 100 %; 100 % pressed, 100 % on time." in text(opened, "#panel-results")
+    assert "Today: 8 notes100 %scoreof the notes: 100 % pressed, 100 % on time" in text(opened, "#panel-results")
     assert opened.requests[1:] == [] and opened.problems == []
 
 
@@ -242,7 +242,7 @@ def test_the_coach_loops_what_was_missed_and_raises_the_speed(opened: Browser) -
         press(opened, column)
     opened.turn(1.9)
     assert "coach: score 50 %, 95 % passes; speed now 65 %" in said(opened) and text(opened, ".rate-text") == "65 %"
-    assert opened.run("document.querySelector('#panel-results .toggle').ariaPressed") == "true"
+    assert opened.run("document.querySelector('.way.coached').ariaPressed") == "true"
     opened.key("c", "KeyC")
     assert text(opened, ".rate-text") == "95 %"  # that was chosen before
     opened.key("p", "KeyP")

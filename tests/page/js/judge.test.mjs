@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { passedAlpha, scrollSpeed } from "../../../dancetutor_cli/page/js/highway.js";
+import { widestGap } from "../../../dancetutor_cli/page/js/highway.js";
 import { findingFigures, labelsOf, moveNames } from "../../../dancetutor_cli/page/js/labels.js";
 import { fillIn } from "../../../dancetutor_cli/page/js/words.js";
 import { delayOf } from "../../../dancetutor_cli/page/js/calibrate.js";
@@ -169,16 +170,24 @@ test("a row's moves are named in a dancer's words, each once", () => {
 
 test("words beside the notes have short forms for narrow lanes", () => {
   const doc = { style: { callouts: { spin: "spin", doublestep: "doublestep" } }, findings: [{ rule: "DT213", name: "unsure-feet", severity: "info", second: 2, column: 0 }] };
-  const rows = [{ second: 1, moves: ["doublestep", "spin"] }, { second: 1.5, moves: ["spin"] }];
+  const rows = [{ second: 1, moves: ["doublestep", "spin"], steps: [{ column: 2 }] }, { second: 1.5, moves: ["spin"], steps: [] }];
   for (const file of ["en", "de", "es", "ja", "ko"]) {
     const words = wordsOf(file);
     const labels = labelsOf(doc, { rows }, (name, values = {}) => fillIn(words[name] ?? name, values, words.decimal));
     assert.deepEqual(labels.map((one) => one.short), [words["short-doublestep"], words["short-DT213"]]);
+    assert.deepEqual(labels.map((one) => one.columns), [[2], [0]]);
     assert.ok(labels[0].text.length > labels[0].short.length && labels[0].short.length <= 6);
     for (const [name, word] of Object.entries(words)) if (name.startsWith("short-")) assert.ok(word.length <= 6, name);
   }
   assert.deepEqual([0, 1, 2].map((count) => fillIn("{count} {count|press|presses}", { count })), ["0 presses", "1 press", "2 presses"]);
   assert.equal(fillIn("{a} {b}", { a: 2.5, b: "2.5" }, ","), "2,5 2.5"); // numbers only, no names
+});
+
+test("words lie where most lanes are free beside the notes of their row", () => {
+  assert.deepEqual(widestGap([150], 50, 400), [200, 400]); // of four lanes the second is taken
+  assert.deepEqual(widestGap([250], 50, 400), [0, 200]);
+  assert.deepEqual(widestGap([350, 50], 50, 400), [100, 300]); // between left and right
+  assert.deepEqual(widestGap([150, 250], 50, 400), [300, 400]); // as much on both sides
 });
 
 test("the figures of a finding are shown in another language too", () => {
