@@ -18,7 +18,7 @@ def test_a_panel_that_is_pressed_while_nothing_plays_says_what_begins(opened: Br
         opened.key(" ", "Space")
         assert text(opened, ".play") == "▶" and not said(opened).startswith("Paused")
         opened.key("d", "KeyD")
-        assert said(opened) == "Paused: press space, ▶." and not shown(opened, "#chip-along")
+        assert said(opened) == "Paused: press ▶ (space)." and not shown(opened, "#chip-along")
         opened.turn(6)
         assert said(opened) == ""
         opened.key("d", "KeyD")

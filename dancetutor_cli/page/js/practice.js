@@ -223,7 +223,7 @@ export class Practice {
   /** A panel was pressed that nothing judges, for nobody plays along or nothing plays: that is said. */
   idle() {
     const { t, input: { keyless } } = this.app;
-    this.app.notice = this.along ? t("paused", { keys: keyless ? "▶" : `${t("space")}, ▶` }) : t("padIdle", { key: keyless ? "" : " (p)" });
+    this.app.notice = this.along ? t("paused", { keys: keyless ? "▶" : `▶ (${t("space")})` }) : t("padIdle", { key: keyless ? "" : " (p)" });
     this.idleNotice = this.app.notice;
     this.strayAt = performance.now();
     this.app.tell("along");

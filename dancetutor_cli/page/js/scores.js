@@ -33,8 +33,8 @@ export function slimStanding(app) {
     if (what === "frame" && passes === shown) return;
     shown = passes;
     const tally = practice.tally();
-    showShare(share, tally);
-    share.hidden = passes !== "";
+    if (passes) share.textContent = "";
+    else showShare(share, tally);
     rest.textContent = passes || (tally.miss ? `· ${tally.miss} ${app.t("verdict-miss")}` : "");
   });
   return line;
