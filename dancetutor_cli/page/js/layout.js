@@ -83,7 +83,7 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
     said.classList.toggle("quiet", quiet(app));
     const lasts = app.transport.loop !== null || app.practice.wait; // on a phone that has a place of its own; what passes lies on the picture
     said.classList.toggle("lasts", lasts);
-    said.classList.toggle("brief", !lasts && !quiet(app));
+    said.classList.toggle("brief", !lasts && (app.notice !== "" || app.practice.stray === "now" || app.practice.over !== null));
     said.classList.toggle("shown", app.practice.along && app.practice.over !== null && !app.notice); // the card shows it
     count.textContent = countOf(app);
     const now = passedOf(app);

@@ -5,6 +5,7 @@ import { Stretcher } from "./stretch.js";
 
 const AHEAD = 0.25; // seconds that are prepared
 const CHUNK = 0.12; // seconds of music in one go
+const NOTHING = 1e-6; // seconds of music that are as good as none
 const PATIENCE = 400; // milliseconds to wait for the audio output
 const CLAP = 1150, TICK = 1600, ACCENT = 2200; // Hz, as in the films
 const LENGTH = 0.045;
@@ -93,7 +94,7 @@ export class Sound {
     if (!this.music) return;
     while (this.due < until) {
       const second = run.from + (this.due - run.at) * run.rate;
-      if (second >= end) break;
+      if (second >= end - NOTHING) break; // what rounding leaves would never be used up
       const length = Math.min(CHUNK, (end - second) / run.rate);
       if (second + length * run.rate <= run.quietUntil) {
         this.due += length;
