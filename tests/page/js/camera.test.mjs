@@ -64,5 +64,8 @@ test("in a narrow picture less room is kept for arms: she is larger, and the pad
     return (at([0, 1.7, 0], 1) - at([0, 0, 0], 1)) * height / 2;
   };
   assert.ok(tall(136, 523) > 1.25 * 136, `${tall(136, 523)}`);
+  const m = matrix(preset(single, "back", 154, 560), 154, 560);
+  const edge = (m[6] * -0.45 + m[7]) / (m[14] * -0.45 + m[15]); // of the pad, the near one; -1 is the lower end of the picture
+  assert.ok(edge > -0.95 && edge < -0.6, `most of the floor is above the dancer, where buttons are: ${edge}`);
   assert.ok(tall(300, 400) < 400 && tall(900, 500) < 500);
 });
