@@ -101,7 +101,7 @@ class Cells:
         return (self.part * _MOST_COLUMNS + self.column).astype(np.int16)
 
 
-def joined(cells: Cells, warnings: Sequence[list[ReadWarning]]) -> Cells:
+def notes_of(cells: Cells, warnings: Sequence[list[ReadWarning]]) -> Cells:
     """The notes of all parts: no tails, `end` set for holds and rolls; sorted by part, column, then tick.
 
     cells : those of a part by tick; warnings : for each part those about it, to which is added

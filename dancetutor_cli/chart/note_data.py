@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dancetutor_cli.chart import cells as marked
-from dancetutor_cli.chart.cells import Cells, joined
+from dancetutor_cli.chart.cells import Cells, notes_of
 from dancetutor_cli.chart.grid import BLANKS, OF_PLAYERS, Grid, LineIndex, NotePart, NoteText
 from dancetutor_cli.chart.model import Chart, Kind, MeasureTable, NoteTable, ReadWarning, RowTable
 from dancetutor_cli.chart.msd import blanked
@@ -95,7 +95,7 @@ class _PartCells:
 
     def __init__(self, text: NoteText, parts: Sequence[NotePart]) -> None:
         self._text, self._parts, self._grid = text, parts, Grid(text, parts)
-        cells = joined(self._grid.cells(), [part.warnings for part in parts])
+        cells = notes_of(self._grid.cells(), [part.warnings for part in parts])
         self._cells = cells[np.argsort((cells.part << _PART) + cells.tick, kind="stable")]  # by column already
         self._bounds = self._cells.part.searchsorted(np.arange(len(parts) + 1)).tolist()
         self._column, self._counts = self._cells.column.astype(np.int16), _COUNTS[self._cells.kind]

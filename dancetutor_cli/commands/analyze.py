@@ -40,7 +40,7 @@ from dancetutor_cli.run.trust import results_folder
 if TYPE_CHECKING:
     from dancetutor_cli.lint.analysis import AnalyzeTask
     from dancetutor_cli.lint.run import LintRequest, LintRun
-    from dancetutor_cli.reports.formats import Report, Tally
+    from dancetutor_cli.reports.formats import Report
 
 
 def _explain(context: click.Context, _: click.Parameter, value: str | None) -> None:

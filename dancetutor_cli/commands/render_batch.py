@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.choices import RendererKind
     from dancetutor_cli.film.work.batch import BatchRequest, UnreadableFile
     from dancetutor_cli.film.work.segments import FilmOutcome
-    from dancetutor_cli.reports.terminal import FilmProgress
     from dancetutor_cli.run.pool import Workers
 
 

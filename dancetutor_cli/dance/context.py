@@ -15,6 +15,7 @@ from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, Span
 from dancetutor_cli.dance.settings_arms import BarSettings
 from dancetutor_cli.dance.settings_feet import StepSettings
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.units import PANEL as PANEL
 from dancetutor_cli.dance.units import Array, Flags
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import StepKind
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 
 # Where things are in the world: panels on the ground, and where on a panel a foot comes down.
 
-PANEL = 0.28  # metres, width of one panel
 HALF_PANEL = PANEL / 2
 PHASE = 1.9  # seconds; no divisor of any period of the waves
 HOLD_GRACE = 0.25  # seconds that a held note may be let go: StepMania's TimingWindowSecondsHold

@@ -15,6 +15,7 @@ from dancetutor_cli.run.schema import Bounds
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
+PANEL = 0.28  # metres, width of one panel
 
 Metres = Annotated[float, Bounds(0, 20, "metres")]
 Seconds = Annotated[float, Bounds(0, 1000, "seconds")]  # as long as a song: a wait that never comes

@@ -11,6 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.chart.pack_files import find_settings_file
 from dancetutor_cli.lint.findings import RANKS, Finding
@@ -162,7 +163,7 @@ def merged_by_foot(findings: tuple[Finding, ...], subject: ChartSubject) -> tupl
         return findings
     ticks, rows = subject.play.rows.tick, subject.step_rows
     of_feet = [
-        (place, int(rows.searchsorted(ticks.searchsorted(round(one.beat * 48)))), one)
+        (place, int(rows.searchsorted(ticks.searchsorted(round(one.beat * TICKS_PER_BEAT)))), one)
         for place, one in enumerate(findings)
         if one.beat is not None and one.rule in _OF_ONE_FOOT
     ]
@@ -186,7 +187,7 @@ def _silenced(finding: Finding, subject: ChartSubject) -> bool:
     """Whether the author said, in an editor or in dancetutor.yaml, that this finding is not wanted in this row."""
     if finding.beat is None or not (subject.ignores.codes or subject.ignores.rules):
         return False
-    tick, code = round(finding.beat * 48), _EDITOR_CODES.get(finding.rule)
+    tick, code = round(finding.beat * TICKS_PER_BEAT), _EDITOR_CODES.get(finding.rule)
     known = subject.ignores
     return bool(code and known.silenced(tick, code)) or known.silenced_rule(tick, finding.rule, finding.name)
 
@@ -217,7 +218,7 @@ class Baseline:
 
     def key(self, file: str, chart: str, finding: Finding) -> Key:
         """What identifies a finding: file, chart, rule and beat."""
-        place = (finding.line or 0) if finding.beat is None else round(finding.beat * 48)
+        place = (finding.line or 0) if finding.beat is None else round(finding.beat * TICKS_PER_BEAT)
         return self._relative(file), chart, finding.rule, place
 
     def absorbs(self, key: Key) -> bool:
@@ -263,7 +264,7 @@ class Baseline:
 
 def _entry(key: Key, count: int) -> dict[str, Any]:
     file, chart, rule, place = key
-    where = {"beat": round(place / 48, 6)} if chart else {"line": place}
+    where = {"beat": round(place / TICKS_PER_BEAT, 6)} if chart else {"line": place}
     return {"file": file, "chart": chart, "rule": rule, **where, **({"count": count} if count > 1 else {})}
 
 
@@ -278,7 +279,7 @@ def load_baseline(path: Path) -> Baseline:
     known: Counter[Key] = Counter()
     for number, entry in enumerate(data["entries"]):
         try:
-            place = round(float(entry["beat"]) * 48) if entry["chart"] else int(entry["line"])
+            place = round(float(entry["beat"]) * TICKS_PER_BEAT) if entry["chart"] else int(entry["line"])
             known[str(entry["file"]), str(entry["chart"]), str(entry["rule"]), place] += int(entry.get("count", 1))
         except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
             raise FileError(path, f"entry {number} is not a finding with file, chart, rule and beat") from None

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.chart.pack_files import find_settings_file, pack_folder, places_of_feet, read_pack_ini
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.preset import PresetChoice, choice_of
@@ -28,7 +29,6 @@ from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.run.errors import DancetutorError, plural
 
 if TYPE_CHECKING:
-    from dancetutor_cli.lint.findings import Finding
     from dancetutor_cli.lint.results import ResultCache
 
 # A run of `analyze`: which configuration holds for which file, the tasks, the baseline.
@@ -184,7 +184,7 @@ class LintRun:
             return []
         what = "1 entry is" if len(unused) == 1 else f"{len(unused)} entries are"
         file, chart, rule, place = unused[0]
-        first = f"{file} {chart} {rule} " + (f"beat {place / 48:g}" if chart else f"line {place}")
+        first = f"{file} {chart} {rule} " + (f"beat {place / TICKS_PER_BEAT:g}" if chart else f"line {place}")
         return [f"{path}: {what} no longer needed (the first: {first}); --update-baseline removes them"]
 
 

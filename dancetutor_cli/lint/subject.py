@@ -31,7 +31,6 @@ from dancetutor_cli.run.errors import FileError
 if TYPE_CHECKING:
     from dancetutor_cli.chart.audio import AudioHead
     from dancetutor_cli.lint.meter.estimate import MeteredChart
-    from dancetutor_cli.lint.meter.score import Oddities
     from dancetutor_cli.lint.song_sync import SongSync
 
 

@@ -150,7 +150,7 @@ def passage_object(passage: Passage, player: int = 0) -> dict[str, Any]:
 _PLAIN = 3.0  # steps a second below which steps alone make no passage
 
 
-def differing(passages: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+def without_repeats(passages: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """Passages as the page lists them, the hardest first.
 
     `number` is the place among the hardest, as in `render --section hardest:3`. Those with the same tags are one, with

@@ -264,13 +264,13 @@ def _findings(solved: tuple[Solved, ...]) -> Iterator[Finding]:
 
 def _passages(solved: tuple[Solved, ...]) -> list[dict[str, Any]]:
     """The hardest passages, the hardest first; of two parts with whose they are."""
-    from dancetutor_cli.page.facts import differing, passage_object
+    from dancetutor_cli.page.facts import passage_object, without_repeats
 
     pairs = [(found, one.chart) for one in solved if one.play for found in hardest(one.play, one.chart.timing)]
     if len(solved) == 1:
-        return differing([passage_object(passage) for passage, _ in pairs])
+        return without_repeats([passage_object(passage) for passage, _ in pairs])
     pairs.sort(key=lambda one: -one[0].score)
-    return differing([passage_object(passage, chart.player) for passage, chart in pairs])
+    return without_repeats([passage_object(passage, chart.player) for passage, chart in pairs])
 
 
 def _music(song: Song, chart: Chart) -> tuple[tuple[str, bytes] | None, tuple[str, ...]]:

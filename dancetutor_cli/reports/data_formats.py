@@ -12,6 +12,7 @@ from pathlib import Path, PurePath
 from typing import IO, Any
 
 import dancetutor_cli
+from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.lint.findings import TECH_COUNTS, Cause, Estimate, Finding, ScoreEstimate, Sync
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.reports.formats import Tally
@@ -60,7 +61,7 @@ def entries(result: FileResult) -> Iterator[Entry]:
     seen: dict[str, int] = {}
     for finding, chart in result.all_findings():
         place = "" if chart is None else f"{chart.steps_type}|{chart.difficulty}|{chart.description}{chart.whose}"
-        beat = finding.line if finding.beat is None else round(finding.beat * 48)
+        beat = finding.line if finding.beat is None else round(finding.beat * TICKS_PER_BEAT)
         identity = f"{path}|{place}|{beat}|{finding.rule}"
         seen[identity] = seen.get(identity, 0) + 1
         text = f"{identity}|{seen[identity]}" if seen[identity] > 1 else identity

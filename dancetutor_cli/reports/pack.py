@@ -29,7 +29,7 @@ TECHNIQUES = {
     "hands": ("hand",),
 }
 _ORDER = ("Beginner", "Easy", "Medium", "Hard", "Challenge")
-_MUSIC, _PAIR, _BROKEN = "DT107", "DT109", "DT101"
+_MUSIC, _PAIR = "DT107", "DT109"
 _MOST_HAVE = 0.8  # a difficulty that so many of the songs have is missed in the others
 _FEWEST_SONGS = 5
 _FEW = 2.0  # meters between label and estimate, from which on a chart stands out

@@ -12,7 +12,7 @@ from test_page_document import unpacked
 
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.page.facts import differing
+from dancetutor_cli.page.facts import without_repeats
 from dancetutor_cli.page.work import PageRequest, make_page
 
 
@@ -303,4 +303,4 @@ def test_passages_that_are_told_alike_are_one(tmp_path: Path) -> None:
 def test_a_few_slow_steps_are_no_hard_passage() -> None:
     told = {"from": 0, "to": 4, "plain": False, "player": 0}
     one, two = {**told, "tags": [["fast", 20], ["jump", 1]]}, {**told, "plain": True, "tags": [["fast", 10]]}
-    assert [found["number"] for found in differing([two, one])] == [2]
+    assert [found["number"] for found in without_repeats([two, one])] == [2]

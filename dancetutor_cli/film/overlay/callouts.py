@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.notes import OnMine
     from dancetutor_cli.film.scroll import ScrollSegments
     from dancetutor_cli.lint.findings import Finding
-    from dancetutor_cli.run.languages import Language
 
 # What a call says of a move beside its name: which foot, in front or behind, and why; the sentences are data.
 

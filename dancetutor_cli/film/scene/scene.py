@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character.mesh import Character, rest_vertices
+from dancetutor_cli.dance.units import PANEL as PANEL
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import LimbColours, limb_colours
 from dancetutor_cli.film.picture import PadLike
@@ -22,7 +23,6 @@ from dancetutor_cli.run.errors import UsageError
 # Their colours (`cpu.stage_colours`) depend only on the position on the surface; there are no textures, so the stage is
 # sharp at any size.
 
-PANEL = 0.28  # metres, width of one panel
 _SIDES = 24  # of the room
 _WALL_HEIGHT = 5.0
 _FLOOR_REACH = 40.0
