@@ -1,7 +1,7 @@
 """The solver: cost preset -> transition tables -> dynamic programme -> Play (who steps what, and what it costs).
 
     solve, engine                 a play of rows and a preset; tables of one pad and preset, and their kernel run
-      |   vocabulary, tables        names of costs; the pad and the preset as arrays
+      |   vocabulary, tables        names of costs; the pad and the preset as arrays; bits of a packed row
       |   state                     how the dancer stands between two rows
       |   itg_moves, itg_costs      ways to play a row, and their costs, in the model `itg`
       |   thesis_moves              the same in the model `thesis`

@@ -17,9 +17,18 @@ from dancetutor_cli.feet.solver import store
 from dancetutor_cli.feet.solver.compiled import runs_as_python
 from dancetutor_cli.feet.solver.solvers import EXPLAIN, solve_itg, solve_thesis
 from dancetutor_cli.feet.solver.store import RowArrays, RowStates, SolverPath, empty_tables, grown
-from dancetutor_cli.feet.solver.tables import EARLIER, FORCED, MOST_MOVES, TAPS, Making, Rules, geometry, moves
+from dancetutor_cli.feet.solver.tables import (
+    EARLIER,
+    FORCED,
+    MOST_MOVES,
+    TAPS,
+    UNPLAYED,
+    Making,
+    Rules,
+    geometry,
+    moves,
+)
 from dancetutor_cli.feet.solver.techniques import limits, long_ways
-from dancetutor_cli.feet.solver.thesis_moves import UNPLAYED
 from dancetutor_cli.feet.solver.vocabulary import MODELS, MOST_MS
 
 # Costs over time: a curve of a preset at every millisecond, in whole numbers, so that every machine finds the same.

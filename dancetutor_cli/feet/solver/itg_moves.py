@@ -43,11 +43,11 @@ from dancetutor_cli.feet.solver.tables import (
     ROLLS,
     TAPS,
     TIMED,
+    UNPLAYED,
 )
 
 _MASK = (1 << COLUMN_BITS) - 1
 _FORCED = (1 << 3 * COLUMN_BITS) - 1
-UNPLAYED = 5
 BEFORE, AFTER, PRESS, PANELS, LEFT_WAYS, RIGHT_WAYS, LEFT_TO, RIGHT_TO = range(8)  # rows of `Moves.scratch`
 
 

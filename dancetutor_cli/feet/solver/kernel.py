@@ -18,6 +18,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.play import StepKind
 from dancetutor_cli.feet.solver import tables as columns
 from dancetutor_cli.feet.solver.compiled import inner_kernel
 from dancetutor_cli.feet.solver.itg_costs import charge_time
@@ -60,11 +62,13 @@ from dancetutor_cli.feet.solver.store import (
     number_of_state,
     slot_of,
 )
-from dancetutor_cli.feet.solver.tables import ROLLS
+from dancetutor_cli.feet.solver.tables import ROLLS, UNPLAYED
 from dancetutor_cli.feet.solver.thesis_moves import start_thesis
 from dancetutor_cli.feet.solver.vocabulary import MOST_MS  # fmt: skip
 
 _PLACE = (1 << PLACE_BITS) - 1
+_ROLL, _ROLL_TAP = int(StepKind.ROLL), int(StepKind.ROLL_TAP)
+_LEFT_OVER = int(Limb.UNPLAYED)
 _NEVER = np.int64(1 << 60)
 # what a cell of `Rows.steps` is in a packed row, in its first column: with rolls as taps, and with taps of rolls apart
 _KINDS = np.array(
@@ -108,9 +112,9 @@ def _rolls_on(steps, out):  # type: ignore[no-untyped-def]
         out[r] = 0
         for p in range(c):
             if steps[r, p]:
-                if coming >> p & 1 and steps[r, p] >= 4:
+                if coming >> p & 1 and steps[r, p] >= _ROLL:
                     out[r] |= 1 << p
-                coming = coming & ~(1 << p) | (steps[r, p] == 5) << p
+                coming = coming & ~(1 << p) | (steps[r, p] == _ROLL_TAP) << p
 
 
 @inner_kernel(inline="always")
@@ -123,7 +127,7 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
     if counts[PATTERNS] + n > len(patterns) or 2 * (counts[PATTERNS] + n) > len(numbers):
         return False
     kinds = _KINDS[1 if keep_rolls else 0]
-    rolled, mined = keep_rolls and _any_from(steps, 4), _any_from(mines, 1)
+    rolled, mined = keep_rolls and _any_from(steps, _ROLL), _any_from(mines, 1)
     if rolled:
         _rolls_on(steps, pattern)  # each is read before the number of its row takes its place
     for p in range(c):
@@ -263,7 +267,7 @@ def trace(t, nodes, found):  # type: ignore[no-untyped-def]
         action = wide[path[r], ACTION]
         for p in range(c):
             code = action >> 3 * p & 7
-            limb[r, p] = -2 if code == 5 else code - 1
+            limb[r, p] = _LEFT_OVER if code == UNPLAYED else code - 1
             part[r, p] = action >> PART_SHIFT + 2 * p & 3
 
 

@@ -243,9 +243,9 @@ def explorer(rules: Any) -> Any:
                     return wanted
                 key = np.int64(pattern[r]) << 32 | states[first + i]
                 at = _slot_of_pair(key, pairs)
-                row, more = t.pattern[pattern[r], 0], t.pattern[pattern[r], 1]
+                word, more = t.pattern[pattern[r], 0], t.pattern[pattern[r], 1]
                 pairs[at, 0] = key
-                pairs[at, 1] = packed[i] = _keep(expand(keys[states[first + i]], row, more, rules, out), out, t)
+                pairs[at, 1] = packed[i] = _keep(expand(keys[states[first + i]], word, more, rules, out), out, t)
                 counts[PAIRS] += 1
             total = found = np.int64(0)
             for i in range(size):

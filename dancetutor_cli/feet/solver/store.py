@@ -16,7 +16,7 @@ from dancetutor_cli.feet.solver.vocabulary import MOST_MS as MOST_MS
 # A layer is all states that a row can end in. Which they are depends only on the layer before and on the row's pattern,
 # so charts share layers, and what leads from one to the next: a transition, of one edge for each state and move.
 
-# places in `counts`
+# places in `counts`; a drawing of the words that are packed is in `tables`
 (
     STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN, TERMS_KNOWN, LAYERS, LAYER_STATES, TRANSITIONS, EDGES, TRIED,
     TIMES,

@@ -14,15 +14,34 @@ from dancetutor_cli.feet import Pad
 from dancetutor_cli.feet.pads import HOME_WIDTH
 from dancetutor_cli.run.errors import UsageError
 
+# Bits of the two words of a packed row, `Tables.pattern`, from the lowest one at the right. A mask has one bit for each
+# column, at most ten:
+#
+#     row    60 FRESH | 50 ROLL_TAPS | 40 ROLLS | 30 RELEASED | 20 MINES | 10 HOLDS | 0 TAPS
+#     more                           | 30 EARLIER |               0 FORCED: 3 bits for each column
+#
+#     TAPS, HOLDS, MINES   what stands in the row's cells; with rolls as taps, ROLLS and ROLL_TAPS are empty
+#     RELEASED, FRESH      columns whose hold has ended since the row before; whether that was just now
+#     ROLLS, ROLL_TAPS     columns whose roll goes on after the row; virtual taps of rolls
+#     FORCED, EARLIER      limb codes of overrides; columns whose hold ended at the last row with steps
+#
+# A limb code is 0 for nobody, a `Limb` + 1, or UNPLAYED. `state` has the bits of a state. Other words, in `store`:
+#
+#     edge           35 cost without time | 19 number of facts | 18 last one that leads there | 0 place of state before
+#     node           32 cost so far | 0 edge that led here
+#     wide           ACTION: 32 parts, 2 bits for each column | 0 limb codes, 3 bits for each column
+#                    EVENTS: 32 number of the costs by term | 0 events
+#     pair           32 pattern | 0 state; beside it 16 first move | 0 number of moves
+
 MOST_PLACES = 32  # of a foot: panels, home, pairs of neighbours
 EPSILON = 1e-6  # every comparison of docs/cost-model.md: degrees, panel widths, seconds
 MOST_MOVES = 10 * 9 * 8 * 7 + 8  # ways to put four limbs on a row of ten steps, and some room
 COLUMN_BITS = 10  # a row packs into one integer: so many bits for each of its masks
 TAPS, HOLDS, MINES, RELEASED, ROLLS, ROLL_TAPS = (i * COLUMN_BITS for i in range(6))  # where the masks start
 FRESH = 6 * COLUMN_BITS  # bit of a row: its holds have only just been released
-# the second word of a row: limb codes of overrides, 3 bits for each column, and holds that ended in the very moment of
-# the last row with steps
+# where limb codes of overrides and holds that ended earlier start in the second word
 FORCED, EARLIER = 0, 3 * COLUMN_BITS
+UNPLAYED = 5  # a limb code: no limb is left for the step
 FRESH_TICKS = 6  # a 32nd: a hold that ended so long ago has just been released
 DISTANCE_UNIT = 20  # distances are whole numbers of 1/20 panel widths
 

@@ -37,11 +37,11 @@ from dancetutor_cli.feet.solver.tables import (
     ROLLS,
     TAPS,
     TIMED,
+    UNPLAYED,
 )
 from dancetutor_cli.feet.solver.vocabulary import EVENTS as NAMES
 
 BEFORE, AFTER, PRESS, PANELS = range(4)  # rows of `Moves.scratch`
-UNPLAYED = 5
 (
     CROSSOVER, DOUBLESTEP, JUMP_FOOTSWITCH, SPIN, TURN_135, TURN_180,
     HAND_HOLD, HAND_ACROSS, HAND_ASIDE, HAND_BEHIND, UNPLAYABLE,
