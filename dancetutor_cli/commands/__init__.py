@@ -1,6 +1,6 @@
 """The command line: one module per subcommand, imported only when it is called.
 
-analyze                       with pack, fix_option and settings, for its options about packs, `--fix` and settings
+analyze                       with analyze_options; with pack, fix_option and settings for packs, `--fix` and settings
 render                        with render_batch, for folders
 chart_options, film_options, arguments, help_groups   options that several commands have, their types and groups
 first_run                     what is said before work that compiles

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING
 
 import click
 
 from dancetutor_cli.chart import find_files
 from dancetutor_cli.chart.selection import Selection, note_bytes
-from dancetutor_cli.commands.arguments import GivenPath, Source, fixes, folder, named, open_output, rules, sources
+from dancetutor_cli.commands.analyze_options import AnalyzeOptions
+from dancetutor_cli.commands.arguments import GivenPath, Source, fixes, folder, into, named, open_output, rules, sources
 from dancetutor_cli.commands.chart_options import (
     exclude_option,
     language_option,
@@ -185,7 +186,9 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     metavar="RULE|all",
     help="Print the documentation of a rule and exit.",
 )
-def command(**options: Any) -> int:  # fmt: skip
+@into("selection", Selection)
+@into("options", AnalyzeOptions)
+def command(selection: Selection, options: AnalyzeOptions) -> int:
     """Work out which foot steps each note, and check the chart.
 
     PATH is a .sm, .ssc or .ucs file, a folder with such files, or - for standard input.
@@ -196,42 +199,47 @@ def command(**options: Any) -> int:  # fmt: skip
     from dancetutor_cli.lint.run import LintRequest, LintRun
 
     request = LintRequest(
-        selection=Selection(options["steps_type"], options["difficulty"], options["index"], options["player"]),
-        want_rows=options["format_name"] == "json",
-        want_figures=options["format_name"] == "csv" or options["report_html"] is not None,
-        want_excerpts=options["format_name"] == "text",
-        **{name: options[name] for name in ("preset", "config", "assignments", "select", "ignore", "fail_on",
-                                            "baseline", "update_baseline", "suggest", "alternatives", "meter_scale",
-                                            "rate", "sync")},
-    )  # fmt: skip
-    if options["language"] is not None and options["sheet"] is None:
-        raise UsageError("--language belongs to --sheet; add --sheet")
-    if options["plot"] is not None and not options["sync"]:
-        raise UsageError("--plot draws what --sync finds; add --sync")
-    if not options["fix"] and (options["diff"] or options["backup"]):
-        raise UsageError("--diff and --backup belong to --fix; add --fix RULE or --fix safe")
-    if options["watch"] and not options["fix"]:
+        selection=selection,
+        preset=options.preset,
+        config=options.config,
+        assignments=options.assignments,
+        select=options.select,
+        ignore=options.ignore,
+        fail_on=options.fail_on,
+        baseline=options.baseline,
+        update_baseline=options.update_baseline,
+        suggest=options.suggest,
+        alternatives=options.alternatives,
+        meter_scale=options.meter_scale,
+        rate=options.rate,
+        sync=options.sync,
+        want_rows=options.format_name == "json",
+        want_figures=options.format_name == "csv" or options.report_html is not None,
+        want_excerpts=options.format_name == "text",
+    )
+    options.check()
+    if options.watch and not options.fix:
         return _watch(request, options)
-    files = sources(options["paths"], options["stdin_filename"], options["exclude"])
-    if options["show_settings"]:
+    files = sources(options.paths, options.stdin_filename, options.exclude)
+    if options.show_settings:
         from dancetutor_cli.commands.settings import show_settings
 
         return show_settings(LintRun(request), files)
     return _run(LintRun(request), files, options)
 
 
-def _watch(request: LintRequest, options: dict[str, Any]) -> int:
+def _watch(request: LintRequest, options: AnalyzeOptions) -> int:
     """Run for all files, then for those that are saved, until Ctrl-C."""
     from dancetutor_cli.lint.run import LintRun, changes
 
-    if any(str(path) == "-" for path in options["paths"]):
+    if any(str(path) == "-" for path in options.paths):
         raise UsageError("--watch needs files or folders, not standard input")
     run = LintRun(request)  # a new one each time: configurations may have changed
 
     def needs(path: Path) -> Iterable[Path]:
         return run.needs(path)
 
-    for _, changed in changes(lambda: find_files(options["paths"], options["exclude"]), needs):
+    for _, changed in changes(lambda: find_files(options.paths, options.exclude), needs):
         run = LintRun(request)
         if changed:
             click.clear()  # nothing without a terminal
@@ -248,41 +256,41 @@ def _report_errors(work: Callable[[], object]) -> None:
         click.echo(f"dancetutor: {error}", err=True)
 
 
-def _run(run: LintRun, files: list[Source], options: dict[str, Any]) -> int:
-    if options["sheet"] is not None:
-        check_sheet(options["sheet"], len(files))
-    if options["plot"] is not None:
-        check_plot(options["plot"], len(files))
-    if options["update_baseline"] and options["baseline"] is not None:
-        check_file(options["baseline"])
-    if options["output_file"] is not None:
-        check_file(options["output_file"], or_device=True)
+def _run(run: LintRun, files: list[Source], options: AnalyzeOptions) -> int:
+    if options.sheet is not None:
+        check_sheet(options.sheet, len(files))
+    if options.plot is not None:
+        check_plot(options.plot, len(files))
+    if options.update_baseline and options.baseline is not None:
+        check_file(options.baseline)
+    if options.output_file is not None:
+        check_file(options.output_file, or_device=True)
     first = files[0][0]
-    if options["fix"]:
+    if options.fix:
         from dancetutor_cli.commands.fix_option import fix_all
 
         run.open_baseline(first)
         return fix_all(run, [run.task(path, data) for path, data in files], options)
-    with open_output(options["output_file"]) as output:
-        if options["tech_counts"] is not None:
+    with open_output(options.output_file) as output:
+        if options.tech_counts is not None:
             return report_tech_counts([run.task(path, data) for path, data in files], options, output)
-        if options["compare"] is not None:
+        if options.compare is not None:
             check_comparison(options)
-            if options["report_html"] is None:
+            if options.report_html is None:
                 return report_changes(options, output)
         return _lint(run, files, options, output)
 
 
-def _lint(run: LintRun, files: list[Source], options: dict[str, Any], output: IO[str]) -> int:
+def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO[str]) -> int:
     """Analyze all files and write the report; the exit status."""
     from dancetutor_cli.lint.results import ResultCache, default_folder
     from dancetutor_cli.lint.run import analyze_all
 
     first = files[0][0]
     run.open_baseline(first)
-    view = _view(options, output)
-    silent = options["quiet"] or (view == "none" and not options["statistics"])
-    tally = Tally(run.fail_on(first), options["exit_zero"], quiet=silent)
+    view = options.view(output)
+    silent = options.quiet or (view == "none" and not options.statistics)
+    tally = Tally(run.fail_on(first), options.exit_zero, quiet=silent)
     pack = PackReport(options, run.has_baseline, len(files), view)
     tasks = [run.task(path, data) for path, data in files]
     if any(task.settings.sync for task in tasks):
@@ -292,37 +300,40 @@ def _lint(run: LintRun, files: list[Source], options: dict[str, Any], output: IO
     report = _open_view(view, tasks, output)
     least = "warning" if tally.fail_on == "never" else tally.fail_on
     report.begin()
-    folder = None if options["no_cache"] else default_folder()
-    cache = None if folder is None else ResultCache(folder)
-    if not options["no_cache"] and not options["quiet"] and (fault := results_folder()[1]):
+    kept = None if options.no_cache else default_folder()
+    cache = None if kept is None else ResultCache(kept)
+    if not options.no_cache and not options.quiet and (fault := results_folder()[1]):
         click.echo(f"note: {fault}: results are not stored", err=True)
-    for raw in run.with_packs(analyze_all(tasks, options["jobs"], cache, _before_work)):
+    for raw in run.with_packs(analyze_all(tasks, options.jobs, cache, _before_work)):
         result = run.without_baseline(raw)
         tally.add(result)
         pack.add(raw)
-        if options["quiet"] or (run.has_baseline and options["format_name"] == "text"):
-            result = result.at_least(least if options["quiet"] else "info")
+        if options.quiet or (run.has_baseline and options.format_name == "text"):
+            result = result.at_least(least if options.quiet else "info")
             if not (result.error or result.findings or result.charts):
                 continue
         report.add(result)
     tally.page += pack.lines()
-    if options["statistics"] and options["format_name"] == "text":
+    if options.statistics and options.format_name == "text":
         tally.page += tally.statistics()
     report.end(tally)
-    for line in pack.summary_lines(tally) if not options["quiet"] else ():
+    for line in pack.summary_lines(tally) if not options.quiet else ():
         click.echo(line, err=True)
-    if options["sheet"] is not None and not tally.unreadable:
-        message = write_sheet(options["sheet"], tasks, options["language"])
-        if not options["quiet"]:
+    for message in _drawn(tasks, options) if not tally.unreadable else ():
+        if not options.quiet:
             click.echo(message, err=True)
-    if options["plot"] is not None and not tally.unreadable:
-        message = write_plot(options["plot"], tasks[0])
-        if not options["quiet"]:
-            click.echo(message, err=True)
-    if cache is not None and not options["watch"]:
+    if cache is not None and not options.watch:
         _keep(files)
     _finish(run, tally, options)
     return tally.exit_status
+
+
+def _drawn(tasks: list[AnalyzeTask], options: AnalyzeOptions) -> Iterator[str]:
+    """Write --sheet and --plot; a line about each."""
+    if options.sheet is not None:
+        yield write_sheet(options.sheet, tasks, options.language)
+    if options.plot is not None:
+        yield write_plot(options.plot, tasks[0])
 
 
 def _keep(files: list[Source]) -> None:
@@ -335,21 +346,6 @@ def _keep(files: list[Source]) -> None:
         for path, data in files:
             if data is None:
                 store.keep(path)
-
-
-def _view(options: dict[str, Any], output: IO[str]) -> str:
-    """How findings are shown: a format, or of text all that is known, what a screen holds, or none."""
-    if options["format_name"] != "text":
-        return str(options["format_name"])
-    if options["full"] is not None:
-        return "full" if options["full"] else "brief"
-    if options["alternatives"]:
-        return "full"
-    if options["report_html"] is not None or options["sheet"] is not None or options["statistics"]:
-        return "none"
-    if output.isatty():
-        return "full" if options["suggest"] else "brief"
-    return "text"
 
 
 def _open_view(view: str, tasks: Sequence[AnalyzeTask], output: IO[str]) -> Report:
@@ -368,14 +364,14 @@ def _before_work(tasks: Sequence[AnalyzeTask]) -> None:
     announce_compiling(tasks[0].presets, None if solves_often else size)
 
 
-def _finish(run: LintRun, tally: Tally, options: dict[str, Any]) -> None:
+def _finish(run: LintRun, tally: Tally, options: AnalyzeOptions) -> None:
     """What is said after the results, to standard error: so that the results stay one document."""
     message = run.close_baseline()
-    for line in tally.statistics() if options["statistics"] and options["format_name"] != "text" else ():
+    for line in tally.statistics() if options.statistics and options.format_name != "text" else ():
         click.echo(line, err=True)
-    if options["suggest"] and not options["quiet"]:
+    if options.suggest and not options.quiet:
         click.echo(tally.suggestions(), err=True)
-    for line in message if not options["quiet"] else ():
+    for line in message if not options.quiet else ():
         click.echo(line, err=True)
     if not tally.charts and not tally.unreadable and tally.unselected:
         has = "; ".join(tally.unselected[:20])

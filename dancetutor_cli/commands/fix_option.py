@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -19,6 +19,7 @@ from dancetutor_cli.reports.terminal import coloured, safe
 from dancetutor_cli.run.errors import UsageError, plural
 
 if TYPE_CHECKING:
+    from dancetutor_cli.commands.analyze_options import AnalyzeOptions
     from dancetutor_cli.lint.analysis import AnalyzeTask
     from dancetutor_cli.lint.findings import Finding
     from dancetutor_cli.lint.results import FileResult
@@ -50,12 +51,12 @@ def _parse_fix_request(text: str) -> FixRequest:
     return FixRequest(rule.code, int(match[2]) if match[2] else None)
 
 
-def fix_all(run: LintRun, tasks: Sequence[AnalyzeTask], options: dict[str, Any]) -> int:
+def fix_all(run: LintRun, tasks: Sequence[AnalyzeTask], options: AnalyzeOptions) -> int:
     """Correct every file, print what was done; the exit status: 1 if a finding that was asked for is left."""
-    wanted = [_parse_fix_request(text) for text in options["fix"]]
+    wanted = [_parse_fix_request(text) for text in options.fix]
     _check(tasks, options)
-    talk = _Talk(diff=options["diff"])
-    files = within_folders(options["paths"], [task.path for task in tasks])
+    talk = _Talk(diff=options.diff)
+    files = within_folders(options.paths, [task.path for task in tasks])
     tasks = [task for task in tasks if task.path in files]
     meant = {task.path.absolute() for task in tasks}
     for task in tasks:
@@ -69,24 +70,24 @@ def fix_all(run: LintRun, tasks: Sequence[AnalyzeTask], options: dict[str, Any])
     return talk.end()
 
 
-def _check(tasks: Sequence[AnalyzeTask], options: dict[str, Any]) -> None:
+def _check(tasks: Sequence[AnalyzeTask], options: AnalyzeOptions) -> None:
     """UsageError for options that do not go with --fix."""
-    if options["format_name"] != "text":
+    if options.format_name != "text":
         raise UsageError("--fix prints only text; leave --format out")
     for name in _OF_REPORTS:
-        if options[name]:
+        if getattr(options, name):
             raise UsageError(f"--{name.replace('_', '-')} cannot be used with --fix; run analyze again for it")
     if any(task.data is not None for task in tasks):
         raise UsageError("--fix writes into files, not into standard input")
 
 
-def _fix(run: LintRun, task: AnalyzeTask, wanted: Sequence[FixRequest], options: dict[str, Any]) -> FixOutcome:
+def _fix(run: LintRun, task: AnalyzeTask, wanted: Sequence[FixRequest], options: AnalyzeOptions) -> FixOutcome:
     result = run.without_baseline(analyze_file(task))
     if result.error is not None:
         return FixOutcome(error=result.error)
     findings = tuple(finding for one in wanted if one.rule != SAFE for finding in _of_file(result, one))
     safe = any(one.rule == SAFE for one in wanted)
-    return fix_file(FixTask(task, findings, safe, write=not options["diff"], backup=options["backup"]))
+    return fix_file(FixTask(task, findings, safe, write=not options.diff, backup=options.backup))
 
 
 def _of_file(result: FileResult, asked_for: FixRequest) -> tuple[tuple[Finding, int], ...]:

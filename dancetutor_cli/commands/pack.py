@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING
 
 import click
 
@@ -17,6 +17,7 @@ from dancetutor_cli.run.errors import UsageError, plural
 from dancetutor_cli.run.files import check_file, write_atomic
 
 if TYPE_CHECKING:
+    from dancetutor_cli.commands.analyze_options import AnalyzeOptions
     from dancetutor_cli.lint.analysis import AnalyzeTask, Drawable
     from dancetutor_cli.lint.results import FileResult
     from dancetutor_cli.reports.formats import Tally
@@ -80,12 +81,12 @@ class PackReport:
     files : how many there are: one song is no pack; view : how findings are shown
     """
 
-    def __init__(self, options: Mapping[str, Any], known: bool, files: int, view: str) -> None:
-        self._html: Path | None = options["report_html"]
+    def __init__(self, options: AnalyzeOptions, known: bool, files: int, view: str) -> None:
+        self._html: Path | None = options.report_html
         self._options, self._brief = options, view == "brief"
         if self._html is not None:
             check_file(self._html, (".html", ".htm"))
-        short = known or options["quiet"] or options["statistics"]
+        short = known or options.quiet or options.statistics
         self._is_told = files > _SONG and view in ("brief", "full") and not short
         self._pack: Pack | None = None
         if self._is_told or self._html is not None:
@@ -106,7 +107,7 @@ class PackReport:
         from dancetutor_cli.reports.pack_page import html_page
 
         if self._html is not None:
-            changes = list(_changes(self._options, None)) if self._options["compare"] is not None else []
+            changes = list(_changes(self._options, None)) if self._options.compare is not None else []
             write_atomic(self._html, html_page(self._pack, changes).encode("utf-8", "replace"))
         return pack_lines(self._pack, shutil.get_terminal_size().columns if self._brief else _WIDE) * self._is_told
 
@@ -116,17 +117,17 @@ class PackReport:
             yield f"{self._html}: {plural(self._pack.songs, 'song')}; {tally.summary()}"
 
 
-def check_comparison(options: Mapping[str, Any]) -> None:
+def check_comparison(options: AnalyzeOptions) -> None:
     """UsageError for what does not go with --compare."""
-    if len(options["paths"]) != 1 or str(options["paths"][0]) == "-":
+    if len(options.paths) != 1 or str(options.paths[0]) == "-":
         raise UsageError("--compare takes one file or folder as PATH, to compare with OTHER")
-    if options["format_name"] != "text":
+    if options.format_name != "text":
         raise UsageError("--compare prints only text; leave --format out")
 
 
-def report_changes(options: Mapping[str, Any], output: IO[str]) -> int:
+def report_changes(options: AnalyzeOptions, output: IO[str]) -> int:
     """`--compare`: print what changed, nothing if nothing did; the exit status."""
-    is_brief = not options["full"] if options["full"] is not None else output.isatty()
+    is_brief = not options.full if options.full is not None else output.isatty()
     lines = list(_changes(options, _BRIEF_ROWS if is_brief else None))
     shown = lines[: _BRIEF + 1] if is_brief else lines
     if len(shown) < len(lines):
@@ -135,13 +136,14 @@ def report_changes(options: Mapping[str, Any], output: IO[str]) -> int:
     return 0
 
 
-def _changes(options: Mapping[str, Any], most_rows: int | None) -> Iterator[str]:
+def _changes(options: AnalyzeOptions, most_rows: int | None) -> Iterator[str]:
     """A line that says how much changed, and the changes. most_rows : of a chart, None: all"""
     from dancetutor_cli.lint.snapshots import of_path, snapshot_of
     from dancetutor_cli.lint.versions import change_lines, compare
 
-    path, exclude = options["paths"][0], options["exclude"]
-    before = snapshot_of(options["compare"], path, exclude)
+    assert options.compare is not None
+    path, exclude = options.paths[0], options.exclude
+    before = snapshot_of(options.compare, path, exclude)
     found = list(compare(before, of_path(path, exclude)))
     if not found:
         return
@@ -152,19 +154,20 @@ def _changes(options: Mapping[str, Any], most_rows: int | None) -> Iterator[str]
         yield ("  " if line.startswith("  ") else "") + safe(line)
 
 
-def report_tech_counts(tasks: Sequence[AnalyzeTask], options: Mapping[str, Any], output: IO[str]) -> int:
+def report_tech_counts(tasks: Sequence[AnalyzeTask], options: AnalyzeOptions, output: IO[str]) -> int:
     """`--tech-counts`: print the table, with --full every chart that differs below it; the exit status."""
     from dancetutor_cli.lint.techniques import compare_techniques, read_theirs
     from dancetutor_cli.reports.pack import chart_lines, table_lines
 
-    if options["format_name"] != "text":
+    if options.format_name != "text":
         raise UsageError("--tech-counts prints only a Markdown table; leave --format out")
-    found = compare_techniques(tasks, read_theirs(options["tech_counts"]))
+    assert options.tech_counts is not None
+    found = compare_techniques(tasks, read_theirs(options.tech_counts))
     if not found.charts:
         raise UsageError(
-            f"{options['tech_counts']}: no chart in it is one of PATH's: they are matched by folder, file and chart"
+            f"{options.tech_counts}: no chart in it is one of PATH's: they are matched by folder, file and chart"
         )
-    lines = [*table_lines(found), *(("", *chart_lines(found)) if options["full"] else ())]
+    lines = [*table_lines(found), *(("", *chart_lines(found)) if options.full else ())]
     output.writelines(f"{line}\n" for line in lines)
     return 0
 
