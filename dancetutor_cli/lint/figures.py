@@ -98,27 +98,27 @@ def with_causes(findings: Sequence[Finding], causes: Sequence[Cause], panels: Se
 
 def tech_counts(subject: ChartSubject) -> dict[str, int]:
     """How often each of `TECH_COUNTS` happens; all 0 for a chart without a play."""
-    if subject.feet is None:
+    if subject.facts is None:
         return dict.fromkeys(TECH_COUNTS, 0)
-    return subject.feet.candidates.tech_counts[subject.feet.number]
+    return subject.facts.candidates.tech_counts[subject.facts.number]
 
 
 def hand_rows(subject: ChartSubject) -> list[int]:
     """Rows with a step in which a hand helps or three panels are down, as the games and DT302 count hands."""
-    return [] if subject.feet is None else sorted({*subject.rows_with("hand"), *subject.feet.triples()})
+    return [] if subject.facts is None else sorted({*subject.rows_with("hand"), *subject.facts.triples()})
 
 
 def tech_rows(subject: ChartSubject) -> dict[str, NDArray[np.int64]]:
     """The rows of the play that are counted as each of `TECH_COUNTS`, one for each time, in order."""
-    if subject.feet is None:
+    if subject.facts is None:
         return {name: np.zeros(0, dtype=np.int64) for name in TECH_COUNTS}
-    candidates, number = subject.feet.candidates, subject.feet.number
+    candidates, number = subject.facts.candidates, subject.facts.number
     return {name: candidates.plays.own(np.sort(candidates.techniques[name]), number) for name in TECH_COUNTS}
 
 
 def facing_counts(subject: ChartSubject) -> tuple[int, ...]:
     """Rows with a step by how far the dancer faces away from the screen, see `Figures.facing`; () without a play."""
-    return () if subject.feet is None else subject.feet.candidates.facing_counts[subject.feet.number]
+    return () if subject.facts is None else subject.facts.candidates.facing_counts[subject.facts.number]
 
 
 # The rows around a finding, to be drawn beside it.

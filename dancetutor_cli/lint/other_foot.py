@@ -97,7 +97,7 @@ def goes_on_the_other_foot(subject: ChartSubject, row: int, quick: float, *, jac
     jacked : the exchange begins with the row itself, which the foot steps again that has just stepped; it need not
         begin after a rest, but has to end at one
     """
-    if subject.feet is None or subject.play is None:
+    if subject.facts is None or subject.play is None:
         return False
     rows = subject.step_rows
     first, last = segment(subject, int(rows.searchsorted(row)), quick, forwards_only=jacked)
@@ -124,7 +124,7 @@ def exchanged_is_uncrossed(
 
     stand : panels of both feet before; swap : False: not exchanged, as they are
     """
-    play, feet = subject.play, subject.feet
+    play, feet = subject.play, subject.facts
     if play is None or feet is None:
         return False
     single = ((play.limb[rows] >= 0).sum(axis=1) == 1) & (feet.down[rows] == 1)
@@ -190,7 +190,7 @@ def fewest_crossed(subject: ChartSubject, row: int, freedom: Freedom) -> float:
 
     Endless if there is no way, or if the phrase has a hold or two panels at once.
     """
-    play, feet = subject.play, subject.feet
+    play, feet = subject.play, subject.facts
     if play is None or feet is None or subject.pad is None:
         return math.inf
     rows = subject.step_rows

@@ -87,7 +87,7 @@ class PlayFacts:
         return self.candidates.triples[self.number]
 
     def doublesteps(self) -> list[int]:
-        """Rows of doublesteps that follow freely (see there) and do not cross the feet."""
+        """Rows of doublesteps with nothing in the way that do not cross the feet."""
         return self.candidates.free_doublesteps[self.number]
 
     def crossed(self, row: int) -> bool:

@@ -47,7 +47,7 @@ def share_plays(subjects: Iterable[ChartSubject]) -> None:
         assert alike[0].pad is not None
         candidates = Candidates([subject.play for subject in alike if subject.play is not None], alike[0].pad)
         for number, subject in enumerate(alike):
-            vars(subject)["feet"] = PlayFacts(candidates, number, subject.chart.timing)
+            vars(subject)["facts"] = PlayFacts(candidates, number, subject.chart.timing)
 
 
 # What a rule looks at: a file, or one chart with its play.
@@ -107,7 +107,7 @@ class ChartSubject(PlacedChart):
     problems: tuple[FeetProblem, ...] = ()
 
     @cached_property
-    def feet(self) -> PlayFacts | None:
+    def facts(self) -> PlayFacts | None:
         """Facts about the play, where there is one; of this chart alone, unless `share_plays` has put them here."""
         if self.play is None or self.pad is None:
             return None
@@ -121,21 +121,21 @@ class ChartSubject(PlacedChart):
     @cached_property
     def counts(self) -> Mapping[str, int]:
         """Name of the move -> rows of the play in which it happens."""
-        return {} if self.feet is None else self.feet.candidates.plays.counts[self.feet.number]
+        return {} if self.facts is None else self.facts.candidates.plays.counts[self.facts.number]
 
     def sized(self, rate: float = 1.0) -> MeteredChart | None:
         """The chart's meters on every scale, for music that plays so fast; None without a play or a model."""
-        if self.feet is None:
+        if self.facts is None:
             return None
-        ask = partial(self.feet.candidates.features, self.feet.number)
+        ask = partial(self.facts.candidates.features, self.facts.number)
         return size(self.chart.steps_type, (self.chart.meter, self.chart.difficulty), ask, rate)
 
     def oddities(self) -> Oddities:
         """What the chart is scored by; for charts with a play."""
         assert self.play is not None
-        assert self.feet is not None
+        assert self.facts is not None
         timing = timing_oddities(self.chart.timing, self.play.rows.tick[self.step_rows])
-        return Oddities((*self.feet.candidates.oddities[self.feet.number], *timing.numbers), timing)
+        return Oddities((*self.facts.candidates.oddities[self.facts.number], *timing.numbers), timing)
 
     @property
     def row_count(self) -> int:
@@ -150,29 +150,29 @@ class ChartSubject(PlacedChart):
 
     def has(self, move: str) -> bool:
         """Whether a move of this name or of a kind of it happens in the play."""
-        return self.feet is not None and self.feet.candidates.plays.has_move(move)[self.feet.number]
+        return self.facts is not None and self.facts.candidates.plays.has_move(move)[self.facts.number]
 
     def rows_with(self, move: str) -> list[int]:
         """Rows with a move of this name or of a kind of it: "crossover" finds "crossover-half" too."""
-        if self.feet is None or not self.has(move):
+        if self.facts is None or not self.has(move):
             return []
-        plays = self.feet.candidates.plays
-        rows: list[int] = plays.own(plays.rows_with(move), self.feet.number).tolist()
+        plays = self.facts.candidates.plays
+        rows: list[int] = plays.own(plays.rows_with(move), self.facts.number).tolist()
         return rows
 
     @cached_property
     def too_quick(self) -> tuple[tuple[int, int, DropReason], ...]:
         """Row, column and reason of each note whose limb cannot be there in time: the dancer lets it go."""
-        if self.play is None or self.pad is None or self.feet is None:
+        if self.play is None or self.pad is None or self.facts is None:
             return ()
-        if self.feet.candidates.least_foot_seconds[self.feet.number] > LEAP + SAME_TIME and not self.has("hand"):
+        if self.facts.candidates.least_foot_seconds[self.facts.number] > LEAP + SAME_TIME and not self.has("hand"):
             return ()
         return tuple(too_quick(self.play, self.pad))
 
     @cached_property
     def step_rows(self) -> NDArray[np.int64]:
         """Rows of the play with at least one step."""
-        return np.zeros(0, dtype=np.int64) if self.feet is None else self.feet.stepped
+        return np.zeros(0, dtype=np.int64) if self.facts is None else self.facts.stepped
 
     @cached_property
     def angles(self) -> list[list[float]]:
@@ -186,8 +186,8 @@ class ChartSubject(PlacedChart):
     def beginnings(self) -> Beginnings:
         """Where the dancer may begin again; for charts with a play."""
         assert self.play is not None
-        assert self.feet is not None
-        return Beginnings(self.play, self.step_rows, self.feet.pauses[self.step_rows])
+        assert self.facts is not None
+        return Beginnings(self.play, self.step_rows, self.facts.pauses[self.step_rows])
 
     def pause(self, row: int) -> float:
         """Seconds since the row with a step before this one; endless for the first."""
@@ -195,8 +195,8 @@ class ChartSubject(PlacedChart):
 
     @cached_property
     def _pauses(self) -> list[float]:
-        assert self.feet is not None
-        pauses: list[float] = self.feet.pauses.tolist()
+        assert self.facts is not None
+        pauses: list[float] = self.facts.pauses.tolist()
         return pauses
 
     def is_jump(self, row: int) -> bool:
@@ -238,10 +238,10 @@ class ChartSubject(PlacedChart):
 
     def ties(self) -> Iterator[tuple[int, bool]]:
         """First row of every run of rows that cost the same with other limbs; whether the rows after it do not care."""
-        if self.play is None or self.feet is None:
+        if self.play is None or self.facts is None:
             return
         known = self.play.ambiguity
-        for first in self.feet.ties():
+        for first in self.facts.ties():
             yield first, known is not None and int(known[first]) == Ambiguity.RESOLVED
 
     def seconds_played(self) -> float:

@@ -68,7 +68,7 @@ class Crossover(TimedRule):
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, goes_on_the_other_foot
 
         slow = Freedom(self.longest(subject), switch=_SLOW, slip=_SLOW, lead=_LEAD)
-        found = [first for first, _ in subject.feet.crossed_runs()] if subject.feet else []
+        found = [first for first, _ in subject.facts.crossed_runs()] if subject.facts else []
         for first in self.quick(subject, found):
             if fewest_crossed(subject, first, slow) == 0:
                 continue
@@ -106,7 +106,7 @@ def _walks_over(subject: ChartSubject, row: int) -> bool:
 
 def _in_passing(subject: ChartSubject, row: int) -> bool:
     """Whether only this step is crossed, and the few steps to it come from the other of two pads."""
-    feet, pad = subject.feet, subject.pad
+    feet, pad = subject.facts, subject.pad
     if feet is None or pad is None or pad.width <= _WIDE:
         return False
     rows = subject.step_rows
@@ -155,7 +155,7 @@ class CrossedRun(ChartRule):
         from dancetutor_cli.lint.other_foot import exchanged_is_uncrossed, segment
 
         longest, most = self.options["max_seconds"] + EPSILON, self.options["max_rows"]
-        for rows in subject.feet.crossed_rows(most + 1) if subject.feet else ():
+        for rows in subject.facts.crossed_rows(most + 1) if subject.facts else ():
             start = int(subject.step_rows.searchsorted(rows[0]))
             slow = [n for n, row in enumerate(rows) if n and subject.pause(row) > longest]
             anew = [n for n in range(1, len(rows)) if subject.beginnings.fresh_starts(longest)[start + n]]
@@ -197,13 +197,13 @@ class HeldCrossover(TimedRule):
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each single step after which the feet are newly crossed, while the other foot holds."""
-        if subject.play is None or subject.feet is None:
+        if subject.play is None or subject.facts is None:
             return
         limbs = subject.play.limb
-        for row in self.quick(subject, [first for first, _ in subject.feet.crossed_runs()]):
+        for row in self.quick(subject, [first for first, _ in subject.facts.crossed_runs()]):
             pressed = subject.pressed(row)
             foot = int(limbs[row].max())
-            if len(pressed) == 1 and foot <= 1 and subject.feet.holds(1 - foot, row):
+            if len(pressed) == 1 and foot <= 1 and subject.facts.holds(1 - foot, row):
                 feet = ("left", "right") if foot == 0 else ("right", "left")
                 message = f"the {feet[0]} foot crosses the {feet[1]} foot, which is on a hold"
                 yield Occurrence(row, subject.pause(row), message)

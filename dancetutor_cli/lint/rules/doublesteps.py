@@ -73,7 +73,7 @@ class Doublestep(MoveRule):
 
         longest = self.longest(subject)
         return [
-            row for row in self.quick(subject, subject.feet.doublesteps() if subject.feet else ())
+            row for row in self.quick(subject, subject.facts.doublesteps() if subject.facts else ())
             if subject.pause(row) >= self.options["min_seconds"] and not any_foot_near(subject, row)
             and not _has_better_start(subject, row, longest) and not _at_a_pause(subject, row)
             and not (in_groups(subject, row) and fewest_crossed(subject, row, Freedom(longest)) == 0)
@@ -125,13 +125,13 @@ def _crosses_to_jump(subject: ChartSubject, row: int, quick: float) -> bool:
     """Whether in turn the steps cross once, not all round, and then two panels at once set both feet right."""
     from dancetutor_cli.lint.other_foot import exchanged_facings, segment, standing
 
-    assert subject.feet is not None
+    assert subject.facts is not None
     rows = subject.step_rows
     at = int(rows.searchsorted(row))
     last = segment(subject, at, quick, forwards_only=True)[1]
     if last + 1 >= len(rows) or len(subject.pressed(int(rows[last + 1]))) != 2:
         return False
-    if (subject.feet.down[rows[at : last + 1]] != 1).any() or subject.pause(row) < _CROSSED_RATHER:
+    if (subject.facts.down[rows[at : last + 1]] != 1).any() or subject.pause(row) < _CROSSED_RATHER:
         return False
     facings = exchanged_facings(subject, rows[at : last + 1], standing(subject, row))
     crossed = [abs(one) > 90 + EPSILON for one in facings]
@@ -156,7 +156,7 @@ def _has_better_start(subject: ChartSubject, row: int, quick: float) -> bool:
     """Whether people rather begin on the other foot before or after it, where there is time, or cross for a moment."""
     from dancetutor_cli.lint.other_foot import exchanged_facings, exchanged_is_uncrossed, segment, standing
 
-    assert subject.play is not None and subject.feet is not None
+    assert subject.play is not None and subject.facts is not None
     rows, pause = subject.step_rows, subject.pause(row)
     at = int(rows.searchsorted(row))
     if subject.beginnings.rests[at]:
@@ -234,7 +234,7 @@ class TripleStep(TimedRule):
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, led_by_a_jack
 
         spans = self.options["min_seconds"], self.longest(subject)
-        for row, seconds in subject.feet.triple_steps(*spans) if subject.feet else ():
+        for row, seconds in subject.facts.triple_steps(*spans) if subject.facts else ():
             free = Freedom(self.longest(subject))
             in_turn = led_by_a_jack(subject, row) and fewest_crossed(subject, row, free) == 0
             if in_turn or any_foot_near(subject, row):

@@ -66,7 +66,7 @@ class FastStep(ChartRule):
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each step that is too fast; one for a passage in which the rows are."""
-        feet, bursts = subject.feet, []
+        feet, bursts = subject.facts, []
         moves: dict[tuple[str, str], list[tuple[int, int, str]]] = {}  # by foot and severity
         reported: set[tuple[int, str]] = set()
         limits = self.options["max_speed"], self.options["min_seconds"]
@@ -127,7 +127,7 @@ class FastStep(ChartRule):
                 continue
             beat = subject.beat(row)
             if beat > end + _PASSAGE and not any(beat - _PASSAGE <= one <= beat for one in known):
-                foot = subject.feet.limb_name(row, column) if subject.feet else "foot"
+                foot = subject.facts.limb_name(row, column) if subject.facts else "foot"
                 roll = subject.play is not None and subject.play.rows.steps[row, column] == StepKind.ROLL_TAP
                 expected = roll or subject.chart.meter >= _QUICK or _heel_and_toe(subject, row)
                 expected = expected or _free_foot_takes_it(subject, row, self.options["max_speed"])
@@ -226,17 +226,17 @@ def _free_foot_takes_it(subject: ChartSubject, row: int, max_speed: float) -> bo
 
     play, pad, rows = subject.play, subject.pad, subject.step_rows
     at = int(rows.searchsorted(row))
-    if play is None or pad is None or subject.feet is None or at < 2:
+    if play is None or pad is None or subject.facts is None or at < 2:
         return False
     before = int(rows[at - 1])
     if _let_go(subject, before, row) or _can_tap_neighbour(subject, before, row):
         return True
-    if any((play.limb[one] >= 0).sum() != 1 or subject.feet.down[one] != 1 for one in (before, row)):
+    if any((play.limb[one] >= 0).sum() != 1 or subject.facts.down[one] != 1 for one in (before, row)):
         return False
     limb, first, second = int(play.limb[row].max()), int(play.limb[before].argmax()), int(play.limb[row].argmax())
     if limb > 1 or int(play.limb[before, first]) != limb or min(stood := standing(subject, before)) < 0:
         return False
-    stepped = subject.feet.presses.of(1 - limb).row
+    stepped = subject.facts.presses.of(1 - limb).row
     since = int(stepped.searchsorted(before)) - 1
     if since < 0:
         return False

@@ -85,7 +85,7 @@ class MineUnderHold(TimedRule):
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each row with such a mine, with the time since the foot's step; none where it cannot leave at all."""
         reported: set[int] = set()
-        for row, column, foot, seconds in subject.feet.mines_under_pinned_feet() if subject.feet else ():
+        for row, column, foot, seconds in subject.facts.mines_under_pinned_feet() if subject.facts else ():
             message = f"a mine is under the {('left', 'right')[foot]} foot, which cannot step aside because of a hold"
             if row not in reported and seconds <= self.longest(subject) + EPSILON:  # once for a row, not for each foot
                 reported.add(row)
@@ -120,7 +120,7 @@ class StuckHold(ChartRule):
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each such mine, and for each step that comes too early."""
-        feet = subject.feet
+        feet = subject.facts
         for row, column, seconds in feet.mines_after_holds(self.options["mine_seconds"]) if feet else ():
             message = f"a mine is on this panel {seconds * 1000:.0f} ms after the end of its hold"
             yield self.finding(message, subject.at_row(row, column))
@@ -159,7 +159,7 @@ class MineInTheWay(ChartRule):
         """One finding for each row with such a step."""
         limit = self.options["max_seconds"]
         reported: set[int] = set()
-        for row, column, seconds in sorted(subject.feet.mines_before_steps(limit)) if subject.feet else ():
+        for row, column, seconds in sorted(subject.facts.mines_before_steps(limit)) if subject.facts else ():
             if row in reported:  # once for a row, not for each foot
                 continue
             reported.add(row)

@@ -48,7 +48,7 @@ class LowBracket(TimedRule):
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each bracket in a chart of so low a meter."""
-        meter, feet = subject.chart.meter, subject.feet
+        meter, feet = subject.chart.meter, subject.facts
         if meter >= self.options["least_meter"] or not subject.has("bracket") or self._quick_throughout(subject):
             return
         for row in subject.rows_with("bracket"):
@@ -169,7 +169,7 @@ class Hand(MoveRule):
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Rows with a step in which a third panel is down, and those in which the solver uses a hand."""
-        if subject.feet is None or len(subject.step_rows) < _STUB:
+        if subject.facts is None or len(subject.step_rows) < _STUB:
             return []
         from dancetutor_cli.lint.figures import hand_rows
 

@@ -215,7 +215,7 @@ class SwitchJack(TimedRule):
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each run, at the first step for which the feet change, with the slowest pause in it."""
         least = max(self.options["min_rows"], 2)
-        for rows, limbs in subject.feet.switching_runs(least, self.longest(subject)) if subject.feet else ():
+        for rows, limbs in subject.facts.switching_runs(least, self.longest(subject)) if subject.facts else ():
             if limbs[0] != limbs[-1]:  # otherwise who jacks them all comes out on the right foot
                 change = next(at for at in range(1, len(rows)) if limbs[at] != limbs[at - 1])
                 message = f"footswitch or jack? the feet change in {len(rows)} quick steps on one panel"

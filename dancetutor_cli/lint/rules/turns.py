@@ -224,7 +224,7 @@ class HalfTurn(ChartRule):
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each half turn."""
-        for row in subject.feet.half_turns() if subject.feet else ():
+        for row in subject.facts.half_turns() if subject.facts else ():
             if subject.pause(row) <= self.options["max_seconds"] + EPSILON:
                 yield self.finding(
                     f"half turn: the body turns by 180 degrees at once{_landing(subject, row)}", subject.at_row(row)

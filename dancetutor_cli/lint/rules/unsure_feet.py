@@ -111,7 +111,7 @@ class UnsureFeet(ChartRule):
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each of the passages, at its first row."""
-        passages = subject.feet.unsure_passages(self.options["below"] / 100) if subject.feet else []
+        passages = subject.facts.unsure_passages(self.options["below"] / 100) if subject.facts else []
         passages.sort(key=lambda rows: -sum(1 - sure for _, sure in rows))
         for rows in passages[: int(self.options["most"])]:
             row, least = min(rows, key=lambda one: one[1])
