@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +25,7 @@ from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.languages import ENGLISH
 
 if TYPE_CHECKING:
+    from dancetutor_cli.film.choices import Quality, RendererKind
     from dancetutor_cli.film.clock import Practice
     from dancetutor_cli.film.layout import Layout
     from dancetutor_cli.film.media.film_formats import FilmFormat
@@ -135,7 +137,63 @@ film_options = combined(
 )
 
 
-def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmRequest:
+@dataclass(frozen=True, slots=True)
+class RenderOptions:
+    """What the options of `render` ask for, but for charts and where films go; None where they say nothing.
+
+    Those of the dance are called like fields of `dance.request.DanceRequest`; the others are explained by their help.
+    """
+
+    size: tuple[int, int] | None
+    fps: int | None
+    section: str | None
+    layout: str | None
+    character: str
+    preset: str | None
+    play: Path | None
+    bar: bool
+    gait: str
+    form: str
+    motion: Path | None
+    style: str | None
+    push: tuple[str, ...]
+    trip: tuple[float, ...]
+    camera: str | None
+    scroll: str | None
+    down: bool
+    quality: Quality
+    renderer: RendererKind
+    encoder: str
+    rate: str | None
+    loop: int | None
+    count_in: int | None
+    assist_tick: bool
+    metronome: bool
+    sync_offset: float
+    call_ahead: str | None
+    dance: tuple[Path, ...]
+    show_findings: bool
+    language: str
+    font: Path | None
+    mute: bool
+    poses: Path | None
+    poster: Path | None
+    srt: bool
+    background: bool
+    into_file: bool
+    meter: str | None
+    name: str | None
+    shard: str | None
+    scheduler: str | None
+    results: Path | None
+    jobs: int | None
+    exclude: tuple[str, ...]
+    yes: bool
+    quiet: bool
+    verbose: bool
+
+
+def film_request(file: Path, selection: Selection, options: RenderOptions, form: FilmFormat) -> FilmRequest:
     """The request that these options make, for a film of a format."""
     from dancetutor_cli.character import check_character
     from dancetutor_cli.dance.request import DanceRequest, with_style
@@ -144,70 +202,80 @@ def film_request(file: Path, options: dict[str, Any], form: FilmFormat) -> FilmR
     from dancetutor_cli.film.scroll import parse_scroll
     from dancetutor_cli.film.work.request import FilmRequest
 
-    background = bool(options.get("background"))
-    layout = load_layout(options["layout"] or ("background" if background else "side-by-side"))
-    if background and (layout.highway is not None or layout.dancer is None):
+    layout = load_layout(options.layout or ("background" if options.background else "side-by-side"))
+    if options.background and (layout.highway is not None or layout.dancer is None):
         raise UsageError(
             "--background is the dancer alone, the game draws the notes: choose a layout without a highway"
         )
-    if options["font"] is not None:
+    if options.font is not None:
         from dancetutor_cli.film.overlay.text import font
 
-        font(str(options["font"]), 24)  # refused before the work begins
+        font(str(options.font), 24)  # refused before the work begins
     from dancetutor_cli.film.overlay.text import check_letters
 
-    check_letters(options["language"], options["font"])
-    wanted = options["size"] or _default_size(layout.size, form)
+    check_letters(options.language, options.font)
+    wanted = options.size or _default_size(layout.size, form)
     size = even_size(wanted) if form.h264 else wanted
     if size != wanted:
         click.echo(f"note: {wanted[0]}x{wanted[1]} becomes {size[0]}x{size[1]}; H.264 needs even numbers", err=True)
-    scroll = parse_scroll(options["scroll"]) if options["scroll"] else None
+    scroll = parse_scroll(options.scroll) if options.scroll else None
     look = FilmLook(
         layout,
         size,
-        options["quality"],
-        options["renderer"],
-        options["camera"],
+        options.quality,
+        options.renderer,
+        options.camera,
         scroll,
-        options["down"],
-        options["font"],
-        parse_ahead(options["call_ahead"]) if options["call_ahead"] else None,
-        options["show_findings"],
-        options["language"],
+        options.down,
+        options.font,
+        parse_ahead(options.call_ahead) if options.call_ahead else None,
+        options.show_findings,
+        options.language,
     )
-    names = ("preset", "play", "bar", "gait", "form", "motion", "style", "push", "trip")
-    selection = Selection(options["steps_type"], options["difficulty"], options["index"], options["player"])
-    dance = DanceRequest(file, selection, rates=_rates(options, layout), **{name: options[name] for name in names})
+    dance = DanceRequest(
+        file,
+        selection,
+        preset=options.preset,
+        play=options.play,
+        rates=_rates(options, layout),
+        bar=options.bar,
+        gait=options.gait,
+        form=options.form,
+        motion=options.motion,
+        style=options.style,
+        push=options.push,
+        trip=options.trip,
+    )
     return FilmRequest(
         with_style(dance),
         look,
-        fps=options["fps"] or form.fps,
-        section=options["section"],
-        sync=options["sync_offset"] / 1000,
-        mute=options["mute"],
-        practice=_practice(options, layout, film=not options.get("poses")),
-        character=check_character(options["character"]),
-        background=background,
-        motions=options["dance"],
+        fps=options.fps or form.fps,
+        section=options.section,
+        sync=options.sync_offset / 1000,
+        mute=options.mute,
+        practice=_practice(options, layout, film=not options.poses),
+        character=check_character(options.character),
+        background=options.background,
+        motions=options.dance,
     )
 
 
-def _rates(options: dict[str, Any], layout: Layout) -> tuple[float, ...]:
+def _rates(options: RenderOptions, layout: Layout) -> tuple[float, ...]:
     from dancetutor_cli.film.clock import parse_rates
     from dancetutor_cli.film.layout import PracticePart
 
-    return parse_rates(options["rate"]) if options["rate"] else (layout.practice or PracticePart()).rates
+    return parse_rates(options.rate) if options.rate else (layout.practice or PracticePart()).rates
 
 
-def _practice(options: dict[str, Any], layout: Layout, film: bool) -> Practice:
+def _practice(options: RenderOptions, layout: Layout, film: bool) -> Practice:
     """film : of a passage she comes to rest after it; poses are single pictures of its rows"""
     from dancetutor_cli.film.clock import REST, Practice
     from dancetutor_cli.film.layout import PracticePart
 
     usual = layout.practice or PracticePart()
-    count_in = usual.count_in if options["count_in"] is None else options["count_in"]
+    count_in = usual.count_in if options.count_in is None else options.count_in
     rest = REST if film else 0.0
-    return Practice(options["loop"] or 0, count_in, options["assist_tick"], options["metronome"], rest)
+    return Practice(options.loop or 0, count_in, options.assist_tick, options.metronome, rest)
 
 
 def _default_size(size: tuple[int, int], form: FilmFormat) -> tuple[int, int]:

@@ -7,12 +7,13 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from dancetutor_cli.chart import one_song
-from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, default_name, warn
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, default_name, into, warn
 from dancetutor_cli.commands.chart_options import (
     exclude_option,
     preset_option,
@@ -21,7 +22,7 @@ from dancetutor_cli.commands.chart_options import (
     verbose_option,
     yes_option,
 )
-from dancetutor_cli.commands.film_options import film_options, film_request
+from dancetutor_cli.commands.film_options import RenderOptions, film_options, film_request
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.film.media.encoder import Encoding, choose
@@ -85,7 +86,9 @@ _NO_BACKGROUND = ("poses", "section", "rate", "loop", "count_in", "metronome", "
     metavar="FILE.jsonl",
     help="For a folder: write one line of JSON per chart; - is standard output.",
 )
-def command(path: Path, output: Path | None, frames: Path | None, yes: bool, quiet: bool, **options: Any) -> None:
+@into("selection", Selection)
+@into("options", RenderOptions)
+def command(path: Path, output: Path | None, frames: Path | None, selection: Selection, options: RenderOptions) -> None:
     """Make a video of a dancer who plays one chart of PATH, beside the notes with L and R on them.
 
     The ending of the output name sets the format: .mp4 (H.264 with the music of the song), .gif or .webp.
@@ -93,53 +96,53 @@ def command(path: Path, output: Path | None, frames: Path | None, yes: bool, qui
     continues.
     """
     _end_on_term()
-    poses = options["poses"]
+    poses = options.poses
     files = _background(path, frames, options)
     if sum(one is not None for one in (output, frames, poses)) > 1:
         raise UsageError("give one of --output, --frames and --poses")
     path = _one_film(path, output, options)
     if path.is_dir():
         for name in ("poses", "poster", "srt", "background"):
-            if options[name]:
+            if getattr(options, name):
                 raise UsageError(f"--{name} is for one chart, and {path} is a folder")
         from dancetutor_cli.commands.render_batch import render_batch
 
-        render_batch(path, output, frames, None if yes else LONG, quiet, options)
+        render_batch(path, output, frames, None if options.yes else LONG, selection, options)
         return
     for name in ("meter", "name", "shard", "results", "scheduler", "exclude"):
-        if options[name]:
+        if getattr(options, name):
             raise UsageError(f"--{name} is for folders of charts, and {path} is not a folder")
     if files:
-        output = output or path.with_name(into_file_name(path, options))
+        output = output or path.with_name(into_file_name(path, selection))
         from dancetutor_cli.markers.background import check_place
 
         check_place(output, files)
-    _render_one(path, output, frames or poses, yes, quiet, options)
+    _render_one(path, output, frames or poses, selection, options)
     if files and output is not None:
-        _enter(output, files, quiet)
+        _enter(output, files, options.quiet)
 
 
-def _background(path: Path, frames: Path | None, options: dict[str, Any]) -> list[Path]:
+def _background(path: Path, frames: Path | None, options: RenderOptions) -> list[Path]:
     """The chart files that get an entry of the film; UsageError for options that make no film behind notes."""
-    if not options["background"]:
-        if options["into_file"]:
+    if not options.background:
+        if options.into_file:
             raise UsageError("--into-file belongs to --background")
         return []
-    given = [name for name in _NO_BACKGROUND if options[name]] + (["frames"] if frames is not None else [])
+    given = [name for name in _NO_BACKGROUND if getattr(options, name)] + (["frames"] if frames is not None else [])
     if given:
         raise UsageError(
             f"--{given[0].replace('_', '-')} cannot be used with --background: the game plays the whole film"
         )
-    if not options["into_file"]:
+    if not options.into_file:
         return []
     from dancetutor_cli.markers.background import files_of_song
 
     return files_of_song(path)
 
 
-def into_file_name(path: Path, options: dict[str, Any]) -> str:
+def into_file_name(path: Path, selection: Selection) -> str:
     """What a film is called that is entered into a chart file: SONG-which.dancetutor.mp4."""
-    which = options["difficulty"] or (f"{options['index']}" if options["index"] is not None else "")
+    which = selection.difficulty or (f"{selection.index}" if selection.index is not None else "")
     stem = plain_name(f"{path.stem}-{which}" if which else path.stem) or "film"
     return "".join("_" if letter in ",;:=#\\" else letter for letter in stem) + ".dancetutor.mp4"
 
@@ -152,12 +155,10 @@ def _enter(film: Path, files: Sequence[Path], quiet: bool) -> None:
             click.echo(safe(line), err=line.startswith("warning"))
 
 
-def _one_film(path: Path, output: Path | None, options: dict[str, Any]) -> Path:
+def _one_film(path: Path, output: Path | None, options: RenderOptions) -> Path:
     """The file of a folder of one song, if what is asked for is about one chart; else the path as it is."""
     film = output is not None and output.suffix.lower() in FILES and not output.is_dir()
-    if not path.is_dir() or not (
-        film or options["poses"] or options["poster"] or options["srt"] or options["background"]
-    ):
+    if not path.is_dir() or not (film or options.poses or options.poster or options.srt or options.background):
         return path
     file = one_song(path)
     if film and file == path:
@@ -166,7 +167,7 @@ def _one_film(path: Path, output: Path | None, options: dict[str, Any]) -> Path:
 
 
 def _render_one(
-    path: Path, output: Path | None, folder: Path | None, yes: bool, quiet: bool, options: dict[str, Any]
+    path: Path, output: Path | None, folder: Path | None, selection: Selection, options: RenderOptions
 ) -> None:
     from dancetutor_cli.dance.request import choice_for
     from dancetutor_cli.film.work.request import look_up
@@ -174,24 +175,24 @@ def _render_one(
     kind = PICTURES if folder is not None else "mp4" if output is None else target_of(output)
     if output is not None:
         check_file(output)
-    if options["poster"] is not None:
-        check_file(options["poster"], (".png",), or_device=True)
+    if options.poster is not None:
+        check_file(options.poster, (".png",), or_device=True)
     if folder is not None:
         check_folder(folder)
-    request = film_request(path, options, FORMATS[kind])
+    request = film_request(path, selection, options, FORMATS[kind])
     subject = look_up(request)
     start, end = subject.chart.notes_span
-    announce_compiling(choice_for(path, request.dance.preset), lambda: end - start, quiet=quiet)
+    announce_compiling(choice_for(path, request.dance.preset), lambda: end - start, quiet=options.quiet)
     target = folder or output or default_name(subject.song, subject.chart, ".mp4")
     if folder is None:
         check_file(target)
-    if not options["poses"]:
-        _allow_long(subject, path, yes)
+    if not options.poses:
+        _allow_long(subject, path, options.yes)
     is_new = folder is not None and not target.exists()
     if folder is not None:
         make_folder(target)
     try:
-        _make(request, subject, target, kind, quiet, options)
+        _make(request, subject, target, kind, options)
     finally:
         if is_new:
             with suppress(OSError):
@@ -209,9 +210,7 @@ def _allow_long(subject: FilmSubject, file: Path, yes: bool) -> None:
     confirm_long(what, "Render")
 
 
-def _make(
-    request: FilmRequest, subject: FilmSubject, target: Path, kind: str, quiet: bool, options: dict[str, Any]
-) -> None:
+def _make(request: FilmRequest, subject: FilmSubject, target: Path, kind: str, options: RenderOptions) -> None:
     from dancetutor_cli.film import film as extras
     from dancetutor_cli.film.work.planning import PreparedFilm, prepare
     from dancetutor_cli.film.work.render import make_film
@@ -219,26 +218,26 @@ def _make(
 
     def prepared() -> PreparedFilm:
         film = prepare(request, subject)
-        return replace(film, plan=extras.poses(film.plan, subject.chart.label)) if options["poses"] else film
+        return replace(film, plan=extras.poses(film.plan, subject.chart.label)) if options.poses else film
 
-    say = (lambda _warnings: None) if quiet else warn
+    say = (lambda _warnings: None) if options.quiet else warn
     say(subject.warnings)
     encoding = Encoding(kind, request.look.size, request.fps, request.look.quality)
-    if subject.clock.seconds > encoding.format.largest and not quiet:
+    if subject.clock.seconds > encoding.format.largest and not options.quiet:
         what = f"{subject.clock.seconds:.0f} s of .{kind} make a very large file"
         click.echo(f"note: {what}; choose a part with --section, or write .mp4", err=True)
     if encoding.format.h264:
-        encoding = replace(encoding, encoder=choose(options["encoder"]))
-    with FilmProgress(target.name, quiet) as progress:
-        film = make_film(prepared, encoding, target, options["jobs"] or default_jobs(), progress, request.look.renderer)
+        encoding = replace(encoding, encoder=choose(options.encoder))
+    with FilmProgress(target.name, options.quiet) as progress:
+        film = make_film(prepared, encoding, target, options.jobs or default_jobs(), progress, request.look.renderer)
     say(film.warnings)
-    if options["poses"]:
+    if options.poses:
         extras.write_pose_index(target, subject.song, subject.chart, film.plan)
-    if options["poster"]:
-        extras.write_poster(options["poster"], film.plan)
-    if options["srt"] and (warning := extras.write_subtitles(target.with_suffix(".srt"), film.plan)):
+    if options.poster:
+        extras.write_poster(options.poster, film.plan)
+    if options.srt and (warning := extras.write_subtitles(target.with_suffix(".srt"), film.plan)):
         say([warning])
-    if not quiet:
+    if not options.quiet:
         width, height = request.look.size
         length = f"{film.plan.clock.frames} pictures" if kind == PICTURES else f"{film.plan.clock.seconds:.1f} s"
         click.echo(f"{target}: {length}, {width}x{height} at {request.fps} fps, {subject.chart.label}")

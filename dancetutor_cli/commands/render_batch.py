@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import click
 
-from dancetutor_cli.commands.film_options import film_request
+from dancetutor_cli.commands.film_options import RenderOptions, film_request
 from dancetutor_cli.reports.terminal import FilmProgress, JoinedWarnings, failures_table, safe
 from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.run.files import check_file, check_folder, encoded, make_folder
 from dancetutor_cli.run.foreign_text import json_without_commands
 
 if TYPE_CHECKING:
+    from dancetutor_cli.chart.selection import Selection
     from dancetutor_cli.film.choices import RendererKind
     from dancetutor_cli.film.work.batch import BatchRequest, UnreadableFile
     from dancetutor_cli.film.work.segments import FilmOutcome
@@ -25,20 +26,25 @@ if TYPE_CHECKING:
 
 
 def render_batch(
-    path: Path, output: Path | None, frames: Path | None, longest: float | None, quiet: bool, options: dict[str, Any]
+    path: Path,
+    output: Path | None,
+    frames: Path | None,
+    longest: float | None,
+    selection: Selection,
+    options: RenderOptions,
 ) -> None:
     """Make a film of every chart below `path` that matches. Exits with 2 if one of them failed."""
     from dancetutor_cli.film.work.batch import Batch, film_list
     from dancetutor_cli.film.work.records import find_records
     from dancetutor_cli.run.pool import default_jobs
 
-    if options["scheduler"]:  # its workers have a working folder of their own
+    if options.scheduler:  # its workers have a working folder of their own
         path, output = path.absolute(), (output or Path("videos")).absolute()
         frames = None if frames is None else frames.absolute()
-    batch = _batch(path, output, frames, longest, options)
+    batch = _batch(path, output, frames, longest, selection, options)
     check_folder(batch.folder)
-    if options["results"] is not None and str(options["results"]) != "-":
-        check_file(options["results"], (".jsonl", ".json"), or_device=True)
+    if options.results is not None and str(options.results) != "-":
+        check_file(options.results, (".jsonl", ".json"), or_device=True)
     films, unreadable, without = film_list(batch)
     if not films and not unreadable:
         raise UsageError(f"{path}: no chart matches, so there is nothing to render")
@@ -47,19 +53,19 @@ def render_batch(
     if films:
         make_folder(batch.folder)
     records, fault = find_records((path, batch.folder))
-    if fault and not quiet:
+    if fault and not options.quiet:
         click.echo(f"note: a second run will make all films again: {safe(fault)}", err=True)
     outcomes: list[FilmOutcome] = []
-    warnings = JoinedWarnings(every=options["verbose"])
-    jobs = options["jobs"] or default_jobs()
+    warnings = JoinedWarnings(every=options.verbose)
+    jobs = options.jobs or default_jobs()
     with ExitStack() as stack:
-        results = _open_results(options["results"], stack)
+        results = _open_results(options.results, stack)
         for bad in unreadable:
             _write(results, {"path": str(bad.path), "chart": None, "status": "failed", "error": bad.error})
-        progress = stack.enter_context(FilmProgress(f"{len(films)} films", quiet))
+        progress = stack.enter_context(FilmProgress(f"{len(films)} films", options.quiet))
         progress.begin(0, batch.request.fps)
-        workers = _workers(options["scheduler"], jobs, progress, batch.request.look.renderer)
-        if not quiet:
+        workers = _workers(options.scheduler, jobs, progress, batch.request.look.renderer)
+        if not options.quiet:
             stack.callback(_warn, warnings, progress)
         stack.callback(workers.close)
         for outcome in Batch(films, workers, progress.add, records=records).run():
@@ -67,31 +73,36 @@ def render_batch(
             _write(results, outcome.as_json())
             for warning in outcome.warnings:
                 warnings.add(outcome.job.request.path, warning)
-            _tell(outcome, progress, quiet, len(outcomes), len(films))
-    _sum_up(outcomes, unreadable, without, quiet)
+            _tell(outcome, progress, options.quiet, len(outcomes), len(films))
+    _sum_up(outcomes, unreadable, without, options.quiet)
 
 
 def _batch(
-    path: Path, output: Path | None, frames: Path | None, longest: float | None, options: dict[str, Any]
+    path: Path,
+    output: Path | None,
+    frames: Path | None,
+    longest: float | None,
+    selection: Selection,
+    options: RenderOptions,
 ) -> BatchRequest:
     from dancetutor_cli.film.media.encoder import Encoding, choose
     from dancetutor_cli.film.media.film_formats import FORMATS, PICTURES
     from dancetutor_cli.film.work.batch import DEFAULT_NAME, BatchRequest, parse_meters, parse_shard
 
     kind = PICTURES if frames else "mp4"
-    request = film_request(path, options, FORMATS[kind])
+    request = film_request(path, selection, options, FORMATS[kind])
     look = request.look
-    encoder = choose(options["encoder"]) if frames is None else "x264"
+    encoder = choose(options.encoder) if frames is None else "x264"
     return BatchRequest(
         paths=(path,),
         request=request,
         encoding=Encoding(kind, look.size, request.fps, look.quality, encoder),
         folder=frames or output or Path("videos"),
-        name=options["name"] or DEFAULT_NAME,
-        meters=parse_meters(options["meter"]) if options["meter"] else None,
-        shard=parse_shard(options["shard"]) if options["shard"] else (1, 1),
+        name=options.name or DEFAULT_NAME,
+        meters=parse_meters(options.meter) if options.meter else None,
+        shard=parse_shard(options.shard) if options.shard else (1, 1),
         longest=longest,
-        exclude=options["exclude"],
+        exclude=options.exclude,
     )
 
 
