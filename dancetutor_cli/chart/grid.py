@@ -27,7 +27,7 @@ _KIND[list(b"01234MLFK")] = (
 # As what the letters of several players are read: in most charts as nobody's notes, in one for them as theirs.
 _NOBODYS = {letter: int(Kind.EMPTY) if chr(letter).isupper() else OTHERS_HEAD for letter in stepf2.PLAYERS}
 _NOBODYS |= {stepf2.FAKE_HEAD: OTHERS_HEAD, stepf2.MINES_HEAD: ROW_OF_MINES}
-OF_PLAYERS = _NOBODYS | {letter: int(Kind.TAP if chr(letter).isupper() else Kind.HOLD) for letter in stepf2.PLAYERS}
+_OF_PLAYERS = _NOBODYS | {letter: int(Kind.TAP if chr(letter).isupper() else Kind.HOLD) for letter in stepf2.PLAYERS}
 
 
 class LineIndex:
@@ -48,7 +48,8 @@ class LineIndex:
 class NotePart:
     """The note data of a chart, or of one of its players, in the text of the file.
 
-    start, end : span; begin : offset before which a `,` ends no measure; letters : what those of players are read as
+    start, end : span; begin : offset before which a `,` ends no measure
+    of_players : whether letters mark whose a note is; where not, notes with such letters are nobody's
     marks : (tick, column) -> player whose letter stands there, filled in as rows are read; warnings : likewise
     """
 
@@ -56,9 +57,14 @@ class NotePart:
     end: int
     begin: int
     columns: int
-    letters: Mapping[int, int] = field(default_factory=lambda: _NOBODYS)
+    of_players: bool = False
     marks: dict[tuple[int, int], int] = field(default_factory=dict)
     warnings: list[ReadWarning] = field(default_factory=list)
+
+    @property
+    def letters(self) -> Mapping[int, int]:
+        """As what letters of players are read."""
+        return _OF_PLAYERS if self.of_players else _NOBODYS
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,7 +183,7 @@ class Grid:
                 foreign.setdefault(what, []).append(int(line[row]))
             for finding in found:
                 findings.setdefault(finding, []).append(int(line[row]))
-        if part.letters is OF_PLAYERS:
+        if part.of_players:
             foreign.pop("X", None)
         for what, found_at in foreign.items():
             message = f"{stepf2.TEXTS[what]}: {plural(len(found_at), 'row')}"

@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.chart import cells as marked
+from dancetutor_cli.chart import cells as stepf2
 from dancetutor_cli.chart.cells import Cells, notes_of
-from dancetutor_cli.chart.grid import BLANKS, OF_PLAYERS, Grid, LineIndex, NotePart, NoteText
+from dancetutor_cli.chart.grid import BLANKS, Grid, LineIndex, NotePart, NoteText
 from dancetutor_cli.chart.model import Chart, Kind, MeasureTable, NoteTable, ReadWarning, RowTable
 from dancetutor_cli.chart.msd import blanked
 from dancetutor_cli.chart.names import is_routine
@@ -83,7 +83,7 @@ def _read(text: NoteText, values: Sequence[Value]) -> Iterator[NoteData]:
     found = _PartCells(text, [part for of_chart in split for part in of_chart])
     at = 0
     for value, parts in zip(values, split, strict=True):
-        if value.form.routine or parts[0].letters is OF_PLAYERS:
+        if value.form.routine or parts[0].of_players:
             yield found.of_players(range(at, at + len(parts)), value)
         else:
             yield found.of_one(at, value.timing)
@@ -118,11 +118,11 @@ class _PartCells:
         ]
         warnings = [warning for at in parts for warning in self._parts[at].warnings]
         first = self._parts[parts[0]]
-        letters = marked.letters_of(self._text.value[start:end], form.columns) if first.letters is OF_PLAYERS else b""
-        shared = marked.parts_of(players[0], first.marks, form.columns, letters) if letters else []
+        letters = stepf2.letters_of(self._text.value[start:end], form.columns) if first.of_players else b""
+        shared = stepf2.parts_of(players[0], first.marks, form.columns, letters) if letters else []
         if len(shared) > 1:
             own = [NoteData(_table([cells], timing), *self._tables(parts[0]), ()) for cells in shared]
-            message = marked.for_several(len(own), letters)
+            message = stepf2.for_several(len(own), letters)
             warnings.insert(0, ReadWarning("stepf2-note", message, self._text.lines(start)))
         elif not form.routine:  # letters of fakes alone
             own = []
@@ -146,8 +146,8 @@ def _parts(text: NoteText, value: Value) -> list[NotePart]:
         _tell_players([text.value[a:b] for a, b in spans], text.lines(start), warnings)
     parts = [NotePart(a, b, begin, columns) for a, b in spans[:_PLAYERS]]
     parts[0].warnings += warnings
-    if len(parts) == 1 and marked.letters_of(text.value[start:end], columns):
-        parts[0].letters = OF_PLAYERS
+    if len(parts) == 1 and stepf2.letters_of(text.value[start:end], columns):
+        parts[0].of_players = True
     return parts
 
 

@@ -61,11 +61,11 @@ class SongReader:
     def song(self) -> Song:
         raise NotImplementedError
 
-    def no_charts(self) -> ChartError:
+    def no_charts_error(self) -> ChartError:
         """Why there is no chart; names the first that was skipped, and a wrong suffix."""
         raise NotImplementedError
 
-    def without_charts(self) -> ChartError:
+    def usual_no_charts_error(self) -> ChartError:
         skipped = next((w for w in self.warnings if w.code == "chart-skipped"), None)
         if skipped:
             return ChartError(self.path, f"no charts: {skipped.message}", skipped.line)
@@ -103,7 +103,7 @@ class SongReader:
     def skip(self, reason: str, offset: int) -> None:
         self.warnings.append(ReadWarning("chart-skipped", f"{reason}; the chart is skipped", self.lines(offset)))
 
-    def chart(
+    def add_chart(
         self, tags: dict[str, str], notes: tuple[int, int], timing: Timing, line: int, warnings: list[ReadWarning]
     ) -> None:
         """Take down one chart. tags : its values by name; notes : span of its note data; line : where it starts"""
@@ -255,7 +255,7 @@ def parse(data: bytes, path: Path) -> Song:
     reader = (_Ssc if is_ssc else _Sm)(data, path, tags)
     song = reader.song()
     if not song.charts:
-        raise reader.no_charts()
+        raise reader.no_charts_error()
     if all(names.is_lights(chart.steps_type) for chart in song.charts):
         raise ChartError(path, "no charts besides lights", song.charts[0].line)
     return song
@@ -274,11 +274,11 @@ def _wide_encoding(data: bytes) -> str | None:
 class _Sm(SongReader):
     format = "sm"
 
-    def no_charts(self) -> ChartError:
+    def no_charts_error(self) -> ChartError:
         if any(tag.name == "NOTEDATA" for tag in self.tags):
             line = next(self.lines(tag.start) for tag in self.tags if tag.name == "NOTEDATA")
             return ChartError(self.path, "no charts: the text is in .ssc form; rename the file to .ssc", line)
-        return self.without_charts()
+        return self.usual_no_charts_error()
 
     def song(self) -> Song:
         song_tags = [tag for tag in self.tags if tag.name != "NOTES"]
@@ -289,19 +289,19 @@ class _Sm(SongReader):
                 self.skip(f"NOTES has {len(tag.spans)} of 6 fields", tag.start)
             elif tag.name == "NOTES":
                 fields = {name: self.text(tag, i) for i, name in enumerate(_SM_FIELDS)}
-                self.chart(fields, tag.spans[len(_SM_FIELDS)], timing, self.lines(tag.start), [])
+                self.add_chart(fields, tag.spans[len(_SM_FIELDS)], timing, self.lines(tag.start), [])
         return self.finished(song_tags, timing)
 
 
 class _Ssc(SongReader):
     format = "ssc"
 
-    def no_charts(self) -> ChartError:
+    def no_charts_error(self) -> ChartError:
         for tag in self.tags:
             if tag.name == "NOTES" and len(tag.spans) > len(_SM_FIELDS):
                 message = "no charts: the text is in .sm form; rename the file to .sm"
                 return ChartError(self.path, message, self.lines(tag.start))
-        return self.without_charts()
+        return self.usual_no_charts_error()
 
     def song(self) -> Song:
         song_tags, groups = self._groups()
@@ -315,7 +315,7 @@ class _Ssc(SongReader):
                 continue
             warnings: list[ReadWarning] = []
             span = notes.spans[0] if notes.spans else (len(self.data), len(self.data))
-            self.chart(fields, span, self._timing(group, timing, source, line, warnings), line, warnings)
+            self.add_chart(fields, span, self._timing(group, timing, source, line, warnings), line, warnings)
         return self.finished(song_tags, timing)
 
     def _timing(

@@ -19,8 +19,8 @@ from dancetutor_cli.run.reading import PACKAGE, config_path
 if TYPE_CHECKING:
     from hashlib import _Hash
 
-# metadata of a field: its value is one of these names, or in this folder of configs/, or else a file; or it counts as
-# what a function says of it
+# Metadata of a field whose value is a name or else a file. A folder of configs/ (a string) or a collection has the
+# names, of which the hash takes the text; of a file it takes the bytes. A function gives what is hashed in its place.
 NAMED = "named"
 _PARTS = (".py", ".glb", ".yaml", ".glsl", ".vert", ".frag")  # files of the program that make results
 _TEXT = "utf-8", "surrogateescape"

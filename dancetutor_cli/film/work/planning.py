@@ -36,10 +36,8 @@ from dancetutor_cli.film.words import PanelNames
 from dancetutor_cli.film.work.request import (
     FilmRequest,
     FilmSubject,
-    notes_without,
-    play_without,
-    quiet_after,
-    quiet_in,
+    shown_notes,
+    shown_play,
 )
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.languages import load_language
@@ -83,8 +81,7 @@ def film_dance(request: FilmRequest, subject: FilmSubject) -> FilmDance:
     clock = subject.clock
     solved = solve(request.dance, subject.choice)
     rates = sorted({one.rate for one in clock.passes})
-    quiet, after = quiet_in(clock.passes), quiet_after(clock.passes)
-    plays = tuple(play_without(play_without(playable(one, rates), quiet), after) for one in solved)
+    plays = tuple(shown_play(playable(one, rates), clock.passes) for one in solved)
     motions: dict[float, tuple[Motion, ...]] = {}
     if request.look.layout.dancer is not None:
         dance = replace(request.dance, rates=tuple(rates))
@@ -94,7 +91,7 @@ def film_dance(request: FilmRequest, subject: FilmSubject) -> FilmDance:
                 _file_motions(request, performance) if request.motions else _cut(request, performance, clock)
             )
     results, on_mines = _mines(motions, list(zip(solved, plays, strict=True)), rates[-1])
-    shown = play_without(play_without(play_of_all(solved, plays), quiet), after)  # rows of which nothing is left, too
+    shown = shown_play(play_of_all(solved, plays), clock.passes)  # rows of which nothing is left, too
     return FilmDance(solved, plays, shown, pad_of(solved), results, on_mines)
 
 
@@ -169,9 +166,8 @@ def prepare(request: FilmRequest, subject: FilmSubject) -> PreparedFilm:
     dance = film_dance(request, subject)
     play, pad = dance.play, dance.pad
     scrolls, speeds = segments_of(song, chart), speeds_of(song, chart)
-    quiet, whole_track = quiet_in(clock.passes), note_track(chart, play, scrolls, dance.on_mines)
-    after = quiet_after(clock.passes)
-    track = notes_without(notes_without(whole_track, quiet), after)
+    whole_track = note_track(chart, play, scrolls, dance.on_mines)
+    track = shown_notes(whole_track, clock.passes)
     presses = presses_of(track)
     start, end = clock.passes[0].start, clock.passes[-1].until
     whole = whole_song(chart)

@@ -163,6 +163,16 @@ def notes_without(track: NoteTrack, quiet: Quiet | None) -> NoteTrack:
     return track if quiet is None else replace(track, **_filter_arrays(track, ~quiet.has(track.second)))
 
 
+def shown_play(play: Play, passes: Sequence[Pass]) -> Play:
+    """The play without the rows in a count-in and after a passage."""
+    return play_without(play_without(play, quiet_in(passes)), quiet_after(passes))
+
+
+def shown_notes(track: NoteTrack, passes: Sequence[Pass]) -> NoteTrack:
+    """The notes without those in a count-in and after a passage."""
+    return notes_without(notes_without(track, quiet_in(passes)), quiet_after(passes))
+
+
 def _filter_arrays(arrays: Any, keep: NDArray[np.bool_]) -> dict[str, Any]:
     """Of each array of a dataclass the entries to keep."""
     found = {field.name: getattr(arrays, field.name) for field in fields(arrays)}

@@ -113,7 +113,9 @@ def kernel_folder() -> KernelFolder:
 
 
 def places_of(source: Path) -> Iterator[Path]:
-    """Where kernels of a module may lie, the likeliest first. Only the last but one is tried by writing there."""
+    """Where kernels of a module may lie, the likeliest first. No file is written to try them, but for the last:
+    `kernel_folder` has tried that.
+    """
     for root, _ in _roots():
         place = KernelFolder(root).of_module(source)
         if not fault_of(root or place) and not fault_of(place):
