@@ -15,14 +15,14 @@ def shown(browser: Browser, selector: str) -> bool:
     return bool(browser.run(f"document.querySelector('{selector}').checkVisibility()"))
 
 
-def test_a_panels_key_that_nothing_judges_is_told_while_the_song_plays(opened: Browser) -> None:
-    opened.key("d", "KeyD")
-    assert not said(opened).startswith("Nothing")  # the song does not play
-    opened.key(" ", "Space")
-    opened.key("d", "KeyD")
-    assert said(opened) == "Nothing you press or step on is judged yet: choose Play along (p)."
-    opened.turn(6)
-    assert not said(opened).startswith("Nothing") and not shown(opened, "#chip-along")
+def test_a_panels_key_that_nothing_judges_is_reported(opened: Browser) -> None:
+    for before in ("", " "):  # while the song is paused, and while it plays
+        if before:
+            opened.key(before, "Space")
+        opened.key("d", "KeyD")
+        assert said(opened) == "Nothing you press or step on is judged yet: choose Play along (p)."
+        opened.turn(6)
+        assert not said(opened).startswith("Nothing") and not shown(opened, "#chip-along")
     opened.key("k", "KeyK")
     opened.click("#chip-along")
     assert not said(opened).startswith("Nothing") and not shown(opened, "#chip-along")

@@ -94,13 +94,14 @@ export function listenToKeys(app, actions) {
     }
     const name = event.shiftKey && (event.key.length > 1 || /[A-Z]/.test(event.key)) ? `Shift+${event.key}` : event.key;
     const action = actions.find((one) => one.keys.includes(name) || one.keys.includes(name.toLowerCase()));
-    const panel = !app.practice.along && app.transport.playing && app.input.columnOf(event.code) >= 0;
+    const panel = !app.practice.along && app.input.columnOf(event.code) >= 0;
     if (!action && panel) return app.practice.idle();
     if (!action) return event.key.length === 1 && app.practice.along ? app.practice.strayKey() : undefined;
     event.preventDefault();
     action.run();
-    if (panel && arrows(event) && !told) app.practice.idle(); // the first time: it may be meant as a panel, or not
-    told ||= panel && arrows(event);
+    const stray = panel && app.transport.playing && arrows(event); // while paused, arrows go from row to row
+    if (stray && !told) app.practice.idle(); // the first time: it may be meant as a panel, or not
+    told ||= stray;
   });
   // A button that the mouse has pressed gives the keys back: the space bar plays, and does not press it again.
   document.addEventListener("click", (event) => {
