@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.chart.names import TICKS_PER_BEAT as TICKS_PER_BEAT
+
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
 
-TICKS_PER_BEAT = 48
 TICKS_PER_MEASURE = 4 * TICKS_PER_BEAT
 
 

@@ -1,6 +1,8 @@
-"""Names that the games use: steps types with their columns, difficulties with their old names."""
+"""Names that the games use: steps types with their columns, difficulties with their old names; ticks of a beat."""
 
 from __future__ import annotations
+
+TICKS_PER_BEAT = 48
 
 COLUMNS = {
     "dance-single": 4, "dance-double": 8, "dance-couple": 8, "dance-solo": 6, "dance-threepanel": 3, "dance-routine": 8,

@@ -11,8 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
-from dancetutor_cli.chart.names import is_lights
+from dancetutor_cli.chart.names import TICKS_PER_BEAT, is_lights
 from dancetutor_cli.chart.pack_files import find_settings_file
 from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.rule import ChartRule, FileRule, ReaderRule, Rule, all_rules

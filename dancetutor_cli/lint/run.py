@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.pack_files import find_settings_file, pack_folder, places_of_feet, read_pack_ini
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.preset import PresetChoice, choice_of

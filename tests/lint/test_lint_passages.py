@@ -13,7 +13,7 @@ from dancetutor_cli.feet import Play, load_preset
 from dancetutor_cli.lint.passages import Passage, check_part, hardest, part_of, passage_settings
 from dancetutor_cli.lint.subject import solved_chart
 from dancetutor_cli.page.document import languages
-from dancetutor_cli.page.facts import differing, passage_object, tags
+from dancetutor_cli.page.facts import passage_object, tags, without_repeats
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.reading import charts_path
 
@@ -84,7 +84,7 @@ def test_tags_report_what_the_feet_do() -> None:
         ("fast", 32), ("crossover", 2), ("bracket", 1), ("jump", 3), ("turn", 135), ("close", 1),
     ]  # fmt: skip
     both = [passage_object(passage, player) for player in (1, 2, 2)]
-    assert [(one["player"], one["again"]) for one in differing(both)] == [(1, []), (2, [[8, 12]])]
+    assert [(one["player"], one["again"]) for one in without_repeats(both)] == [(1, []), (2, [[8, 12]])]
     for labels in languages().values():
         assert all(f"tag-{name}" in labels for name, _ in tags(passage))
 
