@@ -139,7 +139,7 @@ film_options = combined(
 
 @dataclass(frozen=True, slots=True)
 class RenderOptions:
-    """What the options of `render` ask for, but for charts and where films go; None where they say nothing.
+    """What the options of `render` ask for, but for the choice of charts; None where they say nothing.
 
     Those of the dance are called like fields of `dance.request.DanceRequest`; the others are explained by their help.
     """
@@ -176,6 +176,8 @@ class RenderOptions:
     language: str
     font: Path | None
     mute: bool
+    output: Path | None
+    frames: Path | None
     poses: Path | None
     poster: Path | None
     srt: bool

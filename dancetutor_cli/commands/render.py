@@ -36,7 +36,18 @@ if TYPE_CHECKING:
 
 
 # Options that a film behind the notes cannot have: the game starts it with the music and plays it once, at its speed.
-_NO_BACKGROUND = ("poses", "section", "rate", "loop", "count_in", "metronome", "assist_tick", "srt", "sync_offset")
+_NO_BACKGROUND = (
+    "poses",
+    "section",
+    "rate",
+    "loop",
+    "count_in",
+    "metronome",
+    "assist_tick",
+    "srt",
+    "sync_offset",
+    "frames",
+)
 
 
 @click.command(cls=GroupedCommand)
@@ -88,7 +99,7 @@ _NO_BACKGROUND = ("poses", "section", "rate", "loop", "count_in", "metronome", "
 )
 @into("selection", Selection)
 @into("options", RenderOptions)
-def command(path: Path, output: Path | None, frames: Path | None, selection: Selection, options: RenderOptions) -> None:
+def command(path: Path, selection: Selection, options: RenderOptions) -> None:
     """Make a video of a dancer who plays one chart of PATH, beside the notes with L and R on them.
 
     The ending of the output name sets the format: .mp4 (H.264 with the music of the song), .gif or .webp.
@@ -96,39 +107,39 @@ def command(path: Path, output: Path | None, frames: Path | None, selection: Sel
     continues.
     """
     _end_on_term()
-    poses = options.poses
-    files = _background(path, frames, options)
-    if sum(one is not None for one in (output, frames, poses)) > 1:
+    files = _background(path, options)
+    if sum(one is not None for one in (options.output, options.frames, options.poses)) > 1:
         raise UsageError("give one of --output, --frames and --poses")
-    path = _one_film(path, output, options)
+    path = _one_film(path, options)
     if path.is_dir():
         for name in ("poses", "poster", "srt", "background"):
             if getattr(options, name):
                 raise UsageError(f"--{name} is for one chart, and {path} is a folder")
         from dancetutor_cli.commands.render_batch import render_batch
 
-        render_batch(path, output, frames, None if options.yes else LONG, selection, options)
+        render_batch(path, selection, options)
         return
     for name in ("meter", "name", "shard", "results", "scheduler", "exclude"):
         if getattr(options, name):
             raise UsageError(f"--{name} is for folders of charts, and {path} is not a folder")
-    if files:
-        output = output or path.with_name(into_file_name(path, selection))
-        from dancetutor_cli.markers.background import check_place
+    if not files:
+        _render_one(path, selection, options)
+        return
+    from dancetutor_cli.markers.background import check_place
 
-        check_place(output, files)
-    _render_one(path, output, frames or poses, selection, options)
-    if files and output is not None:
-        _enter(output, files, options.quiet)
+    film = options.output or path.with_name(into_file_name(path, selection))
+    check_place(film, files)
+    _render_one(path, selection, replace(options, output=film))
+    _enter(film, files, options.quiet)
 
 
-def _background(path: Path, frames: Path | None, options: RenderOptions) -> list[Path]:
+def _background(path: Path, options: RenderOptions) -> list[Path]:
     """The chart files that get an entry of the film; UsageError for options that make no film behind notes."""
     if not options.background:
         if options.into_file:
             raise UsageError("--into-file belongs to --background")
         return []
-    given = [name for name in _NO_BACKGROUND if getattr(options, name)] + (["frames"] if frames is not None else [])
+    given = [name for name in _NO_BACKGROUND if getattr(options, name)]
     if given:
         raise UsageError(
             f"--{given[0].replace('_', '-')} cannot be used with --background: the game plays the whole film"
@@ -155,8 +166,9 @@ def _enter(film: Path, files: Sequence[Path], quiet: bool) -> None:
             click.echo(safe(line), err=line.startswith("warning"))
 
 
-def _one_film(path: Path, output: Path | None, options: RenderOptions) -> Path:
+def _one_film(path: Path, options: RenderOptions) -> Path:
     """The file of a folder of one song, if what is asked for is about one chart; else the path as it is."""
+    output = options.output
     film = output is not None and output.suffix.lower() in FILES and not output.is_dir()
     if not path.is_dir() or not (film or options.poses or options.poster or options.srt or options.background):
         return path
@@ -166,12 +178,11 @@ def _one_film(path: Path, output: Path | None, options: RenderOptions) -> Path:
     return file
 
 
-def _render_one(
-    path: Path, output: Path | None, folder: Path | None, selection: Selection, options: RenderOptions
-) -> None:
+def _render_one(path: Path, selection: Selection, options: RenderOptions) -> None:
     from dancetutor_cli.dance.request import choice_for
     from dancetutor_cli.film.work.request import look_up
 
+    output, folder = options.output, options.frames or options.poses
     kind = PICTURES if folder is not None else "mp4" if output is None else target_of(output)
     if output is not None:
         check_file(output)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import click
 
+from dancetutor_cli.commands.arguments import LONG
 from dancetutor_cli.commands.film_options import RenderOptions, film_request
 from dancetutor_cli.reports.terminal import FilmProgress, JoinedWarnings, failures_table, safe
 from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
@@ -25,23 +26,15 @@ if TYPE_CHECKING:
     from dancetutor_cli.run.pool import Workers
 
 
-def render_batch(
-    path: Path,
-    output: Path | None,
-    frames: Path | None,
-    longest: float | None,
-    selection: Selection,
-    options: RenderOptions,
-) -> None:
+def render_batch(path: Path, selection: Selection, options: RenderOptions) -> None:
     """Make a film of every chart below `path` that matches. Exits with 2 if one of them failed."""
     from dancetutor_cli.film.work.batch import Batch, film_list
     from dancetutor_cli.film.work.records import find_records
     from dancetutor_cli.run.pool import default_jobs
 
     if options.scheduler:  # its workers have a working folder of their own
-        path, output = path.absolute(), (output or Path("videos")).absolute()
-        frames = None if frames is None else frames.absolute()
-    batch = _batch(path, output, frames, longest, selection, options)
+        path = path.absolute()
+    batch = _batch(path, selection, options)
     check_folder(batch.folder)
     if options.results is not None and str(options.results) != "-":
         check_file(options.results, (".jsonl", ".json"), or_device=True)
@@ -77,19 +70,15 @@ def render_batch(
     _sum_up(outcomes, unreadable, without, options.quiet)
 
 
-def _batch(
-    path: Path,
-    output: Path | None,
-    frames: Path | None,
-    longest: float | None,
-    selection: Selection,
-    options: RenderOptions,
-) -> BatchRequest:
+def _batch(path: Path, selection: Selection, options: RenderOptions) -> BatchRequest:
+    """The request of the charts below `path`, with the kind of film and the folder that the options name."""
     from dancetutor_cli.film.media.encoder import Encoding, choose
     from dancetutor_cli.film.media.film_formats import FORMATS, PICTURES
     from dancetutor_cli.film.work.batch import DEFAULT_NAME, BatchRequest, parse_meters, parse_shard
 
+    frames = options.frames
     kind = PICTURES if frames else "mp4"
+    target = frames or options.output or Path("videos")
     request = film_request(path, selection, options, FORMATS[kind])
     look = request.look
     encoder = choose(options.encoder) if frames is None else "x264"
@@ -97,11 +86,11 @@ def _batch(
         paths=(path,),
         request=request,
         encoding=Encoding(kind, look.size, request.fps, look.quality, encoder),
-        folder=frames or output or Path("videos"),
+        folder=target.absolute() if options.scheduler else target,
         name=options.name or DEFAULT_NAME,
         meters=parse_meters(options.meter) if options.meter else None,
         shard=parse_shard(options.shard) if options.shard else (1, 1),
-        longest=longest,
+        longest=None if options.yes else LONG,
         exclude=options.exclude,
     )
 
