@@ -117,8 +117,10 @@ def command(file: Path, selection: Selection, options: AnimateOptions, **dance: 
 
     _check(options)
     output, character = options.output, options.character
-    if character != DANCER and output is not None and not FORMATS[output.suffix.lower()].has_motion:
-        raise UsageError(f"{output}: the moves are the same for every character; leave --character out")
+    if output is not None and not FORMATS[output.suffix.lower()].has_motion:
+        without = {"character": character != DANCER, "push": dance["push"], "trip": dance["trip"]}
+        if unused := [name for name, given in without.items() if given]:
+            raise UsageError(f"{output}: has only the steps, which --{unused[0]} does not change; leave it out")
     dances = load_character(name_in_gait(character, dance["gait"]))
     request = DanceRequest(one_song(file), selection, rates=(options.rate,), **dance)
     if options.physics and request.style is None:

@@ -132,6 +132,8 @@ def test_what_is_wrong_is_reported_in_one_line(tmp_path: Path) -> None:
     assert "0.25" in said(SONG, *HARD, "--rate", "0.2", "-o", target)
     assert "heels" in said(SONG, *HARD, "--gait", "moonwalk", "-o", target)
     assert "no such file" in said(SONG, *HARD, "--play", tmp_path / "no.json", "-o", target)
+    for option in (("--push", "5:300:left"), ("--trip", "5"), ("--character", "mannequin")):
+        assert option[0] in said(SONG, *HARD, *option, "-o", tmp_path / "a.json")  # a file of steps has no body
     assert "charts" in said(SONG, "-o", target) or "chart" in said(SONG, "-o", target)
     (tmp_path / "file").write_bytes(b"")
     assert "folder" in said(SONG, *HARD, "-o", tmp_path / "file" / "a.npz")
