@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli import chart as reader
 from dancetutor_cli import feet as play
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet import Pad, Rows, load_pad, overrides_for
 
 sys.path.append(str(Path(__file__).resolve().parent.parent / "tools"))

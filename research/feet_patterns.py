@@ -14,7 +14,7 @@ import numpy as np
 from feet_data import Labelled
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet import Pad, Rows, StepKind, load_pad
 
 Floats = NDArray[np.float64]

@@ -11,7 +11,8 @@ import pytest
 
 from dancetutor_cli import chart as chart_room
 from dancetutor_cli import feet as play_room
-from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Chart, Kind, Song
+from dancetutor_cli.chart.model import Chart, Kind, Song
+from dancetutor_cli.chart.names import TICKS_PER_MEASURE
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "charts" / "two_left_feet"

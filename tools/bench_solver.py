@@ -17,7 +17,7 @@ import numpy as np
 from unpacking import unpack
 
 from dancetutor_cli import chart as charts
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet import Pad, Preset, Rows, load_pad, load_preset, prepare, solve
 from dancetutor_cli.feet.solver.engine import Engine
 from dancetutor_cli.run.errors import DancetutorError

@@ -17,7 +17,7 @@ from pathlib import Path
 from lint_reading import collected
 
 from dancetutor_cli.chart.edits import apply
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.preset import PresetChoice, preset_for

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from lint_table import linted
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.limbs import Part
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.lint.figures import arrows

@@ -8,7 +8,8 @@ from itertools import groupby
 
 import numpy as np
 
-from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Chart, Kind, Song
+from dancetutor_cli.chart.model import Chart, Kind, Song
+from dancetutor_cli.chart.names import TICKS_PER_MEASURE
 
 # How fast a chart is: its tempos and how long each lasts.
 

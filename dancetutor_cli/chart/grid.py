@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart import cells as stepf2
 from dancetutor_cli.chart.cells import OTHERS_HEAD, ROW_OF_MINES, TAIL, Cells, report
-from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Kind, MeasureTable, ReadWarning, RowTable
+from dancetutor_cli.chart.model import Kind, MeasureTable, ReadWarning, RowTable
+from dancetutor_cli.chart.names import TICKS_PER_MEASURE
 from dancetutor_cli.run.errors import plural
 
 _LF, _CR, _COMMA, _BRACKET = 10, 13, 44, 91

@@ -1,7 +1,7 @@
 """The contents of a chart file: plain frozen data, made by the reader, used by every other package.
 
 Positions are kept for every row, so that findings can point and markers can be spliced in. Beats are counted in
-ticks of 1/48 beat (`TICKS_PER_BEAT`), the grid of the games.
+ticks of 1/48 beat (`names.TICKS_PER_BEAT`), the grid of the games.
 """
 
 from __future__ import annotations
@@ -14,12 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.names import TICKS_PER_BEAT as TICKS_PER_BEAT
-
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
-
-TICKS_PER_MEASURE = 4 * TICKS_PER_BEAT
 
 
 class Kind(IntEnum):

@@ -1,8 +1,9 @@
-"""Names that the games use: steps types with their columns, difficulties with their old names; ticks of a beat."""
+"""The games' names of steps types (with their columns) and of difficulties; the ticks of a beat and of a measure."""
 
 from __future__ import annotations
 
 TICKS_PER_BEAT = 48
+TICKS_PER_MEASURE = 4 * TICKS_PER_BEAT
 
 COLUMNS = {
     "dance-single": 4, "dance-double": 8, "dance-couple": 8, "dance-solo": 6, "dance-threepanel": 3, "dance-routine": 8,

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.run.errors import UsageError
 
 # Beats and seconds of a chart: BPMs, stops, delays, warps and fakes as StepMania 5 and ITGmania run them.

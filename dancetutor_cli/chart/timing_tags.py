@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, ReadWarning
+from dancetutor_cli.chart.model import ReadWarning
 from dancetutor_cli.chart.msd import quote
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.timing import Segments, Timing
 
 # Numbers as the games read them (C's strtof and atoi), but exact.

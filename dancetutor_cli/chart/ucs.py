@@ -27,17 +27,8 @@ import numpy as np
 
 from dancetutor_cli.chart import msd
 from dancetutor_cli.chart.cells import report
-from dancetutor_cli.chart.model import (
-    TICKS_PER_BEAT,
-    TICKS_PER_MEASURE,
-    Chart,
-    Kind,
-    MeasureTable,
-    NoteTable,
-    ReadWarning,
-    RowTable,
-    Song,
-)
+from dancetutor_cli.chart.model import Chart, Kind, MeasureTable, NoteTable, ReadWarning, RowTable, Song
+from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.chart.timing_tags import MAX_BEAT, number
 from dancetutor_cli.run.errors import ChartError

@@ -9,7 +9,8 @@ from itertools import combinations, groupby
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
+from dancetutor_cli.chart.model import Chart, Kind
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet import load_pad
 from dancetutor_cli.feet.limbs import Limb, Part
 

@@ -13,7 +13,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind, NoteTable
+from dancetutor_cli.chart.model import Chart, Kind, NoteTable
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.pads import Pad

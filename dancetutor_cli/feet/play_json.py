@@ -11,7 +11,8 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart
+from dancetutor_cli.chart.model import Chart
+from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.play import Play, Rows, StepKind

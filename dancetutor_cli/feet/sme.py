@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.pack_files import EDITOR_FILE, song_stems
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.overrides import CellOverride, FeetProblem

@@ -8,7 +8,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind, Song
+from dancetutor_cli.chart.model import Chart, Kind, Song
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.note_data import shares_rows
 from dancetutor_cli.chart.pack_files import (
     FILE_NAME,

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Kind
+from dancetutor_cli.chart.model import Kind
+from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.chart.timing import FASTEST, SLOWEST, heard
 from dancetutor_cli.dance.motion import Cut
 from dancetutor_cli.run.errors import DancetutorError, UsageError

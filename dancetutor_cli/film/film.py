@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Song
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.film.clock import JointBlocks, Moments
 from dancetutor_cli.film.layout import WIDE_PAD, PixelBox, lowered, overlap
 from dancetutor_cli.film.notes import PanelLights, lighting

@@ -106,7 +106,7 @@ def _figures(subject: ChartSubject, task: AnalyzeTask) -> Figures:
 
 
 def _ambiguous(subject: ChartSubject) -> Iterator[tuple[float, str]]:
-    from dancetutor_cli.chart.model import TICKS_PER_BEAT
+    from dancetutor_cli.chart.names import TICKS_PER_BEAT
     from dancetutor_cli.feet.play import Ambiguity
 
     play = subject.play

@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from dancetutor_cli.chart.edits import apply, unchanged, unified
-from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Chart, Song
-from dancetutor_cli.chart.names import is_lights
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.chart.names import TICKS_PER_MEASURE, is_lights
 from dancetutor_cli.feet.preset import Preset, preset_for
 from dancetutor_cli.lint import fix_edits
 from dancetutor_cli.lint.analysis import AnalyzeTask, load_song

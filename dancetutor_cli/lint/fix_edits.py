@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.cells import PLAYERS
 from dancetutor_cli.chart.edits import Splice
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Kind, NoteTable
+from dancetutor_cli.chart.model import Chart, Kind, NoteTable
+from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.note_facts import NoteFacts
 from dancetutor_cli.lint.suggest import Suggestion

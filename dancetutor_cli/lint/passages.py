@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import TICKS_PER_MEASURE
+from dancetutor_cli.chart.names import TICKS_PER_MEASURE
 from dancetutor_cli.chart.timing import check_section, parse_section
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
+from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.music import music_file
-from dancetutor_cli.chart.names import is_lights
+from dancetutor_cli.chart.names import TICKS_PER_BEAT, is_lights
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.overrides import FeetProblem, Ignores, Overrides
 from dancetutor_cli.feet.pads import Pad

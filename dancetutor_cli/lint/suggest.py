@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart
+from dancetutor_cli.chart.model import Chart
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet import Play, StepKind, solve
 from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.solver.engine import engine_for

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.audio import Sound
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
+from dancetutor_cli.chart.model import Chart, Kind
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.lint.findings import Sync, sync_of
 

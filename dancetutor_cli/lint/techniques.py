@@ -9,8 +9,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
 from dancetutor_cli.chart.msd import Tag, plain, scan
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.names import difficulty as named
 from dancetutor_cli.lint.analysis import AnalyzeTask, load_song, solved
 from dancetutor_cli.lint.figures import tech_rows

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, TICKS_PER_MEASURE, Chart, Kind, Song
+from dancetutor_cli.chart.model import Chart, Kind, Song
+from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.lint.snapshots import Snapshot, StoredFile
 from dancetutor_cli.run.errors import FileError

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.edits import Splice
-from dancetutor_cli.chart.model import TICKS_PER_MEASURE, Chart, Kind, Song
+from dancetutor_cli.chart.model import Chart, Kind, Song
+from dancetutor_cli.chart.names import TICKS_PER_MEASURE
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play

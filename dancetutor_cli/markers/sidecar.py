@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.sme import FEET, OURS, overrides_of, place_in_type, tick_of
 from dancetutor_cli.markers.comments import ChartFeet, limbs_of

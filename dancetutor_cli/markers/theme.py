@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Song
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, runs
 from dancetutor_cli.markers.comments import ChartFeet

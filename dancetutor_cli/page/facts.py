@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dancetutor_cli.chart.density import bpm_text
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind, Song
+from dancetutor_cli.chart.model import Chart, Kind, Song
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet import solve
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.overrides import Overrides

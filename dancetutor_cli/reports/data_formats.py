@@ -12,7 +12,7 @@ from pathlib import Path, PurePath
 from typing import IO, Any
 
 import dancetutor_cli
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.lint.findings import TECH_COUNTS, Cause, Estimate, Finding, ScoreEstimate, Sync
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.reports.formats import Tally

@@ -9,7 +9,8 @@ from unicodedata import east_asian_width
 
 import numpy as np
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, Kind
+from dancetutor_cli.chart.model import Kind
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.reports.sheet_drawing import HOLD_OPACITY, Sheet, badge, definitions, mark, system, unsure_rows

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from play_reference import Reference, Row
 
 from dancetutor_cli import feet as solver
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet import Pad, Play, Preset, Rows, StepKind, load_pad
 from dancetutor_cli.feet.limbs import Limb
 

@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 from play_reference import Reference, Row, rows_of
 
 from dancetutor_cli import chart as charts
-from dancetutor_cli.chart.model import TICKS_PER_BEAT, Chart, Kind
+from dancetutor_cli.chart.model import Chart, Kind
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet import Play, Preset, load_pad, load_preset, prepare, solve, solve_chart
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.run.errors import DancetutorError

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.chart.model import TICKS_PER_MEASURE
+from dancetutor_cli.chart.names import TICKS_PER_MEASURE
 from dancetutor_cli.dance.motion import Distances
 from dancetutor_cli.dance.physics.style import NEUTRAL, Style, load_style
 from dancetutor_cli.dance.rig import quaternion as quat

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.solver.tables import EPSILON
 from dancetutor_cli.feet.solver.vocabulary import EVENTS

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character.gltf import BUILT_IN
-from dancetutor_cli.chart.model import TICKS_PER_MEASURE
 from dancetutor_cli.chart.music import find_music
+from dancetutor_cli.chart.names import TICKS_PER_MEASURE
 from dancetutor_cli.chart.pack_files import feet_fingerprint, find_settings_file
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_request, read_chart, section_of

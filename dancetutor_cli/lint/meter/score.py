@@ -13,7 +13,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import TICKS_PER_BEAT
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.lint.findings import ScoreEstimate
 from dancetutor_cli.lint.meter.model import Rising
