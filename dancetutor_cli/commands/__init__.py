@@ -1,8 +1,14 @@
 """The command line: one module per subcommand, imported only when it is called.
 
-analyze                       with analyze_options; with pack, fix_option and settings for packs, `--fix` and settings
-render                        with render_batch, for folders
-chart_options, film_options, arguments, help_groups   options that several commands have, their types and groups
+analyze                       its options as a record are in analyze_options
+pack, drawings                `analyze` of packs, `--compare` and `--tech-counts`; `--sheet` and `--plot`
+fix_option, settings          `analyze --fix`; `analyze --show-settings`
+render, render_batch          a film; the films of a folder
+film_options                  the options of `render`, and the request that they make
+annotate, animate, retarget, page, doctor, warmup, completion   the other subcommands
+motion_output                 `--report` and `--plot` of `animate` and `retarget`
+shared_options, tab_names     options of several commands; the names that the Tab key completes
+arguments, help_groups        paths, charts and targets on the command line; the groups of `--help`
 first_run                     what is said before work that compiles
 """
 

@@ -12,27 +12,26 @@ import click
 from dancetutor_cli.chart import find_files
 from dancetutor_cli.chart.selection import Selection, note_bytes
 from dancetutor_cli.commands.analyze_options import AnalyzeOptions
-from dancetutor_cli.commands.arguments import GivenPath, Source, fixes, folder, into, named, open_output, rules, sources
-from dancetutor_cli.commands.chart_options import (
-    exclude_option,
-    language_option,
-    preset_option,
-    quiet_option,
-    selection_options,
-)
+from dancetutor_cli.commands.arguments import GivenPath, Source, open_output, sources
+from dancetutor_cli.commands.drawings import check_plot, check_sheet, write_plot, write_sheet
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.pack import (
     PackReport,
     check_comparison,
-    check_plot,
-    check_sheet,
     pack_options,
     report_changes,
     report_tech_counts,
-    write_plot,
-    write_sheet,
 )
+from dancetutor_cli.commands.shared_options import (
+    exclude_option,
+    into,
+    language_option,
+    preset_option,
+    quiet_option,
+    selection_options,
+)
+from dancetutor_cli.commands.tab_names import fixes, folder, named, rules
 from dancetutor_cli.reports.formats import FORMATS, Tally, open_brief_report, open_report
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import check_file

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,11 +11,15 @@ import click
 from dancetutor_cli.chart import one_song
 from dancetutor_cli.chart.selection import Selection, note_bytes
 from dancetutor_cli.chart.timing import FASTEST, SLOWEST, heard
-from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, default_name, into, warn
-from dancetutor_cli.commands.chart_options import (
+from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, default_name, warn
+from dancetutor_cli.commands.first_run import announce_compiling
+from dancetutor_cli.commands.help_groups import GroupedCommand
+from dancetutor_cli.commands.motion_output import check_targets, write_report
+from dancetutor_cli.commands.shared_options import (
     TABLE,
     character_option,
     dance_options,
+    into,
     jobs_option,
     number,
     preset_option,
@@ -26,15 +29,12 @@ from dancetutor_cli.commands.chart_options import (
     selection_options,
     yes_option,
 )
-from dancetutor_cli.commands.first_run import announce_compiling
-from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.formats.writers import FORMATS
 from dancetutor_cli.run.errors import UsageError
-from dancetutor_cli.run.files import check_file, one_of, write_atomic
+from dancetutor_cli.run.files import check_file, one_of
 
 if TYPE_CHECKING:
     from dancetutor_cli.dance.performance import Performance
-    from dancetutor_cli.dance.quality.figures import MotionReport
     from dancetutor_cli.dance.request import ChartChoice
     from dancetutor_cli.formats.animation import AnimatedDancer
 
@@ -115,7 +115,9 @@ def command(file: Path, selection: Selection, options: AnimateOptions, **dance: 
     from dancetutor_cli.dance.request import DanceRequest, check_request, choice_for, read_chart, with_style
     from dancetutor_cli.formats.animation import AnimatedDancer, Animation
 
-    _check(options)
+    if options.output is not None:
+        check_file(options.output, tuple(FORMATS))
+    check_targets(options.report_to, options.plot)
     output, character = options.output, options.character
     if output is not None and not FORMATS[output.suffix.lower()].has_motion:
         without = {"character": character != DANCER, "push": dance["push"], "trip": dance["trip"]}
@@ -135,26 +137,12 @@ def command(file: Path, selection: Selection, options: AnimateOptions, **dance: 
     check_file(target, tuple(FORMATS))
     section = _section(choice, options.section, performance)
     _allow_long(performance, section, file, options.yes)
-    places = _Places(target, _report_file(options), options.plot)
+    places = _Places(target, options.report_to, options.plot)
     animation = Animation(performance, section, pooled(options.jobs))
     for k, who in enumerate((dances,) if len(performance.dancers) == 1 else (dances, partner_of(dances))):
         player = choice.parts[k].player
         own = places if len(performance.dancers) == 1 else places.of(player)
-        _write(AnimatedDancer(animation, k, who), own, options.report_to is not None)
-
-
-def _check(options: AnimateOptions) -> None:
-    """UsageError for files that cannot be written, before the work."""
-    if options.output is not None:
-        check_file(options.output, tuple(FORMATS))
-    if options.plot is not None:
-        check_file(options.plot, (".svg", ".png"))
-    if (report := _report_file(options)) is not None:
-        check_file(report, (".json",), or_device=True)
-
-
-def _report_file(options: AnimateOptions) -> Path | None:
-    return None if options.report_to in (None, TABLE) else Path(str(options.report_to))
+        _write(AnimatedDancer(animation, k, who), own)
 
 
 def _section(choice: ChartChoice, section: str | None, performance: Performance) -> tuple[float, float] | None:
@@ -171,16 +159,21 @@ def _section(choice: ChartChoice, section: str | None, performance: Performance)
 
 @dataclass(frozen=True, slots=True)
 class _Places:
-    """Where all that is made goes. report : JSON of the report; plot : its picture; None: nowhere"""
+    """Where all that is made goes. report_to : as `report_option` gives it; plot : its diagram; None: nowhere"""
 
     output: Path
-    report: Path | None
+    report_to: str | None
     plot: Path | None
 
     def of(self, player: int) -> _Places:
         """The same for one of two: NAME-p1.glb, NAME-p2.glb."""
-        parts = (self.output, self.report, self.plot)
-        return _Places(*(path and path.with_stem(f"{path.stem}-p{player}") for path in parts))  # type: ignore[arg-type]
+
+        def named(path: Path) -> Path:
+            return path.with_stem(f"{path.stem}-p{player}")
+
+        is_file = self.report_to not in (None, TABLE)
+        report_to = str(named(Path(str(self.report_to)))) if is_file else self.report_to
+        return _Places(named(self.output), report_to, self.plot and named(self.plot))
 
 
 def _allow_long(performance: Performance, section: tuple[float, float] | None, file: Path, yes: bool) -> None:
@@ -192,9 +185,9 @@ def _allow_long(performance: Performance, section: tuple[float, float] | None, f
         confirm_long(f"{file}: the motion would last {seconds / 60:.0f} minutes", "Bake")
 
 
-def _write(dance: AnimatedDancer, places: _Places, report: bool) -> None:
+def _write(dance: AnimatedDancer, places: _Places) -> None:
     form = FORMATS[places.output.suffix.lower()]
-    measured = report or places.plot is not None
+    measured = places.report_to is not None or places.plot is not None
     warn(dance.notes(form.has_motion or measured))
     click.echo(f"{places.output}: {form.write(places.output, dance)}, {dance.label}")
     if measured:
@@ -204,23 +197,5 @@ def _write(dance: AnimatedDancer, places: _Places, report: bool) -> None:
 
         dancer = dance.animation.performance.dancers[dance.number]
         whole = report_of(dance.baked.motion, mines_of(dancer.play, dancer.pad))
-        _report(with_distances(whole, dance.baked.distances, dance.animation.performance.request.style), report, places)
-
-
-def _report(report: MotionReport, asked_for: bool, places: _Places) -> None:
-    if asked_for:
-        from dancetutor_cli.reports.motion_report import print_report
-
-        print_report(report)
-        for note in report.notes:
-            click.echo(f"note: {note}")
-    if places.report is not None:
-        from dancetutor_cli.reports.motion_report import as_json
-
-        write_atomic(places.report, (json.dumps(as_json(report), indent=1) + "\n").encode())
-        click.echo(f"{places.report}: the report")
-    if places.plot is not None:
-        from dancetutor_cli.reports.motion_report import write_plot
-
-        write_plot(places.plot, report)
-        click.echo(f"{places.plot}: the plot")
+        report = with_distances(whole, dance.baked.distances, dance.animation.performance.request.style)
+        write_report(report, places.report_to, places.plot)

@@ -12,16 +12,17 @@ import click
 
 from dancetutor_cli.chart import find_files
 from dancetutor_cli.chart.selection import Selection, note_bytes
-from dancetutor_cli.commands.arguments import GivenPath, into, within_folders
-from dancetutor_cli.commands.chart_options import (
+from dancetutor_cli.commands.arguments import GivenPath, within_folders
+from dancetutor_cli.commands.first_run import announce_compiling
+from dancetutor_cli.commands.help_groups import GroupedCommand
+from dancetutor_cli.commands.shared_options import (
     exclude_option,
+    into,
     preset_option,
     quiet_option,
     selection_options,
     verbose_option,
 )
-from dancetutor_cli.commands.first_run import announce_compiling
-from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.reports.terminal import JoinedWarnings, coloured, safe
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.files import check_folder

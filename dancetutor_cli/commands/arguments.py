@@ -1,88 +1,26 @@
-"""What options take: names for the Tab key, paths, charts; where results go; options as a record; hours of work."""
+"""Paths and charts that a command is given, where its results go, and what it says or asks beside them."""
 
 from __future__ import annotations
 
 import io
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import fields
-from functools import wraps
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 import click
-from click.shell_completion import CompletionItem
 
 from dancetutor_cli.chart import find_files
-from dancetutor_cli.chart.names import COLUMNS
 from dancetutor_cli.chart.selection import without_links_out
 from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import UCS_SUFFIX, plain_name, write_atomic
-from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.trust import exclude
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
-
-# The names that options take, for the Tab key: asked for only while a shell completes.
-
-_Completer = Callable[[click.Context, click.Parameter, str], list[CompletionItem]]
-
-
-def named(names: Callable[[], Iterable[str]], files: bool = True) -> _Completer:
-    """Completes an option from `names`; where none fits and `files` may be given, the shell completes those."""
-
-    def complete(_context: click.Context, _option: click.Parameter, begun: str) -> list[CompletionItem]:
-        found = [CompletionItem(name) for name in sorted(names()) if name.lower().startswith(begun.lower())]
-        return found or ([CompletionItem(begun, type="file")] if files else [])
-
-    return complete
-
-
-def rules() -> Iterable[str]:
-    """Codes and names of the rules."""
-    from dancetutor_cli.lint.rule import all_rules
-
-    return [word for code, rule in all_rules().items() for word in (code, rule.name)]
-
-
-def fixes() -> Iterable[str]:
-    """What --fix takes."""
-    from dancetutor_cli.lint.fix import FIXABLE
-
-    return ["safe", *FIXABLE]
-
-
-def folder(name: str) -> Callable[[], Iterable[str]]:
-    """The files of a folder of configs, without their suffix."""
-
-    def names() -> Iterable[str]:
-        return [path.stem for path in config_path(name).glob("*.yaml")]
-
-    return names
-
-
-def steps_types() -> Iterable[str]:
-    """Those that have a name."""
-    return COLUMNS
-
-
-def difficulties() -> Iterable[str]:
-    """As the games name them."""
-    return ["beginner", "easy", "medium", "hard", "challenge", "edit"]
-
-
-def characters() -> Iterable[str]:
-    """Who is built in."""
-    from dancetutor_cli.character import BUILT_IN
-
-    return BUILT_IN
-
-
-# Paths on the command line.
 
 
 class GivenPath(click.Path):
@@ -164,27 +102,6 @@ def default_name(song: Song, chart: Chart, suffix: str) -> Path:
     """SONG-difficulty, in characters that every file system takes: where a result goes that is given no name."""
     name = f"{song.title or song.path.stem}-{chart.difficulty or 'chart'}"
     return Path(plain_name(name) + suffix)
-
-
-# Options of a command as one record: a dataclass whose fields are named like them.
-
-
-def into(name: str, kind: type) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Give a command one argument `name`, a `kind`, in place of the options that are called like its fields.
-
-    To stand below the options: ``@options`` first, then ``@into("options", CommandOptions)``, then the function.
-    """
-    known = tuple(field.name for field in fields(kind))
-
-    def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
-        @wraps(command)
-        def gathered(**given: Any) -> Any:
-            record = kind(**{field: given.pop(field) for field in known if field in given})
-            return command(**given, **{name: record})
-
-        return gathered
-
-    return decorate
 
 
 # What a command says beside its result.

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.commands.arguments import GivenPath, folder, named
-from dancetutor_cli.commands.chart_options import (
+from dancetutor_cli.commands.arguments import GivenPath
+from dancetutor_cli.commands.shared_options import (
     character_option,
     combined,
     dance_options,
@@ -20,6 +20,7 @@ from dancetutor_cli.commands.chart_options import (
     ragdoll_options,
     section_option,
 )
+from dancetutor_cli.commands.tab_names import folder, named
 from dancetutor_cli.film.choices import LEAST_SIDE, MOST_SIDE, QUALITIES, RENDERERS, parse_ahead
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.languages import ENGLISH

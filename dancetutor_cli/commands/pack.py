@@ -1,4 +1,4 @@
-"""`analyze` about a pack as a whole: options, its page, `--compare` with another version of it, the chart sheet."""
+"""`analyze` about a pack as a whole: options, its page, `--compare` with another version, `--tech-counts`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import IO, TYPE_CHECKING
 import click
 
 from dancetutor_cli.commands.arguments import GivenPath
-from dancetutor_cli.commands.chart_options import combined, number
+from dancetutor_cli.commands.shared_options import combined, number
 from dancetutor_cli.lint.findings import AUTO, SCALES
 from dancetutor_cli.reports.terminal import safe, safe_path
 from dancetutor_cli.run.errors import UsageError, plural
@@ -18,11 +18,10 @@ from dancetutor_cli.run.files import check_file, write_atomic
 
 if TYPE_CHECKING:
     from dancetutor_cli.commands.analyze_options import AnalyzeOptions
-    from dancetutor_cli.lint.analysis import AnalyzeTask, Drawable
+    from dancetutor_cli.lint.analysis import AnalyzeTask
     from dancetutor_cli.lint.results import FileResult
     from dancetutor_cli.reports.formats import Tally
     from dancetutor_cli.reports.pack import Pack
-    from dancetutor_cli.reports.sheet_drawing import Sheet
 
 
 # Options of `analyze` about how hard charts play, and about a pack as a whole.
@@ -170,85 +169,3 @@ def report_tech_counts(tasks: Sequence[AnalyzeTask], options: AnalyzeOptions, ou
     lines = [*table_lines(found), *(("", *chart_lines(found)) if options.full else ())]
     output.writelines(f"{line}\n" for line in lines)
     return 0
-
-
-# `analyze --sheet FILE`: write the chart sheet of the selected charts.
-
-SUFFIXES = (".html", ".htm", ".svg")
-
-
-def check_sheet(path: Path, files: int) -> None:
-    """Refuse before the work what could not be written after it. files : of how many files charts are asked for."""
-    check_file(path, SUFFIXES)
-    if files != 1:
-        raise UsageError("--sheet draws the charts of one file: name a file, not a folder")
-
-
-def write_sheet(path: Path, tasks: list[AnalyzeTask], language: str | None) -> str:
-    """Draw the charts of one file; returns a line about it. An .svg holds one chart, a page any number of them.
-
-    language : of the sheet's words, a name of configs/languages; None: English
-    """
-    from dancetutor_cli.lint.analysis import drawable_charts
-    from dancetutor_cli.reports.sheet import html_page, make_sheet, svg_sheet
-    from dancetutor_cli.run.languages import ENGLISH
-
-    charts = list(drawable_charts(tasks[0]))
-    if not charts:
-        raise UsageError(f"{tasks[0].path}: no chart with notes is selected, so there is nothing to draw")
-    made = [make_sheet(chart.subject, chart.findings, language or ENGLISH) for chart in charts]
-    sheets = [(sheet, _facts(chart, sheet)) for chart, sheet in zip(charts, made, strict=True)]
-    if path.suffix.lower() == ".svg":
-        if len(sheets) > 1:
-            has = "; ".join(f"{c.subject.chart.index}: {c.subject.chart.label}" for c in charts)
-            raise UsageError(f"an .svg holds one chart; choose with --difficulty or --index, or write .html: {has}")
-        text = svg_sheet(*sheets[0])
-    else:
-        text = html_page(sheets)
-    write_atomic(path, text.encode("utf-8", "replace"))
-    return f"{path}: {len(sheets)} chart{'s' if len(sheets) > 1 else ''} drawn"
-
-
-# `analyze --sync --plot FILE.svg`: the bias over the song.
-
-
-def check_plot(path: Path, files: int) -> None:
-    """Refuse before the work what could not be written after it. files : of how many files the sync is asked for"""
-    check_file(path, (".svg",))
-    if files != 1:
-        raise UsageError("--plot draws the sync of one file: name a file, not a folder")
-
-
-def write_plot(path: Path, task: AnalyzeTask) -> str:
-    """Draw the sync of a file, and return a line about it."""
-    from dancetutor_cli.lint.analysis import load_song
-    from dancetutor_cli.lint.song_sync import song_sync
-    from dancetutor_cli.reports.sync_plot import sync_plot
-
-    song = load_song(task)
-    found = song_sync(song)
-    if found.judgement is None:
-        return f"{path}: nothing is drawn, because the sync cannot be judged: {found.sync.reason}"
-    name = safe(song.title) or path.stem
-    write_atomic(path, sync_plot(name, found.judgement).encode("utf-8", "replace"))
-    return f"{path}: a diagram of the sync over the song"
-
-
-def _facts(chart: Drawable, sheet: Sheet) -> list[str]:
-    from dancetutor_cli.reports.sheet import facts_of
-    from dancetutor_cli.reports.sheet_drawing import unsure_rows
-    from dancetutor_cli.reports.text_report import clock
-
-    subject, dense = chart.subject, chart.density
-    numbers = [
-        sheet.say("rows", count=len(subject.step_rows)),
-        sheet.say("length", time=clock(subject.seconds_played())[:-4]),  # without milliseconds
-    ]
-    numbers.append(sheet.say("density", mean=f"{dense.mean:.1f}", peak=f"{dense.peak:.1f}"))
-    if dense.breakdown:
-        numbers.append(sheet.say("stream", breakdown=dense.breakdown))
-    if subject.play is not None:
-        numbers.append(sheet.say("cost", cost=subject.play.total, preset=subject.play.preset))
-    if unsure := unsure_rows(sheet):
-        numbers.append(sheet.say("unsure-rows", count=len(unsure), percent=f"{sheet.style.unsure:g}"))
-    return facts_of(sorted(chart.counts.items()), numbers)

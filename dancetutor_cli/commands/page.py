@@ -11,11 +11,14 @@ import click
 
 from dancetutor_cli.chart import one_song
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.commands.arguments import GivenPath, into, warn
-from dancetutor_cli.commands.chart_options import (
+from dancetutor_cli.commands.arguments import GivenPath, warn
+from dancetutor_cli.commands.first_run import announce_compiling
+from dancetutor_cli.commands.help_groups import GroupedCommand
+from dancetutor_cli.commands.shared_options import (
     character_option,
     dance_options,
     exclude_option,
+    into,
     jobs_option,
     language_option,
     preset_option,
@@ -23,8 +26,6 @@ from dancetutor_cli.commands.chart_options import (
     selection_options,
     verbose_option,
 )
-from dancetutor_cli.commands.first_run import announce_compiling
-from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.reports.terminal import JoinedWarnings, failures_table, safe, safe_path
 from dancetutor_cli.run.errors import DancetutorError, UsageError, plural
 from dancetutor_cli.run.files import check_file, check_folder, make_folder, plain_name, write_atomic

@@ -13,18 +13,19 @@ import click
 
 from dancetutor_cli.chart import one_song
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, default_name, into, warn
-from dancetutor_cli.commands.chart_options import (
+from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, default_name, warn
+from dancetutor_cli.commands.film_options import RenderOptions, film_options, film_request
+from dancetutor_cli.commands.first_run import announce_compiling
+from dancetutor_cli.commands.help_groups import GroupedCommand
+from dancetutor_cli.commands.shared_options import (
     exclude_option,
+    into,
     preset_option,
     quiet_option,
     selection_options,
     verbose_option,
     yes_option,
 )
-from dancetutor_cli.commands.film_options import RenderOptions, film_options, film_request
-from dancetutor_cli.commands.first_run import announce_compiling
-from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.film.media.encoder import Encoding, choose
 from dancetutor_cli.film.media.film_formats import FILES, FORMATS, PICTURES, target_of
 from dancetutor_cli.reports.terminal import FilmProgress, safe

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.commands.arguments import GivenPath, into, warn
-from dancetutor_cli.commands.chart_options import TABLE, character_option, ragdoll_options, report_option
+from dancetutor_cli.commands.arguments import GivenPath, warn
 from dancetutor_cli.commands.help_groups import GroupedCommand
+from dancetutor_cli.commands.motion_output import check_targets, write_report
+from dancetutor_cli.commands.shared_options import character_option, into, ragdoll_options, report_option
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.files import check_file, one_of, write_atomic
 
@@ -86,10 +86,7 @@ def command(file: Path, options: RetargetOptions) -> None:
         raise UsageError(
             f"--with-input shows two dancers in a film: {options.output} must end in .mp4; a .html page shows both"
         )
-    if options.plot is not None:
-        check_file(options.plot, (".svg", ".png"))
-    if options.report_to is not None and options.report_to != TABLE:
-        check_file(Path(options.report_to), (".json",), or_device=True)
+    check_targets(options.report_to, options.plot)
     wishes = replace(wishes_of(options.push, options.trip), corrections=corrections_of(options.correct), own_legs=True)
     task = RetargetTask(file, options.character, options.animation, options.style or "neutral", wishes)
     work = Retargeting(task)
@@ -97,7 +94,7 @@ def command(file: Path, options: RetargetOptions) -> None:
     warn(work.ragdoll_result.motion.notes)
     click.echo(f"{options.output}: {words}")
     if options.report_to is not None or options.plot is not None:
-        _report(work, options)
+        write_report(work.report(), options.report_to, options.plot)
 
 
 def corrections_of(text: str) -> tuple[str, ...]:
@@ -142,21 +139,3 @@ def _written(work: Retargeting, output: Path, with_input: bool) -> str:
 
         write_bvh(output, motion)
     return f"{len(motion.times)} keys, {seconds:.1f} s"
-
-
-def _report(work: Retargeting, options: RetargetOptions) -> None:
-    report = work.report()
-    if options.report_to is not None:
-        from dancetutor_cli.reports.motion_report import as_json, print_report
-
-        print_report(report)
-        for note in report.notes:
-            click.echo(f"note: {note}")
-        if options.report_to != TABLE:
-            write_atomic(Path(options.report_to), (json.dumps(as_json(report), indent=1) + "\n").encode())
-            click.echo(f"{options.report_to}: the report")
-    if options.plot is not None:
-        from dancetutor_cli.reports.motion_report import write_plot
-
-        write_plot(options.plot, report)
-        click.echo(f"{options.plot}: the plot")

@@ -12,8 +12,8 @@ import numpy as np
 
 from dancetutor_cli import chart as charts
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.commands.chart_options import quiet_option
 from dancetutor_cli.commands.help_groups import GroupedCommand
+from dancetutor_cli.commands.shared_options import quiet_option
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.feet import DEFAULT_PRESET
 from dancetutor_cli.film.choices import QUALITIES, Quality

@@ -1,13 +1,16 @@
-"""The options that say which charts of a song are meant, and with which cost preset; the same for every subcommand."""
+"""Options that several commands have, with one meaning in all of them, and how a command gets them as a record."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields
+from functools import wraps
 from typing import Any, TypeVar
 
 import click
 
-from dancetutor_cli.commands.arguments import GivenPath, characters, difficulties, folder, named, steps_types
+from dancetutor_cli.commands.arguments import GivenPath
+from dancetutor_cli.commands.tab_names import characters, difficulties, folder, named, steps_types
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.reading import config_names
 
@@ -32,6 +35,24 @@ def number(_context: click.Context, _option: click.Parameter, value: float) -> f
     if value != value:
         raise click.BadParameter("nan is not a number.")
     return value
+
+
+def into(name: str, kind: type) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Give a command one argument `name`, a `kind`, in place of the options that are called like its fields.
+
+    To stand below the options: ``@options`` first, then ``@into("options", CommandOptions)``, then the function.
+    """
+    known = tuple(field.name for field in fields(kind))
+
+    def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(command)
+        def gathered(**given: Any) -> Any:
+            record = kind(**{field: given.pop(field) for field in known if field in given})
+            return command(**given, **{name: record})
+
+        return gathered
+
+    return decorate
 
 
 # Decorators: a command gets the value of each option by its name.
