@@ -1,4 +1,4 @@
-"""Names in backticks, in docstrings and comments of the package, are names that there are: a renamed one is stale."""
+"""Names in backticks and names of source files, in docstrings and comments, exist: what was renamed is stale."""
 
 from __future__ import annotations
 
@@ -103,3 +103,24 @@ def test_names_that_are_no_more_are_found() -> None:
     assert names.know("SolverPath.edit")
     for gone in ("Found.edit", "qp.Limits", "lint.meter.oddities", "feet.solved.solve_chart"):
         assert not names.know(gone), gone
+
+
+SOURCE_FILE = re.compile(r"(?<![\w/.-])((?:[\w-]+/)*[\w-]+\.(?:py|js|frag|vert))\b")
+
+
+def stale_files(text: str, paths: list[str]) -> list[str]:
+    """The source files that a text names and that are none of the paths, or ends of them."""
+    return [name for name in SOURCE_FILE.findall(text) if not any(f"/{path}".endswith(f"/{name}") for path in paths)]
+
+
+def test_source_files_that_code_names_exist() -> None:
+    kinds = (".py", ".js", ".frag", ".vert")
+    folders = ("dancetutor_cli", "tools", "research", "tests")
+    files = [path for name in folders for path in (ROOT / name).rglob("*") if path.suffix in kinds]
+    paths = {path.relative_to(ROOT).as_posix(): path for path in files}
+    code = {name: path for name, path in paths.items() if not name.startswith("tests/")}
+    found = [
+        f"{name}: {gone}" for name, path in code.items() for gone in stale_files(path.read_text("utf-8"), list(paths))
+    ]
+    assert found == []
+    assert stale_files("as in video/camera.py", list(paths)) == ["video/camera.py"]

@@ -1,7 +1,7 @@
 """The body that `judge_motion.py` judges: tapered limbs, shoes against each other, and segment masses by Winter.
 
 Masses and centres: D. A. Winter, Biomechanics and Motor Control of Human Movement, 4th edition (2009), table 4.1. The
-package bakes with de Leva's female ones (`rig/mass.py`), so a body by Winter is a second opinion: its trunk is
+package bakes with de Leva's female ones (`rig/body.py`), so a body by Winter is a second opinion: its trunk is
 heavier, its centre of mass lies elsewhere by about a centimetre.
 """
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -17,6 +17,7 @@ from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.motion_output import check_targets, write_report
 from dancetutor_cli.commands.shared_options import (
     TABLE,
+    DanceOptions,
     character_option,
     dance_options,
     into,
@@ -44,7 +45,7 @@ AFTER = 2.5  # seconds after the last row that a section may still reach
 
 @dataclass(frozen=True, slots=True)
 class AnimateOptions:
-    """What becomes of the dance; the others are called like the fields of `dance.request.DanceRequest`."""
+    """The options besides those of the charts and of the dance."""
 
     output: Path | None
     report_to: str | None
@@ -53,6 +54,7 @@ class AnimateOptions:
     yes: bool
     physics: bool
     section: str | None
+    fps: float
     rate: float
     jobs: int
 
@@ -101,8 +103,9 @@ class AnimateOptions:
 @selection_options
 @preset_option
 @into("selection", Selection)
+@into("dance", DanceOptions)
 @into("options", AnimateOptions)
-def command(file: Path, selection: Selection, options: AnimateOptions, **dance: Any) -> None:
+def command(file: Path, selection: Selection, dance: DanceOptions, options: AnimateOptions) -> None:
     """Bake a 3D dancer who plays one chart of FILE.
 
     The ending of the output name sets the format: .glb for any glTF viewer, .npz with numpy arrays, .bvh for motion
@@ -112,7 +115,7 @@ def command(file: Path, selection: Selection, options: AnimateOptions, **dance: 
     from dancetutor_cli.character import DANCER, load_character, name_in_gait
     from dancetutor_cli.character.mesh import partner_of
     from dancetutor_cli.dance.performance import perform, pooled, solve
-    from dancetutor_cli.dance.request import DanceRequest, check_request, choice_for, read_chart, with_style
+    from dancetutor_cli.dance.request import check_request, choice_for, read_chart, with_style
     from dancetutor_cli.formats.animation import AnimatedDancer, Animation
 
     if options.output is not None:
@@ -120,11 +123,11 @@ def command(file: Path, selection: Selection, options: AnimateOptions, **dance: 
     check_targets(options.report_to, options.plot)
     output, character = options.output, options.character
     if output is not None and not FORMATS[output.suffix.lower()].has_motion:
-        without = {"character": character != DANCER, "push": dance["push"], "trip": dance["trip"]}
+        without = {"character": character != DANCER, "push": dance.push, "trip": dance.trip}
         if unused := [name for name, given in without.items() if given]:
             raise UsageError(f"{output}: has only the steps, which --{unused[0]} does not change; leave it out")
-    dances = load_character(name_in_gait(character, dance["gait"]))
-    request = DanceRequest(one_song(file), selection, rates=(options.rate,), **dance)
+    dances = load_character(name_in_gait(character, dance.gait))
+    request = replace(dance.request(one_song(file), selection), rates=(options.rate,), fps=options.fps)
     if options.physics and request.style is None:
         request = replace(request, style="neutral")
     request = with_style(request)

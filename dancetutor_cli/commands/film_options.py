@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +12,7 @@ import click
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.arguments import GivenPath
 from dancetutor_cli.commands.shared_options import (
+    DanceOptions,
     character_option,
     combined,
     dance_options,
@@ -126,6 +127,7 @@ film_options = combined(
     ),
     click.option(
         "--dance",
+        "motions",
         type=GivenPath(),
         multiple=True,
         metavar="FILE.npz",
@@ -140,25 +142,13 @@ film_options = combined(
 
 @dataclass(frozen=True, slots=True)
 class RenderOptions:
-    """What the options of `render` ask for, but for the choice of charts; None where they say nothing.
-
-    Those of the dance are called like fields of `dance.request.DanceRequest`; the others are explained by their help.
-    """
+    """The options of `render` besides those of the charts and of the dance; None where they say nothing."""
 
     size: tuple[int, int] | None
     fps: int | None
     section: str | None
     layout: str | None
     character: str
-    preset: str | None
-    play: Path | None
-    bar: bool
-    gait: str
-    form: str
-    motion: Path | None
-    style: str | None
-    push: tuple[str, ...]
-    trip: tuple[float, ...]
     camera: str | None
     scroll: str | None
     down: bool
@@ -172,7 +162,7 @@ class RenderOptions:
     metronome: bool
     sync_offset: float
     call_ahead: str | None
-    dance: tuple[Path, ...]
+    motions: tuple[Path, ...]
     show_findings: bool
     language: str
     font: Path | None
@@ -196,10 +186,12 @@ class RenderOptions:
     verbose: bool
 
 
-def film_request(file: Path, selection: Selection, options: RenderOptions, form: FilmFormat) -> FilmRequest:
-    """The request that these options make, for a film of a format."""
+def film_request(
+    file: Path, selection: Selection, dance: DanceOptions, options: RenderOptions, film_format: FilmFormat
+) -> FilmRequest:
+    """The request that these options make."""
     from dancetutor_cli.character import check_character
-    from dancetutor_cli.dance.request import DanceRequest, with_style
+    from dancetutor_cli.dance.request import with_style
     from dancetutor_cli.film.layout import FilmLook, load_layout
     from dancetutor_cli.film.media.encoder import even_size
     from dancetutor_cli.film.scroll import parse_scroll
@@ -217,8 +209,8 @@ def film_request(file: Path, selection: Selection, options: RenderOptions, form:
     from dancetutor_cli.film.overlay.text import check_letters
 
     check_letters(options.language, options.font)
-    wanted = options.size or _default_size(layout.size, form)
-    size = even_size(wanted) if form.h264 else wanted
+    wanted = options.size or _default_size(layout.size, film_format)
+    size = even_size(wanted) if film_format.h264 else wanted
     if size != wanted:
         click.echo(f"note: {wanted[0]}x{wanted[1]} becomes {size[0]}x{size[1]}; H.264 needs even numbers", err=True)
     scroll = parse_scroll(options.scroll) if options.scroll else None
@@ -235,31 +227,17 @@ def film_request(file: Path, selection: Selection, options: RenderOptions, form:
         options.show_findings,
         options.language,
     )
-    dance = DanceRequest(
-        file,
-        selection,
-        preset=options.preset,
-        play=options.play,
-        rates=_rates(options, layout),
-        bar=options.bar,
-        gait=options.gait,
-        form=options.form,
-        motion=options.motion,
-        style=options.style,
-        push=options.push,
-        trip=options.trip,
-    )
     return FilmRequest(
-        with_style(dance),
+        with_style(replace(dance.request(file, selection), rates=_rates(options, layout))),
         look,
-        fps=options.fps or form.fps,
+        fps=options.fps or film_format.fps,
         section=options.section,
         sync=options.sync_offset / 1000,
         mute=options.mute,
         practice=_practice(options, layout, film=not options.poses),
         character=check_character(options.character),
         background=options.background,
-        motions=options.dance,
+        motions=options.motions,
     )
 
 
@@ -281,8 +259,8 @@ def _practice(options: RenderOptions, layout: Layout, film: bool) -> Practice:
     return Practice(options.loop or 0, count_in, options.assist_tick, options.metronome, rest)
 
 
-def _default_size(size: tuple[int, int], form: FilmFormat) -> tuple[int, int]:
+def _default_size(size: tuple[int, int], film_format: FilmFormat) -> tuple[int, int]:
     longer = max(size)
-    if form.side >= longer:
+    if film_format.side >= longer:
         return size
-    return round(size[0] * form.side / longer / 2) * 2, round(size[1] * form.side / longer / 2) * 2
+    return round(size[0] * film_format.side / longer / 2) * 2, round(size[1] * film_format.side / longer / 2) * 2

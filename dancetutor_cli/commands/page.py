@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -15,6 +15,7 @@ from dancetutor_cli.commands.arguments import GivenPath, warn
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import (
+    DanceOptions,
     character_option,
     dance_options,
     exclude_option,
@@ -39,7 +40,7 @@ SUFFIXES = (".html", ".htm")
 
 @dataclass(frozen=True, slots=True)
 class PageOptions:
-    """The options besides those of the charts and of the dance (`dance.request.DanceRequest`)."""
+    """The options besides those of the charts and of the dance."""
 
     output: Path | None
     music: bool
@@ -78,20 +79,21 @@ class PageOptions:
 @selection_options
 @preset_option
 @into("selection", Selection)
+@into("dance", DanceOptions)
 @into("options", PageOptions)
-def command(path: Path, selection: Selection, options: PageOptions, **dance: Any) -> None:
+def command(path: Path, selection: Selection, dance: DanceOptions, options: PageOptions) -> None:
     """Make a web page to practise one chart of PATH with. It needs a browser and no network.
 
     A dancer plays the chart beside its notes: slower or faster, in loops, row by row, or waiting for your steps. The
     page lists the hardest passages. If PATH is a folder, make a page of every chart in it, and an index page.
     """
-    from dancetutor_cli.dance.request import DanceRequest, choice_for
+    from dancetutor_cli.dance.request import choice_for
     from dancetutor_cli.page.work import PageRequest
 
     output = options.output
     file = one_song(path) if output is not None and output.suffix.lower() in SUFFIXES else path
     request = PageRequest(
-        DanceRequest(file, selection, **dance),
+        dance.request(file, selection),
         options.character,
         options.music,
         options.second,

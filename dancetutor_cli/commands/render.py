@@ -18,6 +18,7 @@ from dancetutor_cli.commands.film_options import RenderOptions, film_options, fi
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import (
+    DanceOptions,
     exclude_option,
     into,
     preset_option,
@@ -99,8 +100,9 @@ _NO_BACKGROUND = (
     help="For a folder: write one line of JSON per chart; - is standard output.",
 )
 @into("selection", Selection)
+@into("dance", DanceOptions)
 @into("options", RenderOptions)
-def command(path: Path, selection: Selection, options: RenderOptions) -> None:
+def command(path: Path, selection: Selection, dance: DanceOptions, options: RenderOptions) -> None:
     """Make a video of a dancer who plays one chart of PATH, beside the notes with L and R on them.
 
     The ending of the output name sets the format: .mp4 (H.264 with the music of the song), .gif or .webp.
@@ -118,19 +120,19 @@ def command(path: Path, selection: Selection, options: RenderOptions) -> None:
                 raise UsageError(f"--{name} is for one chart, and {path} is a folder")
         from dancetutor_cli.commands.render_batch import render_batch
 
-        render_batch(path, selection, options)
+        render_batch(path, selection, dance, options)
         return
     for name in ("meter", "name", "shard", "results", "scheduler", "exclude"):
         if getattr(options, name):
             raise UsageError(f"--{name} is for folders of charts, and {path} is not a folder")
     if not files:
-        _render_one(path, selection, options)
+        _render_one(path, selection, dance, options)
         return
     from dancetutor_cli.markers.background import check_place
 
     film = options.output or path.with_name(into_file_name(path, selection))
     check_place(film, files)
-    _render_one(path, selection, replace(options, output=film))
+    _render_one(path, selection, dance, replace(options, output=film))
     _enter(film, files, options.quiet)
 
 
@@ -179,7 +181,7 @@ def _one_film(path: Path, options: RenderOptions) -> Path:
     return file
 
 
-def _render_one(path: Path, selection: Selection, options: RenderOptions) -> None:
+def _render_one(path: Path, selection: Selection, dance: DanceOptions, options: RenderOptions) -> None:
     from dancetutor_cli.dance.request import choice_for
     from dancetutor_cli.film.work.request import look_up
 
@@ -191,7 +193,7 @@ def _render_one(path: Path, selection: Selection, options: RenderOptions) -> Non
         check_file(options.poster, (".png",), or_device=True)
     if folder is not None:
         check_folder(folder)
-    request = film_request(path, selection, options, FORMATS[kind])
+    request = film_request(path, selection, dance, options, FORMATS[kind])
     subject = look_up(request)
     start, end = subject.chart.notes_span
     announce_compiling(choice_for(path, request.dance.preset), lambda: end - start, quiet=options.quiet)

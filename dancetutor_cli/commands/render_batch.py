@@ -20,13 +20,14 @@ from dancetutor_cli.run.foreign_text import json_without_commands
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.selection import Selection
+    from dancetutor_cli.commands.shared_options import DanceOptions
     from dancetutor_cli.film.choices import RendererKind
     from dancetutor_cli.film.work.batch import BatchRequest, UnreadableFile
     from dancetutor_cli.film.work.segments import FilmOutcome
     from dancetutor_cli.run.pool import Workers
 
 
-def render_batch(path: Path, selection: Selection, options: RenderOptions) -> None:
+def render_batch(path: Path, selection: Selection, dance: DanceOptions, options: RenderOptions) -> None:
     """Make a film of every chart below `path` that matches. Exits with 2 if one of them failed."""
     from dancetutor_cli.film.work.batch import Batch, film_list
     from dancetutor_cli.film.work.records import find_records
@@ -34,7 +35,7 @@ def render_batch(path: Path, selection: Selection, options: RenderOptions) -> No
 
     if options.scheduler:  # its workers have a working folder of their own
         path = path.absolute()
-    batch = _batch(path, selection, options)
+    batch = _batch(path, selection, dance, options)
     check_folder(batch.folder)
     if options.results is not None and str(options.results) != "-":
         check_file(options.results, (".jsonl", ".json"), or_device=True)
@@ -70,7 +71,7 @@ def render_batch(path: Path, selection: Selection, options: RenderOptions) -> No
     _sum_up(outcomes, unreadable, without, options.quiet)
 
 
-def _batch(path: Path, selection: Selection, options: RenderOptions) -> BatchRequest:
+def _batch(path: Path, selection: Selection, dance: DanceOptions, options: RenderOptions) -> BatchRequest:
     """The request of the charts below `path`, with the kind of film and the folder that the options name."""
     from dancetutor_cli.film.media.encoder import Encoding, choose
     from dancetutor_cli.film.media.film_formats import FORMATS, PICTURES
@@ -79,7 +80,7 @@ def _batch(path: Path, selection: Selection, options: RenderOptions) -> BatchReq
     frames = options.frames
     kind = PICTURES if frames else "mp4"
     target = frames or options.output or Path("videos")
-    request = film_request(path, selection, options, FORMATS[kind])
+    request = film_request(path, selection, dance, options, FORMATS[kind])
     look = request.look
     encoder = choose(options.encoder) if frames is None else "x264"
     return BatchRequest(

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from functools import wraps
-from typing import Any, TypeVar
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -13,6 +14,10 @@ from dancetutor_cli.commands.arguments import GivenPath
 from dancetutor_cli.commands.tab_names import characters, difficulties, folder, named, steps_types
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.reading import config_names
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.selection import Selection
+    from dancetutor_cli.dance.request import DanceRequest
 
 TABLE = "-"  # the value of --report without a file
 
@@ -40,7 +45,8 @@ def number(_context: click.Context, _option: click.Parameter, value: float) -> f
 def into(name: str, kind: type) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Give a command one argument `name`, a `kind`, in place of the options that are called like its fields.
 
-    To stand below the options: ``@options`` first, then ``@into("options", CommandOptions)``, then the function.
+    A field with a default may have no option. To stand below the options: ``@options`` first, then
+    ``@into("options", CommandOptions)``, then the function.
     """
     known = tuple(field.name for field in fields(kind))
 
@@ -179,6 +185,27 @@ ragdoll_options = combined(
         help="Catch the foot that is in the air at this second of the song.",
     ),
 )
+
+
+@dataclass(frozen=True, slots=True)
+class DanceOptions:
+    """The options of a command about the dance, which are called like fields of `dance.request.DanceRequest`."""
+
+    preset: str | None
+    play: Path | None
+    bar: bool
+    gait: str
+    form: str
+    motion: Path | None
+    style: str | None = None
+    push: tuple[str, ...] = ()
+    trip: tuple[float, ...] = ()
+
+    def request(self, path: Path, selection: Selection) -> DanceRequest:
+        """The dance that they ask for, of one chart of a file."""
+        from dancetutor_cli.dance.request import DanceRequest
+
+        return DanceRequest(path, selection, **{one.name: getattr(self, one.name) for one in fields(self)})
 
 
 def jobs_option(words: str) -> Callable[[_Command], _Command]:

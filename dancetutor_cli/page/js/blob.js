@@ -1,4 +1,4 @@
-// Reads the page's data back: JSON, and the arrays it names, out of one compressed block (see blob.py).
+// Reads the page's data back: JSON, and the arrays it names, out of one compressed block (see page/document.py).
 
 /** @typedef {Uint8Array | Int8Array | Uint16Array | Int16Array | Uint32Array | Int32Array | Float32Array | Float64Array} Numbers */
 

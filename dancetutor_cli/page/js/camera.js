@@ -58,7 +58,7 @@ export function matrix(camera, width, height) {
 }
 
 /**
- * A preset that stands as near as it can while pad, arms and hands up are seen (video/camera.py).
+ * A preset that stands as near as it can while pad, arms and hands up are seen (film/scene/camera.py).
  * @param {import("./doc.js").PageDoc} doc @param {string} name @param {number} width @param {number} height
  * @returns {Camera}
  */

@@ -80,7 +80,7 @@ function place(pose, joint, beside) {
 
 /** Who asks for reduced motion sees panels light up softly in place of a flash. */
 const BRIGHTEST = globalThis.matchMedia?.("(prefers-reduced-motion: reduce)").matches ? 0.4 : 1;
-const HELD = 0.62; // brightness of a held panel after the flash (video/lights.py)
+const HELD = 0.62; // brightness of a held panel after the flash (film/notes.py)
 
 /**
  * Colour and brightness of each panel, four numbers a panel.
@@ -96,7 +96,7 @@ export function lightsAt(chart, second, fade, colours, out) {
   }
 }
 
-/** What is left of a light when so much of its time is over; video/lights.py has the same. @param {number} share */
+/** What is left of a light when so much of its time is over; film/notes.py has the same. @param {number} share */
 const lightLeft = (share) => Math.max(0, 1 - share * share);
 
 /**

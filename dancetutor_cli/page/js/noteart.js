@@ -2,7 +2,7 @@
 
 import { GOOD, WINDOW } from "./judge.js";
 
-// Corners of an arrow that points up, in halves of its size (video/sprites.py).
+// Corners of an arrow that points up, in halves of its size (film/overlay/sprites.py).
 const ARROW = [[0, -0.94], [0.94, 0], [0.62, 0.32], [0.36, 0.06], [0.36, 0.88], [-0.36, 0.88], [-0.36, 0.06],
   [-0.62, 0.32], [-0.94, 0]];
 const SQUARE = [[-0.86, -0.86], [0.86, -0.86], [0.86, 0.86], [-0.86, 0.86]];

@@ -6,7 +6,7 @@ const BEFORE = 0.35, AFTER = 0.35; // seconds around a changed row in which the 
 const LIFT = 0.11; // metres that a foot rises on its way
 
 /**
- * @typedef {object} Flip what the solver says about other feet in one row (jobs/page.py)
+ * @typedef {object} Flip what the solver says about other feet in one row (page/facts.py)
  * @property {number} row number in the play
  * @property {number} extra cost, more than the best play's; -1: nobody can step it so
  * @property {[number, number, number][]} changes row, column, limb: of everything that is stepped otherwise then

@@ -4,7 +4,7 @@ import { axes, matrix } from "./camera.js";
 import { bind, build, drawPart, makeMesh, makeRoom, numbers, shadowMap, skinTexture, tileTexture } from "./gl.js";
 import { cross, dot, minus } from "./maths.js";
 
-const SHADOW_REACH = 2.5; // metres of the world that the shadow map shows (video/prepare.py)
+const SHADOW_REACH = 2.5; // metres of the world that the shadow map shows (film/scene/renderer.py)
 const CAST_DEPTH = [-2, 6];
 const MOST_JOINTS = 256;
 const OFF_SURFACE = [0.012, 0.006];

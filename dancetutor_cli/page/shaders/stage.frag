@@ -1,5 +1,5 @@
 #version 300 es
-// The stage in the films' colours (video/cpu/surfaces.py), with what falls on it (video/cpu/ground.py).
+// The stage in the films' colours (film/scene/cpu/stage_colours.py), with what falls on it (film/scene/cpu/floor.py).
 precision highp float;
 precision highp int;
 precision highp sampler2DShadow;
@@ -7,7 +7,7 @@ in vec3 world;
 in vec2 wall;
 flat in int kind;
 
-uniform vec3 palette[12];     // in the order of video/cpu/surfaces.py COLOURS
+uniform vec3 palette[12];     // in the order of film/scene/cpu/stage_colours.py COLOURS
 uniform vec3 size;            // tile, pool, panel
 uniform vec4 pad;             // its middle (x, z) and half its size
 uniform vec2 corner_of_tiles;

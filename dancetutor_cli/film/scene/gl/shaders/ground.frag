@@ -1,5 +1,5 @@
 #version 330 core
-// Shadow, contact shadows, lit panels and foot marks on the standing picture, as in cpu/ground.py.
+// Shadow, contact shadows, lit panels and foot marks on the standing picture, as in cpu/floor.py.
 uniform sampler2D standing;   // colour 0..1, and how much the pixel takes shadows
 uniform sampler2D ground;     // world x, y, z, and metres in a pixel
 uniform sampler2D panels;     // panel or -1, glow, whiteness
