@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections import defaultdict
 from pathlib import Path
 
@@ -51,3 +52,16 @@ def test_no_definition_is_called_by_a_participle_or_a_riddle() -> None:
     assert len(names) > 3000
     assert sorted(set(banned) - WRITTEN_BY_USERS) == []
     assert {path.stem for path in PACKAGE.rglob("*.py")} & BANNED == set()
+
+
+def test_the_examples_of_the_naming_page_are_defined() -> None:
+    page = (PACKAGE.parent / "docs/naming.md").read_text(encoding="utf-8")
+    table = page.partition("| a private helper")[0]
+    examples = [name for name in re.findall(r"`(\w+)`", table) if not name.endswith("_")]
+    sources = [path.read_text(encoding="utf-8") for path in PACKAGE.rglob("*.py")]
+    assert len(examples) > 12
+    assert [name for name in examples if not any(_defines(text, name) for text in sources)] == []
+
+
+def _defines(source: str, name: str) -> bool:
+    return re.search(rf"^ *(?:def|class) {name}\b|^{name}\b.* = ", source, re.M) is not None

@@ -171,8 +171,6 @@ def _disk() -> Check:
     return Check("disk", "ok", message)
 
 
-# `dancetutor doctor`: what this machine can render with, a line each, and below it how to repair what is missing.
-
 WIDTH = 80  # columns
 _SHOWN = {"without": "missing"}  # states that the table calls by another word than the JSON
 

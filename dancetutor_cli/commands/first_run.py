@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.feet.preset import PresetChoice
 
 
-# A word before work: where kernels are kept if not in the usual place, and that a first run compiles for a minute.
-
 _NO_STORE_MESSAGE = (
     "compiled code is not stored, so each run compiles again; set NUMBA_CACHE_DIR to a folder that only you can write"
 )

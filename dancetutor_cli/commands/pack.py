@@ -65,8 +65,6 @@ pack_options = combined(
 )
 
 
-# `analyze PACK`: the page of the whole pack, `--report-html`, and `--compare` with another version of it.
-
 _SONG = 2  # files that are one song: its .sm and its .ssc
 _WIDE = 160  # characters of a line into a file
 _BRIEF = 20  # changes of a comparison in the brief form

@@ -85,9 +85,6 @@ def _draw(prepared: PreparedFilm, quality: Quality) -> None:
         yuv420(frame, np.empty(width * height * 3 // 2, dtype=np.uint8))
 
 
-# `dancetutor warmup`: compile every kernel once and keep it, for example while a CI image is built.
-
-
 @click.command(cls=GroupedCommand)
 @quiet_option
 def command(quiet: bool) -> None:

@@ -25,7 +25,8 @@ do (its residuals). `grips` places hands on the bar after a rough bake. Hair (`p
     clearance, gait               a foot's path in the air, for `foot_path`; how the body goes with steps of a walk
     waits, face                   what she does while she waits; lids, smiles and eyes
     request, two, performance     what the user wants; two on one pad; who dances a chart, and how
-    pieces, bake, ends            songs in pieces; the order of work of a piece; where a cut begins and ends
+    pieces, bake, kept, ends      songs in pieces; the order of work of a piece; the store of baked pieces; where a
+                                  cut begins and ends
     smoothing                     paths over time
     quadratic, nonnegative        least squares in bands, with limits, and without negative unknowns
 

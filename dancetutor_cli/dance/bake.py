@@ -21,9 +21,9 @@ from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.hair import add_hair
 from dancetutor_cli.dance.pieces import (
     BakedPiece,
-    Each,
     Keys,
     Piece,
+    PieceRunner,
     RagdollStyle,
     Span,
     doubtful,
@@ -145,16 +145,18 @@ def mines_of(play: Play, pad: Pad) -> Array:
     return np.column_stack((play.rows.second[row], panels_on_ground(pad)[column]))
 
 
-def bake_plan(plan: Plan, context: Context, fps: float, section: Span | None = None, each: Each = in_turn) -> Motion:
+def bake_plan(
+    plan: Plan, context: Context, fps: float, section: Span | None = None, run: PieceRunner = in_turn
+) -> Motion:
     """Bake a plan, or what is within a section of it, seconds; the work behind `bake`. Arguments as there.
 
-    each : does the pieces of a long song, in turn or in several processes; the result is the same
+    run : does the pieces of a long song, in turn or in several processes; the result is the same
     """
     pieces = pieces_of(plan, context, fps)
-    return cut(pieces, section or (pieces[0].kept_span[0], pieces[-1].kept_span[1]), each).motion
+    return cut(pieces, section or (pieces[0].kept_span[0], pieces[-1].kept_span[1]), run).motion
 
 
-def cut(pieces: list[Piece], section: Span, each: Each = in_turn) -> BakedPiece:
+def cut(pieces: list[Piece], section: Span, run: PieceRunner = in_turn) -> BakedPiece:
     """A section, seconds, of the dance that all these pieces make; only those that it needs are baked."""
     start, end = section
     if not start < end:
@@ -162,7 +164,7 @@ def cut(pieces: list[Piece], section: Span, each: Each = in_turn) -> BakedPiece:
             f"the section from {start:.3f} s to {end:.3f} s is empty; its start must come before its end"
         )
     some = pieces[needed(pieces, start, end)]
-    return joined(some, list(each(bake_piece, some)), start, end)
+    return joined(some, list(run(bake_piece, some)), start, end)
 
 
 def bake_piece(piece: Piece) -> BakedPiece:

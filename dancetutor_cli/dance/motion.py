@@ -12,8 +12,6 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.play import DroppedNote
 
-# The baked motion: joint rotations per frame, and the contacts they must keep.
-
 
 @dataclass(frozen=True, slots=True)
 class Contact:

@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-import json
-import os
-import tempfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from dancetutor_cli.dance.bake import Manner, bake_piece, cut, planned
 from dancetutor_cli.dance.ends import (
@@ -24,17 +17,16 @@ from dancetutor_cli.dance.ends import (
     with_entrance,
     with_exit,
 )
-from dancetutor_cli.dance.motion import Cut, Distances, Motion
-from dancetutor_cli.dance.pieces import BakedPiece, Each, Piece, RagdollStyle, in_turn, pieces_of, whole_span
+from dancetutor_cli.dance.kept import with_store
+from dancetutor_cli.dance.motion import Cut, Motion
+from dancetutor_cli.dance.pieces import BakedPiece, Piece, PieceRunner, RagdollStyle, in_turn, pieces_of, whole_span
 from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_request, no_pad, read_chart
 from dancetutor_cli.dance.settings import load_settings
 from dancetutor_cli.dance.two import merge_plays, pad_of_both, persons_of, place_on, sides_of
 from dancetutor_cli.feet.play import without_unplayable
 from dancetutor_cli.feet.solved import Solved, solve_song
 from dancetutor_cli.run.errors import DancetutorError, UsageError
-from dancetutor_cli.run.fingerprint import fingerprint, program_stamp
 from dancetutor_cli.run.pool import Task, open_workers
-from dancetutor_cli.run.trust import kept_folder
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
@@ -81,31 +73,35 @@ class Performance:
         spans = [whole_span(one.plan, one.context) for one in self.dancers]
         return min(start for start, _ in spans), max(end for _, end in spans)
 
-    def motions(self, wanted: Cut | None = None, each: Each = in_turn, walks_off: bool = True) -> list[BakedPiece]:
+    def motions(
+        self, wanted: Cut | None = None, run: PieceRunner = in_turn, walks_off: bool = True
+    ) -> list[BakedPiece]:
         """What each dancer does on her own pad; `place` says where that is.
 
         Parameters
         ----------
         wanted : the part that is wanted, None: all of it
-        each : does pieces of work, in turn or in several processes
+        run : does pieces of work, in turn or in several processes
         walks_off : whether a dancer may be seen to leave after the last note; else she stays
         """
         wanted = wanted or Cut(*self.span)
         ragdoll = self._ragdoll(wanted)
-        return [self._motion(one, wanted, ragdoll, (each, walks_off)) for one in self.dancers]
+        return [self._motion(one, wanted, ragdoll, (run, walks_off)) for one in self.dancers]
 
-    def _motion(self, who: Performer, wanted: Cut, style: RagdollStyle | None, how: tuple[Each, bool]) -> BakedPiece:
-        (each, walks_off), fps = how, self.request.fps
+    def _motion(
+        self, who: Performer, wanted: Cut, style: RagdollStyle | None, how: tuple[PieceRunner, bool]
+    ) -> BakedPiece:
+        (run, walks_off), fps = how, self.request.fps
         plan, context = who.plan, who.context
-        done = cut(pieces_of(plan, context, fps, style), (wanted.start, wanted.end), each)
+        done = cut(pieces_of(plan, context, fps, style), (wanted.start, wanted.end), run)
         motion = done.motion
         if (entrance := entrance_of(plan, wanted)) is not None:
             piece = entrance_piece(entrance, context, fps, wanted, style)
-            motion = with_entrance(motion, _one(each, piece), wanted)
+            motion = with_entrance(motion, _one(run, piece), wanted)
         if (until := rest_from(plan, wanted, walks_off)) is not None:
             rest = exit_of(plan, (until, wanted.end), context.at(until))
             piece = exit_piece(rest, context, fps, (until, wanted.end), style)
-            motion = with_exit(motion, _one(each, piece), until, wanted)
+            motion = with_exit(motion, _one(run, piece), until, wanted)
         return replace(done, motion=motion)
 
     def _ragdoll(self, wanted: Cut) -> RagdollStyle | None:
@@ -121,8 +117,8 @@ class Performance:
         return RagdollStyle(self.blend, wishes)
 
 
-def _one(each: Each, piece: Piece) -> Motion:
-    return next(iter(each(bake_piece, [piece]))).motion
+def _one(run: PieceRunner, piece: Piece) -> Motion:
+    return next(iter(run(bake_piece, [piece]))).motion
 
 
 def solve(request: DanceRequest, chart: ChartChoice | None = None) -> tuple[Solved, ...]:
@@ -204,7 +200,7 @@ def as_heard(play: Play, timing: Timing) -> Play:
     return replace(play, rows=replace(play.rows, second=timing.seconds(play.rows.tick)))
 
 
-def pooled(jobs: int = 1) -> Each:
+def pooled(jobs: int = 1) -> PieceRunner:
     """Does pieces of work in up to so many processes, except kept pieces; results come in the order of the pieces."""
     return with_store(in_turn if jobs <= 1 else partial(_pooled, jobs))
 
@@ -230,85 +226,3 @@ def _pooled(jobs: int, function: Callable[[Piece], BakedPiece], pieces: Sequence
 
 def _work(_: object, function: Callable[[Piece], BakedPiece], piece: Piece) -> BakedPiece:
     return function(piece)
-
-
-# Pieces of dances that have been baked once are kept for this user, so that the next cut costs nothing.
-#
-# Each is a file of numpy arrays, named by the hash of everything that it is made of (`fingerprint`): the piece of work
-# itself and the program. The oldest go when there are too many.
-
-LARGEST = 512_000_000  # bytes of all that is kept; the oldest go first
-_ARRAYS = ("times", "rotations", "root")
-Function = Callable[[Piece], BakedPiece]
-
-
-def with_store(each: Each) -> Each:
-    """Does pieces of work as `each` does, except those that are kept already; keeps the others."""
-    folder = kept_folder("dances")
-    return each if folder is None else partial(_each_with_store, folder, each)
-
-
-def _each_with_store(folder: Path, each: Each, function: Function, pieces: Sequence[Piece]) -> Iterator[BakedPiece]:
-    paths = [folder / f"{fingerprint(piece, program_stamp())}.npz" for piece in pieces]
-    found = [_read(path, piece) for path, piece in zip(paths, pieces, strict=True)]
-    missing = [piece for piece, one in zip(pieces, found, strict=True) if one is None]
-    made = iter(each(function, missing) if missing else ())
-    for path, piece, one in zip(paths, pieces, found, strict=True):
-        if one is None:
-            one = next(made)
-            _write(path, one, piece)
-        yield one
-
-
-def _read(path: Path, piece: Piece) -> BakedPiece | None:
-    """A piece that is kept; None for one that is not, or that cannot be read."""
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            data = {name: file[name] for name in file.files}
-        words = json.loads(bytes(data["words"]))
-        path.touch()
-    except (OSError, ValueError, KeyError, EOFError):
-        return None
-    contacts = tuple(piece.contacts[k] for k in words["contacts"])
-    grips = tuple(g for g in piece.plan.grips if g.end > piece.baked[0] and g.start < piece.baked[1])
-    times, rotations, root = (data[name] for name in _ARRAYS)
-    context, notes = piece.context, tuple(words["notes"])
-    motion = Motion(
-        context.skeleton, piece.fps, times, rotations, root, contacts, context.bar, grips, piece.ground, notes
-    )
-    if "distance_times" not in data:
-        return BakedPiece(motion)
-    return BakedPiece(motion, Distances(tuple(words["points"]), data["distance_times"], data["distances"]))
-
-
-def _write(path: Path, one: BakedPiece, piece: Piece) -> None:
-    """Keep a piece; if that is not possible, it is made again the next time."""
-    motion, distances = one.motion, one.distances
-    still = set(motion.contacts)
-    words: dict[str, Any] = {
-        "contacts": [k for k, contact in enumerate(piece.contacts) if contact in still],
-        "notes": motion.notes,
-    }
-    arrays = {name: getattr(motion, name) for name in _ARRAYS}
-    if distances is not None:
-        words["points"] = distances.names
-        arrays |= {"distance_times": distances.times, "distances": distances.values}
-    with suppress(OSError):
-        handle, name = tempfile.mkstemp(suffix=".part", dir=path.parent)
-        try:
-            with os.fdopen(handle, "wb") as file:
-                np.savez(file, words=np.frombuffer(json.dumps(words).encode(), np.uint8), **arrays)
-            Path(name).replace(path)
-        except OSError:  # a full disk
-            Path(name).unlink(missing_ok=True)
-        _prune(path.parent)
-
-
-def _prune(folder: Path) -> None:
-    """Remove the oldest pieces until what is left is not too large."""
-    files = sorted(((entry.stat(), entry.path) for entry in os.scandir(folder)), key=lambda one: -one[0].st_mtime)
-    size = 0
-    for status, path in files:
-        size += status.st_size
-        if size > LARGEST:
-            Path(path).unlink(missing_ok=True)

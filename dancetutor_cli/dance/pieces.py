@@ -170,7 +170,7 @@ class BakedPiece:
     distances: Distances | None = None
 
 
-Each = Callable[[Callable[[Piece], BakedPiece], Sequence[Piece]], Iterable[BakedPiece]]
+PieceRunner = Callable[[Callable[[Piece], BakedPiece], Sequence[Piece]], Iterable[BakedPiece]]
 
 
 def in_turn(function: Callable[[Piece], BakedPiece], pieces: Sequence[Piece]) -> Iterable[BakedPiece]:

@@ -122,8 +122,6 @@ class Jump(Swing):
     round: float = 0.5
 
 
-# What the dancer will do, before any joint is turned: where and when each foot stands and swings, hands, turns.
-
 # seconds, a frame of a film: in streams feet leave so long before the other one lands, and nobody sees that as a flight
 LEAST_FLIGHT = 0.0166
 

@@ -41,9 +41,6 @@ from dancetutor_cli.run.yaml_files import load
 USUAL = "usual"  # the form if the user asks for none: the numbers of `configs/motion.yaml`
 
 
-# The numbers of the motion: read from `configs/motion.yaml` and from a file of changes, checked, and given names.
-
-
 @dataclass(frozen=True, slots=True)
 class MotionSettings:
     """All of them, one field per section of the file."""

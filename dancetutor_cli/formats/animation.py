@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from dancetutor_cli.character.retarget import retarget
 from dancetutor_cli.dance.motion import Cut, padded_from, shifted
 from dancetutor_cli.dance.performance import Performance, Performer
-from dancetutor_cli.dance.pieces import Each, in_turn
+from dancetutor_cli.dance.pieces import PieceRunner, in_turn
 from dancetutor_cli.feet.play import dropped_notes_message
 
 if TYPE_CHECKING:
@@ -29,12 +29,12 @@ class Animation:
 
     performance: Performance
     section: tuple[float, float] | None = None
-    each: Each = in_turn
+    run: PieceRunner = in_turn
 
     @cached_property
     def baked(self) -> list[BakedPiece]:
         """Of each dancer the motion of the project's own dancer, on her own pad."""
-        return self.performance.motions(None if self.section is None else Cut(*self.section), self.each)
+        return self.performance.motions(None if self.section is None else Cut(*self.section), self.run)
 
     @property
     def begin(self) -> float:

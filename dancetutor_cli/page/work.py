@@ -161,7 +161,7 @@ def pack_page(page: PageSubject) -> Page:
 def _motions(request: PageRequest, solved: tuple[Solved, ...]) -> list[Motion]:
     """Of each who dances, where she stands on the pad under all."""
     performance = perform(solved, request.dance)
-    done = performance.motions(each=pooled(request.jobs))
+    done = performance.motions(run=pooled(request.jobs))
     return [shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True)]
 
 

@@ -6,8 +6,6 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Literal
 
-# The one base of all errors that a user may see: one line each, saying what, where and what to do.
-
 
 class DancetutorError(Exception):
     """Base of every expected error. `str(error)` is the one line printed; `exit_status` ends the process."""

@@ -1,8 +1,7 @@
-"""Running ffmpeg: which one, messages in a file, failures in one line."""
+"""Running ffmpeg: which one, its messages in a file, its failures in one line; no name of a chart becomes an option."""
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
 import re
@@ -34,7 +33,7 @@ MEND = f"Debian/Ubuntu: apt-get install ffmpeg; or {install_command('ffmpeg')}"
 _PATIENCE = 20.0  # seconds for an answer
 
 
-def ffmpeg_program() -> str:
+def executable() -> str:
     """Path of the ffmpeg to run. Raises UnavailableError, one line, if there is none."""
     return _find_executable(os.environ.get(VARIABLE), os.environ.get("PATH", os.defpath))
 
@@ -103,8 +102,6 @@ def _listed(program: Path, option: str) -> set[str]:
     return {words[1] for words in map(str.split, done.stdout.splitlines()) if len(words) > 1}
 
 
-# Running ffmpeg: its messages go to a file, its failures become one line, nothing from a chart becomes an option.
-
 # Only local files and pipes, whatever a file's content or name asks for.
 INPUT_GUARD = ("-protocol_whitelist", "file,pipe")
 # What a song's music may be, whatever its name: a playlist in disguise would make ffmpeg open other files.
@@ -122,11 +119,6 @@ class EncoderError(UnavailableError):
     """ffmpeg ended before its work was done; carries its own last message."""
 
 
-def executable() -> str:
-    """Path of the ffmpeg that is run; UnavailableError if there is none."""
-    return ffmpeg_program()
-
-
 def local(path: Path) -> str:
     """A path as ffmpeg takes it without reading a protocol or an option out of the name."""
     return f"file:{path.resolve()}"
@@ -141,7 +133,7 @@ def _options() -> dict[str, object]:
 
 def _widen(pipe: IO[bytes]) -> None:
     """Let a pipe hold more, where the system allows it: both ends wait less often for each other."""
-    with contextlib.suppress(ImportError, AttributeError, OSError):
+    with suppress(ImportError, AttributeError, OSError):
         import fcntl
 
         fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, PIPE)  # type: ignore[attr-defined,unused-ignore]
@@ -217,7 +209,7 @@ class Process:
             self.process.wait()
         for pipe in (self.process.stdin, self.process.stdout):
             if pipe is not None:
-                with contextlib.suppress(OSError):  # what it still wanted to flush has no reader any more
+                with suppress(OSError):  # what it still wanted to flush has no reader any more
                     pipe.close()
         self.log.close()
 

@@ -11,8 +11,6 @@ from typing import Any, Protocol
 from dancetutor_cli.run.errors import DancetutorError, UnavailableError, install_command
 from dancetutor_cli.run.process import is_interruption, os_error_message
 
-# Workers: pieces of work in, results out, in any order; in this process, or in others (`processes`).
-#
 # A piece of work is a picklable function of a module with picklable arguments.
 
 Report = Callable[[int], None]

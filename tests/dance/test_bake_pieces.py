@@ -86,7 +86,7 @@ def test_pieces_end_where_nobody_moves(short: None) -> None:
 
 def test_any_number_of_processes_gives_the_same_bytes(short: None) -> None:
     plan, context = planned(chart().timing, play(EVENTS), pad())
-    alone, shared = (bake_plan(plan, context, 60.0, each=partial(_pooled, jobs)) for jobs in (1, 2))
+    alone, shared = (bake_plan(plan, context, 60.0, run=partial(_pooled, jobs)) for jobs in (1, 2))
     assert alone.rotations.tobytes() == shared.rotations.tobytes()
     assert alone.root.tobytes() == shared.root.tobytes() and alone.times.tobytes() == shared.times.tobytes()
 

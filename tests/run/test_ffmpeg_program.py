@@ -10,7 +10,7 @@ import pytest
 
 from dancetutor_cli.run import ffmpeg as chooser
 from dancetutor_cli.run.errors import UnavailableError, install_command
-from dancetutor_cli.run.ffmpeg import ENCODERS, FILTERS, VARIABLE, ffmpeg_program, missing_abilities
+from dancetutor_cli.run.ffmpeg import ENCODERS, FILTERS, VARIABLE, executable, missing_abilities
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="a shell script stands in for ffmpeg")
 
@@ -35,9 +35,9 @@ def program(folder: Path, *names: str) -> Path:
 def test_the_systems_is_taken_where_it_can_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = program(tmp_path / "bin", *ENCODERS, *FILTERS)
     monkeypatch.setenv("PATH", f"{tmp_path / 'none'}:{whole.parent}:/usr/bin:/bin")
-    assert ffmpeg_program() == str(whole)
+    assert executable() == str(whole)
     chooser._find_executable.cache_clear()
-    assert ffmpeg_program() == str(whole)
+    assert executable() == str(whole)
     assert (whole.parent / "asked").read_text().count("asked") == 2, "encoders and filters, once"
     program(tmp_path / "bin", "aac")  # an update
     os.utime(whole, ns=(1, 1))
@@ -48,12 +48,12 @@ def test_one_that_cannot_all_is_second_choice(tmp_path: Path, monkeypatch: pytes
     poor = program(tmp_path / "poor", *ENCODERS)
     whole = program(tmp_path / "whole", *ENCODERS, *FILTERS)
     monkeypatch.setenv("PATH", f"{poor.parent}:{whole.parent}:/usr/bin:/bin")
-    assert ffmpeg_program() == str(whole)
+    assert executable() == str(whole)
     chooser._find_executable.cache_clear()
     monkeypatch.setenv("PATH", f"{poor.parent}:/bin")
     monkeypatch.setattr(chooser, "programs", lambda name, path: iter([poor]))
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
-    assert ffmpeg_program() == str(poor), "better than none"
+    assert executable() == str(poor), "better than none"
 
 
 def test_none_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -62,7 +62,7 @@ def test_none_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     with pytest.raises(
         UnavailableError, match=f"^no ffmpeg found; .*apt-get install ffmpeg; or {install_command('ffmpeg')}$"
     ):
-        ffmpeg_program()
+        executable()
 
 
 def test_none_of_the_current_folder_is_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -302,8 +302,6 @@ def one_arm(rig: Rig, side: int, goal: ArmGoal, out: Array) -> None:
         _arm((0, side), _vec(goal.shoulders[f]), _quat(goal.chest[f]), rig, hands, out[f])
 
 
-# Full-body inverse kinematics: from targets of pelvis, shoulders, hands and feet to joint rotations of all frames.
-#
 # Order of work in a frame (docs/motion.md): the root is pulled until both legs reach their feet; FABRIK (Aristidou and
 # Lasenby 2011) bends the torso, a chain that forks into two shoulders; shoulders whose pinned palm is out of reach are
 # pulled after it; then rotations of the torso, and closed-form limbs with a pole and a knee that stays soft.

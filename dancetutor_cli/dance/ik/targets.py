@@ -348,8 +348,6 @@ def _lay_down(press: Press, body: Trajectory, context: Context) -> tuple[Array, 
     return laid[best], poles[best]
 
 
-# Targets of the full-body IK at the times of the output, from the paths of feet, body and hands.
-
 ACROSS = np.array([1.0, 0.0, 0.0])
 TOES_BEND = np.radians(40.0)  # a foot whose heel is farther up carries its toes
 

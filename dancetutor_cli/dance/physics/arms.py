@@ -12,8 +12,6 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import both_envelopes, upper_envelope
 from dancetutor_cli.dance.units import Array, Poses
 
-# Arms out of trunk, legs and each other: if a style sends them there, they go back to their place in the input.
-#
 # The arms of the input are taken in the trunk's frame, as local turns: what was clear of the trunk there is clear of it
 # here.
 

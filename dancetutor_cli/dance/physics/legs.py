@@ -12,8 +12,6 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond
 from dancetutor_cli.dance.smoothing import cubic, low_pass, upper_envelope
 from dancetutor_cli.dance.units import Array, Poses
 
-# Legs that do not pop: near the full stretch a leg comes to its end ever more slowly, and the body gives the rest.
-#
 # Popping is a question of millimetres: a leg at 170 degrees is 0.4 % shorter than a straight one. A foot in the air
 # comes nearer by these millimetres; over a foot that stands the pelvis sinks by them, early and smoothly.
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.physics.simulation import Ragdoll
 
 
-# What acts on a ragdoll while it follows, beside its springs: joints of the soles that hold and break, stiff knees.
-
 NEAR = 0.008  # metres over the floor at which a corner of a sole gets a joint
 SLOW, AIMED = 0.6, 0.03  # m/s and metres: only where the input's corner moves no faster, and is no higher
 HOLD, LIFT = 600.0, 60.0  # newtons along the floor and off it at which a corner's joint breaks

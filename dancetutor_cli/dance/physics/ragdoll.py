@@ -102,8 +102,6 @@ def place_points(
     return np.asarray(positions[:, joints] + quat.rotate(world[:, joints], np.array([p.offset for p in points])))
 
 
-# The ragdoll: capsules and foot boxes with density on the joints of a skeleton, as a model of the engine.
-#
 # All bodies have the world's axes in the rest pose, so that a body's rotation is its joint's world rotation. Knees and
 # elbows have two hinges (bend and twist), all other joints are spherical with a cone for a limit, as in chapter 4 of
 # the thesis on retargeting; her ankles are spherical too, for in a straddle they bend aside while the sole stays flat.

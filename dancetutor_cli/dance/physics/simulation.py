@@ -92,8 +92,6 @@ def _followed(turns: Array, rate: float, follower: Follower) -> Array:
     return quat.normalize(follow(quat.continuous(turns), rate, follower))
 
 
-# The simulation: springs and dampers draw the ragdoll after the points of the input, step by step.
-#
 # Forces are actuators of the engine (implicitfast), which uses the place of a point in the present step. Forces that
 # are set from outside before a plain step are one step old, and that explodes at 240 Hz.
 

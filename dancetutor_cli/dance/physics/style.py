@@ -41,8 +41,6 @@ def _silent(_: str) -> None:
     """
 
 
-# A style: how a ragdoll follows the dancer. Read from `configs/styles` or a file, checked, and given names.
-#
 # What a style may change is what chapter 6 of the thesis on retargeting changes: springs and dampers, densities,
 # gravity, friction, external forces, disabled points, and where the points sit; and a second-order follower before the
 # springs.

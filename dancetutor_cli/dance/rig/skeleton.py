@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.units import Array
 
-# The dancer's joints: H-Anim names, hierarchy and rest positions.
-#
 # World: metres, +Y up, the dancer looks to +Z, so her left is +X. The pad's surface is y = 0. Rest pose: standing
 # upright, feet parallel, arms in an A pose 45 degrees down in the frontal plane, palms facing the thighs. In the rest
 # pose every local rotation is the identity and every joint's axes are the world's.
