@@ -2,7 +2,7 @@
 """Restage chapters 5 and 6 of the thesis on retargeting by physics: each setting off and on, measured and drawn.
 
 usage: tools/thesis_restaged.py [FOLDER]     (of captures: a walk `*walk*.bvh` and others)
-Writes tests/data/thesis_restaged.json, docs/physics-limits.svg and others, and the part of docs/physics.md between its
+Writes tests/data/thesis_restaged.json, docs/physics-limits.svg and others, and the part of docs/thesis.md between its
 two marks. Three seconds of the walk, forward and then backward as in the thesis, through the ragdoll; the last column
 of each table has its figure for every clip in FOLDER. tests/test_thesis_restaged.py checks that page and pictures are
 what this makes of the JSON, and measures a table anew.
@@ -47,7 +47,7 @@ from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.files import write_atomic
 
 ROOT = Path(__file__).resolve().parent.parent
-DATA, PAGE = ROOT / "tests" / "data" / "thesis_restaged.json", ROOT / "docs" / "physics.md"
+DATA, PAGE = ROOT / "tests" / "data" / "thesis_restaged.json", ROOT / "docs" / "thesis.md"
 MARKS = ("<!-- written by tools/thesis_restaged.py -->", "<!-- end of what tools/thesis_restaged.py writes -->")
 SECONDS, START, TURN = 3.0, 1.0, 0.4  # of a clip that goes forward, and from where; then it goes backward
 LOOSE = (
@@ -110,7 +110,7 @@ def experiments() -> tuple[Experiment, ...]:
         Experiment(
             "limits",
             "5.1 Joint limits",
-            "with all points the knee is right without limits, too (5 degrees apart at one moment); without the "
+            "with all points the knee is right without limits, too (5 degrees apart at one moment). Without the "
             "knees' points and limits it bends the wrong way, and each of its distances is twice as large",
             (
                 Setting("all points, no limits", replace(NEUTRAL, limits=False)),
@@ -121,17 +121,17 @@ def experiments() -> tuple[Experiment, ...]:
             (
                 ("least bend of the knee, degrees", lambda r: float(knee(r).min()), 1),
                 ("mean of the knee, cm", mean("l_knee"), 2),
-                ("most, cm", most("l_knee"), 2),
+                ("largest, cm", most("l_knee"), 2),
                 ("mean of the ankle, cm", mean("l_talocrural"), 2),
             ),
-            ("most of the knee, cm", most("l_knee"), 1),
+            ("largest of the knee, cm", most("l_knee"), 1),
             ("bend of the left knee, degrees", knee),
         ),
         Experiment(
             "stiffness",
             "5.2 Extra points and joint stiffness",
-            "without extra points all distances of the spine are at least twice as large; stiffness takes away what "
-            "wobbling is left",
+            "without extra points all distances of the spine are at least twice as large. Stiffness removes the rest of "
+            "the wobble",
             (
                 Setting("no stiffness, no extra points", bare),
                 Setting("no stiffness, extra points", body(NEUTRAL, stiffness=0.0)),
@@ -143,20 +143,20 @@ def experiments() -> tuple[Experiment, ...]:
                 ),
             ),
             spine,
-            ("most of vt10, cm", most("vt10"), 2),
+            ("largest of vt10, cm", most("vt10"), 2),
             ("distance of vt10, cm", lambda r: r.apart("vt10")),
         ),
         Experiment(
             "rotation",
             "5.3 Extra points for rotation",
-            "without them the right hand turns between 20 and 90 degrees where it should stay at 40, and distances are "
+            "without them the right hand turns between 20 and 90 degrees, although it should stay at 40. Distances are "
             "twice as large",
             (Setting("no extra points", replace(NEUTRAL, extra_points=False)), Setting("extra points", NEUTRAL)),
             (
                 ("mean turn off, degrees", lambda r: float(np.abs(forearm(r)).mean()), 1),
-                ("most, degrees", lambda r: float(np.abs(forearm(r)).max()), 1),
+                ("largest, degrees", lambda r: float(np.abs(forearm(r)).max()), 1),
                 ("mean of the hand, cm", lambda r: tip(r)[0], 2),
-                ("most, cm", lambda r: tip(r)[1], 2),
+                ("largest, cm", lambda r: tip(r)[1], 2),
             ),
             ("mean turn off, degrees", lambda r: float(np.abs(forearm(r)).mean()), 0),
             ("turn of the right hand away from the input, degrees", forearm),
@@ -164,8 +164,8 @@ def experiments() -> tuple[Experiment, ...]:
         Experiment(
             "rates",
             "5.4 Update rate and sample rate",
-            "at 60 steps and 30 samples a second shoulders and feet go up and down; distances of the left foot are at "
-            "least twice those at 1000 (170 on average) and 180",
+            "at 60 steps and 30 samples a second shoulders and feet go up and down. Distances of the left foot are at "
+            "least twice those at 1000 steps (170 on average) and 180 samples",
             (
                 Setting("60 steps, 30 samples, springs of 32 Hz", body(NEUTRAL, update_rate=60.0, sample_rate=30.0)),
                 Setting("60 steps, 30 samples", body(SOFTER, update_rate=60.0, sample_rate=30.0)),
@@ -176,18 +176,18 @@ def experiments() -> tuple[Experiment, ...]:
             ),
             (
                 ("mean of the foot, cm", mean("l_metatarsal"), 2),
-                ("most, cm", most("l_metatarsal"), 2),
+                ("largest, cm", most("l_metatarsal"), 2),
                 ("wobble of the foot, mm", wobble("l_metatarsal"), 2),
                 ("wobble of the shoulder, mm", wobble("l_shoulder"), 2),
             ),
-            ("most of the foot, cm", most("l_metatarsal"), 1),
+            ("largest of the foot, cm", most("l_metatarsal"), 1),
             ("distance of the left ball, cm", lambda r: r.apart("l_metatarsal")),
         ),
         Experiment(
             "placement",
             "6.1 One on one: End, Center and Hybrid Center",
-            "End: means 1 to 2, deviations 0.5 to 1, most 3 to 7 cm, root below 1; Center: most twice as far, feet 8 "
-            "on average and 15.5 at most; Hybrid: feet 1 and 6 again",
+            "End has means of 1 to 2 cm, deviations of 0.5 to 1, at most 3 to 7, the root below 1. Center is up to twice "
+            "as far, feet 8 on average and 15.5 at most. With Hybrid, feet are at 1 and 6 again",
             tuple(
                 Setting(f"{place}, {words}", replace(style, placement=place))
                 for words, style in ((f"{LOOSE:g} Hz", STILL), ("32 Hz", NEUTRAL))
@@ -199,7 +199,7 @@ def experiments() -> tuple[Experiment, ...]:
                 ("farthest, cm", worst(2), 2),
                 ("mean of the root, cm", mean("HumanoidRoot"), 2),
                 ("mean of the foot, cm", mean("l_metatarsal"), 2),
-                ("most, cm", most("l_metatarsal"), 2),
+                ("largest, cm", most("l_metatarsal"), 2),
             ),
             ("largest mean, cm", worst(0), 2),
             ("distance of the left ball, cm", lambda r: r.apart("l_metatarsal")),
@@ -207,9 +207,9 @@ def experiments() -> tuple[Experiment, ...]:
         Experiment(
             "forces",
             "6.2 to 6.5 Springs, friction, density, gravity, points that are off",
-            "soft arms swing on; friction makes feet drag; heads and arms ten times as dense swing more and are late; "
-            "gravity of 3 and 4 m/s^2 pulls the body down while feet stay: knees and spine bend more; of 1 upward "
-            "lifts it; without the point on top of the head it looks up",
+            "soft arms swing on, and friction makes feet drag. Heads and arms ten times as dense swing more and are late. "
+            "Gravity of 3 and 4 m/s^2 pulls the body down while feet stay, so knees and spine bend more. Gravity of 1 "
+            "upward lifts it. Without the point on top of the head it looks up",
             _forces(heavier),
             (
                 ("pelvis up, cm", height("HumanoidRoot"), 1),
@@ -227,7 +227,7 @@ def experiments() -> tuple[Experiment, ...]:
     )
 
 
-_SPINE = (("mean", "cm", mean), ("most", "cm", most), ("wobble", "mm", wobble))
+_SPINE = (("mean", "cm", mean), ("largest", "cm", most), ("wobble", "mm", wobble))
 
 
 def _forces(heavier: Style) -> tuple[Setting, ...]:
