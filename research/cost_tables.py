@@ -20,7 +20,7 @@ def tables() -> str:
     said = _comments(ROOT / "configs" / "presets" / "itg.yaml")
     lines = ["| weight | `itg` | `pump` | what |", "| --- | ---: | ---: | --- |"]
     lines += [f"| `{k}` | {v} | {pump['weights'][k]} | {said[k]} |" for k, v in itg["weights"].items()]
-    lines += ["", 'Curves, `itg` / `pump`; "the same" is the doublestep or bracket of the line above:', ""]
+    lines += ["", "Curves, `itg` / `pump`, by the time since the last row with steps:", ""]
     lines += [
         "| curve | " + " | ".join(f"{t} ms" for t in TIMES) + " | what |",
         "| --- |" + " ---: |" * len(TIMES) + " --- |",

@@ -36,7 +36,23 @@ FORBIDDEN = {
     r"dear(?!ly)": "slow, costs much",
     r"no ear|by ear": "inaudible; by sound",
 }
+# What documents avoid besides: with FORBIDDEN, the second column of docs/style.md.
+IN_DOCS = FORBIDDEN | {
+    r"double steps?|double-tap\w*": "doublestep",
+    r"work(s|ed|ing)? out": "find, compute",
+    r"tak(e|es|en|ing) out|took out": "remove",
+    r"the price of|dearer": "cost; costlier",
+    r"no (limb|foot|hand) (is )?left": "no limb is free",
+    r"wish(es)?": "pinned feet",
+    r"who dances?": "dancers who",
+    r"somebody else": "another user",
+    r"by turns": "in turn",
+    r"for (it|they|he|she) (is|are|has|have|goes|can|must)": "because",
+    r"is no number": "is not a number",
+    r"word of warning": "warning",
+}
 MAY_NAME_THEM = {"docs/style.md"}  # lists what not to write
+LONG, LONG_SHARE = 25, 0.1  # words of a long sentence; share of a page's sentences that may be long
 
 
 def prose(text: str) -> str:
@@ -45,17 +61,51 @@ def prose(text: str) -> str:
     return re.sub(r"`[^`\n]*`|\]\([^)]*\)|\"[^\"\n]{1,60}\"", " ", text)
 
 
-def problems(text: str) -> list[str]:
+def problems(text: str, listed: dict[str, str] = FORBIDDEN) -> list[str]:
     return [
         f"'{found[0]}': write {better}"
-        for words, better in FORBIDDEN.items()
+        for words, better in listed.items()
         for found in re.finditer(rf"\b(?:{words})\b", text, re.I)
     ]
 
 
 @pytest.mark.parametrize("name", sorted(set(PAGES) - MAY_NAME_THEM))
 def test_no_page_has_a_word_that_only_this_project_uses(name: str) -> None:
-    assert problems(prose(PAGES[name])) == [], name
+    assert problems(prose(PAGES[name]), IN_DOCS) == [], name
+
+
+def second_column() -> list[str]:
+    """What docs/style.md says not to write."""
+    rows = re.findall(r"^\|[^|]+\| ([^|]+) \|$", PAGES["docs/style.md"], re.M)[2:]
+    return [entry for row in rows for entry in re.split(r"[;,] ", row)]
+
+
+def test_documents_are_searched_for_the_whole_list_of_the_page_on_style() -> None:
+    entries = second_column()
+    assert len(entries) > 30
+    assert [entry for entry in entries if not problems(entry, IN_DOCS)] == []
+    assert [words for words in IN_DOCS if not problems("; ".join(entries), {words: ""})] == []
+
+
+def test_the_page_on_style_is_one_screen() -> None:
+    lines = PAGES["docs/style.md"].splitlines()
+    assert sum(max(1, -(-len(line) // 80)) for line in lines) <= 48
+
+
+def sentences(text: str) -> list[str]:
+    """Of paragraphs and lists; not of tables, headings, pictures and what a program writes."""
+    text = re.sub(r"<!-- written by.*?<!-- end of what", "", text, flags=re.S)
+    text = re.sub(r"```.*?```|<!--.*?-->|^(    +[^- ]|[#|!<]).*$", "\n", text, flags=re.S | re.M)
+    text = re.sub(r"`[^`\n]*`", "CODE", re.sub(r"\]\([^)]*\)", "]", text))
+    blocks = re.split(r"\n\s*\n|^ *(?:[-*]|\d+\.) ", text, flags=re.M)
+    return [one for block in blocks for one in re.split(r"(?<=[.!?])[\")*]*\s+(?=[A-Z\"(\[*])", block) if one.strip()]
+
+
+@pytest.mark.parametrize("name", sorted(PAGES))
+def test_few_sentences_of_a_page_are_long(name: str) -> None:
+    said = sentences(PAGES[name])
+    long = [one for one in said if len([word for word in one.split() if re.search(r"\w", word)]) > LONG]
+    assert len(long) <= max(1, LONG_SHARE * len(said)), long
 
 
 @pytest.mark.parametrize("name", sorted(set(PAGES) - MAY_NAME_THEM))

@@ -130,8 +130,8 @@ def experiments() -> tuple[Experiment, ...]:
         Experiment(
             "stiffness",
             "5.2 Extra points and joint stiffness",
-            "without extra points all distances of the spine are at least twice as large. Stiffness removes the rest of "
-            "the wobble",
+            "without extra points all distances of the spine are at least twice as large. Stiffness removes the rest "
+            "of the wobble",
             (
                 Setting("no stiffness, no extra points", bare),
                 Setting("no stiffness, extra points", body(NEUTRAL, stiffness=0.0)),
@@ -186,8 +186,8 @@ def experiments() -> tuple[Experiment, ...]:
         Experiment(
             "placement",
             "6.1 One on one: End, Center and Hybrid Center",
-            "End has means of 1 to 2 cm, deviations of 0.5 to 1, at most 3 to 7, the root below 1. Center is up to twice "
-            "as far, feet 8 on average and 15.5 at most. With Hybrid, feet are at 1 and 6 again",
+            "End has means of 1 to 2 cm, deviations of 0.5 to 1, at most 3 to 7, the root below 1. Center is up to "
+            "twice as far, feet 8 on average and 15.5 at most. With Hybrid, feet are at 1 and 6 again",
             tuple(
                 Setting(f"{place}, {words}", replace(style, placement=place))
                 for words, style in ((f"{LOOSE:g} Hz", STILL), ("32 Hz", NEUTRAL))
@@ -207,9 +207,9 @@ def experiments() -> tuple[Experiment, ...]:
         Experiment(
             "forces",
             "6.2 to 6.5 Springs, friction, density, gravity, points that are off",
-            "soft arms swing on, and friction makes feet drag. Heads and arms ten times as dense swing more and are late. "
-            "Gravity of 3 and 4 m/s^2 pulls the body down while feet stay, so knees and spine bend more. Gravity of 1 "
-            "upward lifts it. Without the point on top of the head it looks up",
+            "soft arms swing on, and friction makes feet drag. Heads and arms ten times as dense swing more and are "
+            "late. Gravity of 3 and 4 m/s^2 pulls the body down while feet stay, so knees and spine bend more. Gravity of "
+            "1 upward lifts it. Without the point on top of the head it looks up",
             _forces(heavier),
             (
                 ("pelvis up, cm", height("HumanoidRoot"), 1),
