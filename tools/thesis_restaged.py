@@ -208,8 +208,8 @@ def experiments() -> tuple[Experiment, ...]:
             "forces",
             "6.2 to 6.5 Springs, friction, density, gravity, points that are off",
             "soft arms swing on, and friction makes feet drag. Heads and arms ten times as dense swing more and are "
-            "late. Gravity of 3 and 4 m/s^2 pulls the body down while feet stay, so knees and spine bend more. Gravity of "
-            "1 upward lifts it. Without the point on top of the head it looks up",
+            "late. Gravity of 3 and 4 m/s^2 pulls the body down while feet stay, so knees and spine bend more. Gravity "
+            "of 1 upward lifts it. Without the point on top of the head it looks up",
             _forces(heavier),
             (
                 ("pelvis up, cm", height("HumanoidRoot"), 1),
