@@ -102,7 +102,8 @@ def sentences(text: str) -> list[str]:
 
 
 def test_sentences_are_found_in_paragraphs_and_lists() -> None:
-    text = "# A head\n\nOne. Two, with `a. B` and\na break.\n\n- Three: [four](x.md). Five?\n\n| no | no |\n\n```\nNo. No.\n```\n"
+    text = "# A head\n\nOne. Two, with `a. B` and\na break.\n\n- Three: [four](x.md). Five?\n\n| no | no |\n\n"
+    text += "```\nNo. No.\n```\n"
     assert [len(one.split()) for one in sentences(text)] == [1, 6, 2, 1]
     assert len(sentences(PAGES["docs/motion.md"])) > 150
 
