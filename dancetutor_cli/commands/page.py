@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -101,12 +101,26 @@ def command(path: Path, selection: Selection, dance: DanceOptions, options: Page
         options.language or "",
     )
     announce_compiling(choice_for(file, request.dance.preset), quiet=options.quiet)
+    if file.is_dir() and output is not None and output.suffix.lower() in SUFFIXES and not output.is_dir():
+        request = _only(request, output, options)
+        file = request.dance.path
     if file.is_dir():
         _pages(request, output or Path("pages"), options)
         return
     if output is not None:
         check_file(output, SUFFIXES)
     _page(request, output, options.quiet)
+
+
+def _only(request: PageRequest, output: Path, options: PageOptions) -> PageRequest:
+    """The request of the one chart in a folder that matches; an error if there is not exactly one for the file."""
+    from dancetutor_cli.page.work import page_jobs
+
+    wanted, _ = page_jobs(request, output.parent, options.exclude)
+    if len(wanted) != 1:
+        matching = plural(len(wanted), "chart")
+        raise UsageError(f"{output} is one page, but {matching} in {request.dance.path} match: give a folder to -o")
+    return replace(wanted[0].request, jobs=options.jobs)
 
 
 def _page(request: PageRequest, output: Path | None, quiet: bool) -> None:

@@ -33,7 +33,7 @@ def test_it_opens_alone_without_complaint(browser: Browser) -> None:
 
 def test_it_draws_dancer_pad_and_notes(browser: Browser, tmp_path: Path) -> None:
     for _ in range(2):
-        browser.key("ArrowRight")
+        browser.key(".", "Period")
     pixels = np.asarray(Image.open(browser.picture(tmp_path / "a.png")).convert("RGB")).astype(int)
     x, y, w, h = (int(v) for v in browser.box(".view"))
     view = pixels[y : y + h, x : x + w]
@@ -69,9 +69,9 @@ def test_it_plays_loops_and_seeks(browser: Browser) -> None:
     browser.turn(1)
     assert second(browser) == pytest.approx(start + 1, abs=0.01) and text(browser, ".play") == "▶"
     browser.key("Home")
-    browser.key("ArrowRight")
+    browser.key(".", "Period")
     assert text(browser, ".where").startswith("m1 · beat 4 ·") and second(browser) == pytest.approx(2.0, abs=0.01)
-    browser.key("ArrowRight")
+    browser.key(".", "Period")
     assert second(browser) == pytest.approx(2.25, abs=0.01)  # the next row is an eighth later
     browser.run("location.hash = '#m1-1.5@2'")
     browser.wait(
@@ -252,7 +252,7 @@ def test_the_author_gives_the_other_foot_and_takes_files_home(browser: Browser, 
         " window.last.text().then(text => { window.saved[name] = text; }); }"
     )
     browser.key("Home")
-    browser.key("ArrowRight")
+    browser.key(".", "Period")
     browser.key("o", "KeyO")
     about = text(browser, "#panel-author .about")
     assert "left R" in about and re.search(r"You gave it the other foot: [a-z ]*awkward \(cost \+\d+\)", about)
@@ -313,7 +313,7 @@ def test_it_speaks_german(browser: Browser, page_file: Path) -> None:
 
 def test_another_language_is_spoken_at_once(browser: Browser) -> None:
     """Nothing is loaded anew: the place, the open tab and what was pressed stay; findings are told in it too."""
-    browser.key("ArrowRight")
+    browser.key(".", "Period")
     at = second(browser)
     browser.click("#tab-settings")
     browser.run("window.kept = 1; (s => { s.value = 'de'; s.dispatchEvent(new Event('change')); })"

@@ -24,7 +24,7 @@ def flat(page_file: Path) -> Iterator[Browser]:
 def test_without_webgl_feet_from_above_are_shown(flat: Browser, page_file: Path, tmp_path: Path) -> None:
     flat.open(page_file)
     for _ in range(2):
-        flat.key("ArrowRight")
+        flat.key(".", "Period")
     flat.drawn()
     x, y, w, h = (int(v) for v in flat.box(".view"))
     pixels = np.asarray(Image.open(flat.picture(tmp_path / "a.png")).convert("RGB")).astype(int)
@@ -55,8 +55,8 @@ def test_arrows_are_panels_while_somebody_plays_along(flat: Browser, page_file: 
     """They neither go to other rows nor change the speed; the first key that is no panel has the keys said."""
     flat.open(page_file)
     flat.key("Home")
-    flat.key("ArrowRight")  # nobody plays along: to the first row, and to one between two beats
-    flat.key("ArrowRight")
+    flat.key(".", "Period")  # nobody plays along: to the first row, and to one between two beats
+    flat.key(".", "Period")
     assert text(flat, ".where").startswith("m1 · beat 4.5 ·")
     flat.key("Home")
     flat.key("p", "KeyP")
@@ -87,7 +87,7 @@ def test_a_link_that_cannot_be_followed_says_so(flat: Browser, page_file: Path) 
         flat.run(f"location.hash = '{link}'")
         flat.wait(f"document.querySelector('.said').textContent.startsWith('{said}')")
     assert start < 2 and float(flat.run(NOW)) == pytest.approx(2.0, abs=0.01)
-    flat.key("ArrowRight")  # whatever is done next takes the place of it
+    flat.key(".", "Period")  # whatever is done next takes the place of it
     assert text(flat, ".said").startswith("loop measures 1 to ")
     assert flat.problems == []
 

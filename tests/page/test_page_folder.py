@@ -66,3 +66,19 @@ def test_what_is_about_one_chart_is_refused_for_folders(tmp_path: Path, capsys: 
     assert stop.value.code == 2
     assert "is a folder" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_of_two_songs_is_not_written_into_one_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, more in (("one", ""), ("two", "#NOTES:dance-single::Easy:2::\n1000\n0100\n0010\n0001\n;\n")):
+        (tmp_path / name).mkdir()
+        notes = "#NOTES:dance-single::Hard:9::\n1000\n0100\n0010\n0001\n;\n"
+        (tmp_path / name / "s.sm").write_text(f"#TITLE:{name};\n#OFFSET:0;\n#BPMS:0=120;\n{notes}{more}")
+    target = tmp_path / "x.html"
+    with pytest.raises(SystemExit) as stop:
+        main(["page", str(tmp_path), "-o", str(target)])
+    assert stop.value.code == 2 and not target.exists()
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "x.html is one page, but 3 charts in" in line and "give a folder to -o" in line
+    with pytest.raises(SystemExit) as stop:
+        main(["page", str(tmp_path), "-o", str(target), "--difficulty", "easy"])
+    assert stop.value.code == 0 and target.is_file()

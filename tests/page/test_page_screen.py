@@ -35,7 +35,7 @@ def test_a_phone_shows_all_of_it_without_scrolling(browser: Browser, page_file: 
     assert stage[3] - stage[1] > 300
     assert where[1] >= strip[3] and where[0] >= play[2]  # the clock is beside the button, below the strip
     for _ in range(2):
-        browser.key("ArrowRight")  # between two beats, the longest text of it
+        browser.key(".", "Period")  # between two beats, the longest text of it
     where, more = boxes(browser, ".where", ".more")
     assert text(browser, ".where").startswith("m1 · beat 4.5") and where[2] <= more[0]
     assert browser.run("(e => e.scrollWidth <= e.clientWidth)(document.querySelector('.place'))")
@@ -78,7 +78,7 @@ def test_nothing_moves_while_it_plays(browser: Browser) -> None:
     browser.key(" ", "Space")
     for _ in range(5):
         browser.turn(0.2)
-    for key in ("ArrowUp", "m", "v", "v", "g"):
+    for key in ("+", "m", "v", "v", "g"):
         browser.key(key)
     assert browser.run("window.shift") < 0.02
     assert browser.problems == []
@@ -90,7 +90,7 @@ def test_axe_finds_nothing_serious(browser: Browser) -> None:
         pytest.skip("no axe here; `make page-tools` puts it into tests/page/node_modules")
     browser.run(source.read_text("utf-8") + "; 1")
     states = [("", tab) for tab in ("passages", "along", "results", "findings", "author", "settings")]
-    browser.key("ArrowRight")
+    browser.key(".", "Period")
     browser.key("o", "KeyO")  # the tab of feet is there once a note is chosen
     for key, tab in [*states, ("p", "passages"), (" ", "results")]:  # while somebody plays along, and with the result
         browser.click(f"#tab-{tab}")

@@ -63,7 +63,7 @@ def test_both_are_drawn_and_notes_have_their_colours(pair: Page, browser: Browse
     browser.problems.clear()
     browser.open(file)
     for _ in range(2):
-        browser.key("ArrowRight")
+        browser.key(".", "Period")
     pixels = np.asarray(Image.open(browser.picture(tmp_path / "a.png")).convert("RGB")).astype(int)
     assert browser.problems == [] and browser.run("document.querySelector('.players').textContent") == "● P1 ● P2 "
 

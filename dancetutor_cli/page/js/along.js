@@ -30,7 +30,7 @@ export function alongPanel(app) {
   const refresh = () => {
     show();
     help.value = settings.help;
-    foot.value = settings.foot;
+    foot.value = app.notes.foot;
     const plugged = app.input.pads().map((pad) => pad.id.slice(0, 40));
     pads.textContent = plugged.length ? t("padIs", { name: plugged.join(", ") }) : t("noPad");
     const tally = app.practice.tally();

@@ -36,7 +36,7 @@ export class App {
     this.transport.lead = (a) => this.chart.secondAt(this.chart.beatAt(a) - this.leadBeats);
     this.transport.onChange = () => this.changed();
     this.practice = new Practice(this);
-    this.practice.judge.foot = FEET.indexOf(this.settings.foot) - 1;
+    this.practice.judge.foot = FEET.indexOf(this.notes.foot) - 1;
     this.transport.onPass = () => this.practice.pass();
     this.transport.onEnd = () => this.practice.finish();
     this.sound.clicks = clicksOf(this.chart, () => ({
@@ -269,6 +269,7 @@ export class App {
   takeRate(rate) {
     this.transport.setRate(rate);
     this.practice.chosenRate = this.transport.rate;
+    this.practice.rateBefore = 0;
   }
 
   /** @param {number | null} a @param {number | null} b seconds; null: no loop */

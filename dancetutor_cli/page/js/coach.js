@@ -1,9 +1,8 @@
 // The coach: loops what was missed, and raises or lowers the speed by the score, until it goes at full speed.
 
-import { FIRST, coachRate, missedOf, scoreShare, whereOf } from "./record.js";
+import { FIRST, PASSED, coachRate, missedOf, scoreShare, whereOf } from "./record.js";
 
 const FULL = 1; // the speed that is wanted in the end
-const PASSED = 0.95; // score with which a stretch is passed
 
 /** @typedef {{from: number, to: number, rate: number, passed: boolean}} Target beats, the speed to begin at, whether it was passed at that */
 
@@ -63,6 +62,7 @@ export class Coach {
   take(target) {
     const { app } = this;
     app.transport.setRate(target.rate);
+    this.practice.rateBefore = 0;
     this.on = true;
     this.said = app.t(target.passed ? "coachBegins" : "coachNew", { rate: Math.round(100 * target.rate) });
     app.tell("coach");

@@ -15,17 +15,18 @@ import { CAMERAS, FEET } from "./settings.js";
  * @param {import("./app.js").App} app @param {import("./layout.js").Ui} ui @returns {Action[]}
  */
 export function actionsOf(app, ui) {
-  const { settings } = app;
+  const { settings, input } = app;
+  const rows = input.arrows.length ? [] : ["ArrowLeft", "ArrowRight"]; // a key that is a panel is nothing else
   return [
     { name: "playPause", keys: [" "], run: () => void app.play() },
-    { name: "rowBack", keys: ["ArrowLeft"], run: () => app.step(-1) },
-    { name: "rowOn", keys: ["ArrowRight"], run: () => app.step(1) },
+    { name: "rowBack", keys: [",", ...rows.slice(0, 1)], run: () => app.step(-1) },
+    { name: "rowOn", keys: [".", ...rows.slice(1)], run: () => app.step(1) },
     { name: "measureBack", keys: ["Shift+ArrowLeft", "PageUp"], run: () => app.stepMeasure(-1) },
     { name: "measureOn", keys: ["Shift+ArrowRight", "PageDown"], run: () => app.stepMeasure(1) },
     { name: "toStart", keys: ["Home"], run: () => app.seek(app.transport.loop ? app.transport.lead(app.transport.loop.a) : app.start) },
     { name: "toEnd", keys: ["End"], run: () => app.seek(app.chart.last) },
-    { name: "faster", keys: ["ArrowUp", "+"], run: () => app.setRate(app.transport.rate + 0.05) },
-    { name: "slower", keys: ["ArrowDown", "-"], run: () => app.setRate(app.transport.rate - 0.05) },
+    { name: "faster", keys: ["+"], run: () => app.setRate(app.transport.rate + 0.05) },
+    { name: "slower", keys: ["-"], run: () => app.setRate(app.transport.rate - 0.05) },
     { name: "loopA", keys: ["["], run: () => app.loopHere("a") },
     { name: "loopB", keys: ["]"], run: () => app.loopHere("b") },
     { name: "noLoop", keys: ["x", "Escape"], run: () => app.setLoop(null, null) },
@@ -36,7 +37,7 @@ export function actionsOf(app, ui) {
     { name: "claps", keys: ["h"], run: () => app.setClaps(!app.claps) },
     { name: "along", keys: ["p"], run: () => app.practice.setAlong(!app.practice.along) },
     { name: "wait", keys: ["w"], run: () => app.practice.setWait(!app.practice.wait) },
-    { name: "foot", keys: ["t"], run: () => app.practice.setFoot(FEET[(FEET.indexOf(settings.foot) + 1) % FEET.length]) },
+    { name: "foot", keys: ["t"], run: () => app.practice.setFoot(FEET[(FEET.indexOf(app.notes.foot) + 1) % FEET.length]) },
     { name: "coach", keys: ["c"], run: () => (app.practice.coach.on ? app.practice.coach.stop() : void app.practice.coach.start()) },
     { name: "feetHelp", keys: ["g"], run: () => app.nextHelp() },
     { name: "camera", keys: ["v"], run: () => app.setCamera(CAMERAS[(CAMERAS.indexOf(settings.camera) + 1) % CAMERAS.length]) },
@@ -47,8 +48,8 @@ export function actionsOf(app, ui) {
     { name: "turnDown", keys: ["Shift+S"], run: () => turn(app, 0, -8) },
     ...(app.motions.length > 1 && !app.doc.pair ? [{ name: "both", keys: ["2"], run: () => { app.both = !app.both; app.tell("settings"); } }] : []),
     { name: "otherFoot", keys: ["o"], run: () => otherFoot(app, ui) },
-    { name: "notesFaster", keys: ["."], run: () => app.set("speed", Math.min(settings.speed * 1.15, 4)) },
-    { name: "notesSlower", keys: [","], run: () => app.set("speed", Math.max(settings.speed / 1.15, 0.3)) },
+    { name: "notesFaster", keys: [">"], run: () => app.set("speed", Math.min(settings.speed * 1.15, 4)) },
+    { name: "notesSlower", keys: ["<"], run: () => app.set("speed", Math.max(settings.speed / 1.15, 0.3)) },
     { name: "zoomIn", keys: ["z"], run: () => ui.zoom(1) },
     { name: "zoomOut", keys: ["Shift+Z"], run: () => ui.zoom(-1) },
     { name: "helpSheet", keys: ["?"], run: () => ui.help() },
@@ -78,7 +79,6 @@ function otherFoot(app, ui) {
  * @param {import("./app.js").App} app @param {Action[]} actions
  */
 export function listenToKeys(app, actions) {
-  let told = false;
   const arrows = (/** @type {KeyboardEvent} */ event) => /^Arrow/.test(event.key) && !event.shiftKey;
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || (document.querySelector("dialog[open]") && !app.input.learning)) return;
@@ -87,6 +87,10 @@ export function listenToKeys(app, actions) {
     if ((app.practice.along || app.input.learning) && !event.shiftKey && app.input.key(event)) return event.preventDefault();
     if (target.matches("button, summary, a, input, [role=tab]") && [" ", "Enter"].includes(event.key)) return;
     if (target.matches("input[type=range], [role=tab]") && /^(Arrow|Home|End|Page)/.test(event.key)) return;
+    if (target.matches("[role=slider]") && /^Arrow(Left|Right)$/.test(event.key) && !event.shiftKey) { // the strip, for who came to it with Tab
+      event.preventDefault();
+      return app.step(event.key === "ArrowLeft" ? -1 : 1);
+    }
     // Whoever plays along looks for panels under the arrows: they neither seek nor change the speed then.
     if (app.practice.along && arrows(event)) {
       event.preventDefault();
@@ -95,17 +99,17 @@ export function listenToKeys(app, actions) {
     const name = event.shiftKey && (event.key.length > 1 || /[A-Z]/.test(event.key)) ? `Shift+${event.key}` : event.key;
     const action = actions.find((one) => one.keys.includes(name) || one.keys.includes(name.toLowerCase()));
     const panel = !app.practice.along && app.input.columnOf(event.code) >= 0;
-    if (!action && panel) return app.practice.idle();
+    if (!action && panel) {
+      event.preventDefault();
+      return app.practice.idle();
+    }
     if (!action) return event.key.length === 1 && app.practice.along ? app.practice.strayKey() : undefined;
     event.preventDefault();
     action.run();
-    const stray = panel && app.transport.playing && arrows(event); // while paused, arrows go from row to row
-    if (stray && !told) app.practice.idle(); // the first time: it may be meant as a panel, or not
-    told ||= stray;
   });
-  // A button that the mouse has pressed gives the keys back: the space bar plays, and does not press it again.
+  // What the mouse has pressed gives the keys back: the space bar plays, and arrows are panels.
   document.addEventListener("click", (event) => {
-    const button = /** @type {HTMLElement} */ (event.target).closest("button");
+    const button = /** @type {HTMLElement | null} */ (/** @type {HTMLElement} */ (event.target).closest("button, .strip"));
     if (event.detail > 0 && button && !button.closest("dialog")) button.blur();
   });
   document.addEventListener("keyup", (event) => app.input.keyUp(event));
@@ -154,11 +158,11 @@ export function makeBar(app, ui) {
   };
   const bar = el("div", { class: "bar", role: "toolbar", "aria-label": t("controls") },
     el("div", { class: "group" },
-      button("measureBack", "«", () => app.stepMeasure(-1), "⇧←"), button("rowBack", "◂", () => app.step(-1), "←"), play,
-      button("rowOn", "▸", () => app.step(1), "→"), button("measureOn", "»", () => app.stepMeasure(1), "⇧→")),
+      button("measureBack", "«", () => app.stepMeasure(-1), "⇧←"), button("rowBack", "◂", () => app.step(-1), ","), play,
+      button("rowOn", "▸", () => app.step(1), "."), button("measureOn", "»", () => app.stepMeasure(1), "⇧→")),
     el("div", { class: "group place" }, where),
-    el("div", { class: "group extra" }, el("span", { class: "name", "aria-hidden": "true" }, t("speedName")), button("slower", "−", () => app.setRate(transport.rate - 0.05), "↓"), rate,
-      button("faster", "+", () => app.setRate(transport.rate + 0.05), "↑"), rateText),
+    el("div", { class: "group extra" }, el("span", { class: "name", "aria-hidden": "true" }, t("speedName")), button("slower", "−", () => app.setRate(transport.rate - 0.05), "-"), rate,
+      button("faster", "+", () => app.setRate(transport.rate + 0.05), "+"), rateText),
     el("div", { class: "group extra" }, el("span", { class: "name", "aria-hidden": "true" }, t("loopName-bar")), button("loopA", "A", () => app.loopHere("a"), "["), button("loopB", "B", () => app.loopHere("b"), "]"),
       clear),
     el("div", { class: "group extra" }, ...toggles.map((one) => one.button)),

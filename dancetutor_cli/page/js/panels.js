@@ -4,7 +4,7 @@ import { el } from "./dom.js";
 import { loopsPart } from "./loops.js";
 import { findingFigures, findingWords } from "./labels.js";
 import { placeOf, stretch } from "./places.js";
-import { missedOf, scoreShare, whereOf } from "./record.js";
+import { missedOf, passedFull, scoreShare, whereOf } from "./record.js";
 import { recordPart } from "./results.js";
 import { musicText, scoreText } from "./said.js";
 
@@ -20,7 +20,7 @@ export function passagesPanel(app) {
       el("span", { class: "figure" }, t("rate", { rate: Math.round(10 * passage.rate) / 10 })),
       el("span", { class: "tags" }, ...tagsOf(app, passage).flatMap((tag, n) => [el("span", n < TAGS ? {} : { class: "rest" }, tag), " "])),
       passage.again.length ? el("span", { class: "text" }, t("again", { where: passage.again.map((/** @type {[number, number]} */ one) => stretch(t, ...one)).join("; ") })) : null,
-      el("span", { class: "hits" }));
+      el("span", { class: "kept-best" }), el("span", { class: "hits" }));
     list.append(el("li", {}, button));
     return button;
   });
@@ -32,10 +32,12 @@ export function passagesPanel(app) {
       const tally = app.practice.judge.tally(start, end);
       const any = tally.hit + tally.early + tally.late + tally.miss + tally.wrong > 0;
       const where = whereOf(app.chart.beatAt(start), app.chart.beatAt(end));
-      const best = app.record.best[where];
-      const score = app.record.scores[where];
-      const text = [any && app.practice.along ? scoreText(app, tally) : "", score === undefined ? "" : t("bestScore", { percent: score }), best ? t("bestRate", { rate: best }) : ""].filter(Boolean).join(" · ");
-      /** @type {HTMLElement} */ (button.querySelector(".hits")).textContent = text;
+      const { best: { [where]: clean }, plays: { [where]: play } } = app.record;
+      const full = passedFull(app.record, where);
+      button.classList.toggle("passed-full", full);
+      const lasting = [full ? `✓ ${t("passedFull")}` : "", play ? t("bestAt", { percent: play[0], rate: play[1] }) : "", clean && !full ? t("bestRate", { rate: clean }) : ""];
+      /** @type {HTMLElement} */ (button.querySelector(".kept-best")).textContent = lasting.filter(Boolean).join(" · ");
+      /** @type {HTMLElement} */ (button.querySelector(".hits")).textContent = any && app.practice.along ? t("thisTime", { counts: scoreText(app, tally) }) : "";
     });
   });
   const empty = doc.passages.length ? null : el("p", {}, t("noPassages"));
@@ -107,7 +109,7 @@ export function findingsPanel(app) {
     },
       el("strong", {}, el("span", { class: "sign-of" }, SIGNS[/** @type {keyof typeof SIGNS} */ (one.severity)] ?? ""),
       about ? el("span", { class: "says" }, `${about} ${findingFigures(t, one)}`.trim()) : el("span", { class: "says", lang: "en" }, one.message)),
-      el("span", { class: "figure" }, [one.beat === null ? "" : placeOf(t, one.beat), name, one.rule].filter(Boolean).join(" · ")));
+      el("span", { class: "figure" }, [one.beat === null ? "" : placeOf(t, one.beat), `${name}\u00a0·\u00a0${one.rule}`].filter(Boolean).join(" · ")));
     const item = el("li", { class: `finding ${one.severity}` }, box, go);
     const show = () => item.classList.toggle("done", box.checked);
     box.addEventListener("change", () => { app.tick(key, box.checked); show(); });

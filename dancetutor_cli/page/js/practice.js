@@ -2,8 +2,8 @@
 
 import { Coach } from "./coach.js";
 import { Judge, ramp } from "./judge.js";
-import { addClean, addOutcomes, addScore, dayOf, scoreShare, whereOf } from "./record.js";
-import { FEET, HELPS } from "./settings.js";
+import { addClean, addOutcomes, addPlay, dayOf, scoreShare, whereOf } from "./record.js";
+import { FEET, HELPS, saveNotes } from "./settings.js";
 
 const STRAY = 5000; // milliseconds that the keys are said
 export const SHOWN = 400; // milliseconds in which a verdict above the receptors fades
@@ -29,6 +29,7 @@ export class Practice {
     this.before = null;
     /** @type {number[]} scores of the passes of this loop, 0..1 */
     this.scores = [];
+    this.rateBefore = 0; // the speed before the ramp or the coach changed it last; 0: they have not
     /** @type {number[]} how late the last presses were, seconds */
     this.errors = [];
     /** @type {import("./judge.js").Tally | null} of a song that has come to its end */
@@ -62,6 +63,7 @@ export class Practice {
     this.passes = 0;
     this.before = null;
     this.scores = [];
+    this.rateBefore = 0;
     this.coach.on = false;
     if (transport.rate === this.chosenRate) return;
     transport.setRate(this.chosenRate);
@@ -84,6 +86,7 @@ export class Practice {
       if (!idle) this.keepPart(loop, this.before);
       this.keep();
     }
+    if (!idle) this.rateBefore = transport.rate;
     if (this.coach.on && this.before && !this.wait) {
       if (!idle) this.coach.pass(this.before);
     } else if (settings.ramp && !idle) transport.rate = ramp(transport.rate, slips, this.along);
@@ -102,7 +105,7 @@ export class Practice {
     if (foot >= 0) return;
     const where = whereOf(chart.beatAt(a), chart.beatAt(b));
     if (!tally.miss && !tally.wrong) addClean(record, where, slowest);
-    if (slowest >= 1) addScore(record, where, scoreShare(tally));
+    addPlay(record, where, scoreShare(tally), slowest);
   }
 
   /** What came of notes goes into the record; while the clock waits, or nobody presses anything, there is nothing to keep. */
@@ -116,9 +119,9 @@ export class Practice {
   /** One foot is practised, the other one is played for you; or both are. @param {string} foot of FEET */
   setFoot(foot) {
     this.keep();
-    this.app.settings.foot = foot;
+    this.app.notes.foot = foot;
     this.judge.foot = FEET.indexOf(foot) - 1;
-    this.app.save();
+    saveNotes(this.app.id, this.app.notes);
     if (foot !== "both" && !this.along) this.setAlong(true);
     this.restart(this.app.transport.second());
     this.updateHold();

@@ -11,7 +11,9 @@ const FORMAT = "dancetutor-practice";
 const APART = 1; // measures between missed rows of one stretch
 const LONGEST = 4; // measures of one stretch: what is longer is practised in parts
 const LOWEST = 0.25;
+const PART = /^\d{1,6}(\.\d{1,2})?-\d{1,6}(\.\d{1,2})?$/; // "16-32", beats
 export const FIRST = 0.7; // the speed of what was never passed
+export const PASSED = 0.95; // score with which a stretch is passed
 
 /**
  * @typedef {object} Day counts of one day, and errors of left and right foot in bins
@@ -26,12 +28,13 @@ export const FIRST = 0.7; // the speed of what was never passed
  * @property {Day[]} days @property {Record<string, RowRecord>} rows @property {SavedLoop[]} loops
  * @property {Record<string, number>} best speeds of clean passes, %, by beats "16-32"
  * @property {Record<string, number>} scores the best at full speed, %, by beats
+ * @property {Record<string, [number, number]>} plays score and speed, %, of the best pass at any speed, by beats
  * @property {number} top the best of a whole song at full speed, %
  */
 /** @typedef {{row: number, limb: number, measure?: number, verdict: import("./judge.js").Verdict, error: number | undefined}} Outcome of a note; error: seconds */
 
 /** @returns {PracticeRecord} */
-export const emptyRecord = () => ({ days: [], rows: {}, loops: [], best: {}, scores: {}, top: 0 });
+export const emptyRecord = () => ({ days: [], rows: {}, loops: [], best: {}, scores: {}, plays: {}, top: 0 });
 
 /** The bar of an error. @param {number} error seconds */
 export const errorBin = (error) => clamp(Math.round((1000 * error) / BIN), -(BINS >> 1), BINS >> 1) + (BINS >> 1);
@@ -69,10 +72,18 @@ export function addClean(record, where, rate) {
   record.best[where] = Math.max(record.best[where] ?? 0, Math.round(100 * rate));
 }
 
-/** How a pass at full speed went. @param {PracticeRecord} record @param {string} where @param {number} share 0..1 */
-export function addScore(record, where, share) {
-  record.scores[where] = Math.max(record.scores[where] ?? 0, Math.round(100 * share));
+/** How a pass went: the best one is that of the largest score times speed. @param {PracticeRecord} record @param {string} where @param {number} share 0..1 @param {number} rate */
+export function addPlay(record, where, share, rate) {
+  const score = Math.round(100 * share);
+  record.plays[where] = better(record.plays[where], [score, Math.round(100 * rate)]);
+  if (rate >= 1) record.scores[where] = Math.max(record.scores[where] ?? 0, score);
 }
+
+/** The better of two passes; of equal ones the quicker. @param {[number, number] | undefined} mine @param {[number, number]} theirs */
+const better = (mine, theirs) => (mine && mine[0] * mine[1] - theirs[0] * theirs[1] + (mine[1] - theirs[1]) / 1000 >= 0 ? mine : theirs);
+
+/** Whether a part was passed at full speed: without a slip, or with a score that the coach calls passed. @param {PracticeRecord} record @param {string} where */
+export const passedFull = ({ best, scores }, where) => best[where] >= 100 || scores[where] >= 100 * PASSED;
 
 /** @param {number} from @param {number} to beats */
 export const whereOf = (from, to) => `${Math.round(100 * from) / 100}-${Math.round(100 * to) / 100}`;
@@ -169,11 +180,12 @@ export function merged(mine, theirs) {
     const own = days.get(one.day);
     if (!own || played(one) > played(own)) days.set(one.day, one);
   }
-  const out = { ...mine, days: [...days.values()].sort((a, b) => (a.day < b.day ? -1 : 1)).slice(-MOST.days), rows: { ...mine.rows }, best: { ...mine.best }, scores: { ...mine.scores }, loops: [...mine.loops], top: Math.max(mine.top, theirs.top) };
+  const out = { ...mine, days: [...days.values()].sort((a, b) => (a.day < b.day ? -1 : 1)).slice(-MOST.days), rows: { ...mine.rows }, best: { ...mine.best }, scores: { ...mine.scores }, plays: { ...mine.plays }, loops: [...mine.loops], top: Math.max(mine.top, theirs.top) };
   for (const [row, one] of Object.entries(theirs.rows)) if (one.tries > (out.rows[row]?.tries ?? 0)) out.rows[row] = one;
   for (const kind of /** @type {const} */ (["best", "scores"])) {
     for (const [where, value] of Object.entries(theirs[kind])) out[kind][where] = Math.max(out[kind][where] ?? 0, value);
   }
+  for (const [where, one] of Object.entries(theirs.plays)) out.plays[where] = better(out.plays[where], one);
   const same = (/** @type {SavedLoop} */ a, /** @type {SavedLoop} */ b) => a.name === b.name && a.from === b.from && a.to === b.to;
   for (const one of theirs.loops) if (out.loops.length < MOST.loops && !out.loops.some((own) => same(own, one))) out.loops.push(one);
   return out;
@@ -188,7 +200,7 @@ const count = (value) => Number.isInteger(value) && within(value, 0, 1e9);
 
 /** What may be kept of anything at all: each value that is as it must be. @param {unknown} value @returns {PracticeRecord} */
 export function validRecord(value) {
-  const { days, rows, loops, best, scores, top } = table(value);
+  const { days, rows, loops, best, scores, plays, top } = table(value);
   const list = (/** @type {unknown} */ some, /** @type {number} */ most) => (Array.isArray(some) ? some.slice(-most) : []);
   const out = emptyRecord();
   if (within(top, 0, 100)) out.top = top;
@@ -212,9 +224,14 @@ export function validRecord(value) {
   }
   for (const [kind, some, low, high] of /** @type {["best" | "scores", unknown, number, number][]} */ ([["best", best, 25, 200], ["scores", scores, 0, 100]])) {
     for (const [where, value] of Object.entries(table(some)).slice(0, MOST.best)) {
-      if (/^\d{1,6}(\.\d{1,2})?-\d{1,6}(\.\d{1,2})?$/.test(where) && within(value, low, high)) out[kind][where] = value;
+      if (PART.test(where) && within(value, low, high)) out[kind][where] = value;
     }
   }
+  for (const [where, one] of Object.entries(table(plays)).slice(0, MOST.best)) {
+    const [score, rate] = list(one, 2);
+    if (PART.test(where) && within(score, 0, 100) && within(rate, 25, 200)) out.plays[where] = [score, rate];
+  }
+  for (const [where, score] of Object.entries(out.scores)) out.plays[where] = better(out.plays[where], [score, 100]); // of an older page
   return out;
 }
 

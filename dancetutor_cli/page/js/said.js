@@ -59,8 +59,13 @@ function loopText(app) {
   const where = stretch(t, chart.beatAt(loop.a) / 4, chart.beatAt(loop.b) / 4);
   const percent = (/** @type {number} */ x) => Math.round(100 * x);
   const full = app.settings.ramp && rate >= 1 && practice.chosenRate >= 1;
-  const ramped = practice.coach.on ? "" : full ? t("rampFull", { rate: percent(rate) }) : rate === practice.chosenRate ? "" : t("ramped", { from: percent(practice.chosenRate), to: percent(rate) });
+  const ramped = practice.coach.on || !app.settings.ramp ? "" : full ? t("rampFull", { rate: percent(rate) }) : speedStep(app) && t("ramped", { step: speedStep(app) });
   return [t("loopFrom", { where, passes: practice.passes }), ramped].filter(Boolean).join(" · ");
+}
+
+/** The last step that the ramp or the coach made: "speed 60 % → 65 %"; "" for none. @param {import("./app.js").App} app */
+function speedStep({ t, transport: { rate }, practice: { rateBefore } }) {
+  return rateBefore && rateBefore !== rate ? t("speedStep", { from: Math.round(100 * rateBefore), to: Math.round(100 * rate) }) : "";
 }
 
 /** How late presses came on average, in words. @param {import("./app.js").App} app @param {number} ms */
@@ -75,11 +80,12 @@ export function scoreText({ t }, tally) {
   return (some.length ? some : [KINDS[0]]).map((name) => `${tally[name]} ${t(`verdict-${name}`)}`).join(", ");
 }
 
-/** The last passes of a loop, for its count-in: "score 80 % → 100 %"; "" while it plays. @param {import("./app.js").App} app */
-export function passedOf({ t, transport, practice }) {
+/** The last passes of a loop and the step of the speed, for its count-in: "score 80 % → 100 %"; "" while it plays. @param {import("./app.js").App} app */
+export function passedOf(app) {
+  const { t, transport, practice } = app;
   if (!practice.along || !transport.counting) return "";
   const scores = practice.scores.slice(-2).map((share) => `${Math.round(100 * share)} %`).join(" → ");
-  return scores && t("passScores", { scores });
+  return scores && [t("passScores", { scores }), speedStep(app)].filter(Boolean).join(" · ");
 }
 
 /** Who dances beside her, and where her feet differ, for her caption. @param {import("./app.js").App} app */

@@ -14,7 +14,7 @@ export const HELPS = ["all", "tricky", "none", "auto"];
 
 const DEFAULTS = {
   language: "", camera: "back", speed: 1, /** "auto": where there is no music */ claps: "auto", metronome: false, countIn: true, leadBeats: 4, ramp: false,
-  help: "all", foot: "both", latency: 0, sight: 0, volume: 0.9, ...FIRST_VIEW,
+  help: "all", latency: 0, sight: 0, volume: 0.9, ...FIRST_VIEW,
   /** @type {Record<string, string[]>} keys by number of panels */ keys: {},
   /** @type {Record<string, (number | null)[]>} buttons by pad and number of panels */ pads: {},
   /** @type {Record<string, (number | null)[]>} buttons for Start and Select by pad */ controls: {},
@@ -25,7 +25,7 @@ const LIMITS = /** @type {["yaw" | "pitch" | "zoom" | "speed" | "volume" | "late
   [["yaw", -360, 360], ["pitch", 2, 88], ["zoom", 0.5, 3], ["speed", 0.3, 4], ["volume", 0, 1], ["latency", -0.2, 0.4], ["sight", -0.2, 0.4], ["leadBeats", 1, 16]]);
 
 /** What may be chosen among. */
-const CHOICES = /** @type {["claps" | "camera" | "help" | "foot", string[]][]} */ ([["claps", ["auto", "on", "off"]], ["camera", CAMERAS], ["help", HELPS], ["foot", FEET]]);
+const CHOICES = /** @type {["claps" | "camera" | "help", string[]][]} */ ([["claps", ["auto", "on", "off"]], ["camera", CAMERAS], ["help", HELPS]]);
 
 /** @typedef {typeof DEFAULTS} Settings */
 
@@ -77,14 +77,15 @@ export function saveSettings(settings) {
   write(KEY, settings);
 }
 
-/** @typedef {{ticked: string[], feet: [number, number, number][]}} Notes of one chart: findings ticked off, feet given */
+/** @typedef {{ticked: string[], feet: [number, number, number][], foot: string}} Notes of one chart: findings ticked off, feet given, the foot that is practised */
 
 /** @param {string} chart @returns {Notes} */
 export function loadNotes(chart) {
   const stored = read(`${KEY}:${chart}`);
   const feet = Array.isArray(stored.feet) ? stored.feet.filter((one) => Array.isArray(one) && one.length === 3 && one.every(Number.isInteger) && (one[2] === 0 || one[2] === 1)) : [];
   const ticked = Array.isArray(stored.ticked) ? stored.ticked.filter((one) => typeof one === "string") : [];
-  return { ticked, feet: /** @type {[number, number, number][]} */ (feet) };
+  const foot = FEET.find((one) => one === stored.foot) ?? FEET[0];
+  return { ticked, feet: /** @type {[number, number, number][]} */ (feet), foot };
 }
 
 /** @param {string} chart @param {Notes} notes */
