@@ -39,10 +39,10 @@ export function alongPanel(app) {
   app.listeners.add((what) => { if (what !== "frame") refresh(); });
   refresh();
   return el("div", {},
-    el("p", { class: "hint" }, t("alongHint")), score,
+    el("p", { class: "hint" }, t("alongHint")),
     keys, pads, el("div", { class: "modes two" }, assign, calibrate),
     el("p", { class: "field whole" }, el("label", { for: "foot" }, t("foot")), foot),
-    el("p", { class: "field whole" }, el("label", { for: "feet-help" }, t("feetHelp")), help),
+    el("p", { class: "field whole" }, el("label", { for: "feet-help" }, t("feetHelp")), help), score,
     el("details", { class: "hint" }, el("summary", {}, t("judging")), el("p", {}, t("windows", { good: 1000 * GOOD, wide: 1000 * WINDOW })),
       ...t("padHint").split("\n").map((line) => el("p", {}, line))));
 }

@@ -2,13 +2,14 @@
 
 import { Chart } from "./chart.js";
 import { Transport } from "./clock.js";
-import { scrollSpeed } from "./highway.js";
+import { NARROW, scrollSpeed } from "./highway.js";
 import { Input } from "./input.js";
 import { writeLink } from "./link.js";
 import { Motion } from "./motion.js";
 import { Practice } from "./practice.js";
 import { stretch } from "./places.js";
 import { Redance } from "./redance.js";
+import { passedOf } from "./said.js";
 import { CAMERAS, FEET, FIRST_VIEW, HELPS, loadNotes, loadRecord, loadSettings, saveNotes, saveRecord, saveSettings } from "./settings.js";
 import { Sound, clicksOf } from "./sound.js";
 import { speak } from "./words.js";
@@ -30,7 +31,7 @@ export class App {
     this.sound = new Sound();
     this.sound.volume = this.settings.volume;
     this.start = Math.min(0, this.motions[0].start);
-    this.end = Math.max(this.chart.last + 1.5, Math.min(this.motions[0].end, this.chart.last + 4));
+    this.end = Math.max(this.chart.last + 1.5, Math.min(this.motions[0].end, this.chart.last + 2.5));
     this.transport = new Transport(() => this.sound.now(), this.start, this.end);
     this.transport.countIn = this.settings.countIn;
     this.transport.lead = (a) => this.chart.secondAt(this.chart.beatAt(a) - this.leadBeats);
@@ -142,8 +143,7 @@ export class App {
   async play() {
     if (this.transport.playing) return this.transport.pause();
     const { at } = this.transport;
-    const opened = !this.played && !this.transport.loop && at > this.opening && at < this.chart.first;
-    if (opened) this.transport.seek(this.opening); // time to get ready
+    if (!this.played && !this.transport.loop && at > this.opening && at < this.chart.first) this.transport.seek(this.opening); // time to get ready
     this.played = true;
     this.notice = "";
     await this.sound.start();
@@ -195,6 +195,12 @@ export class App {
   /** Where whoever plays begins: a little before the first step. */
   get opening() {
     return Math.max(this.start, this.chart.first - 2);
+  }
+
+  /** As the page opens: half a second before the first step, so that notes are in sight. */
+  rewind() {
+    this.seek(Math.max(this.start, this.chart.first - 0.5));
+    this.played = false;
   }
 
   /** @param {number} second */
@@ -381,13 +387,12 @@ export class App {
   highwayScene(second) {
     const { practice } = this;
     return {
-      second, speed: this.pace * this.settings.speed, mirror: this.mirrored,
-      marked: (_, row) => practice.tells(row), verdicts: practice.along ? practice.judge.verdicts : new Map(),
+      second, speed: this.pace * this.settings.speed, mirror: this.mirrored, marked: (_, row) => practice.tells(row), verdicts: practice.along ? practice.judge.verdicts : new Map(),
       asked: (n) => !practice.along || practice.judge.asks(n),
       loop: this.transport.loop, feet: this.redance.limbs, chosen: this.chosen,
       along: practice.along, errors: practice.along ? practice.errors : [],
       keys: practice.along ? this.input.names().map(([name]) => name) : [], held: practice.along ? this.input.held : [],
-      feedback: practice.along ? practice.shown() : null,
+      feedback: practice.along ? practice.shown() : null, passed: window.innerWidth > NARROW ? passedOf(this) : "", // a phone has a line for it
     };
   }
 }

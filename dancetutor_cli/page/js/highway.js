@@ -2,6 +2,7 @@
 
 import { KIND, UNPLAYED } from "./chart.js";
 import { lightOf } from "./feet.js";
+import { GUTTER, drawBetween, drawGutter } from "./gutter.js";
 import { labelsOf } from "./labels.js";
 import { clamp } from "./maths.js";
 import { COLOURS, INK, NOBODY, VERDICTS, drawBody, drawErrors, drawMarker, drawMine, drawPress, drawVerdict, drawWord, markerAt, notePath } from "./noteart.js";
@@ -22,6 +23,7 @@ import { SHOWN } from "./practice.js";
  * @property {number[]} errors how late the last presses were, seconds
  * @property {string[]} keys of the panels, to be shown while somebody plays along; else none
  * @property {boolean[]} held panels that are pressed by who plays along
+ * @property {string} passed how the last passes went, while the next one is counted in
  * @property {import("./practice.js").Feedback | null} feedback the verdict of the last press
  */
 
@@ -68,11 +70,12 @@ export class Highway {
     const { columns, beats } = this.chart;
     const finger = this.along && window.innerWidth <= NARROW;
     const numbers = finger && columns > 5 ? 0 : (8 + 7 * String(beats.length >> 2).length) * ratio; // room left of the lanes, for the last measure's number
-    const beside = finger ? 0 : Math.min(numbers, 8 * ratio); // and right of them
+    const gutter = this.labels.length && width - numbers - GUTTER * ratio >= ROOMY * ratio * columns ? GUTTER * ratio : 0; // and right of them
+    const beside = finger && !gutter ? 0 : Math.max(gutter, Math.min(numbers, 8 * ratio));
     const lane = Math.min((width - numbers - beside) / columns, WIDEST * ratio);
-    const left = Math.max(numbers, 0.5 * (width - lane * columns));
+    const left = Math.max(numbers, 0.5 * (width - gutter - lane * columns));
     const above = this.along ? Math.min(VERDICT * ratio, SHARE * height) : 0;
-    return { ratio, above, width, height, lane, left, receptor: Math.max(0.11 * height, 0.62 * lane + above), size: 0.92 * lane };
+    return { ratio, above, width, height, lane, left, gutter, receptor: Math.max(0.11 * height, 0.62 * lane + above), size: 0.92 * lane };
   }
 
   /** x of the middle of a lane. @param {number} column @param {{lane: number, left: number}} m @param {boolean} mirror */
@@ -113,8 +116,19 @@ export class Highway {
     }
     this.drawLabels(m, y, scene.along ? scene.second : from, until, scene.mirror);
     const x = m.left + 0.5 * m.lane * chart.columns;
-    if (scene.along) drawErrors(c, scene.errors, { x, y: m.receptor - 0.62 * m.lane - 0.26 * m.above, width: Math.min(0.8 * m.lane * chart.columns, 220 * m.ratio), ratio: m.above / VERDICT });
-    if (feedback) this.drawFeedback(feedback, x, m);
+    if (scene.passed) this.drawPassed(scene.passed.split(" · "), x, m);
+    else if (scene.along) drawErrors(c, scene.errors, { x, y: m.receptor - 0.62 * m.lane - 0.26 * m.above, width: Math.min(0.8 * m.lane * chart.columns, 220 * m.ratio), ratio: m.above / VERDICT });
+    if (feedback && !scene.passed) this.drawFeedback(feedback, x, m);
+  }
+
+  /** How the last passes of a loop went, where verdicts come else. @param {string[]} lines one or two @param {number} x @param {ReturnType<Highway["measure"]>} m */
+  drawPassed(lines, x, m) {
+    const most = m.lane * this.chart.columns;
+    lines.forEach((line, k) => {
+      this.context.font = "800 100px system-ui, sans-serif";
+      const size = Math.min((k ? 0.24 : 0.34) * m.above, (100 * most) / this.context.measureText(line).width);
+      drawWord(this.context, "#fff", line, x, m.receptor - 0.62 * m.lane - (k ? 0.26 : 0.66) * m.above, size);
+    });
   }
 
   /** The verdict of the last press, the notes in a row left of it, and right how early or late it was: above the receptors, where no note comes. @param {import("./practice.js").Feedback} feedback @param {number} x @param {ReturnType<Highway["measure"]>} m */
@@ -226,7 +240,7 @@ export class Highway {
       const limb = changed ? /** @type {number} */ (scene.feet.get(n)) : chart.limb[n];
       const row = this.rowOf.get(n);
       const mark = markerAt(this.way(column, scene.mirror), m.size, style.mark);
-      if (m.size < SMALL * m.ratio) mark.size *= LARGER; // on a double letters would be too small to read
+      mark.size = Math.max(mark.size, Math.min(LETTER * m.ratio, 0.5 * m.size)); // but where the arrow points is still to be seen
       if (!fake && limb >= 0 && (changed || scene.marked(limb, row))) {
         drawMarker(c, { limb, colour: style.limbs[limb], changed }, x + mark.x, top + mark.y, mark.size);
       } else if (!fake && limb === UNPLAYED) {
@@ -244,29 +258,21 @@ export class Highway {
   }
 
   /**
-   * Words lie on the lanes that are free in their row: where most of them are, beside its notes.
+   * Words beside the notes.
    * @param {ReturnType<Highway["measure"]>} m @param {(s: number) => number} y @param {number} from @param {number} until @param {boolean} mirror
    */
   drawLabels(m, y, from, until, mirror) {
-    const c = this.context;
-    const pad = 5 * m.ratio;
-    c.font = `600 ${Math.round(LEAST * m.ratio)}px system-ui, sans-serif`;
-    c.textAlign = "left";
+    const { context: c, chart } = this;
+    const size = Math.round(LEAST * m.ratio);
+    c.font = `600 ${size}px system-ui, sans-serif`;
     c.textBaseline = "middle";
-    for (const { second, text, short, severity, columns } of this.labels) {
-      if (second < from || second > until) continue;
-      const [left, right] = widestGap(columns.map((column) => this.laneX(column, m, mirror)), 0.5 * m.lane, m.width);
-      const fits = (/** @type {string} */ line) => c.measureText(line).width <= right - left - 2 * pad;
-      let shown = fits(text) ? text : short; // shorter, before it is cut; never smaller
-      while (shown.length > 3 && !fits(shown)) shown = `${shown.slice(0, -2)}…`;
-      const wide = c.measureText(shown).width + 2 * pad;
-      const x = right >= m.width ? left : left <= 0 ? right - wide : 0.5 * (left + right - wide);
-      c.fillStyle = "rgba(12, 14, 26, 0.82)";
-      c.beginPath();
-      c.roundRect(x, y(second) - 0.75 * LEAST * m.ratio, wide, 1.5 * LEAST * m.ratio, 4 * m.ratio);
-      c.fill();
-      c.fillStyle = this.style.callout[severity];
-      c.fillText(shown, x + pad, y(second));
+    const seen = this.labels.filter(({ second }) => second >= from && second <= until).map((label) => ({ label, y: y(label.second) }));
+    const colours = this.style.callout;
+    if (m.gutter) return drawGutter(c, seen, { ...m, x: m.left + m.lane * chart.columns, size, wide: m.gutter }, colours);
+    for (const one of seen) {
+      const beside = (/** @type {number} */ n) => y(chart.second[n]) - one.y < 0.5 * m.size + size && one.y - y(chart.end[n]) < 0.5 * m.size + size;
+      const near = [...chart.second.keys()].filter(beside).map((n) => this.laneX(chart.column[n], m, mirror));
+      drawBetween(c, one, widestGap(near, 0.5 * m.lane, m.width), m.width, { ...m, size }, colours[one.label.severity]);
     }
   }
 
@@ -310,12 +316,12 @@ export function widestGap(middles, half, end) {
 }
 
 const LEAST = 12; // pixels of the smallest words
-const NARROW = 860; // pixels of a phone's window, as in page.css
+export const NARROW = 860; // pixels of a phone's window, as in page.css
 const VERDICT = 68; // pixels above the receptors for a verdict and the scale of errors
 const SHARE = 0.15; // of a low canvas that they take at most
 const WIDEST = 96; // pixels of a lane
-const SMALL = 48; // pixels of a note below which its letter is larger, and how much
-const LARGER = 1.3;
+const ROOMY = 44; // pixels of a lane that are left beside a gutter for words
+const LETTER = 14; // pixels of the sign of a foot, at least
 const RUN = 4; // notes in a row from which their number is shown
 const ARROWS = "←↑→↓↖↗↘↙";
 const GROUND = "#171a30"; // beside the lanes: that of the panels

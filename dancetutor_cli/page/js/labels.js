@@ -92,5 +92,5 @@ export function labelsOf(doc, chart, t) {
     if (same) same.severity = one.severity;
     else out.push({ second: one.second, text: findingWords(t, one)[0], short: shortName(t, one.rule), severity: one.severity, columns: [one.column] });
   }
-  return out;
+  return out.sort((a, b) => a.second - b.second);
 }

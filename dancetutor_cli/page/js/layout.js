@@ -58,15 +58,15 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   const captions = [[t("theseFeet"), ""], besideCaption(app)].map(([who, rows], k) =>
     el("p", { class: `caption ${k ? "right" : "left"}` }, who, el("span", {}, rows && ` (${rows})`)));
   const count = el("p", { class: "count", "aria-hidden": "true" }); // it is heard too
-  const passed = el("p", { class: "passed", role: "status" });
+  const passed = el("p", { class: "passed unseen", role: "status" }); // it is drawn above the receptors
   for (const old of stage.querySelectorAll(":scope > :not(canvas)")) old.remove();
-  stage.append(cameraButtons(app), count, ...captions, el("div", { class: "scores" }, standing(app), passed), chips(app), resultCard(app));
+  stage.append(cameraButtons(app), count, ...captions, el("div", { class: "scores" }, standing(app)), passed, resultCard(app));
   const flat = el("p", { class: "flat", hidden: true }, t("noWebgl"));
   stage.append(flat);
   const note = el("p", { class: "unseen", role: "status" });
   app.listeners.add((what) => { if (what === "feet") note.textContent = app.chosen >= 0 ? noteText(app, app.chosen) : ""; });
   const root = /** @type {HTMLElement} */ (document.getElementById("app"));
-  const main = el("main", { class: app.chart.columns > 5 ? "wide" : "" }, stage, el("section", { class: "notes", "aria-label": t("notes") }, lanes, slimStanding(app), note), tabs.side);
+  const main = el("main", { class: app.chart.columns > 5 ? "wide" : "" }, stage, el("section", { class: "notes", "aria-label": t("notes") }, lanes, slimStanding(app), note), chips(app), tabs.side);
   root.replaceChildren(
     el("header", {}, el("div", { class: "song" }, el("h1", {}, words.title), badge, app.doc.pair ? players(style) : null,
       el("p", { class: "about" }, about.filter(Boolean).join(" · "))), said, pick),
@@ -94,6 +94,7 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
     flat.hidden = !app.picture || app.picture.viewer !== null;
     for (const caption of captions) caption.hidden = !app.both;
     main.classList.toggle("along", app.practice.along);
+    main.classList.toggle("looped", app.transport.loop !== null);
   });
 }
 

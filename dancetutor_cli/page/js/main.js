@@ -13,8 +13,6 @@ import { Picture, decodeSkins } from "./picture.js";
 import { musicText } from "./said.js";
 import { Timeline } from "./timeline.js";
 
-const SHOWN_BEFORE = 1; // seconds before the first step at which the page opens: its notes are in sight
-
 /** @param {string} id */
 const text = (id) => document.getElementById(id)?.textContent ?? "";
 
@@ -51,7 +49,7 @@ async function main() {
   window.addEventListener("pagehide", () => app.practice.keep());
   window.addEventListener("hashchange", () => readLink(app, location.hash));
   if (location.hash) readLink(app, location.hash);
-  else app.seek(Math.max(app.start, app.chart.first - SHOWN_BEFORE));
+  else app.rewind();
   app.tell("settings");
   const picture = new Picture(stage, doc, app.chart, app.motions, app.settings);
   picture.amend = (second, pose) => app.redance.amend(second, pose);

@@ -255,7 +255,7 @@ export class Practice {
 
   /** The song is over: how it went is said until somebody goes on. */
   finish() {
-    if (!this.along) return;
+    if (!this.along) return this.app.rewind();
     this.judge.advance(Infinity, this.app.transport.rate);
     this.lost = 0;
     this.over = this.tally();
