@@ -24,8 +24,8 @@ def step(browser: Browser, button: int) -> None:
 
 
 def test_the_first_notes_are_in_sight_and_playing_leaves_time_to_get_ready(opened: Browser) -> None:
-    """The first step is at second 2: one second before it the page opens, two before it the clock begins."""
-    assert float(opened.run(NOW)) == pytest.approx(1.0, abs=0.01)
+    """The first step is at second 2: half a second before it the page opens, two before it the clock begins."""
+    assert float(opened.run(NOW)) == pytest.approx(1.5, abs=0.01)
     opened.key(" ", "Space")
     opened.turn(0.06 + 0.5)
     assert float(opened.run(NOW)) == pytest.approx(0.5, abs=0.02)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from page_chromium import Browser, pad_script, said, text
+import pytest
+from page_chromium import NOW, Browser, pad_script, said, text
 
 KEYS = "[...document.querySelectorAll('.keys > span')].map(e => [...e.querySelectorAll('kbd')].map(k => k.textContent))"
 STORED = "JSON.parse(localStorage.dancetutor ?? '{}')"
@@ -29,15 +30,37 @@ def test_a_panels_key_that_nothing_judges_is_reported(opened: Browser) -> None:
     assert shown(opened, ".standing") and opened.problems == []
 
 
-def test_an_arrow_key_that_may_be_meant_as_a_panel_is_told_once(opened: Browser) -> None:
+def test_arrow_keys_that_are_panels_do_nothing_else(opened: Browser) -> None:
+    """While one watches they say what they are, playing or paused: no seek, no pause, no other speed."""
+    for before in ("", " "):
+        if before:
+            opened.key(before, "Space")
+        state = [text(opened, ".play"), text(opened, ".rate-text"), opened.run(NOW)]
+        for arrow in ("ArrowLeft", "ArrowUp", "ArrowRight", "ArrowDown"):
+            opened.key(arrow)
+            assert said(opened).startswith("Nothing") and shown(opened, "#chip-along")
+            assert [text(opened, ".play"), text(opened, ".rate-text"), opened.run(NOW)] == state
+        opened.turn(6)
+    opened.key("-", "Minus")
+    assert text(opened, ".rate-text") == "95 %"
+    x, y, w, h = opened.box(".strip")
+    for kind in ("mousePressed", "mouseReleased"):
+        opened.mouse(kind, x + w / 2, y + h / 2)
+    at = opened.run(NOW)
+    opened.key("ArrowUp")  # a click on the strip leaves the keys as they are
     opened.key("ArrowLeft")
-    assert not said(opened).startswith("Nothing")
-    opened.key(" ", "Space")
-    opened.key("ArrowUp")
-    assert said(opened).startswith("Nothing") and text(opened, ".rate-text") == "105 %"
-    opened.turn(6)
+    assert text(opened, ".play") == "❚❚" and opened.run(NOW) == at and said(opened).startswith("Nothing")
+    opened.run("document.querySelector('.strip').focus()")  # who comes with Tab has a slider
     opened.key("ArrowLeft")
-    assert not said(opened).startswith("Nothing") and text(opened, ".play") == "▶" and opened.problems == []
+    assert text(opened, ".play") == "▶" and opened.problems == []
+
+
+def test_the_speed_is_the_same_after_a_reload(opened: Browser) -> None:
+    for _ in range(3):
+        opened.key("-", "Minus")
+    opened.call("Page.reload")
+    opened.wait("document.documentElement?.dataset.ready && document.querySelector('.rate-text')?.textContent === '85 %'")
+    assert opened.problems == []
 
 
 def test_a_finger_on_the_lanes_of_a_song_that_plays_does_not_stop_it(opened: Browser, page_file: Path) -> None:
@@ -101,11 +124,38 @@ def test_one_foot_only_is_said_on_the_picture_and_can_be_ended_there(opened: Bro
     assert not shown(opened, "#chip-foot")
     opened.key("t", "KeyT")
     assert text(opened, "#chip-foot") == "left only ✕"
-    opened.open(page_file)  # the next song, the next day
+    opened.open(page_file)  # the same song, the next day
     assert shown(opened, "#chip-foot")
+    assert not opened.run(f"'foot' in {STORED}")  # what holds in every song
     opened.click("#chip-foot")
     assert not shown(opened, "#chip-foot") and opened.run("document.querySelector('#foot').value") == "both"
-    assert opened.run(f"{STORED}.foot") == "both" and opened.problems == []
+    opened.open(page_file)
+    assert not shown(opened, "#chip-foot") and opened.problems == []
+
+
+@pytest.mark.parametrize(("width", "height"), [(380, 740), (768, 1024)])
+def test_a_phone_offers_ways_to_begin_below_the_picture(
+    opened: Browser, page_file: Path, width: int, height: int
+) -> None:
+    """In one row, where the panel with the tiles is folded away: of a loop from its start."""
+    opened.size(width, height, touch=True)
+    opened.open(page_file)
+    assert not shown(opened, "#chip-along")  # the tiles are there
+    opened.click(".card")
+    opened.turn(3)
+    rows = "[...document.querySelectorAll('.chip')].filter(e => e.checkVisibility()).map(e => [e.id, e.offsetTop])"
+    found = opened.run(rows)
+    assert [name for name, _ in found] == ["chip-along", "chip-wait", "chip-loop"] and len({top for _, top in found}) == 1
+    chip, picture = opened.box("#chip-along"), opened.box(".picture")
+    assert chip[1] >= picture[1] + picture[3] and opened.box(".lanes")[2] >= 0.48 * width
+    opened.click("#chip-along")
+    opened.turn(0.06)
+    assert text(opened, ".play") == "❚❚" and float(opened.run(NOW)) < 1 and opened.run("!!document.querySelector('.along')")
+    opened.click("#chip-wait")
+    opened.turn(9)
+    assert said(opened).startswith("waiting for you")
+    opened.click("#chip-along")  # and on
+    assert not said(opened).startswith("waiting for you") and opened.problems == []
 
 
 def test_a_phone_ends_a_loop_on_the_picture(opened: Browser, page_file: Path) -> None:

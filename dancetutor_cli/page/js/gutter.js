@@ -2,7 +2,7 @@
 
 import { clamp } from "./maths.js";
 
-export const GUTTER = 92; // pixels
+export const GUTTER = 98; // pixels
 const PAD = 5; // pixels beside the words
 const LINES = 3; // of a label at most
 

@@ -45,7 +45,7 @@ test("the ramp goes on from the chosen speed, says so, and its end brings the ch
     go(at, transport, 12);
     assert.equal(transport.rate, rate);
   }
-  assert.equal(saidOf(app), "loopFrom oneMeasure 2 2 · ramped 70 80");
+  assert.equal(saidOf(app), "loopFrom oneMeasure 2 2 · ramped speedStep 75 80");
   app.practice.endRamp();
   assert.equal(transport.rate, 0.7);
   assert.equal(app.practice.passes, 0);
@@ -65,7 +65,7 @@ test("a wrong panel makes a pass unclean, and what was pressed is said in the ne
   }
   go(at, transport, 10);
   assert.equal(transport.rate, 0.95);
-  assert.equal(passedOf(app), "passScores 67 %"); // in the count-in: both notes hit, and a wrong press
+  assert.equal(passedOf(app), "passScores 67 % · speedStep 100 95"); // in the count-in: both notes hit, and a wrong press
   go(at, transport, 8.5);
   assert.equal(passedOf(app), "");
 });

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import {
-  BINS, addClean, addOutcomes, addScore, coachRate, dayOf, emptyRecord, fromFile, hitShare, merged, missedOf, missesThrough, panelShare, scoreShare, streakOf, toFile, validRecord,
+  BINS, addClean, addOutcomes, addPlay, coachRate, dayOf, emptyRecord, fromFile, hitShare, merged, missedOf, missesThrough, panelShare, passedFull, scoreShare, streakOf, toFile, validRecord,
 } from "../../../dancetutor_cli/page/js/record.js";
 import { thinned, together } from "../../../dancetutor_cli/page/js/timeline.js";
 
@@ -69,8 +69,8 @@ test("a file comes back as it was, and taken in twice changes nothing", () => {
   const record = played();
   record.loops.push({ name: "bridge </script>", from: 4, to: 8.5, rate: 75 });
   addClean(record, "4-8.5", 0.75);
-  addScore(record, "4-8.5", 0.66);
-  addScore(record, "4-8.5", 0.5);
+  addPlay(record, "4-8.5", 0.66, 1);
+  addPlay(record, "4-8.5", 0.5, 1);
   const back = fromFile(toFile({ "song.ssc#0:12": record })).get("song.ssc#0:12");
   assert.deepEqual(back, record);
   const both = merged(emptyRecord(), back);
@@ -109,7 +109,7 @@ test("of a stranger's file only what may be is kept", () => {
   assert.deepEqual(kept.loops.map(({ name }) => name.length), [60]);
   assert.deepEqual(kept.best, { "0-4": 90 });
   assert.deepEqual(kept.scores, { "0-4": 80 });
-  assert.deepEqual(Object.keys(kept), ["days", "rows", "loops", "best", "scores", "top"]);
+  assert.deepEqual(Object.keys(kept), ["days", "rows", "loops", "best", "scores", "plays", "top"]);
   for (const value of [null, 3, "x", [], { days: {}, rows: [], loops: 3, best: "x" }]) assert.deepEqual(validRecord(value), emptyRecord());
 });
 
@@ -148,4 +148,27 @@ test("misses through the song are counted by foot, in parts of as many measures 
   assert.deepEqual(missesThrough(record, rows), [[0, 100], [0, 0], [0, 100], [0, 0], [0, 0], [0, 100]]);
   addOutcomes(record, "2026-11-25", [outcome(1, "hit", 0)], 0, 1); // one of two tries: of the first part's rows 2 of 3
   assert.deepEqual(missesThrough(record, rows, 3), [[0, 67], [0, 100], [0, 100]]);
+});
+
+test("the best pass of a part is kept at whatever speed it was, and a pass at full speed is told", () => {
+  const record = emptyRecord();
+  addPlay(record, "4-8", 0.72, 0.55);
+  assert.deepEqual([record.plays["4-8"], record.scores["4-8"], passedFull(record, "4-8")], [[72, 55], undefined, false]);
+  addPlay(record, "4-8", 0.9, 0.4); // slower: less was done
+  assert.deepEqual(record.plays["4-8"], [72, 55]);
+  addPlay(record, "4-8", 0.55, 0.72); // as much, but quicker
+  assert.deepEqual(record.plays["4-8"], [55, 72]);
+  addPlay(record, "4-8", 0.94, 1);
+  assert.equal(passedFull(record, "4-8"), false);
+  addPlay(record, "4-8", 0.95, 1);
+  assert.deepEqual([record.plays["4-8"], passedFull(record, "4-8")], [[95, 100], true]);
+  addClean(record, "8-12", 1);
+  assert.equal(passedFull(record, "8-12"), true);
+  const back = fromFile(toFile({ a: record })).get("a");
+  assert.deepEqual(back, record);
+  const mine = emptyRecord();
+  addPlay(mine, "4-8", 0.9, 1);
+  assert.deepEqual(merged(mine, back).plays["4-8"], [95, 100]);
+  const old = validRecord({ ...emptyRecord(), scores: { "4-8": 80 }, plays: { "8-12": [80, "x"], "x": [1, 50], "0-4": [101, 50] } });
+  assert.deepEqual(old.plays, { "4-8": [80, 100] }); // of a page that kept no speeds
 });
