@@ -131,10 +131,9 @@ def test_without_script_a_sentence_stands(opened: Browser, page_file: Path) -> N
 def lanes_at(browser: Browser) -> tuple[list[float], float]:
     """The middles of the lanes and their height."""
     x, y, w, h = browser.box(".lanes")
-    along = browser.run("document.querySelector('main').classList.contains('along')")
-    words = 22 if along else min(max(0.34 * w, 46), 80) if w > 200 else 8
-    lane = min(72, (w - 22 - words) / 4)
-    left = x + min(max((w - 4 * lane) / 2, 22), max(22, w - 4 * lane - words))
+    numbers, words = 15, 98  # left of the lanes those of measures, right of them words
+    lane = min(96, (w - numbers - words) / 4)
+    left = x + max(numbers, (w - words - 4 * lane) / 2)
     return [left + (k + 0.5) * lane for k in range(4)], y + h / 2
 
 

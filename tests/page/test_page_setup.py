@@ -147,7 +147,7 @@ def test_a_phone_offers_ways_to_begin_below_the_picture(
     found = opened.run(rows)
     assert [name for name, _ in found] == ["chip-along", "chip-wait", "chip-loop"] and len({top for _, top in found}) == 1
     chip, picture = opened.box("#chip-along"), opened.box(".picture")
-    assert chip[1] >= picture[1] + picture[3] and opened.box(".lanes")[2] >= 0.48 * width
+    assert chip[1] >= picture[1] + picture[3] and opened.box(".lanes")[2] >= 0.5 * width
     opened.click("#chip-along")
     opened.turn(0.06)
     assert text(opened, ".play") == "❚❚" and float(opened.run(NOW)) < 1 and opened.run("!!document.querySelector('.along')")
