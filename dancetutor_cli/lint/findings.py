@@ -160,8 +160,13 @@ class Estimate:
     rate: float = 1.0
 
     @property
+    def scale_name(self) -> str:
+        """For people: "ITG"."""
+        return _SCALE_NAMES[self.scale]
+
+    @property
     def bill(self) -> str:
-        """For people: "11.4 on the ITG scale (10.2 to 12.6; scale assumed): streams +3.1, rest +0.2"."""
+        """For people: "11.4 on the ITG scale (80 % likely: 10.2 to 12.6; the scale is a guess): streams +3.1, other +0.2"."""
         return _bill(f"{self.meter:.1f}{self.span}", self.terms, 1)
 
     def most(self, count: int) -> str:
@@ -170,15 +175,15 @@ class Estimate:
 
     @property
     def short(self) -> str:
-        """For a line about a chart: "ITG 11.4"; "about ITG 11.4" if the scale is assumed."""
-        return f"{'' if self.is_scale_known else 'about '}{_SCALE_NAMES[self.scale]} {self.meter:.1f}"
+        """For a table of charts: "ITG 11.4"; "ITG 11.4?" if the scale is a guess."""
+        return f"{_SCALE_NAMES[self.scale]} {self.meter:.1f}{'' if self.is_scale_known else '?'}"
 
     @property
     def span(self) -> str:
-        """For people: " on the ITG scale (10.2 to 12.6; scale assumed)"; "at rate 1.1" where it is not 1."""
+        """For people: " on the ITG scale (80 % likely: 10.2 to 12.6; the scale is a guess)"; with "at rate 1.1" if it is not 1."""
         rate = "" if self.rate == 1.0 else f" at rate {self.rate:g}"
-        assumed = "" if self.is_scale_known else "; scale assumed"
-        return f" on the {_SCALE_NAMES[self.scale]} scale{rate} ({self.low:.1f} to {self.high:.1f}{assumed})"
+        guess = "" if self.is_scale_known else "; the scale is a guess"
+        return f" on the {_SCALE_NAMES[self.scale]} scale{rate} (80 % likely: {self.low:.1f} to {self.high:.1f}{guess})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,18 +201,18 @@ class ScoreEstimate:
 
     @property
     def bill(self) -> str:
-        """For people: "14.62 on the DDR scale (14.35 to 14.89): level 14.41, rhythm +0.21"."""
+        """For people: "14.62 on the DDR scale (80 % likely: 14.35 to 14.89): base level 14.41, rhythm +0.21"."""
         (name, level), *terms = self.terms
-        return _bill(f"{self.meter:.2f}{self.span}", terms, 2, first=(f"{name} {level:.2f}",))
+        return _bill(f"{self.meter:.2f}{self.span}", terms, 2, first=(f"base {name} {level:.2f}",))
 
     @property
     def span(self) -> str:
-        """For people: " on the DDR scale (14.35 to 14.89)"."""
-        return f" on the {_SCALE_NAMES['ddr']} scale ({self.low:.2f} to {self.high:.2f})"
+        """For people: " on the DDR scale (80 % likely: 14.35 to 14.89)"."""
+        return f" on the {_SCALE_NAMES['ddr']} scale (80 % likely: {self.low:.2f} to {self.high:.2f})"
 
     @property
     def short(self) -> str:
-        """For a line about a chart: "DDR 14.62"."""
+        """For a table of charts: "DDR 14.62"."""
         return f"{_SCALE_NAMES['ddr']} {self.meter:.2f}"
 
 
@@ -215,7 +220,8 @@ def _bill(
     meter: str, terms: Sequence[tuple[str, float]], digits: int, most: int | None = None, first: tuple[str, ...] = ()
 ) -> str:
     """A number, as text, and what adds up to it, without what rounds to nothing."""
-    parts = [f"{name} {value:+.{digits}f}" for name, value in terms if round(abs(value), digits) > 0]
+    named = [("other" if name == "rest" else name, value) for name, value in terms if round(abs(value), digits) > 0]
+    parts = [f"{name} {value:+.{digits}f}" for name, value in named]
     return f"{meter}: {', '.join([*first, *parts][:most])}"
 
 
@@ -251,13 +257,13 @@ class Sync:
 
     @property
     def description(self) -> str:
-        """For people: "the music is 25.1 ms after the beats, drift +0.2 ms, confidence 1.00: other"."""
+        """For people: "other (music 25.1 ms after the beats, drift +0.2 ms over the song, 99 % sure)"."""
         if self.bias_ms is None:
             return f"cannot be judged: {self.reason}" if self.reason else "cannot be judged"
         side = "after" if self.bias_ms >= 0 else "before"
-        drift = "" if self.drift_ms is None else f", drift {self.drift_ms:+.1f} ms"
-        sure = f"confidence {self.confidence:.2f}"
-        return f"the music is {abs(self.bias_ms):.1f} ms {side} the beats{drift}, {sure}: {self.kind}"
+        drift = "" if self.drift_ms is None else f", drift {self.drift_ms:+.1f} ms over the song"
+        sure = f"{100 * self.confidence:.0f} % sure"
+        return f"{self.kind} (music {abs(self.bias_ms):.1f} ms {side} the beats{drift}, {sure})"
 
 
 def sync_of(

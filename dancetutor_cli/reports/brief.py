@@ -60,7 +60,7 @@ class BriefReport:
         self._below = ""
 
     def begin(self) -> None:
-        """Nothing comes before the end."""
+        """Do nothing: the report is printed at the end."""
 
     def add(self, result: FileResult) -> None:
         """Take note of one file."""
@@ -98,14 +98,17 @@ class BriefReport:
         """A line for each chart, then one for each rule in each chart, as many as the screen holds."""
         room = max(12, shutil.get_terminal_size().lines - 4)
         by_file: dict[str, list[str]] = {}
+        widest = max((len(safe(chart.label)) for _, chart in self._charts), default=0)
         for result, chart in self._charts:
-            by_file.setdefault(result.path, []).append(self._cut(f"  {_counts(chart)}"))
+            by_file.setdefault(result.path, []).append(self._cut(f"  {_counts(chart, widest)}"))
         files: dict[tuple[str, ...], list[str]] = {}  # the .sm and the .ssc of a song say the same, mostly
         for path, charts in by_file.items():
             files.setdefault(tuple(charts), []).append(safe_path(path))
         lines: list[str] = []
         for charts_of, paths in files.items():
             lines += [self._paint(self._cut(", ".join(paths)), "bold"), *charts_of]
+        if lines:
+            lines.insert(0, self._paint(self._cut(_head(widest, [chart for _, chart in self._charts])), "dim"))
         shown = lines[: room // 2]
         return [*shown, *_more(len(lines) - len(shown), "charts"), *self._listed(room - len(shown))]
 
@@ -129,7 +132,8 @@ class BriefReport:
             rule = self._paint(f"{first.first.rule} {first.first.name}", STYLES[first.first.severity])
             charts = len({(one.path, one.chart and one.chart.index) for one in found})
             what = "file" if first.chart is None else "chart"
-            lines.append(f"{rule}: {_sum(found)} findings in {plural(charts, what)}, for example")
+            such = ", such as" if len(found) > each else ":"
+            lines.append(f"{rule}: {plural(_sum(found), 'finding')} in {plural(charts, what)}{such}")
             lines += [
                 self._cut(f"  {self._entry_line(one, False)}") for one in sorted(found, key=lambda x: x.order)[:each]
             ]
@@ -155,24 +159,24 @@ class BriefReport:
         labels = list(dict.fromkeys(entry.chart.label if entry.chart else "" for entry in entries))
         first = entries[0].first
         where = "" if first.measure is None else f", first in measure {first.measure} of {safe(labels[0])}"
-        rule = self._paint(first.rule, STYLES[first.severity])
-        return [f"{rule} {sum(own.values())} times in {len(labels)} charts{where}: {safe(first.message)}"]
+        rule = self._paint(f"{first.rule} {first.name}", STYLES[first.severity])
+        return [f"{rule}: {sum(own.values())} in {plural(len(labels), 'chart')}{where}"]
 
     def _name(self, path: str) -> str:
         """A file by its path below the folder that all of them are in."""
         return safe_path(os.path.relpath(path, self._below or "."))
 
     def _entry_line(self, entry: _Entry, one_file: bool) -> str:
-        """ "DT201 14 times, measures 3 7 9 ...: the left foot steps twice [dance-single Hard 9]" """
+        """ "DT201 doublestep, dance-single Hard 9, 14 times, measures 3 7 9 ...: the left foot doublesteps" """
         first, many = entry.first, len(entry.findings)
         measures = list(dict.fromkeys(f.measure for f in entry.findings if f.measure is not None))
         places = " ".join(map(str, measures[:_PLACES])) + (" ..." if len(measures) > _PLACES else "")
         where = f", measure{'' if len(measures) == 1 else 's'} {places}" if measures else ""
-        times = f" {many} times" if many > 1 else ""
-        label = f" [{safe(entry.chart.label)}]" if entry.chart else ""
-        rule = self._paint(first.rule, STYLES[first.severity]) if one_file else ""
+        times = f", {many} times" if many > 1 else ""
+        label = f", {safe(entry.chart.label)}" if entry.chart else ""
+        rule = self._paint(f"{first.rule} {first.name}", STYLES[first.severity]) if one_file else ""
         place = "" if one_file else f"{self._name(entry.path)}:{first.line or 1}"
-        return f"{rule}{place}{times}{where}:{label} {safe(first.message)}".replace("::", ":")
+        return f"{rule}{place}{label}{times}{where}: {safe(first.message)}"
 
     def _cut(self, line: str) -> str:
         """As much of a line as the terminal is wide; colours take no room."""
@@ -188,18 +192,27 @@ _MOVES = {  # those that the line of a chart counts, by name
     "crossover-full": "180° crossover",
     "spin": "spin",
     "bracket": "bracket",
-    "hand": "hand",
 }
 
 
-def _counts(chart: ChartResult) -> str:
+def _head(widest: int, charts: Sequence[ChartResult]) -> str:
+    """The names of the columns of `_counts`, and what a "?" in them means."""
+    guess = any(chart.estimate and not chart.estimate.is_scale_known for chart in charts)
+    names = f"{'':{widest + 2}}  plays like  to score on   rows"
+    return f"{names}  (?: the scale is a guess)" if guess else names
+
+
+def _counts(chart: ChartResult, widest: int) -> str:
+    """The line of a chart in a table whose names are `widest` characters wide."""
     found = [sum(f.severity == severity for f in chart.findings) for severity in ("error", "warning")]
     words = [plural(n, name) for n, name in zip(found, ("error", "warning"), strict=True) if n]
     counted = [plural(n, name) for move, name in _MOVES.items() if (n := chart.counts.get(move))]
-    rows = f"{chart.row_count} rows" if chart.playable else "no pad"
-    likes = [f"plays like {chart.estimate.short}"] if chart.estimate else []
-    likes += [f"scores like {chart.score.short}"] if chart.score else []
-    return f"{safe(chart.label)}: {', '.join([*likes, rows, *counted])}" + (f"; {' and '.join(words)}" if words else "")
+    plays, scores = chart.estimate.short if chart.estimate else "", chart.score.short if chart.score else ""
+    plays += "" if plays.endswith("?") else " "  # so that digits stand below digits
+    rows = str(chart.row_count) if chart.playable else "no pad"
+    more = "; ".join(filter(None, (", ".join(words), ", ".join(counted))))
+    line = f"{safe(chart.label):{widest}}  {plays:>11} {scores:>11} {rows:>6}  {more}"
+    return line.rstrip()
 
 
 def _sum(entries: Sequence[_Entry]) -> int:

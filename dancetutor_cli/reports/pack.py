@@ -26,7 +26,7 @@ TECHNIQUES = {
     "doublesteps": ("doublestep",),
     "jacks": ("jack",),
     "spins": ("spin",),
-    "hands": ("hand",),
+    "hand presses": ("hand",),
 }
 _ORDER = ("Beginner", "Easy", "Medium", "Hard", "Challenge")
 _MUSIC, _PAIR = "DT107", "DT109"
@@ -49,8 +49,8 @@ class PackChart:
 
     @property
     def name(self) -> str:
-        """For people: "Max 300 Hard 9"."""
-        return f"{self.song} {safe(self.result.difficulty)} {self.result.meter}"
+        """For people: "Max 300, Hard 9"."""
+        return f"{self.song}, {safe(self.result.difficulty)} {self.result.meter}"
 
     def rows_of(self, technique: str) -> int:
         """Rows with a technique."""
@@ -151,14 +151,14 @@ class Pack:
         return out
 
     def missing(self) -> Iterator[str]:
-        """What the pack lacks, a line each."""
+        """What the pack lacks and what is wrong in it, a line each."""
         yield from self._missing_difficulties()
-        for kind, words in (("music", "no music"), ("differ", ".sm and .ssc differ")):
+        for kind, words in (("music", "missing: music of"), ("differ", "wrong: .sm and .ssc differ:")):
             songs = list(dict.fromkeys(self.problems[kind]))
             if songs:
-                yield f"{words}: {_some(songs)}"
+                yield f"{words} {_some(songs)}"
         if self._unreadable:
-            yield f"cannot be read: {_some(list(self._unread()))}"
+            yield f"wrong: cannot be read: {_some(list(self._unread()))}"
         yield from self._sync()
 
     def _missing_difficulties(self) -> Iterator[str]:
@@ -172,7 +172,7 @@ class Pack:
                 lacking = [path for path, has in songs.items() if name not in has]
                 if lacking and len(songs) >= _FEWEST_SONGS and counted[name] >= _MOST_HAVE * len(songs):
                     titles = [safe(self._results[path].title) or safe_path(Path(path).name) for path in lacking]
-                    yield f"no {safe(steps_type)} {name}: {_some(titles)}"
+                    yield f"missing: {safe(steps_type)} {name} of {_some(titles)}"
 
     def _sync(self) -> Iterator[str]:
         """What is wrong with the Pack.ini of each pack that files of these lie in."""
@@ -181,21 +181,22 @@ class Pack:
         found = [ini for folder in sorted(folders | beside) if (ini := read_pack_ini(folder)) is not None]
         for ini in found:
             if ini.problem is not None:
-                yield f"{safe_path(os.fspath(ini.path.parent.name))}/{safe(ini.path.name)}: {safe(ini.problem)}"
+                yield f"wrong: {safe_path(os.fspath(ini.path.parent.name))}/{safe(ini.path.name)}: {safe(ini.problem)}"
         if not found:
-            yield "no Pack.ini; it sets in ITGmania whether the sync is NULL or ITG"
+            yield "missing: Pack.ini (it tells ITGmania whether the songs use null or ITG sync)"
 
     def outliers(self) -> Iterator[str]:
         """Charts that stand out, a line each, the farthest first."""
         charts = self.charts()
         off = [
-            (abs(estimate.meter - one.result.meter), one, estimate.meter)
+            (abs(estimate.meter - one.result.meter), one, estimate.meter, estimate.scale_name)
             for one in charts
             if (estimate := one.result.estimate) is not None and estimate.is_scale_known and one.result.meter > 0
         ]
-        for how_far, one, meter in sorted(off, key=lambda x: -x[0]):
+        for how_far, one, meter, scale_name in sorted(off, key=lambda x: -x[0]):
             if how_far >= _FEW:
-                yield f"{one.name} plays like meter {meter:.1f}"
+                beside = "above" if meter > one.result.meter else "below"
+                yield f"{one.name}: plays like {scale_name} {meter:.1f}, {how_far:.1f} {beside} its meter"
         yield from (words for _, words in sorted(_much_of(charts), reverse=True))
 
 
@@ -213,7 +214,7 @@ def _much_of(charts: list[PackChart]) -> Iterator[tuple[float, str]]:
             enough = one.rows_of(technique) >= _LEAST_ROWS and len(others) >= _FEWEST_SONGS
             if enough and share >= _TIMES * usual:
                 rows = f"{one.rows_of(technique)} rows with {technique}, {100 * share:.0f} % of its rows"
-                words = f"{one.name}: {rows} (usual at this meter: {100 * usual:.0f} %)"
+                words = f"{one.name}: {rows} (on average {100 * usual:.0f} % at this meter)"
                 yield share / usual, words
 
 
@@ -234,23 +235,29 @@ def pack_lines(pack: Pack, width: int) -> list[str]:
     charts = pack.charts()
     if not charts:
         return []
-    lines = [f"pack {safe_path(pack.folder.rsplit('/', 1)[-1])}: {pack.songs} songs, {len(charts)} charts"]
+    counts = f"{plural(pack.songs, 'song')}, {plural(len(charts), 'chart')}"
+    lines = [f"pack {safe_path(pack.folder.rsplit('/', 1)[-1])}: {counts}"]
     types = Counter(one.result.steps_type for one in charts)
     for steps_type, _ in types.most_common(_TYPES):
         lines.append(_meters_line(steps_type, [one for one in charts if one.result.steps_type == steps_type]))
     lines.append(_by_technique(charts))
-    lines += _listed("missing", pack.missing(), _MISSING)
-    lines += _listed("stands out", pack.outliers(), _OUTLIERS)
+    lines += _listed("", pack.missing(), _MISSING)
+    lines += _listed("stands out: ", pack.outliers(), _OUTLIERS)
     return [line if len(line) <= width else line[: width - 1] + "…" for line in lines[:LINES]]
 
 
 def _meters_line(steps_type: str, charts: list[PackChart]) -> str:
-    """How many charts, and the middle half of their meters and of the meters that they play like."""
-    count = plural(len(charts), "chart")
-    plays = [round(one.result.estimate.meter) for one in charts if one.result.estimate]
-    like = f"; they play like meter {_middle(plays)}" if plays else ""
-    half = "half of them have " if len(charts) > 1 else ""
-    return f"  {safe(steps_type)}: {count}, {half}meter {_middle([one.result.meter for one in charts])}{like}"
+    """How many charts, and the middle half of their meters and of what they play like, on the commonest scale."""
+    estimates = [one.result.estimate for one in charts if one.result.estimate]
+    scales = Counter(one.scale_name for one in estimates).most_common(1)
+    like = ""
+    for scale, number in scales:
+        plays = _middle([round(one.meter) for one in estimates if one.scale_name == scale])
+        those = "" if number == len(charts) else f"; {number} of them"
+        like = f"{those} play{'s' if number == 1 else ''} like {scale} {plays}"
+    half = " (middle half)" if len(charts) > 1 else ""
+    rated = f"rated {_middle([one.result.meter for one in charts])}"
+    return f"  {safe(steps_type)}: {plural(len(charts), 'chart')} {rated}{',' if like[:1] == ' ' else ''}{like}{half}"
 
 
 def _middle(meters: list[int]) -> str:
@@ -263,15 +270,16 @@ def _middle(meters: list[int]) -> str:
 def _by_technique(charts: list[PackChart]) -> str:
     """How many charts have each technique."""
     counts = {technique: sum(one.rows_of(technique) > 0 for one in charts) for technique in TECHNIQUES}
-    return f"  charts with {', '.join(f'{technique}: {count}' for technique, count in counts.items())}"
+    have = [f"{technique} in {count}" for technique, count in counts.items() if count]
+    return "  " + ", ".join(have).replace(",", " charts,", 1) if have else "  none of the techniques in any chart"
 
 
 def _listed(what: str, words: Iterable[str], most: int) -> Iterator[str]:
     lines = list(words)
     for line in lines[:most]:
-        yield f"  {what}: {line}"
+        yield f"  {what}{line}"
     if len(lines) > most:
-        yield f"  {what}: {len(lines) - most} more; --report-html FILE shows them"
+        yield f"  ... and {len(lines) - most} more such lines; --report-html FILE lists them"
 
 
 # Our technique counts beside the game's, as a table in Markdown; and chart by chart where they differ.

@@ -164,8 +164,9 @@ def html_page(pack: Pack, changes: Sequence[str] = ()) -> str:
     """The page. changes : lines of what is new against another version of the pack"""
     charts = pack.charts()
     name = escape(safe_path(pack.folder.rsplit("/", 1)[-1]))
-    body = [f'<h1>{name}</h1><p class="lead">{pack.songs} songs, {len(charts)} charts</p>']
-    body += [_needs(pack), _list("What is missing", pack.missing())]
+    counts = f"{plural(pack.songs, 'song')}, {plural(len(charts), 'chart')}"
+    body = [f'<h1>{name}</h1><p class="lead">{counts}</p>']
+    body += [_needs(pack), _list("What is missing or wrong", pack.missing())]
     if changes:
         body.append(_list("What has changed", changes))
     body.append(_list("What stands out", pack.outliers()))
@@ -194,10 +195,10 @@ def _figures(charts: Sequence[PackChart]) -> Iterable[str]:
         labels[min(one.result.meter, 30)][named] += 1
     pairs = [(one, one.result.estimate) for one in charts]
     plays = Counter(min(round(estimate.meter), 30) for _, estimate in pairs if estimate)
-    yield _figure("Charts by meter; dashed: by how they play", bars(labels, plays))
+    yield _figure("Charts by meter; dashed: charts that play like this meter", bars(labels, plays))
     estimated = [_dot(one, estimate.meter) for one, estimate in pairs if estimate]
     if estimated:
-        yield _figure("How they play against their meters", dots(estimated, "plays like", "plays like", diagonal=True))
+        yield _figure("What the charts play like, by meter", dots(estimated, "plays like", "plays like", diagonal=True))
     measured = [(one, one.result.figures) for one in charts if one.result.figures is not None]
     dense = [_dot(one, figures.nps_mean) for one, figures in measured]
     yield _figure("Density, rows per second", dots(dense, "density", "rows per second"))
@@ -263,7 +264,7 @@ def _needs(pack: Pack) -> str:
 
 
 def _table(charts: Iterable[PackChart]) -> str:
-    names = ("meter", "plays like", "scores like (ddr)", "rows", "rows/s", *TECHNIQUES)
+    names = ("meter", "plays like", "to score on (DDR scale)", "rows", "rows/s", *TECHNIQUES)
     head = '<th class="t">song</th><th class="t">chart</th>' + "".join(f"<th>{name}</th>" for name in names)
     rows = []
     for one in charts:

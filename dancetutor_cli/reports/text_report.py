@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
 from typing import IO, NamedTuple
@@ -78,9 +79,11 @@ MOVE_COLUMNS = (
     Column("jacks", 5, ("jack",)),
     Column("candles", 7, ("candle",)),
     Column("gallops", 7, ("gallop",)),
-    Column("hands", 5, ("hand",)),
+    Column("hand\npresses", 7, ("hand",)),
 )
 _ROWS, _COST = Column("rows", 5, ()), Column("cost\nunits", 6, ())
+_ONE = {"rows": "row", "cost units": "cost unit", "spins": "spin", "brackets": "bracket", "jacks": "jack",
+        "candles": "candle", "gallops": "gallop", "hand presses": "hand press"}  # fmt: skip
 
 
 def chart_table(chart: ChartResult, terminal: Terminal, charts: Sequence[ChartResult] = ()) -> str:
@@ -90,14 +93,21 @@ def chart_table(chart: ChartResult, terminal: Terminal, charts: Sequence[ChartRe
     """
     every = [_column_counts(one) for one in charts or (chart,)]
     shown = tuple(column for column in MOVE_COLUMNS if column.always or any(counts[column] for counts in every))
+    if _width(shown) > terminal.width:  # zeros give way to numbers
+        shown = tuple(column for column in shown if any(counts[column] for counts in every))
+    if _width(shown) > terminal.width:
+        return _listed(chart, _column_counts(chart), terminal.width)
     columns = (_ROWS, _COST, *shown)
-    if sum(column.width + 1 for column in columns) > terminal.width:
-        return _listed(chart, _column_counts(chart), shown)
     cells = _cells(chart, shown)
     lines = zip(*(_cells(one, shown) for one in charts or (chart,)), strict=True)
     widths = tuple(max(column.width, *map(len, line)) for column, line in zip(columns, lines, strict=True))
     numbers = " ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True))
     return f"{_header(terminal, columns, widths)}{numbers}\n"
+
+
+def _width(shown: Sequence[Column]) -> int:
+    """Characters that the columns need, those of rows and cost among them."""
+    return sum(column.width + 1 for column in (_ROWS, _COST, *shown)) - 1
 
 
 def _column_counts(chart: ChartResult) -> dict[Column, int]:
@@ -109,12 +119,12 @@ def _cells(chart: ChartResult, shown: Sequence[Column]) -> list[str]:
     return [str(chart.row_count), str(chart.cost), *(str(counts[column] or "·") for column in shown)]
 
 
-def _listed(chart: ChartResult, counts: dict[Column, int], shown: Sequence[Column]) -> str:
-    """The same numbers one below the other, for a terminal that is too narrow for the table."""
-    numbers = {"rows": chart.row_count, "cost units": chart.cost}
-    numbers.update({" ".join(column.header.split("\n")): counts[column] for column in shown})
-    width = max(len(str(number)) for number in numbers.values())
-    return "".join(f"{number!s:>{width}} {name}\n" for name, number in numbers.items())
+def _listed(chart: ChartResult, counts: dict[Column, int], width: int) -> str:
+    """The same numbers as lines of words, without zeros, for a terminal that is too narrow for the table."""
+    numbers = [(chart.row_count, "rows"), (chart.cost, "cost units")]
+    numbers += [(count, column.header.replace("\n", " ")) for column, count in counts.items() if count]
+    words = (f"{count} {_ONE.get(name, name) if count == 1 else name}".replace(" ", "\0") for count, name in numbers)
+    return textwrap.fill(", ".join(words), max(width, 20)).replace("\0", " ") + "\n"
 
 
 @lru_cache(maxsize=64)
@@ -222,7 +232,7 @@ class TextReport(LineReport):
             if chart.estimate is not None:
                 self._line(f"plays like meter {chart.estimate.bill}")
             if chart.score is not None:
-                self._line(f"scores like meter {chart.score.bill}")
+                self._line(f"as hard to score on as meter {chart.score.bill}")
             self._alternatives(chart)
             self._forced(chart)
         for finding in chart.findings:
@@ -231,19 +241,19 @@ class TextReport(LineReport):
             self._line()
 
     def _alternatives(self, chart: ChartResult) -> None:
-        """Other plays: what they cost more and why, and their letters against those of the play above."""
+        """The next best feet: what they cost more and why, and their letters against those of the feet above."""
         if chart.alternatives is None:
             return
-        self._line("other ways to play it:" if chart.alternatives else "there is no other way to play it")
+        self._line("the next best feet:" if chart.alternatives else "no other feet are possible")
         for other in chart.alternatives:
             why = "".join(f", {name} {cost:+}" for name, cost in other.terms).replace(",", ":", 1)
-            self._line("  ", self._paint(f"{other.extra:+} cost units" if other.extra else "tie", "bold"), why)
+            self._line("  ", self._paint(f"{other.extra:+} cost units" if other.extra else "same cost", "bold"), why)
             for run in other.runs:
                 beats = f"{round(run.first_beat, 3):g}"
                 if run.last_beat > run.first_beat:
                     beats += f" to {round(run.last_beat, 3):g}"
                 self._line(
-                    f"      beat {beats}: ", _cut(run.other), self._paint(" in place of ", "dim"), _cut(run.best)
+                    f"      beat {beats}: ", _cut(run.other), self._paint(" instead of ", "dim"), _cut(run.best)
                 )
 
     def _forced(self, chart: ChartResult) -> None:
