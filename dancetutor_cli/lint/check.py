@@ -122,8 +122,8 @@ def _as_sure_as_they_are(
 ) -> Iterator[Finding]:
     """The findings; those that are true only with feet that players may not use are no warnings.
 
-    If other feet cost next to nothing more, the finding is an ambiguity (DT207, with its options if it runs), one for a
-    row.
+    If other feet cost next to nothing more, the finding becomes DT207 either-foot (with its options if it runs), one
+    for a row.
     """
     known = {finding.beat for finding in findings if finding.rule == _AMBIGUITY}
     for finding in findings:
@@ -132,7 +132,7 @@ def _as_sure_as_they_are(
             continue
         margin, confidence = subject.confidence(finding.beat)
         if margin is not None and margin <= settings.coin_toss:
-            qualified = f"ambiguous: either foot can start here. As shown, {finding.message}"
+            qualified = f"either foot: both feet are equally good here; with the feet shown, {finding.message}"
             if ambiguity is None:
                 yield replace(finding, severity="info", message=qualified)
             elif finding.beat not in known:
@@ -140,7 +140,9 @@ def _as_sure_as_they_are(
                 tossed = replace(finding, rule=_AMBIGUITY, name=_rules_of_charts()[_AMBIGUITY].name)
                 yield replace(tossed, severity=ambiguity.options["severity"], message=qualified)
         elif confidence is not None and 100 * confidence < settings.sure_feet:
-            qualified = f"{finding.message} (with these feet, which are {confidence:.0%} sure)".replace("%", " %")
+            qualified = f"{finding.message} (with these feet; the solver is {confidence:.0%} sure of them)".replace(
+                "%", " %"
+            )
             yield replace(finding, severity="info", message=qualified)
         else:
             yield finding
@@ -188,7 +190,10 @@ def _silenced(finding: Finding, subject: ChartSubject) -> bool:
         return False
     tick, code = round(finding.beat * TICKS_PER_BEAT), _EDITOR_CODES.get(finding.rule)
     known = subject.ignores
-    return bool(code and known.silenced(tick, code)) or known.silenced_rule(tick, finding.rule, finding.name)
+    names = {finding.name, all_rules()[finding.rule].former_name} - {""}
+    return bool(code and known.silenced(tick, code)) or any(
+        known.silenced_rule(tick, finding.rule, name) for name in names
+    )
 
 
 def _in_order(findings: Iterable[Finding]) -> tuple[Finding, ...]:

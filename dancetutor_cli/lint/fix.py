@@ -26,7 +26,7 @@ from dancetutor_cli.run.files import ChangedError, back_up, remove_leftovers, wr
 
 FIXABLE = (*FIXED_BY_MOVES, *fix_edits.RULES)  # rules that `--fix` knows a fix for
 _RANKED = "DT213"  # says the rows that are least sure: the next one takes the place of one that is gone
-NO_MOVE = "no edit of a note or a phrase removes it without making a jack, losing a figure or causing another finding"
+NO_MOVE = "every small edit would make a jack, break a motif or cause another finding"
 NO_FIX = {
     fix_edits.BROKEN_HOLD: "its chart holds more than plain notes, or the edit would cause another finding",
     fix_edits.OFF_GRID: "it is 3 ms or more off the grid, or the file has no free row for it",

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 BY_METER = "by-meter"  # what `max_seconds` says where the table of times is to decide
 EPSILON = 1e-6
 Placed = TypeVar("Placed")
+_QUOTED = 4  # things that a message about several lists
 FAMILIES = {1: "file", 2: "feet", 3: "playability", 4: "timing", 5: "pack", 6: "sync and music"}
 
 
@@ -39,6 +40,7 @@ class Rule(ABC):
 
     code: ClassVar[str]
     name: ClassVar[str]
+    former_name: ClassVar[str] = ""  # of an earlier version, which configurations and charts may still hold
     about_feet: ClassVar[bool] = False
     about_tags: ClassVar[bool] = False
     codes: ClassVar[frozenset[str]] = frozenset()
@@ -152,7 +154,19 @@ class ReaderRule(Rule):
                 if not any(known in message for known in messages):
                     messages.append(message)
             for messages, place in by_line.values():
-                yield self.finding("; also: ".join(messages), place, **least)
+                yield self.finding("; also: ".join(_alike(messages)), place, **least)
+
+
+def _alike(messages: Iterable[str]) -> Iterator[str]:
+    """Messages; those that differ only in what they quote first are one: "entry 'a' is ignored; the same for 'b'"."""
+    kinds: dict[tuple[str, str], list[str]] = {}
+    for message in messages:
+        before, _, rest = message.partition("'")
+        quoted, _, after = rest.partition("'")
+        kinds.setdefault((before, after) if after else (message, ""), []).append(f"'{quoted}'" if after else "")
+    for (before, after), (first, *others) in kinds.items():
+        more = f" and {len(others) - _QUOTED} more" if len(others) > _QUOTED else ""
+        yield before + first + after + (f"; the same for {', '.join(others[:_QUOTED])}{more}" if others else "")
 
 
 class Occurrence(NamedTuple):
@@ -295,7 +309,7 @@ _DIGITS = str.maketrans("OIL", "011")  # letters that are typed for digits of a 
 def rule_named(name: str) -> type[Rule]:
     """The rule with this code or name; UsageError with the nearest name."""
     for code, rule in all_rules().items():
-        if name.upper() == code or name.lower() == rule.name:
+        if name.upper() == code or (name and name.lower() in (rule.name, rule.former_name)):
             return rule
     code = "DT" + name.upper()[2:].translate(_DIGITS)
     near = did_you_mean(name, [code] if code in all_rules() else (rule.name for rule in all_rules().values()))
@@ -313,4 +327,6 @@ def matching(selector: str) -> set[str]:
 def named_singly(selectors: Iterable[str]) -> frozenset[str]:
     """Codes of the selectors that are the code or the name of one rule, not of a family."""
     words = {selector.upper() for selector in selectors}
-    return frozenset(code for code, rule in all_rules().items() if {code, rule.name.upper()} & words)
+    return frozenset(
+        code for code, rule in all_rules().items() if {code, rule.name.upper(), rule.former_name.upper()} & words - {""}
+    )

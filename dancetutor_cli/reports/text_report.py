@@ -252,9 +252,7 @@ class TextReport(LineReport):
                 beats = f"{round(run.first_beat, 3):g}"
                 if run.last_beat > run.first_beat:
                     beats += f" to {round(run.last_beat, 3):g}"
-                self._line(
-                    f"      beat {beats}: ", _cut(run.other), self._paint(" instead of ", "dim"), _cut(run.best)
-                )
+                self._line(f"      beat {beats}: ", _cut(run.other), self._paint(" instead of ", "dim"), _cut(run.best))
 
     def _forced(self, chart: ChartResult) -> None:
         """Doublesteps that are no fault of the feet, each with what forces it."""

@@ -31,7 +31,7 @@ class Crossover(TimedRule):
     Not reported:
     - steps between two rests or jumps, if the feet stay uncrossed when the other foot begins;
     - a walk from one pad to the other;
-    - steps at 0.3 s and slower, if the feet can change on a jack instead, or if one doublestep (out of a jack, or to
+    - steps at 0.3 s and slower, if a footswitch in place of a jack avoids the crossover, or if one doublestep (out of a jack, or to
       the other pad) avoids the crossover.
 
     A single crossed step on the way from one pad to the other is an info.
@@ -39,9 +39,9 @@ class Crossover(TimedRule):
     `max_seconds`: only steps at most this long after the step before count. With more time, beginners do not cross but
     start again with the other foot. They also do this at 0.25 s and slower, if the next step comes in half that time
     (an 8th, then a 16th).
-    With by-meter, the limit is the longest time at which at most `share` per cent of the charts of this meter have the
-    move, but at most 0.4 s. On two pads, the walk from one to the other crosses the feet too; few of those crossovers
-    are so quick.
+    by-meter: a crossover is reported if at most `share` per cent of the charts of this meter have one that is as quick.
+    Slower than 0.4 s it is never reported. On two pads, the walk from one to the other crosses the feet too; few of
+    those crossovers are so quick.
 
     Bad (max_seconds = 0.6):
 
@@ -169,8 +169,8 @@ class CrossedRun(ChartRule):
 class HeldCrossover(TimedRule):
     """One foot crosses over the other foot, which has to stay on a hold: the dancer can neither switch feet nor turn.
 
-    In a usual crossover the other foot takes the next step. Here it cannot, so the crossing foot has to come back the
-    way it went. Crossovers at most four measures apart are one finding, because a foot that goes round a held foot
+    After a normal crossover, the other foot steps next. Here it is held, so the crossing foot must come back and
+    doublestep. Crossovers at most four measures apart are one finding, because a foot that goes round a held foot
     makes many of them.
 
     `max_seconds`: only steps at most this long after the step before count; with more time the dancer turns and comes

@@ -70,7 +70,9 @@ class MeterOrder(FileRule):
             for easier, harder in pairwise(charts):
                 rises = harder.meter > easier.meter or (harder.meter == easier.meter and not self.options["strictly"])
                 if easier.difficulty != harder.difficulty and not rises:
-                    message = f"{harder.label} has a harder difficulty than {easier.label} but no higher meter"
+                    than = "no higher than" if harder.meter == easier.meter else "lower than"
+                    message = f"{steps_type} {harder.difficulty} has meter {harder.meter}, {than} "
+                    message += f"{easier.difficulty} with meter {easier.meter}"
                     yield self.finding(message, subject.place(harder.line), chart=harder.index)
 
 
@@ -94,10 +96,12 @@ class Length(ChartRule):
 
 
 class MeterOff(SongRule):
-    """The meter is far from how hard the chart plays, measured on the scale of the song's other charts.
+    """The meter is at least two levels too high or too low for how hard the chart plays.
 
-    `by`: the least difference that is reported, in levels of the meter. The meter also has to be outside the range that
-    80 of 100 charts have that play like this one. Nothing is reported if the scale is unknown. Two other charts of the
+    The estimate is on the scale of the song's other charts.
+
+    `by`: the least difference that is reported, in levels. The meter also has to be outside the range of 80 of 100
+    charts that play like this one. Nothing is reported if the scale is unknown. Two other charts of the
     pad in the file, the tag #METERTYPE or --meter-scale set the scale. docs/meter.md explains the estimate.
 
     Bad: Easy 3, Medium 9 (plays like 6), Hard 8. Better: Easy 3, Medium 6, Hard 8.
@@ -112,14 +116,14 @@ class MeterOff(SongRule):
         off = estimate.meter - chart.meter
         if chart.meter > 0 and abs(off) >= self.options["by"] and not estimate.low <= chart.meter <= estimate.high:
             how = "harder" if off > 0 else "easier"
-            message = f"plays {abs(off):.1f} meters {how} than its meter {chart.meter}, like {estimate.most(4)}"
+            message = f"plays {abs(off):.1f} levels {how} than its meter {chart.meter}: like {estimate.most(4)}"
             yield self.finding(message, chart.place)
 
 
 class OrderOfPlay(SongRule):
-    """A chart plays easier than a chart with an easier difficulty. Their meters do not matter; DT503 compares those.
+    """A chart plays easier than another chart of a lower difficulty, whatever their meters are (DT503 compares meters).
 
-    `by`: the least difference that is reported, in levels of the meter.
+    `by`: the least difference that is reported, in levels.
 
     Bad: a Medium that plays like 7, a Hard that plays like 5. Better: the two exchanged.
     """
@@ -138,7 +142,8 @@ class OrderOfPlay(SongRule):
         hardest = max(below, key=lambda one: one.estimate.meter, default=None)
         if hardest is not None and hardest.estimate.meter - chart.estimate.meter >= self.options["by"]:
             here, there = f"{chart.estimate.meter:.1f}", f"{hardest.estimate.meter:.1f}"
-            message = f"plays like meter {here}, easier than {hardest.label}, which plays like meter {there}"
+            scale = chart.estimate.scale_name
+            message = f"plays like {scale} {here}, easier than {hardest.label}, which plays like {scale} {there}"
             yield self.finding(message, chart.place)
 
 
@@ -159,4 +164,4 @@ class Slots(FileRule):
         there = {f"{chart.steps_type} {chart.difficulty}".lower() for chart in subject.dance_charts}
         missing = [str(slot) for slot in self.options["charts"] if str(slot).lower() not in there]
         if missing:
-            yield self.finding(f"there is no {' and no '.join(missing)}", subject.place())
+            yield self.finding(f"there is no {' and no '.join(missing)}; the pack requires it", subject.place())

@@ -27,13 +27,13 @@ class Doublestep(MoveRule):
 
     Not reported:
     - doublesteps that a hold forces or that a mine asks for, and brackets (two panels at once are one step);
-    - a step just after or soon before a pause of about two steps: there, players step a side panel with the foot of
-      that side;
-    - steps beside two panels that can be jumped, after a wall of mines, or beside a hold on which the feet change:
+    - the first step after a pause of about two steps, or a step just before one: players take a side panel with the
+      foot on that side;
+    - steps beside two panels that can be jumped, after a wall of mines, or beside a holdswitch:
       there, players can go on with either foot;
     - doublesteps that cross the feet, and 16ths where a short crossover avoids the doublestep;
-    - groups of steps, if the time between groups is about twice the time between steps, and the feet stay uncrossed
-      when each group begins with a foot of its own;
+    - groups of steps, if the gap between groups is about twice the gap between steps, and each group can start on the
+      foot that keeps it uncrossed;
     - steps at 0.25 s and slower, if a quicker group begins with the step, or if the repeat can wait until after a rest.
 
     It is only an info:
@@ -42,8 +42,8 @@ class Doublestep(MoveRule):
     - on two pads, after a jack, if alternating feet would be crossed for three steps at most.
 
     `max_seconds`: only steps at most this long after the step before count. After a longer rest, players begin with
-    either foot. With by-meter, the limit is the longest time at which at most `share` per cent of the charts of this
-    meter have the move, but at most 0.32 s, because quarters of an easy chart make nobody stumble.
+    either foot. by-meter: a doublestep is reported if at most `share` per cent of the charts of this meter have one
+    that is as quick. Slower than 0.32 s it is never reported, because nobody stumbles on the 4ths of an easy chart.
     `min_seconds`: steps closer together are a flam, one movement of the foot.
 
     Bad (max_seconds = 0.6):
@@ -94,7 +94,7 @@ class Doublestep(MoveRule):
 
     def message(self, subject: ChartSubject, row: int) -> str:
         """Which foot."""
-        return f"the {subject.foot_name(row)} foot steps twice in a row although the other foot is free"
+        return f"the {subject.foot_name(row)} foot doublesteps although the other foot is free"
 
 
 def _at_a_pause(subject: ChartSubject, row: int) -> bool:
@@ -201,7 +201,7 @@ class TripleStep(TimedRule):
 
     Not reported:
     - steps while the other foot is on a hold, taps of a roll, and steps around a mine;
-    - steps beside two panels that can be jumped, after a wall of mines, or beside a hold on which the feet change:
+    - steps beside two panels that can be jumped, after a wall of mines, or beside a holdswitch:
       there, players can go on with either foot;
     - steps after a jack, if alternating feet stay uncrossed.
 

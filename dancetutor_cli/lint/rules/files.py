@@ -54,7 +54,7 @@ class DifferingPair(FileRule):
 class OddChart(ReaderRule):
     """A chart lacks its steps type, its notes or a field, or its steps type is unknown.
 
-    The games skip such a chart or mix it up with the next one.
+    The games skip such a chart, or read its tags as part of the next one.
 
     Bad: a #NOTEDATA without #NOTES.
 
@@ -231,11 +231,11 @@ class OddNotes(ReaderRule):
 
 def _with_lines(same: list[Finding]) -> Finding:
     """The first of findings that say the same, with the lines of the others."""
-    lines = [str(one.line) for one in same[1:]]
-    if not lines:
+    lines = [str(one.line) for one in same]
+    if len(lines) == 1:
         return same[0]
-    more = f"{', '.join(lines[:_LISTED])}{' ...' if len(lines) > _LISTED else ''}"
-    return replace(same[0], message=f"{same[0].message}; {len(same)} rows are like this, also on line {more}")
+    more = f"{', '.join(lines[: _LISTED + 1])}{' ...' if len(lines) > _LISTED + 1 else ''}"
+    return replace(same[0], message=f"{same[0].message}; {len(same)} rows are like this, on lines {more}")
 
 
 def _flattened(song: Song, chart: Chart) -> bool:

@@ -24,8 +24,7 @@ class LowBracket(TimedRule):
     `least_meter`: from this meter on, players are expected to know brackets.
     `max_seconds`: only rows at most this long after the step before count (less than a 16th at 150 BPM). With more
     time, players jump.
-    `most_quick`: per cent of the steps. If more steps than this come within `max_seconds`, nothing is reported: the
-    chart is not for beginners, whatever its meter says.
+    `most_quick`: a percentage of the steps. If more than this come within `max_seconds`, nothing is reported: the chart is not for beginners, whatever its meter says.
 
     Bad (least_meter = 10, max_seconds = 0.6, most_quick = 100):
 
@@ -78,7 +77,7 @@ _SLIP = 0.02  # seconds between two rows that are meant as one
 
 
 class Unplayable(MoveRule):
-    """No limb is left for a step of this row: both feet and both hands already press something.
+    """No limb is free for a step of this row: both feet and both hands already press something.
 
     Such rows at most two measures apart are one finding. It is an info in charts of meter 99 (gimmicks), and for rows
     less than 20 ms apart. It is also an info if a hand would have to come down again within 0.4 s, because a foot may
@@ -115,13 +114,13 @@ class Unplayable(MoveRule):
         return gimmick or not any(subject.unplayed(row) for row in rows)
 
     def representative(self, subject: ChartSubject, rows: list[int]) -> int:
-        """The first with a step that no limb is left for: a hand in a hurry beside it is the lesser fault."""
+        """The first with a step that no limb is free for: a hand in a hurry beside it is the lesser fault."""
         return next((place for place, row in enumerate(rows) if subject.unplayed(row)), 0)
 
     def message(self, subject: ChartSubject, row: int) -> str:
         """How many steps are left over."""
         if count := subject.unplayed(row):
-            return f"no limb is left for {count} step{'s' if count > 1 else ''} of this row"
+            return f"no limb is free for {count} step{'s' if count > 1 else ''} of this row"
         return f"a hand would have to come down again within {HAND:g} s"
 
 

@@ -44,7 +44,7 @@ class OddTiming(ReaderRule):
 
 
 class OffGrid(ChartRule):
-    """A note is on none of the usual quantisations, mostly after a conversion or a slip of the mouse.
+    """A note is not on a usual quantisation (4th to 64th), usually because of a conversion or a slip of the mouse.
 
     `grid`: the usual quantisations, as players name them (16 for 16ths). Several such rows in a row are one finding.
 
@@ -78,7 +78,7 @@ class OffGrid(ChartRule):
         """One finding for each run of such rows, at its first."""
         for tick, line, count in subject.notes.off_grid([int(name) for name in self.options["grid"]]):
             notes = "this note is" if count == 1 else f"this note and {count - 1} more after it are"
-            yield self.finding(f"{notes} on no {self._names()}", subject.at_tick(tick, line))
+            yield self.finding(f"{notes} not on a {self._names()}", subject.at_tick(tick, line))
 
     def _names(self) -> str:
         names = [f"{name}{'nd' if name % 10 == 2 and name != 12 else 'th'}" for name in self.options["grid"]]
@@ -136,7 +136,7 @@ class ForbiddenNotes(ChartRule):
     def fault(cls, option: str, value: Any) -> str | None:
         """Names of kinds that there are not."""
         unknown = [kind for kind in value if kind not in KINDS] if option == "kinds" else []
-        return f"there is no kind '{unknown[0]}'; there are {', '.join(KINDS)}" if unknown else None
+        return f"there is no kind '{unknown[0]}'; choose {', '.join(KINDS)}" if unknown else None
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each kind, at its first note, with their number."""
@@ -145,5 +145,5 @@ class ForbiddenNotes(ChartRule):
             if ticks_lines:
                 tick, line = ticks_lines[0]
                 count = len(ticks_lines)
-                what = kind if count == 1 else f"{kind}s ({count})"
+                what = f"1 {kind} is" if count == 1 else f"{count} {kind}s are"
                 yield self.finding(f"{what} not allowed", subject.at_tick(tick, line))

@@ -202,7 +202,10 @@ class Translit(FileRule):
         for tag in ("TITLE", "SUBTITLE", "ARTIST"):
             value = subject.song.tags.get(tag, "")
             if _is_other_script(value) and not subject.song.tags.get(f"{tag}TRANSLIT", "").strip():
-                yield self.finding(f"#{tag} is not in Latin letters, #{tag}TRANSLIT is empty", subject.tag_place(tag))
+                yield self.finding(
+                    f"#{tag} is not in Latin letters; write it in Latin letters in #{tag}TRANSLIT",
+                    subject.tag_place(tag),
+                )
 
 
 def _is_other_script(text: str) -> bool:

@@ -71,7 +71,7 @@ def _is_laid_down(subject: ChartSubject, row: int) -> bool:
 
 
 def _leads_a_run(subject: ChartSubject, row: int, quick: float) -> bool:
-    """Whether enough single steps, each quick and on another panel than the one before, follow without a breath."""
+    """Whether enough single steps, each quick and on another panel than the one before, follow without a rest."""
     at = int(subject.step_rows.searchsorted(row))
     rows = subject.step_rows[at : at + _RUN + 1].tolist()
     pressed = [subject.pressed(one) for one in rows]
@@ -153,15 +153,14 @@ class Holdswitch(MoveRule):
     code = "DT211"
     name = "holdswitch"
     move = "holdswitch"
-    description = "holdswitch: the feet change on a held panel"
+    description = "holdswitch: the other foot takes over a hold"
 
 
 class JumpFootswitch(MoveRule):
-    """A quick jump footswitch: a foot on one panel of the jump has to move to the other panel of it.
+    """A quick jump footswitch: the other foot takes over a panel in a jump, and this foot goes to the jump's other panel.
 
     `max_seconds`: only jumps at most this long after the step before count; with more time nobody notices.
-    With by-meter, the limit is the longest time at which at most `share` per cent of the charts of this meter have the
-    move.
+    by-meter: it is reported if at most `share` per cent of the charts of this meter have one that is as quick.
 
     Bad (max_seconds = 0.6): the right foot has just come to the panel that the left foot needs.
 
@@ -182,7 +181,7 @@ class JumpFootswitch(MoveRule):
     name = "jump-footswitch"
     move = "jump-footswitch"
     times = "jump-footswitch"
-    description = "jump footswitch: a foot changes panels within this jump"
+    description = "jump footswitch: the other foot takes over a panel in this jump"
 
 
 class SwitchJack(TimedRule):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class SyncDrift(SyncRule):
-    """The music moves against the beats between the first and the last third: the tempo is a little off.
+    """The sync drifts: from the first to the last third of the song the music moves off the beats; the BPM is slightly off.
 
     `most`: drifts of at most this many ms are not reported. Needs `--sync`; `--plot FILE.svg` shows where it drifts.
 
@@ -44,7 +44,9 @@ class SyncDrift(SyncRule):
 
 
 class BeatOff(SyncRule):
-    """The music is more than a quarter beat off: on-beats of the chart are off-beats of the music.
+    """The chart is half a beat off, or nearly: its beats fall on the off-beats of the music.
+
+    It is reported from a quarter beat on.
 
     Needs `--sync`.
 
@@ -60,7 +62,7 @@ class BeatOff(SyncRule):
             return None
         side = "after" if sync.bias_ms > 0 else "before"
         change = f"change #OFFSET by {-sync.bias_ms / 1000:+.3f}, or as much the other way"
-        return f"the music is {abs(sync.bias_ms):.1f} ms {side} the beats, about half a beat; {change}"
+        return f"half a beat off: the music is {abs(sync.bias_ms):.1f} ms {side} the beats; {change}"
 
 
 _KINDS = {"null": "null", "itg": "ITG"}
@@ -68,7 +70,7 @@ _LISTED = 5
 
 
 class MixedSync(PackRule):
-    """Some songs of the pack are on the beats (null) and others 9 ms after them (ITG): no setting suits both.
+    """Some songs of the pack use null sync (on the beats), others ITG sync (9 ms after them): no setting suits both.
 
     `least`: the least number of songs of the rarer kind that is reported. Needs `--sync`.
 
@@ -87,11 +89,11 @@ class MixedSync(PackRule):
         more = f" and {len(kinds[rarer]) - _LISTED} more" if len(kinds[rarer]) > _LISTED else ""
         listed = f"{', '.join(kinds[rarer][:_LISTED])}{more}"
         many, few = (_count(len(kinds[kind]), _KINDS[kind]) for kind in (usual, rarer))
-        return f"of the songs in this pack {many}, and {few}: {listed}"
+        return f"mixed sync: {many} sync, {few} sync: {listed}"
 
 
 def _count(count: int, kind: str) -> str:
-    return f"{count} {'is' if count == 1 else 'are'} {kind}"
+    return f"{count} song{' uses' if count == 1 else 's use'} {kind}"
 
 
 _SHARE = 0.6  # of the songs that are null or ITG
@@ -138,7 +140,7 @@ class SyncBias(SyncRule):
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """Those of its syncs, and one for a file without #OFFSET."""
         if subject.sync is not None and "OFFSET" not in subject.song.tags:
-            yield self.finding("there is no #OFFSET; the games take 0 s", subject.place())
+            yield self.finding("there is no #OFFSET; the games use 0 s", subject.place())
         yield from super().check(subject)
 
     def message(self, sync: Sync, subject: FileSubject) -> str | None:

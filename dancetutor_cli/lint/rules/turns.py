@@ -166,9 +166,9 @@ def _between_mines(subject: ChartSubject, row: int) -> bool:
 
 
 class JumpSpin(ChartRule):
-    """A spin in a jump: the feet land on the jump only after turning past the dancer's back.
+    """A spin in a jump: to land this jump, the dancer has to turn past 180 degrees.
 
-    Both feet leave the pad, so nothing guides the turn as in a usual spin, and the player cannot see the screen on
+    Both feet leave the pad, so nothing guides the turn as in a normal spin, and the player cannot see the screen on
     landing.
 
     Bad:

@@ -30,8 +30,8 @@ class NoPad(ChartRule):
             yield self.finding(message, subject.at_chart())
 
 
-class FeetWish(ChartRule):
-    """A pinned measure or an override in data.sme contradicts the notes or itself. It is ignored.
+class PinnedFeet(ChartRule):
+    """Pinned feet that contradict the notes or themselves: a pinned measure, or an override in data.sme. They are ignored.
 
     Bad: `{dt1! LR}` on a measure of three rows.
 
@@ -39,7 +39,8 @@ class FeetWish(ChartRule):
     """
 
     code = "DT111"
-    name = "feet-wish"
+    name = "pinned-feet"
+    former_name = "feet-wish"
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each contradiction."""
@@ -47,12 +48,12 @@ class FeetWish(ChartRule):
             yield self.finding(problem.message, {**subject.at_line(problem.line), "column": problem.column or 1})
 
 
-class AmbiguousStart(ChartRule):
-    """A tie: the other foot costs the same, so some players take this step with the left foot and some with the right.
+class EitherFoot(ChartRule):
+    """Either foot: both feet cost the same, so some players take this step with the left foot and some with the right.
 
-    Inside a chart, a tie is reported only if the feet of the next steps depend on it. A tie after a jump is not
-    reported if the jump can be stepped the other way round. A finding of another rule about feet becomes DT207 if other
-    feet cost at most `coin-toss` more (docs/linter.md).
+    Inside a chart, such a step is reported only if the feet of the next steps depend on it. It is not reported after a
+    jump that can be stepped the other way round. A finding of another rule about feet becomes DT207 if other feet cost
+    at most `coin-toss` cost units more (docs/linter.md).
 
     Bad:
 
@@ -70,28 +71,28 @@ class AmbiguousStart(ChartRule):
     """
 
     code = "DT207"
-    name = "ambiguous-start"
+    name = "either-foot"
+    former_name = "ambiguous-start"
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each run of rows that are ties, at its first."""
+        """One finding for each run of rows on which both feet cost the same, at its first."""
         for row, resolved in subject.ties():
             begins = row == subject.step_rows[0]
             if (begins or not resolved) and not subject.is_jump(row):
                 after = "the feet after it are the same" if resolved else "the feet after it depend on this choice"
-                verb = "begin here" if begins else "take this step"
-                yield self.finding(f"either foot can {verb} at the same cost; {after}", subject.at_row(row))
+                what = "to begin with" if begins else "on this step"
+                yield self.finding(f"either foot: both feet are equally good {what}; {after}", subject.at_row(row))
 
 
 class UnsureFeet(ChartRule):
-    """Here the solver is least sure which foot steps: these are the least sure passages of the chart.
+    """Unsure feet: the passages of the chart in which the solver is least sure which foot steps.
 
     "60 % sure" means that about 60 of 100 such rows are stepped as shown. If you check feet by hand, check these rows
     first. If you disagree, pin the measure with `{dt1! ...}`. Nothing is reported if no confidence is known.
 
-    `below`: rows that are less sure than this, in per cent, count. Such rows with at most two other rows between them
-    make one passage.
-    `most`: the largest number of passages of a chart that are reported. Those with the most rows that are likely to be
-    wrong come first.
+    `below`: a percentage. Rows of which the solver is less sure than this make a passage, with at most two other rows
+    between them.
+    `most`: the largest number of passages that are reported in a chart, those with the most likely mistakes first.
 
     Bad: a footswitch that may also be a jack. Better: a step on another panel before it, or a mine where the foot has
     to be lifted. If either foot will do, leave it as it is.
@@ -116,9 +117,9 @@ class UnsureFeet(ChartRule):
         for rows in passages[: int(self.options["most"])]:
             row, least = min(rows, key=lambda one: one[1])
             if len(rows) == 1:
-                message = f"the feet of this row are only {least:.0%} sure".replace("%", " %")
+                message = f"the solver is only {least:.0%} sure of the feet in this row".replace("%", " %")
             else:
-                at, last = (round(subject.beat(one), 3) for one in (row, rows[-1][0]))
-                message = f"the feet of {len(rows)} rows up to beat {last:g} are unsure: on beat {at:g} they are only "
-                message += f"{least:.0%} sure".replace("%", " %")
+                at, first, last = (round(subject.beat(one), 3) for one in (row, rows[0][0], rows[-1][0]))
+                message = f"the solver is unsure of {len(rows)} rows, beats {first:g} to {last:g}: only "
+                message += f"{least:.0%} sure on beat {at:g}".replace("%", " %")
             yield self.finding(message, subject.at_row(rows[0][0]))
