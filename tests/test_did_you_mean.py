@@ -42,5 +42,5 @@ def test_nothing_is_proposed_for_what_is_far(capsys: pytest.CaptureFixture[str])
     with pytest.raises(SystemExit):
         main(["qqq"])
     said = capsys.readouterr().err
-    assert "there is no command 'qqq'; there are: analyze, annotate" in said
+    assert "there is no command 'qqq'; choose analyze, annotate" in said
     assert "did you mean" not in said

@@ -312,7 +312,7 @@ def load_character(name_or_path: str) -> Character:
     path = Path(name_or_path)
     if path.suffix.lower() not in SUFFIXES:
         near, names = did_you_mean(name_or_path, BUILT_IN), ", ".join(BUILT_IN)
-        raise UsageError(f"no character {name_or_path!r}{near}; there are: {names}, or give a .glb or .vrm file")
+        raise UsageError(f"there is no character {name_or_path!r}{near}; choose {names}, or a .glb or .vrm file")
     from dancetutor_cli.character.fitting import fit_character
 
     return fit_character(path)

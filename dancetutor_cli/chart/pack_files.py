@@ -89,7 +89,7 @@ def _steps_type(text: Any) -> str:
     if not any(fnmatchcase(known, pattern) for known in names.COLUMNS):
         near = did_you_mean(pattern, names.COLUMNS)
         there = ", ".join(sorted({f"{known.partition('-')[0]}-*" for known in names.COLUMNS}))
-        raise ValueError(f"'{shown_key(text)}' is not a steps type{near}; there are {there}")
+        raise ValueError(f"'{shown_key(text)}' is not a steps type{near}; choose {there}")
     return pattern
 
 
@@ -98,7 +98,7 @@ def _difficulty(text: Any) -> str:
     name, known = names.difficulty(str(text), "", 0, old=True)
     if not known:
         near, there = did_you_mean(str(text), names.DIFFICULTIES), ", ".join(names.DIFFICULTIES)
-        raise ValueError(f"'{shown_key(text)}' is not a difficulty{near}; there are {there}")
+        raise ValueError(f"'{shown_key(text)}' is not a difficulty{near}; choose {there}")
     return name.lower()
 
 

@@ -134,6 +134,12 @@ class Selection:
         """Whether every chart is meant."""
         return self == Selection()
 
+    @property
+    def options(self) -> str:
+        """What the user typed, for messages: "--difficulty hard, --index 9"."""
+        typed = {name: getattr(self, name) for name in ("steps_type", "difficulty", "index", "player")}
+        return ", ".join(f"--{name.replace('_', '-')} {value}" for name, value in typed.items() if value is not None)
+
     def charts(self, song: Song) -> tuple[Chart, ...]:
         """The charts of `song` that match, in file order; may be empty."""
         return tuple(select(song, _parts(self.steps_type), _parts(self.difficulty), self.index))
@@ -146,7 +152,11 @@ class Selection:
         chart = select_one(song, _parts(self.steps_type), _parts(self.difficulty), self.index)
         found = self.parts(chart)
         if not found:
-            raise UsageError(f"{song.path}: {chart.label} has no notes for player {self.player}")
+            raise UsageError(
+                f"{song.path}: {chart.label} has no notes for --player {self.player}; choose 1 to {len(chart.players)}"
+            )
+        if self.player is not None and self.player > 1 and not chart.players:
+            raise UsageError(f"{song.path}: {chart.label} is for one player; leave --player out")
         return found[0]
 
     def parts(self, chart: Chart) -> tuple[Chart, ...]:
@@ -204,9 +214,8 @@ def select_one(
     if len(found) == 1:
         return found[0]
     if not found:
-        raise UsageError(f"{song.path}: no such chart; the file has {_listed(song.charts)}")
-    how = "--index" if len({(c.steps_type, c.difficulty) for c in found}) < len(found) else "--steps-type, --difficulty"
-    raise UsageError(f"{song.path}: several charts match; choose one with {how}: {_listed(found)}")
+        raise UsageError(f"{song.path}: no such chart; choose one with --index N: {_listed(song.charts)}")
+    raise UsageError(f"{song.path}: several charts match; choose one with --index N: {_listed(found)}")
 
 
 def _difficulty(text: str) -> str:
@@ -214,9 +223,9 @@ def _difficulty(text: str) -> str:
 
     name, known = names.difficulty(text, "", 0, old=True)
     if not known:
-        raise UsageError(f"there is no difficulty '{text}'; there are {', '.join(names.DIFFICULTIES)}")
+        raise UsageError(f"there is no difficulty '{text}'; choose {', '.join(names.DIFFICULTIES)}")
     return name
 
 
 def _listed(charts: Iterable[Chart]) -> str:
-    return "; ".join(f"{chart.index}: {chart.label}" for chart in charts)
+    return ", ".join(f"{chart.index} {chart.label}" for chart in charts)

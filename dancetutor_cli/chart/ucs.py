@@ -118,7 +118,7 @@ class _Text:
         elif name == "Mode":
             if value.lower() not in _MODES:
                 there = "Single, Double, S-Performance, D-Performance"
-                raise ChartError(self.path, f"mode '{msd.quote(value)}' is unknown; there are {there}", line)
+                raise ChartError(self.path, f"mode '{msd.quote(value)}' is unknown; choose {there}", line)
             if self.spans:
                 raise ChartError(self.path, "the mode changes after rows: a file holds one chart", line)
             self.mode = value

@@ -25,14 +25,14 @@ from dancetutor_cli.run.errors import did_you_mean
 
 # name -> (module, short help); the short help stands here so that `--help` imports no subcommand.
 COMMANDS = {
-    "analyze": ("analyze", "Work out which foot steps each note, and check the chart."),
+    "analyze": ("analyze", "Find which foot steps each note, and check the chart."),
     "annotate": ("annotate", "Write L/R foot markers into chart files, or remove them."),
-    "animate": ("animate", "Bake a 3D dancer who plays a chart."),
+    "animate": ("animate", "Write the motion of a 3D dancer who plays a chart."),
     "retarget": ("retarget", "Put captured motion on a character."),
-    "render": ("render", "Make a tutorial video, picture sequence or GIF of a chart."),
+    "render": ("render", "Make a tutorial film, picture sequence or GIF of a chart."),
     "page": ("page", "Make a web page to practise a chart with: loops, speeds, a pad."),
     "doctor": ("doctor", "Check renderers, encoders, caches, fonts and disk."),
-    "warmup": ("warmup", "Compile everything once, so that later runs start quickly."),
+    "warmup": ("warmup", "Compile everything now, so that later runs start quickly."),
     "completion": ("completion", "Make the Tab key complete commands, options and names."),
 }
 
@@ -88,7 +88,7 @@ class _LazyGroup(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         name = args[0]
         if name not in COMMANDS and not name.startswith("-"):
-            ctx.fail(f"there is no command '{name}'{did_you_mean(name, COMMANDS)}; there are: {', '.join(COMMANDS)}")
+            ctx.fail(f"there is no command '{name}'{did_you_mean(name, COMMANDS)}; choose {', '.join(COMMANDS)}")
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

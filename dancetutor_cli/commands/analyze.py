@@ -116,8 +116,8 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 @click.option(
     "--full/--brief",
     default=None,
-    help="Full: print a table for each chart and the rows around each finding. Brief: print at most a screen for a "
-    "song and a page for a pack.  [default: brief at a terminal, otherwise one line per finding]",
+    help="Full: print a table for each chart and the rows around each finding. Brief: print at most one screen for "
+    "a song and 60 lines for a pack.  [default: brief at a terminal, otherwise one line per finding]",
 )
 @click.option(
     "--statistics",
@@ -153,8 +153,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     type=click.IntRange(min=0, max=100),
     default=0,
     metavar="N",
-    help="Print the N next best ways to play a chart: which feet differ, and which costs decide.  [formats text and "
-    "json]",
+    help="Print the N next best feet of a chart: which rows differ, and which costs decide.  [formats text and json]",
 )
 @click.option(
     "--fix",
@@ -188,7 +187,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 @into("selection", Selection)
 @into("options", AnalyzeOptions)
 def command(selection: Selection, options: AnalyzeOptions) -> int:
-    """Work out which foot steps each note, and check the chart.
+    """Find which foot steps each note, and check the chart.
 
     PATH is a .sm, .ssc or .ucs file, a folder with such files, or - for standard input.
 
@@ -299,6 +298,7 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
     report = _open_view(view, tasks, output)
     least = "warning" if tally.fail_on == "never" else tally.fail_on
     report.begin()
+    is_for_several = False
     kept = None if options.no_cache else default_folder()
     cache = None if kept is None else ResultCache(kept)
     if not options.no_cache and not options.quiet and (fault := results_folder()[1]):
@@ -306,12 +306,16 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
     for raw in run.with_packs(analyze_all(tasks, options.jobs, cache, _before_work)):
         result = run.without_baseline(raw)
         tally.add(result)
+        is_for_several |= any(chart.player for chart in raw.charts)
         pack.add(raw)
         if options.quiet or (run.has_baseline and options.format_name == "text"):
             result = result.at_least(least if options.quiet else "info")
             if not (result.error or result.findings or result.charts):
                 continue
         report.add(result)
+    selection = run.request.selection
+    none_matches = not tally.charts and not tally.unreadable and bool(tally.unselected or selection.player)
+    tally.quiet |= none_matches  # the error says it all
     tally.page += pack.lines()
     if options.statistics and options.format_name == "text":
         tally.page += tally.statistics()
@@ -324,6 +328,11 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
     if cache is not None and not options.watch:
         _keep(files)
     _finish(run, tally, options)
+    if none_matches:
+        has = f"; the file has {', '.join(tally.unselected[:20])}" if len(files) == 1 and tally.unselected else ""
+        raise UsageError(f"no chart matches {selection.options}{has}")
+    if (player := selection.player) is not None and not is_for_several and not options.quiet:
+        click.echo(f"note: --player {player} has no effect: every chart here is for one player", err=True)
     return tally.exit_status
 
 
@@ -372,6 +381,3 @@ def _finish(run: LintRun, tally: Tally, options: AnalyzeOptions) -> None:
         click.echo(tally.suggestions(), err=True)
     for line in message if not options.quiet else ():
         click.echo(line, err=True)
-    if not tally.charts and not tally.unreadable and tally.unselected:
-        has = "; ".join(tally.unselected[:20])
-        raise UsageError(f"no chart matches --steps-type, --difficulty and --index; there are {has}")

@@ -106,7 +106,7 @@ class AnimateOptions:
 @into("dance", DanceOptions)
 @into("options", AnimateOptions)
 def command(file: Path, selection: Selection, dance: DanceOptions, options: AnimateOptions) -> None:
-    """Bake a 3D dancer who plays one chart of FILE.
+    """Write the motion of a 3D dancer who plays one chart of FILE.
 
     The ending of the output name sets the format: .glb for any glTF viewer, .npz with numpy arrays, .bvh for motion
     capture tools, or .json with only the steps of each foot. A chart for two players gives two files, NAME-p1 and

@@ -42,7 +42,7 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
     for name in names:
         if name not in STRIPPED:
             raise UsageError(
-                f"there is no marker style '{name}'{did_you_mean(name, STYLES)}; there are {', '.join(STYLES)}"
+                f"there is no marker style '{name}'{did_you_mean(name, STYLES)}; choose {', '.join(STYLES)}"
             )
     if not names:
         raise UsageError(f"--markers: name one or more of {', '.join(STYLES)}")
@@ -67,8 +67,8 @@ class AnnotateOptions:
 @click.argument("paths", nargs=-1, required=True, type=GivenPath(holds_charts=True), metavar="PATH...")
 @click.option(
     "--markers", "styles", callback=_styles, metavar="STYLE[,STYLE]",
-    help=f"How to write the feet: {', '.join(STYLES)} (theme shows them during play).  [default: measure; with --strip "
-    "all, and background for a film that render has added]",
+    help=f"How to write the feet: {', '.join(STYLES)} (theme shows them during play).  [default: measure. "
+    "--strip removes all of them; background: the entry of a film that render added]",
 )  # fmt: skip
 @click.option("--strip", is_flag=True, help="Remove the markers: all, or only those of --markers.")
 @click.option("--check", is_flag=True, help="Write nothing; exit status 1 if feet are missing or stale.")
@@ -84,7 +84,12 @@ class AnnotateOptions:
 @click.option("--into-file", is_flag=True, help="Write into the chart file: with --markers edit, not into .edit files.")
 @click.option("--force", is_flag=True, help="Also overwrite or remove pinned measures, {dt1! ...}.")
 @click.option("--backup", is_flag=True, help="Keep the old file as NAME.bak.")
-@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Number of processes.  [default: as many as fit]")
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Number of processes.  [default: one per core, as memory allows]",
+)
 @quiet_option
 @verbose_option
 @exclude_option
@@ -209,6 +214,7 @@ class _Talk:
     files: Counter[str] = field(default_factory=Counter)
     lacking: bool = False
     unselected: list[str] = field(default_factory=list)
+    skipped: int = 0
 
     def begin(self) -> None:
         if "rows" in self.request.styles and not self.request.strip and not self.quiet:
@@ -225,7 +231,8 @@ class _Talk:
             return
         self.files["changed" if outcome.changed else "unchanged"] += 1
         if outcome.unselected:
-            self.unselected.append(f"{outcome.source}: {', '.join(outcome.unselected)}")
+            self.unselected += outcome.unselected
+            self.skipped += 1
         self.lacking |= bool(outcome.lacks or outcome.problems)
         if self.check:
             for line in (*outcome.problems, *outcome.lacks):
@@ -233,7 +240,7 @@ class _Talk:
         if self.request.diff:
             for line in coloured(outcome.diff):
                 click.echo(line)
-        elif not self.check and not self.quiet:
+        elif not self.check and not self.quiet and not outcome.unselected:
             details = _leftover_message(outcome) if self.request.strip else _details(outcome)
             click.echo(f"{self._verb(outcome)} {safe(str(outcome.source))}{details}")
             for path in outcome.companions:
@@ -251,9 +258,9 @@ class _Talk:
 
     def end(self) -> int:
         total = sum(self.files.values())
-        if self.unselected and len(self.unselected) == total - self.files["failed"]:
-            has = safe("; ".join(self.unselected[:20]))
-            raise UsageError(f"no chart matches --steps-type, --difficulty and --index; there are {has}")
+        if self.skipped and self.skipped == total - self.files["failed"]:
+            has = f"; the file has {', '.join(self.unselected[:20])}" if total == 1 else ""
+            raise UsageError(safe(f"no chart matches {self.request.selection.options}{has}"))
         words = {} if self.request.write else {"changed": "would change"}
         parts = ", ".join(f"{n} {words.get(name, name)}" for name, n in sorted(self.files.items()) if n)
         if not self.quiet:

@@ -1,4 +1,4 @@
-"""Words before work: what `dancetutor` alone prints, and that a first run compiles for a minute."""
+"""Messages before the work starts: what `dancetutor` prints without a command, and the note about compiling."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = No
 
     size : gives the bytes of the note data to be solved; little is solved without compiling. None: compile in any case
 
-    That they cannot be kept in the usual place is said everywhere: each run may take a minute longer for it.
+    That they cannot be kept in the usual place is said everywhere: each run may take 40 s longer for it.
     """
     from dancetutor_cli.feet.solver.compiled import interpret, is_compiled
     from dancetutor_cli.run.kernels.store import VARIABLE, kernel_folder
@@ -68,7 +68,7 @@ def first_steps(folder: Path) -> str:
     whose = "your song" if song is not None else "the demo song"
     name = _quoted(song or str(next(charts_path().rglob("*.ssc"))))
     lines = [
-        f"dancetutor {dancetutor_cli.__version__}: finds the feet of stepcharts and shows a dancer who plays them.",
+        f"dancetutor {dancetutor_cli.__version__}: finds which foot steps each note, and shows a dancer who steps them.",
         "",
         f"Try next, with {whose}:",
         f"  dancetutor analyze {name}",
@@ -78,7 +78,7 @@ def first_steps(folder: Path) -> str:
         f"  dancetutor annotate {name} --diff",
         "      what L and R in the file would look like; without --diff they are written, --strip removes them",
         f"  dancetutor render {name} --index 0 --section m1:m8 -o dance.mp4",
-        "      a film of the first measures; the first one takes a minute or two longer",
+        "      a film of the first measures; the first film on a machine takes about 40 s longer",
         "",
         "  dancetutor analyze Songs/MyPack    a pack of your own",
         "  dancetutor doctor                  what works on this machine, and how to repair the rest",

@@ -43,8 +43,8 @@ pack_options = combined(
         "--tech-counts",
         type=GivenPath(exists=True),
         metavar="CACHE|FILE.csv",
-        help="Compare technique counts with those of ITGmania (its folder Cache/Songs) or of a CSV file: print only a "
-        "table. With --full: also every chart that differs.",
+        help="Compare technique counts with ITGmania's song cache (its folder Cache/Songs) or with a CSV file. Print "
+        "only a table. With --full: also every chart that differs.",
     ),
     click.option(
         "--meter-scale",
@@ -123,10 +123,10 @@ def check_comparison(options: AnalyzeOptions) -> None:
 
 
 def report_changes(options: AnalyzeOptions, output: IO[str]) -> int:
-    """`--compare`: print what changed, nothing if nothing did; the exit status."""
+    """`--compare`: print what changed; the exit status."""
     is_brief = not options.full if options.full is not None else output.isatty()
     lines = list(_changes(options, _BRIEF_ROWS if is_brief else None))
-    shown = lines[: _BRIEF + 1] if is_brief else lines
+    shown = (lines[: _BRIEF + 1] if is_brief else lines) or [f"no changes since {safe_path(str(options.compare))}"]
     if len(shown) < len(lines):
         shown.append(f"... and {len(lines) - len(shown)} more lines; --full shows them")
     output.writelines(f"{line}\n" for line in shown)

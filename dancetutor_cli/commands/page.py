@@ -67,8 +67,8 @@ class PageOptions:
 @click.option(
     "--second",
     metavar="next|PRESET|FILE",
-    help="Add a second dancer: next for the next best feet, or the feet of another preset or of a JSON file, or the "
-    "motion of an .npz file.",
+    help="Add a second dancer: with the next best feet (next), with the feet of another preset or of a JSON file, or "
+    "with the motion of an .npz file.",
 )
 @language_option("Language of the words.  [default: the browser's]")
 @jobs_option("folders and for songs over two minutes")

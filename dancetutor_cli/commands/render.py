@@ -69,7 +69,7 @@ _NO_BACKGROUND = (
 @click.option(
     "--background",
     is_flag=True,
-    help="Film only the dancer, as long as the music: a video that a game plays behind the notes.",
+    help="Film only the dancer, as long as the music: the game plays it behind the notes.",
 )
 @click.option(
     "--into-file", is_flag=True, help="Write into the chart file: with --background, add the film to #BGCHANGES."
@@ -103,7 +103,7 @@ _NO_BACKGROUND = (
 @into("dance", DanceOptions)
 @into("options", RenderOptions)
 def command(path: Path, selection: Selection, dance: DanceOptions, options: RenderOptions) -> None:
-    """Make a video of a dancer who plays one chart of PATH, beside the notes with L and R on them.
+    """Make a film of a dancer who plays one chart of PATH, beside the notes with L and R on them.
 
     The ending of the output name sets the format: .mp4 (H.264 with the music of the song), .gif or .webp.
     If PATH is a folder, make a film of every chart in it. Finished films are not made again, so an interrupted run
@@ -140,7 +140,7 @@ def _background(path: Path, options: RenderOptions) -> list[Path]:
     """The chart files that get an entry of the film; UsageError for options that make no film behind notes."""
     if not options.background:
         if options.into_file:
-            raise UsageError("--into-file belongs to --background")
+            raise UsageError("--into-file works only with --background; add --background")
         return []
     given = [name for name in _NO_BACKGROUND if getattr(options, name)]
     if given:

@@ -104,7 +104,7 @@ def corrections_of(text: str) -> tuple[str, ...]:
         if word not in _CORRECTIONS:
             near = did_you_mean(word, _CORRECTIONS)
             raise UsageError(
-                f"--correct: there is no correction '{word}'{near}; there are: {', '.join(_CORRECTIONS)}, none"
+                f"--correct: there is no correction '{word}'{near}; choose {', '.join(_CORRECTIONS)}, none"
             )
     return tuple(word for word in _CORRECTIONS if word in words)
 

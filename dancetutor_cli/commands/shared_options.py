@@ -96,7 +96,10 @@ preset_option = click.option(
 )
 
 verbose_option = click.option(
-    "-v", "--verbose", is_flag=True, help="Print every warning, not one line for the same warning in many files."
+    "-v",
+    "--verbose",
+    is_flag=True,
+    help="Print every warning. Without it, a warning that many files share is printed once.",
 )
 
 quiet_option = click.option("-q", "--quiet", is_flag=True, help="Print only what makes the run fail.")
@@ -168,8 +171,9 @@ ragdoll_options = combined(
         "--style",
         shell_complete=named(folder("styles")),
         metavar="NAME[:WEIGHT],...",
-        help="Add physics: a ragdoll follows the motion in a style: neutral, lazy, fierce, heavy, feminine, or a file "
-        "like those in configs/styles; or in a blend: fierce:0.6,heavy:0.4.",
+        help="Add physics: a ragdoll follows the motion. NAME is neutral, lazy, fierce, heavy, feminine, or a style "
+        "file like those in configs/styles. It also changes how the dancer steps. Blend styles with weights, such as "
+        "fierce:0.6,heavy:0.4.",
     ),
     click.option(
         "--push",
@@ -182,7 +186,7 @@ ragdoll_options = combined(
         type=float,
         multiple=True,
         metavar="TIME",
-        help="Catch the foot that is in the air at this second of the song.",
+        help="Make the dancer stumble: something catches the foot that is in the air at this second of the song.",
     ),
 )
 
@@ -242,4 +246,4 @@ def _language(context: click.Context, option: click.Parameter, value: str | None
     names = config_names("languages")
     if value is None or value in names:
         return value
-    raise UsageError(f"there is no language '{value}'{did_you_mean(value, names)}; there are: {', '.join(names)}")
+    raise UsageError(f"there is no language '{value}'{did_you_mean(value, names)}; choose {', '.join(names)}")

@@ -88,7 +88,7 @@ def _draw(prepared: PreparedFilm, quality: Quality) -> None:
 @click.command(cls=GroupedCommand)
 @quiet_option
 def command(quiet: bool) -> None:
-    """Compile everything once, so that later runs start at once.
+    """Compile everything now, so that later runs start quickly.
 
     Solve, bake and draw a few frames of the demo song. This fills the cache of compiled code.
     """

@@ -242,7 +242,7 @@ def _steps(path: Path, row: dict[str, Any], tick: int, steps: Any, limb: Any, pa
             raise FileError(path, f"{where}: the chart has no step in column {column}")
         if name is not None and (not isinstance(name, str) or name not in _LIMB_NUMBERS):
             raise FileError(
-                path, f"{where}: no limb is called '{shown_key(name)}'; there are {', '.join(_LIMB_NUMBERS)}, null"
+                path, f"{where}: there is no limb '{shown_key(name)}'; choose {', '.join(_LIMB_NUMBERS)}, null"
             )
         limb[column] = Limb.UNPLAYED if name is None else _LIMB_NUMBERS[name]
         part[column] = _PART_NUMBERS.get(str(step.get("part")), int(Part.WHOLE))

@@ -195,7 +195,7 @@ def _base(source: MarkedYaml, name: str, seen: tuple[Path, ...], confined: bool)
         raise source.error(("extends",), "'extends' names a file outside this file's folder; put it beside this file")
     if not is_regular(path):
         there = ", ".join(preset_names())
-        raise source.error(("extends",), f"there is no preset '{name}'; there are: {there}, or name a file")
+        raise source.error(("extends",), f"there is no preset '{name}'; choose {there}, or a file")
     return _load(path, seen, confined)
 
 

@@ -49,7 +49,7 @@ def _letters(value: Any) -> str:
     wrong = [letter for letter in letters if letter not in LETTERS]
     if wrong or not letters:
         known = f"{', '.join(MEANING)}, or {UNKNOWN} for any"
-        raise ValueError(f"'{shown_key(wrong[0] if wrong else '')}' is not a limb; there are {known}")
+        raise ValueError(f"'{shown_key(wrong[0] if wrong else '')}' is not a limb; choose {known}")
     return letters
 
 

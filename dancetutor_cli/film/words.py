@@ -36,7 +36,7 @@ def move_words(names: Iterable[str], path: Path, language: Language) -> dict[str
     """The words of these moves, in their order; `path` : where they are named, for a FileError about one without."""
     table, names = language.moves, tuple(names)
     if unknown := set(names) - set(table):
-        raise FileError(path, f"there is no move '{min(unknown)}'; there are: {', '.join(sorted(table))}")
+        raise FileError(path, f"there is no move '{min(unknown)}'; choose {', '.join(sorted(table))}")
     return {name: table[name] for name in names}
 
 

@@ -94,7 +94,7 @@ def _find_animation(container: Container, wanted: str | None) -> dict[str, Any]:
         if animation.get("name") == wanted:
             return animation
     names = ", ".join(str(a.get("name", ""))[:40] for a in animations[:40])
-    raise FileError(container.path, f"there is no animation {wanted!r}; there are: {names}")
+    raise FileError(container.path, f"there is no animation {wanted!r}; choose {names}")
 
 
 def _channels(container: Container, animation: dict[str, Any]) -> list[tuple[int, str, Array, Array]]:

@@ -315,7 +315,7 @@ def _others(song: Song, selected: tuple[Chart, ...], task: AnalyzeTask, meters: 
 
 def _unselected(song: Song, selected: tuple[Chart, ...]) -> tuple[str, ...]:
     meant = {chart.index for chart in selected}  # a file may hold thousands of charts
-    return tuple(chart.label for chart in song.charts if chart.index not in meant)
+    return tuple(f"{chart.index} {chart.label}" for chart in song.charts if chart.index not in meant)
 
 
 def load_song(task: AnalyzeTask) -> Song:

@@ -134,7 +134,7 @@ def _located(source: str | Path) -> Path:
     named = config_path(f"lint/{source}.yaml")
     if not named.is_file():
         names = ", ".join(config_names("lint"))
-        raise UsageError(f"there is no lint configuration '{source}'; there are: {names}, or name a file")
+        raise UsageError(f"there is no lint configuration '{source}'; choose {names}, or a file")
     return named
 
 
@@ -161,9 +161,7 @@ def _extended(source: MarkedYaml, name: str) -> Path:
         raise source.error(("extends",), "'extends' names a file outside this file's folder; put it beside this file")
     if not is_regular(folder / name):
         there = ", ".join(names)
-        raise source.error(
-            ("extends",), f"there is no configuration '{shown_key(name)}'; there are: {there}, or name a file"
-        )
+        raise source.error(("extends",), f"there is no configuration '{shown_key(name)}'; choose {there}, or a file")
     return folder / name
 
 
@@ -200,9 +198,7 @@ def _preset(source: MarkedYaml, name: str, place: Keys) -> str:
         raise source.error(place, "'preset' names a file outside this file's folder; put it beside this file")
     if path.suffix.lower() not in (".yaml", ".yml") and not is_regular(path):
         there, near = ", ".join(preset_names()), did_you_mean(name, preset_names())
-        raise source.error(
-            place, f"there is no preset '{shown_key(name)}'{near}; there are: {there}, or name a .yaml file"
-        )
+        raise source.error(place, f"there is no preset '{shown_key(name)}'{near}; choose {there}, or a .yaml file")
     return str(path)
 
 

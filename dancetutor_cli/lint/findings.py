@@ -166,7 +166,7 @@ class Estimate:
 
     @property
     def bill(self) -> str:
-        """For people: "11.4 on the ITG scale (80 % likely: 10.2 to 12.6; the scale is a guess): streams +3.1, other +0.2"."""
+        """For people: "11.4 on the ITG scale (80 % likely: 10.2 to 12.6): streams +3.1, other +0.2"."""
         return _bill(f"{self.meter:.1f}{self.span}", self.terms, 1)
 
     def most(self, count: int) -> str:
@@ -180,7 +180,7 @@ class Estimate:
 
     @property
     def span(self) -> str:
-        """For people: " on the ITG scale (80 % likely: 10.2 to 12.6; the scale is a guess)"; with "at rate 1.1" if it is not 1."""
+        """For people: " on the ITG scale at rate 1.1 (80 % likely: 10.2 to 12.6; the scale is a guess)"."""
         rate = "" if self.rate == 1.0 else f" at rate {self.rate:g}"
         guess = "" if self.is_scale_known else "; the scale is a guess"
         return f" on the {_SCALE_NAMES[self.scale]} scale{rate} (80 % likely: {self.low:.1f} to {self.high:.1f}{guess})"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
@@ -240,20 +241,24 @@ def _hardest(song: Song, chart: Chart, preset: Preset, number: int) -> tuple[flo
     found = () if play is None else hardest(play, chart.timing)
     if not 1 <= number <= len(found):
         many = plural(len(found), "passage")
-        raise UsageError(f"section hardest:{number}: the chart has only {many} harder than the rest of it")
+        raise UsageError(f"--section hardest:{number}: the chart has only {many} harder than the rest of it")
     return max(0.0, found[number - 1].start), found[number - 1].end
 
 
 def _around_finding(song: Song, chart: Chart, preset: Preset, rule: str, number: int) -> tuple[float, float]:
     from dancetutor_cli.lint.check import findings_of
+    from dancetutor_cli.lint.rule import rule_named
     from dancetutor_cli.lint.subject import solved_chart
 
     findings = findings_of(solved_chart(song, chart, preset))
     found = [one.beat for one in findings if one.rule == rule and one.beat is not None]
     if not 1 <= number <= len(found):
-        has = ", ".join(sorted({one.rule for one in findings})) or "none at all"
-        many = plural(len(found), "finding")
-        raise UsageError(f"section {rule}:{number}: the chart has {many} of {rule}; it has: {has}")
+        rule_named(rule)
+        counts = Counter(one.rule for one in findings if one.beat is not None)
+        has = ", ".join(f"{code}:{count}" for code, count in sorted(counts.items()))
+        many = plural(len(found), "finding") if found else "no finding"
+        there = f"; the last ones of each rule are {has}" if has else ""
+        raise UsageError(f"--section {rule}:{number}: the chart has {many} of {rule}{there}")
     beat = found[number - 1]
     ends = chart.timing.seconds_of_beats(np.array([max(0.0, beat - AROUND), beat + AROUND]))
     return float(ends[0]), float(ends[1])

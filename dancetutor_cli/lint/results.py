@@ -102,7 +102,7 @@ class FileResult:
     warnings: tuple[str, ...]
     findings: tuple[Finding, ...]  # about the file, not about one chart
     charts: tuple[ChartResult, ...]
-    unselected: tuple[str, ...] = ()  # labels of the charts that were not asked for
+    unselected: tuple[str, ...] = ()  # index and label of the charts that were not asked for
     sync: Sync | None = None
 
     def at_least(self, severity: str) -> FileResult:

@@ -152,10 +152,10 @@ def _git(folder: Path, revision: str, *words: str) -> bytes:
         return done.stdout
     why = done.stderr.decode("utf-8", "replace")
     if "not a git repository" in why:
-        raise UsageError(f"{message}, and {folder} is in no git repository")
+        raise UsageError(f"{message}, and {folder} is not in a git repository")
     if "dubious ownership" in why:
         raise UsageError(
-            f"--compare {revision}: {folder} is in a repository of somebody else, which git does not read; "
+            f"--compare {revision}: {folder} is in a repository that belongs to another user; git does not read it; "
             "if you trust it, add it to git's safe.directory"
         )
     if words[0] == "rev-parse":

@@ -12,7 +12,7 @@ from dancetutor_cli.chart.model import Chart, Kind, Song
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.lint.snapshots import Snapshot, StoredFile
-from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.errors import FileError, plural
 
 _SIGNS = {
     Kind.TAP: "1", Kind.HOLD: "2", Kind.ROLL: "4", Kind.MINE: "M", Kind.LIFT: "L", Kind.FAKE: "F", Kind.KEYSOUND: "K",
@@ -32,7 +32,7 @@ class RowChange:
 
     def __str__(self) -> str:
         what = f"{self.before} → {self.now}" if self.before and self.now else ""
-        what = what or (f"new {self.now}" if self.now else f"gone {self.before}")
+        what = what or (f"new {self.now}" if self.now else f"removed {self.before}")
         beat = f"measure {self.tick // TICKS_PER_MEASURE} beat {round(self.tick / TICKS_PER_BEAT, 3):g}"
         return f"{beat}: {what}{f', {self.note}' if self.note else ''}"
 
@@ -53,7 +53,7 @@ def compare(before: Snapshot, now: Snapshot) -> Iterator[ChartChange]:
         if name not in before.files:
             yield ChartChange(name, "", (before.new,))
         elif name not in now.files:
-            yield ChartChange(name, "", ("is gone",))
+            yield ChartChange(name, "", ("was removed",))
         else:
             yield from _file(name, before.files[name], now.files[name])
 
@@ -83,7 +83,7 @@ def _file(name: str, before: StoredFile, now: StoredFile) -> Iterator[ChartChang
         if key not in charts:
             yield ChartChange(name, others[key].label, (f"is new: {len(_rows(others[key]))} rows",))
         elif key not in others:
-            yield ChartChange(name, charts[key].label, ("is gone",))
+            yield ChartChange(name, charts[key].label, ("was removed",))
         elif (change := _chart(name, charts[key], others[key])) is not None:
             yield change
 
@@ -127,8 +127,9 @@ def _chart(name: str, old: Chart, new: Chart) -> ChartChange | None:
                  if a.get(tick) != b.get(tick))  # fmt: skip
     if rows:
         added, lost = sum(not row.before for row in rows), sum(not row.now for row in rows)
-        kinds = ((added, "new"), (lost, "gone"), (len(rows) - added - lost, "other"))
-        changes.append(f"rows: {', '.join(f'{count} {kind}' for count, kind in kinds if count)}")
+        kinds = ((added, "added"), (lost, "removed"), (len(rows) - added - lost, "changed"))
+        (count, kind), *others = (one for one in kinds if one[0])
+        changes.append(", ".join([f"{plural(count, 'row')} {kind}", *(f"{count} {kind}" for count, kind in others)]))
     return ChartChange(name, new.label, tuple(changes), rows) if changes else None
 
 

@@ -219,7 +219,9 @@ class _Work:
             notes=tuple(self.notes),
             problems=tuple(problem.at(self.item.source) for problem in self.problems),
             lacks=tuple(lack.at(self.item.source) for lack in self.lacks),
-            unselected=() if selection.is_all or self._charts(self.song) else tuple(c.label for c in self.song.charts),
+            unselected=()
+            if selection.is_all or self._charts(self.song)
+            else tuple(f"{c.index} {c.label}" for c in self.song.charts),
             counts=tuple(sorted(self.counts.items())),
             changed=any(change.needed for change in self.changes),
             companions=tuple(change.path for change in self.changes[1:] if change.needed),

@@ -10,6 +10,7 @@ from html import escape
 import dancetutor_cli
 from dancetutor_cli.reports.pack import TECHNIQUES, Pack, PackChart
 from dancetutor_cli.reports.terminal import safe, safe_path
+from dancetutor_cli.run.errors import plural
 
 # Pictures of a pack as inline SVG: bars of meters, dots over meters, shares of facing. Hover says which chart.
 

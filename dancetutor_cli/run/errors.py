@@ -56,6 +56,9 @@ class UnavailableError(DancetutorError):
     """Something outside the project is missing: OpenGL, an encoder, disk space. Says how to repair it."""
 
 
+_MANY = 12  # names that a message does not list if it knows the one that was meant
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """To be put behind a wrong word in a message: " (did you mean NAME?)" with the nearest name, "" if none is near."""
     from difflib import get_close_matches
@@ -63,6 +66,18 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     names = {name.lower(): name for name in known}
     near = get_close_matches(word.strip().lower(), names, n=1)
     return f" (did you mean {names[near[0]]}?)" if near else ""
+
+
+def choice(word: str, known: Iterable[str], *others: str) -> str:
+    """To be put behind a wrong word: " (did you mean NAME?); choose A, B, or a .yaml file".
+
+    Of many names only the nearest one is said, if one is near. others : what may be written besides the names
+    """
+    names = list(known)
+    near = did_you_mean(word, names)
+    if not names or (near and len(names) > _MANY):
+        return near
+    return f"{near}; choose {', '.join([*names, *(f'or {other}' for other in others)])}"
 
 
 # Large parts that not everybody needs are extras: the packages of each, and the message if they are missing.

@@ -13,7 +13,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from dancetutor_cli.run.errors import FileError, MissingFileError, UnavailableError, UsageError, did_you_mean
+from dancetutor_cli.run.errors import FileError, MissingFileError, UnavailableError, UsageError, choice
 
 # Reads the files of strangers: only regular files, of a bounded size; JSON of a bounded depth, every name once.
 #
@@ -202,8 +202,7 @@ def named_file(folder: str, name: str | Path) -> Path:
         return config_path(f"{folder}/{name}.yaml")
     if path.suffix.lower() in (".yaml", ".yml") or is_regular(path):
         return path
-    near, there = did_you_mean(str(name), names), ", ".join(names)
-    raise UsageError(f"there is no {folder[:-1]} '{name}'{near}; there are: {there}, or give a .yaml file")
+    raise UsageError(f"there is no {folder[:-1]} '{name}'{choice(str(name), names, 'a .yaml file')}")
 
 
 def charts_path() -> Path:

@@ -12,7 +12,7 @@ from math import inf
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
 
-from dancetutor_cli.run.errors import FileError, did_you_mean
+from dancetutor_cli.run.errors import FileError, choice
 from dancetutor_cli.run.reading import shown_key
 
 T = TypeVar("T")
@@ -145,8 +145,7 @@ class MarkedYaml:
         for name in names:
             if name not in known:
                 where = f" in '{_path(keys)}'" if keys else ""
-                near, there = did_you_mean(str(name), known), ", ".join(known) or "none"
-                message = f"unknown key '{shown_key(name)}'{where}{near}; there are: {there}"
+                message = f"unknown key '{shown_key(name)}'{where}{choice(str(name), known)}"
                 raise self.error((*keys, str(name)), message)
 
     def only(self, keys: Keys, known: Collection[str]) -> None:
@@ -201,8 +200,8 @@ def _value(source: MarkedYaml, keys: Keys, data: Any, hint: Any, base: Any = Non
         return _mapping(source, keys, data, inner, base) if is_mapping else _list(source, keys, data, hint)
     names = _names_of(kind, marks)
     if names and (not isinstance(data, str) or data not in names):
-        near = did_you_mean(data, names) if isinstance(data, str) else ""
-        raise _wrong(source, keys, data, hint, f"there is no {_shown(data)}{near}; there are: {', '.join(names)}")
+        there = choice(data if isinstance(data, str) else "", names)
+        raise _wrong(source, keys, data, hint, f"there is no {_shown(data)}{there}")
     if not names and not _fits(data, kind, _bounds(marks)):
         raise _wrong(source, keys, data, hint)
     return float(data) if kind is float else data

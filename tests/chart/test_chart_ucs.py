@@ -244,7 +244,7 @@ GOOD = written([("120", "0", 2, ["X....", "....X"])], newline="\n").decode()
         (":Format=1\n", "", 6, "no :Format=1 has come yet"),
         (":Format=1", ":Format=2", 1, "format '2' is unknown"),
         (":Mode=Single\n", "", 6, "no :Mode= has come yet"),
-        (":Mode=Single", ":Mode=Triple", 2, "mode 'Triple' is unknown; there are Single, Double"),
+        (":Mode=Single", ":Mode=Triple", 2, "mode 'Triple' is unknown; choose Single, Double"),
         (":BPM=120\n:Delay=0\n:Beat=4\n:Split=2\n", "", 3, "no :BPM=, :Delay=, :Beat=, :Split= has come yet"),
         (":Split=2\n", "", 3, "the block that begins here has no :Split="),
         (":BPM=120\n:Delay=0\n", "", 3, "has no :BPM= and no :Delay="),

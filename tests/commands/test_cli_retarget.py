@@ -106,7 +106,7 @@ def test_an_animation_of_a_character_is_a_motion_too(shared_data: Path, tmp_path
     assert "keys, " in run(rogue, "-o", out, "--animation", "Jump_Full_Short", "--correct", "none")
     feet = read_npz(out).root[:, 1]
     assert np.ptp(feet) > 0.1, "she jumps"
-    assert "there is no animation 'Jmp'; there are: " in said(rogue, "-o", out, "--animation", "Jmp")
+    assert "there is no animation 'Jmp'; choose " in said(rogue, "-o", out, "--animation", "Jmp")
     robot = shared_data / "characters" / "raylib_robot.glb"
     assert "is not a usable humanoid (13 of 15 bones): no leftHand, rightHand; " in said(robot, "-o", out)
 

@@ -104,7 +104,7 @@ def test_a_form_of_ones_own_and_motion_on_top(tmp_path: Path) -> None:
     assert load_settings(None, str(mine)).step.toe_out == 15
     both = load_settings(numbers, str(mine)).step
     assert (both.toe_out, both.edge) == (3, 0.5)
-    with pytest.raises(UsageError, match=r"no form 'edgy' \(did you mean edge\?\); there are: edge, heels-in"):
+    with pytest.raises(UsageError, match=r"no form 'edgy' \(did you mean edge\?\); choose edge, heels-in"):
         load_settings(None, "edgy")
     mine.write_text("step: {toes: 15}\n")
     with pytest.raises(FileError, match=":1: unknown key 'toes' in 'step'"):

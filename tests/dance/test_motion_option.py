@@ -52,7 +52,7 @@ def test_a_file_makes_her_stand_lower(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("option", "text", "said"),
     [
-        ("--motion", "jump:\n  hight: 1\n", ":2: unknown key 'hight' in 'jump'; there are: apex_near"),
+        ("--motion", "jump:\n  hight: 1\n", ":2: unknown key 'hight' in 'jump'; choose apex_near"),
         ("--motion", None, "cannot be read"),
         ("--gait", "slow: {}\n", "slow.period is missing"),
     ],

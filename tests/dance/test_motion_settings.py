@@ -50,7 +50,7 @@ def test_a_file_changes_only_what_it_names(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("step:\n  speed: 1", ":2: unknown key 'speed' in 'step'; there are: longest"),
+        ("step:\n  speed: 1", ":2: unknown key 'speed' in 'step'; choose longest"),
         ("jump:\n  tuck: 0\n  far: wide", ":3: jump.far must be a number from 0 to 20 metres, not 'wide'"),
         ("jump: {far: -1}", ":1: jump.far must be a number from 0 to 20 metres, not -1"),
         ("jump: {far: .nan}", ":1: "),
@@ -58,7 +58,7 @@ def test_a_file_changes_only_what_it_names(tmp_path: Path) -> None:
         ("face: {ease: 0}", ":1: face.ease must be a number from 0.001 to 1000 seconds, not 0"),
         ("face: {smile_time: 0}", ":1: face.smile_time must be a number from 0.001 to 1000 seconds, not 0"),
         ("groove: {phrase_ease: 0}", ":1: groove.phrase_ease must be a number from 0.001 to 1000 seconds, not 0"),
-        ("step: {fast: 0.2}\nlegs: {}", ":2: unknown key 'legs' (did you mean layers?); there are: step"),
+        ("step: {fast: 0.2}\nlegs: {}", ":2: unknown key 'legs' (did you mean layers?); choose step"),
         ("step: 3", ":1: step must be a mapping"),
         ("step: [1, 2", ":"),
     ],
@@ -86,7 +86,7 @@ def test_a_new_gait_is_one_file(tmp_path: Path) -> None:
     load_gait.cache_clear()
     with pytest.raises(FileError, match=r"strut.yaml:1: slow.stride is missing"):
         load_gait(str(path))
-    with pytest.raises(UsageError, match=r"no gait 'heel' \(did you mean heels\?\); there are: flat, heels"):
+    with pytest.raises(UsageError, match=r"no gait 'heel' \(did you mean heels\?\); choose flat, heels"):
         load_gait("heel")
 
 

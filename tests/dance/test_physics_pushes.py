@@ -105,7 +105,7 @@ def test_two_runs_give_the_same_bytes(plain: Motion) -> None:
         ("x:300:left", "the time 'x' is not a number"),
         ("nan:300:left", "the time 'nan' is not a number"),
         ("12:0:left", "the force must be more than 0 and at most 3000 newtons"),
-        ("12:300:lef", r"no direction 'lef' \(did you mean left\?\); there are: ahead, left, back, right, or degrees"),
+        ("12:300:lef", r"no direction 'lef' \(did you mean left\?\); choose ahead, left, back, right, or degrees"),
         ("12:300:400", "the direction must be at most 360 degrees"),
         ("12:300:nan", "the direction must be at most 360 degrees"),
     ],

@@ -42,19 +42,19 @@ def test_a_file_changes_only_what_it_names(tmp_path: Path) -> None:
     [
         (
             "placment: end\n",
-            r"mine\.yaml:1: unknown key 'placment' \(did you mean placement\?\); there are: placement, limits",
+            r"mine\.yaml:1: unknown key 'placment' \(did you mean placement\?\); choose placement, limits",
         ),
-        ("limits: true\nplacement: top\n", r":2: placement: there is no 'top'; there are: end, center, hybrid"),
+        ("limits: true\nplacement: top\n", r":2: placement: there is no 'top'; choose end, center, hybrid"),
         ("limits: 1\n", r":1: limits must be true or false, not 1"),
         ("body: {gravity: 99}\n", r":1: body\.gravity must be a number from -50 to 50 m/s\^2, not 99"),
-        ("body: {mass: 9}\n", r":1: unknown key 'mass' in 'body'; there are: gravity"),
+        ("body: {mass: 9}\n", r":1: unknown key 'mass' in 'body'; choose gravity"),
         ("springs: {arms: 5}\n", r":1: springs\.arms must be a mapping of frequency, damping, not 5"),
         ("springs: {arms: {frequency: [1, 2], damping: 1}}\n", r"frequency must be one number or three, not \[1, 2\]"),
         (
             "springs: {all: {frequency: 99, damping: 1}}\n",
             r":1: springs\.all\.frequency\[0\] must be a number from 0 to 60 hertz, not 99",
         ),
-        ("density: {legs: 5}\n", r":1: unknown key 'legs' in 'density'; there are: all, pelvis"),
+        ("density: {legs: 5}\n", r":1: unknown key 'legs' in 'density'; choose all, pelvis"),
         ("force: {chest: [1, .nan, 2]}\n", r":1: a number must be finite"),
         ("disabled: skull\n", r":1: disabled must be a list of values, each text, not"),
         (
@@ -70,9 +70,7 @@ def test_a_wrong_file_is_reported_with_its_line(tmp_path: Path, text: str, said:
 
 
 def test_an_unknown_name_lists_those_that_there_are() -> None:
-    with pytest.raises(
-        UsageError, match=r"there is no style 'neutrl' \(did you mean neutral\?\); there are: .*neutral"
-    ):
+    with pytest.raises(UsageError, match=r"there is no style 'neutrl' \(did you mean neutral\?\); choose .*neutral"):
         load_style("neutrl")
     with pytest.raises(DancetutorError, match=r"gone\.yaml"):
         load_style("gone.yaml")

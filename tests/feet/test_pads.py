@@ -69,7 +69,7 @@ def test_a_pad_of_ones_own(tmp_path: Path) -> None:
             "reach",
             "reech",
             5,
-            "unknown key 'reech' in 'demo-pad' (did you mean reach?); there are: panels, centre, home, reach",
+            "unknown key 'reech' in 'demo-pad' (did you mean reach?); choose panels, centre, home, reach",
         ),
         ("  reach: 1.5\n", "", 2, "demo-pad.reach is missing; it must be a number"),
         ("[a, b]", "[a, c]", 4, "two different panels of a, b"),

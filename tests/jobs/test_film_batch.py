@@ -197,7 +197,7 @@ def test_names_meters_and_twins(pack: Path, tmp_path: Path) -> None:
     batch = batch_request((pack,), tmp_path / "v", name="{difficulty}", meters=(8, 10))
     names = [job.output.name for job in film_list(batch)[0]]
     assert names == ["hard.mp4", "hard-2.mp4", "hard-3.mp4"]
-    with pytest.raises(UsageError, match="there are: title"):
+    with pytest.raises(UsageError, match="choose title"):
         film_list(replace(batch, name="{title.__class__}"))
     with pytest.raises(UsageError, match="slashes"):
         film_list(replace(batch, name="../{title}"))

@@ -71,7 +71,7 @@ def test_no_other_play_and_no_chart() -> None:
 def test_the_command_reports_them_in_text_and_json() -> None:
     options = [str(DEMO), "--index", "3", "--alternatives", "2", "--exit-zero"]
     text = CliRunner().invoke(command, options, standalone_mode=False).stdout
-    assert "other ways to play it:" in text and text.count(" in place of ") >= 2
+    assert "the next best feet:" in text and text.count(" instead of ") >= 2
     found = json.loads(CliRunner().invoke(command, [*options, "--format", "json"], standalone_mode=False).stdout)
     (chart,) = found["files"][0]["charts"]
     assert len(chart["alternatives"]) == 2 and set(chart["alternatives"][0]) == {"extra", "terms", "runs"}

@@ -64,7 +64,7 @@ def test_a_file_changes_single_entries(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("option", "words"),
     [
-        ("DT508: {kinds: [mine, spikes]}", "there is no kind 'spikes'; there are mine, roll, hold"),
+        ("DT508: {kinds: [mine, spikes]}", "there is no kind 'spikes'; choose mine, roll, hold"),
         ("DT401: {grid: []}", "divisors of 192"),
         ("DT401: {grid: [0]}", "divisors of 192"),
         ("DT401: {grid: [4, 7]}", "divisors of 192"),

@@ -48,10 +48,10 @@ def test_sure_feet_make_a_warning() -> None:
 @pytest.mark.parametrize("margins", [[SURE, SURE, 5, SURE, SURE, SURE, SURE], [SURE, 3, SURE, SURE, SURE, SURE, SURE]])
 def test_a_coin_toss_is_an_ambiguity(margins: list[int]) -> None:  # of its row, or of the step before
     (finding,) = found(margins)
-    assert (finding.rule, finding.name, finding.severity) == ("DT207", "ambiguous-start", "info")
+    assert (finding.rule, finding.name, finding.severity) == ("DT207", "either-foot", "info")
     assert finding.message == (
-        "ambiguous: either foot can start here. As shown, "
-        "the right foot steps twice in a row although the other foot is free"
+        "either foot: both feet are equally good here; with the feet shown, "
+        "the right foot doublesteps although the other foot is free"
     )
 
 
@@ -66,7 +66,7 @@ def test_an_ambiguity_is_reported_once_in_a_row() -> None:
 def test_a_coin_toss_without_the_rule_for_it_is_an_info() -> None:
     (finding,) = found([SURE, SURE, 0, SURE, SURE, SURE, SURE], only="DT201")
     assert (finding.rule, finding.severity) == ("DT201", "info")
-    assert finding.message.startswith("ambiguous: either foot can start here")
+    assert finding.message.startswith("either foot: both feet are equally good here")
 
 
 @pytest.mark.parametrize("rule", ["DT201", "DT207"])
@@ -78,7 +78,7 @@ def test_what_an_author_has_silenced_stays_silent_as_a_coin_toss(rule: str) -> N
 def test_unsure_feet_make_an_info_that_says_so() -> None:
     (finding,) = found([SURE] * 7, [1, 1, 0.72, 1, 1, 1, 1])
     assert (finding.rule, finding.severity) == ("DT201", "info")
-    assert finding.message.endswith("(with these feet, which are 72 % sure)")
+    assert finding.message.endswith("(with these feet; the solver is 72 % sure of them)")
 
 
 def test_no_severity_makes_an_unsure_finding_more() -> None:

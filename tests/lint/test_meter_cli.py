@@ -32,17 +32,21 @@ def printed(*words: str) -> str:
 def test_text_has_the_terms() -> None:
     told = [line for line in printed("--full").splitlines() if line.startswith("plays like")]
     assert len(told) == 6
-    assert "rest" in told[-1] or "+" in told[-1]
-    assert all(re.match(r"plays like meter \d+\.\d on the \w+ scale \(\d+\.\d to \d+\.\d[;)]", line) for line in told)
+    assert "other" in told[-1] or "+" in told[-1]
+    form = r"plays like meter \d+\.\d on the \w+ scale \(80 % likely: \d+\.\d to \d+\.\d[;)]"
+    assert all(re.match(form, line) for line in told)
 
 
 def test_the_brief_form_has_the_number_alone() -> None:
     assert "plays like" in printed("--brief")
-    assert "scores like" in printed("--brief")
+    assert "to score on" in printed("--brief")
     assert "streams +" not in printed("--brief", "--select", "DT501")
 
 
-_SCORE = r"scores like meter \d+\.\d\d on the DDR scale \(\d+\.\d\d to \d+\.\d\d\): level \d+\.\d\d, "
+_SCORE = (
+    r"as hard to score on as meter \d+\.\d\d on the DDR scale "
+    r"\(80 % likely: \d+\.\d\d to \d+\.\d\d\): base level \d+\.\d\d, "
+)
 
 
 def test_text_has_scores_like_below_plays_like() -> None:

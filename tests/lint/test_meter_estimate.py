@@ -51,7 +51,7 @@ def test_the_terms_add_up_and_are_printed_in_order() -> None:
         assert told.bill.startswith(f"{told.meter:.1f} on the ")
     one = Estimate(11.4, 10, 13, "itg", True, (("streams", 3.1), ("rest", 0.02)))
     assert (
-        one.bill == "11.4 on the ITG scale (10.0 to 13.0): streams +3.1"
+        one.bill == "11.4 on the ITG scale (80 % likely: 10.0 to 13.0): streams +3.1"
         and one.most(1) == "11.4 on the ITG scale: streams +3.1"
     )
 
@@ -153,7 +153,7 @@ def test_a_chart_without_a_known_scale_has_a_wider_interval() -> None:
     sure, guess = on_scale(one, "itg", True), on_scale(one, "itg", False)
     assert guess.meter == sure.meter
     assert guess.low < sure.low and guess.high > sure.high
-    assert "; scale assumed)" in guess.span and "assumed" not in sure.span
+    assert "; the scale is a guess)" in guess.span and "guess" not in sure.span
 
 
 def test_pads_that_nobody_has_rated_have_no_estimate() -> None:

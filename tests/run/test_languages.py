@@ -129,7 +129,7 @@ def test_letters_that_no_font_has_are_one_line_and_no_boxes(tmp_path: Path, monk
 def test_an_unknown_language_names_those_there_are() -> None:
     done = CliRunner().invoke(cli, ["page", "charts", "--language", "jp"])
     assert isinstance(done.exception, UsageError)
-    assert str(done.exception) == "there is no language 'jp'; there are: de, en, es, ja, ko"
+    assert str(done.exception) == "there is no language 'jp'; choose de, en, es, ja, ko"
 
 
 def test_the_language_of_analyze_is_that_of_a_sheet(tmp_path: Path) -> None:

@@ -182,7 +182,7 @@ def weights_within(text: str, folder: Path) -> list[tuple[str, float]]:
         if is_outside(path, folder):
             raise UsageError(f"'{name}' is outside the folder of the style file; put it beside it")
         if name not in names and not path.suffix and not path.is_file():
-            raise UsageError(f"there is no style '{name}'{did_you_mean(name, names)}; there are: {', '.join(names)}")
+            raise UsageError(f"there is no style '{name}'{did_you_mean(name, names)}; choose {', '.join(names)}")
         out.append((name if name in names else str(path), weight))
     return out
 

@@ -173,9 +173,7 @@ def parse_push(text: str) -> Push:
         degrees = float(way)
     except ValueError:
         near, names = did_you_mean(way, _WAYS), ", ".join(_WAYS)
-        raise UsageError(
-            f"--push {text}: there is no direction '{way}'{near}; there are: {names}, or degrees"
-        ) from None
+        raise UsageError(f"--push {text}: there is no direction '{way}'{near}; choose {names}, or degrees") from None
     if not abs(degrees) <= 360:
         raise UsageError(f"--push {text}: the direction must be at most 360 degrees")
     return Push(second, newtons, degrees)

@@ -74,7 +74,7 @@ def _check_names(style: Style, what: str, given: Iterable[str], names: list[str]
     for name in given:
         if name not in names:
             near = did_you_mean(name, names)
-            raise UsageError(f"style {style.name}: there is no {what} '{name}'{near}: {', '.join(names)}")
+            raise UsageError(f"style {style.name}: there is no {what} '{name}'{near}; choose {', '.join(names)}")
 
 
 def _places(skeleton: Skeleton, bone: Bone, style: Style) -> list[tuple[str, Array, Array]]:

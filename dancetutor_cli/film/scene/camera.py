@@ -187,7 +187,7 @@ def _named(name: str, look: Look) -> CameraLook:
     if name in look.cameras:
         return look.cameras[name]
     meant, names = did_you_mean(name, look.cameras), ", ".join(look.cameras)
-    raise UsageError(f"no camera '{name}'{meant}; there are: {names}, or POSITION/TARGET as x,y,z/x,y,z")
+    raise UsageError(f"there is no camera '{name}'{meant}; choose {names}, or POSITION/TARGET as x,y,z/x,y,z")
 
 
 def _points(text: str) -> list[list[float]]:

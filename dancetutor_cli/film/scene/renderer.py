@@ -68,9 +68,9 @@ def create(
     UnavailableError : ``gl`` was asked for and there is no OpenGL
     """
     if quality not in QUALITIES:
-        raise UsageError(f"no quality '{quality}'; there are: {', '.join(QUALITIES)}")
+        raise UsageError(f"there is no quality '{quality}'; choose {', '.join(QUALITIES)}")
     if kind not in RENDERERS:
-        raise UsageError(f"no renderer '{kind}'; there are: {', '.join(RENDERERS)}")
+        raise UsageError(f"there is no renderer '{kind}'; choose {', '.join(RENDERERS)}")
     if not (16 <= size[0] <= 8192 and 16 <= size[1] <= 8192):
         raise UsageError(f"a picture of {size[0]}x{size[1]} pixels is not possible; 16 to 8192 each way")
     many = kind == "auto" and len(scene.character.skeleton.names) > MOST_JOINTS

@@ -96,7 +96,7 @@ def check_name(template: str) -> None:
     except ValueError as error:
         raise UsageError(f"name '{template}': {error}") from error
     if unknown := [name for name in fields if name not in FIELDS]:
-        raise UsageError(f"name '{template}': unknown {{{unknown[0]}}}; there are: {', '.join(FIELDS)}")
+        raise UsageError(f"name '{template}': there is no {{{unknown[0]}}}; choose {', '.join(FIELDS)}")
     if "/" in template or "\\" in template:
         raise UsageError(f"name '{template}': the films of a batch are in one folder; leave slashes out")
 

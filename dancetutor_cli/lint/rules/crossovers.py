@@ -31,8 +31,8 @@ class Crossover(TimedRule):
     Not reported:
     - steps between two rests or jumps, if the feet stay uncrossed when the other foot begins;
     - a walk from one pad to the other;
-    - steps at 0.3 s and slower, if a footswitch in place of a jack avoids the crossover, or if one doublestep (out of a jack, or to
-      the other pad) avoids the crossover.
+    - steps at 0.3 s and slower, if one of these avoids the crossover: a footswitch instead of a jack, or a doublestep
+      out of a jack or to the other pad.
 
     A single crossed step on the way from one pad to the other is an info.
 

@@ -24,7 +24,8 @@ class LowBracket(TimedRule):
     `least_meter`: from this meter on, players are expected to know brackets.
     `max_seconds`: only rows at most this long after the step before count (less than a 16th at 150 BPM). With more
     time, players jump.
-    `most_quick`: a percentage of the steps. If more than this come within `max_seconds`, nothing is reported: the chart is not for beginners, whatever its meter says.
+    `most_quick`: a percentage of the steps. If more than this come within `max_seconds`, nothing is reported: the
+    chart is not for beginners, whatever its meter says.
 
     Bad (least_meter = 10, max_seconds = 0.6, most_quick = 100):
 

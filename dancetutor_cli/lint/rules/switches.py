@@ -157,7 +157,7 @@ class Holdswitch(MoveRule):
 
 
 class JumpFootswitch(MoveRule):
-    """A quick jump footswitch: the other foot takes over a panel in a jump, and this foot goes to the jump's other panel.
+    """A quick jump footswitch: in a jump the other foot takes over a panel, and this foot goes to the other one.
 
     `max_seconds`: only jumps at most this long after the step before count; with more time nobody notices.
     by-meter: it is reported if at most `share` per cent of the charts of this meter have one that is as quick.

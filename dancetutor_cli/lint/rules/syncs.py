@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class SyncDrift(SyncRule):
-    """The sync drifts: from the first to the last third of the song the music moves off the beats; the BPM is slightly off.
+    """The sync drifts: the music moves off the beats between the first and the last third, so the BPM is slightly off.
 
     `most`: drifts of at most this many ms are not reported. Needs `--sync`; `--plot FILE.svg` shows where it drifts.
 

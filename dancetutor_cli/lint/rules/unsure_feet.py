@@ -31,7 +31,7 @@ class NoPad(ChartRule):
 
 
 class PinnedFeet(ChartRule):
-    """Pinned feet that contradict the notes or themselves: a pinned measure, or an override in data.sme. They are ignored.
+    """Pinned feet, or an override in data.sme, contradict the notes or themselves. They are ignored.
 
     Bad: `{dt1! LR}` on a measure of three rows.
 
