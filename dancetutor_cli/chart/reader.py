@@ -250,7 +250,7 @@ def parse(data: bytes, path: Path) -> Song:
         return read_ucs(data, path)
     tags = [Tag(_ALIASES.get(tag.name, tag.name), tag.start, tag.spans) for tag in msd.scan(data)]
     if not tags:
-        raise ChartError(path, "no charts: the file has no tags like #TITLE:...;", 1)
+        raise ChartError(path, "no charts: the file has no tags such as #TITLE; check that it is a chart file", 1)
     is_ssc = suffix == ".ssc" or (suffix == EDIT_SUFFIX and any(tag.name == "NOTEDATA" for tag in tags))
     reader = (_Ssc if is_ssc else _Sm)(data, path, tags)
     song = reader.song()

@@ -271,9 +271,9 @@ def parse_section(text: str, timing: Timing, end_second: float) -> tuple[float, 
     start = _second(*first, timing) if first else 0.0
     end = _second(*last, timing) if last else end_second
     if start >= end_second:
-        raise UsageError(f"section '{text}' starts at {start:.1f} s, after the end of the song at {end_second:.1f} s")
+        raise UsageError(f"--section {text} starts at {start:.1f} s, after the end of the song at {end_second:.1f} s")
     if end <= start:
-        raise UsageError(f"section '{text}' ends at {end:.1f} s, not after its start at {start:.1f} s")
+        raise UsageError(f"--section {text} ends at {end:.1f} s, not after its start at {start:.1f} s")
     return start, min(end, end_second)
 
 
@@ -281,7 +281,7 @@ def _ends(text: str) -> tuple[tuple[float, str] | None, tuple[float, str] | None
     """Number and unit ("s", "b" or "m") of both ends; None for an end that is left out."""
     start, colon, end = text.partition(":")
     if not colon or ":" in end or not (start.strip() or end.strip()):
-        raise UsageError(f"section '{text}' cannot be read; {_SECTION_HELP}")
+        raise UsageError(f"--section {text} cannot be read; {_SECTION_HELP}")
     return _point(start, text), _point(end, text)
 
 
@@ -294,7 +294,7 @@ def _point(point: str, whole: str) -> tuple[float, str] | None:
     except ValueError:
         number = math.nan
     if match is None or not math.isfinite(number):
-        raise UsageError(f"section '{whole}': '{point.strip()}' cannot be read; {_SECTION_HELP}")
+        raise UsageError(f"--section {whole}: '{point.strip()}' cannot be read; {_SECTION_HELP}")
     return number, (match["unit"] or match["suffix"] or "s").lower()
 
 

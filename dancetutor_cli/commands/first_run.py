@@ -68,7 +68,7 @@ def first_steps(folder: Path) -> str:
     whose = "your song" if song is not None else "the demo song"
     name = _quoted(song or str(next(charts_path().rglob("*.ssc"))))
     lines = [
-        f"dancetutor {dancetutor_cli.__version__}: finds which foot steps each note, and shows a dancer who steps them.",
+        f"dancetutor {dancetutor_cli.__version__}: finds which foot steps each note, and shows a dancer doing it.",
         "",
         f"Try next, with {whose}:",
         f"  dancetutor analyze {name}",

@@ -163,7 +163,7 @@ def parse_rates(text: str) -> tuple[float, ...]:
         rates = ()
     if not rates or not all(SLOWEST <= rate <= FASTEST for rate in rates):
         raise UsageError(
-            f"rate '{text}': give speeds from {SLOWEST:g} to {FASTEST:g}, separated by commas, as 0.5,0.75,1"
+            f"--rate {text}: write speeds from {SLOWEST:g} to {FASTEST:g}, separated by commas, such as 0.5,0.75,1"
         )
     return rates
 

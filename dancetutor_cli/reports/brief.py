@@ -199,7 +199,7 @@ def _head(widest: int, charts: Sequence[ChartResult]) -> str:
     """The names of the columns of `_counts`, and what a "?" in them means."""
     guess = any(chart.estimate and not chart.estimate.is_scale_known for chart in charts)
     names = f"{'':{widest + 2}}  plays like  to score on   rows"
-    return f"{names}  (?: the scale is a guess)" if guess else names
+    return f"{names}  (?: guessed scale)" if guess else names
 
 
 def _counts(chart: ChartResult, widest: int) -> str:

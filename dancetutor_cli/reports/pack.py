@@ -28,6 +28,7 @@ TECHNIQUES = {
     "spins": ("spin",),
     "hand presses": ("hand",),
 }
+_SHORT = {"crossovers": "XO", "footswitches": "FS", "doublesteps": "DS"}  # as players write them
 _ORDER = ("Beginner", "Easy", "Medium", "Hard", "Challenge")
 _MUSIC, _PAIR = "DT107", "DT109"
 _MOST_HAVE = 0.8  # a difficulty that so many of the songs have is missed in the others
@@ -158,7 +159,7 @@ class Pack:
             if songs:
                 yield f"{words} {_some(songs)}"
         if self._unreadable:
-            yield f"wrong: cannot be read: {_some(list(self._unread()))}"
+            yield f"wrong: cannot be read: {_some(list(self._unread()), 'files')}"
         yield from self._sync()
 
     def _missing_difficulties(self) -> Iterator[str]:
@@ -213,15 +214,14 @@ def _much_of(charts: list[PackChart]) -> Iterator[tuple[float, str]]:
             share = one.rows_of(technique) / one.result.row_count
             enough = one.rows_of(technique) >= _LEAST_ROWS and len(others) >= _FEWEST_SONGS
             if enough and share >= _TIMES * usual:
-                rows = f"{one.rows_of(technique)} rows with {technique}, {100 * share:.0f} % of its rows"
-                words = f"{one.name}: {rows} (on average {100 * usual:.0f} % at this meter)"
+                beside = f"{100 * share:.0f} % of its rows (others of this meter: {100 * usual:.0f} %)"
+                words = f"{one.name}: {technique} in {beside}"
                 yield share / usual, words
 
 
-def _some(names: list[str]) -> str:
-    """The first names and how many more there are."""
-    more = f" and {len(names) - _NAMES} more" if len(names) > _NAMES else ""
-    return ", ".join(names[:_NAMES]) + more
+def _some(names: list[str], what: str = "songs") -> str:
+    """The names; of many how many there are, and the first ones."""
+    return f"{len(names)} {what}: {', '.join(names[:_NAMES])}, ..." if len(names) > _NAMES else ", ".join(names)
 
 
 # A pack in a few lines of text, at the end of a run over many songs.
@@ -253,11 +253,10 @@ def _meters_line(steps_type: str, charts: list[PackChart]) -> str:
     like = ""
     for scale, number in scales:
         plays = _middle([round(one.meter) for one in estimates if one.scale_name == scale])
-        those = "" if number == len(charts) else f"; {number} of them"
-        like = f"{those} play{'s' if number == 1 else ''} like {scale} {plays}"
-    half = " (middle half)" if len(charts) > 1 else ""
-    rated = f"rated {_middle([one.result.meter for one in charts])}"
-    return f"  {safe(steps_type)}: {plural(len(charts), 'chart')} {rated}{',' if like[:1] == ' ' else ''}{like}{half}"
+        like = f", playing like {scale} {plays}" if number == len(charts) else f"; {number} play like {scale} {plays}"
+    half = "middle half " if len(charts) > 1 else ""
+    rated = f"{half}rated {_middle([one.result.meter for one in charts])}"
+    return f"  {safe(steps_type)}: {plural(len(charts), 'chart')}, {rated}{like}"
 
 
 def _middle(meters: list[int]) -> str:
@@ -270,8 +269,8 @@ def _middle(meters: list[int]) -> str:
 def _by_technique(charts: list[PackChart]) -> str:
     """How many charts have each technique."""
     counts = {technique: sum(one.rows_of(technique) > 0 for one in charts) for technique in TECHNIQUES}
-    have = [f"{technique} in {count}" for technique, count in counts.items() if count]
-    return "  " + ", ".join(have).replace(",", " charts,", 1) if have else "  none of the techniques in any chart"
+    first, *others = [(_SHORT.get(name, name), count) for name, count in counts.items() if count] or [("steps", 0)]
+    return f"  {first[0]} in {plural(first[1], 'chart')}" + "".join(f", {name} in {count}" for name, count in others)
 
 
 def _listed(what: str, words: Iterable[str], most: int) -> Iterator[str]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
 from html import escape
 from unicodedata import east_asian_width
 
@@ -218,5 +219,24 @@ def _page_css(style: SheetStyle) -> str:
 
 def facts_of(counts: Sequence[tuple[str, int]], numbers: Sequence[str]) -> list[str]:
     """Lines under the name of a chart: its numbers, and how often each move happens."""
-    moves = " · ".join(f"{name} {count}" for name, count in counts if count)
+    moves = " · ".join(_move_words(counts))
     return [" · ".join(numbers), moves] if moves else [" · ".join(numbers)]
+
+
+_KIND = re.compile("-(up|down|left|right|half|full)$")  # a part of a name that its count leaves out
+_SIDES = {"crossover-back": "behind", "crossover-front": "in front"}
+
+
+def _move_words(counts: Sequence[tuple[str, int]]) -> Iterator[str]:
+    """How often each move happens: "6 crossovers (4 behind, 2 in front)", "1 bracket"."""
+    sums: dict[str, int] = {}
+    for name, count in counts:
+        if name not in _SIDES:
+            base = _KIND.sub("", name)
+            sums[base] = sums.get(base, 0) + count
+    sides = ", ".join(f"{count} {_SIDES[name]}" for name, count in counts if name in _SIDES and count)
+    for name, count in sums.items():
+        noun = {"hand": "hand press"}.get(name, name.replace("-", " "))
+        ending = "" if count == 1 else "es" if noun.endswith(("ch", "ss")) else "s"
+        if count:
+            yield f"{count} {noun}{ending}" + (f" ({sides})" if name == "crossover" and sides else "")

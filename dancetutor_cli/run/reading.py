@@ -68,7 +68,7 @@ def _opened(path: Path) -> Iterator[tuple[BinaryIO, int]]:
         descriptor = os.open(path, _FLAGS)
     except FileNotFoundError:
         reason = "is a link to a file that is not there" if os.path.islink(path) else "no such file or folder"  # noqa: PTH114
-        raise MissingFileError(path, f"cannot be read: {reason}") from None
+        raise MissingFileError(path, reason) from None
     except (OSError, ValueError) as error:
         reason = f"cannot be read: {getattr(error, 'strerror', None) or error}"
         is_too_long = getattr(error, "errno", None) == errno.ENAMETOOLONG  # so no file can have that name

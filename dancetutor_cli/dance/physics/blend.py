@@ -147,7 +147,7 @@ def weights_of(text: str, folder: Path = Path()) -> list[tuple[str, float]]:
     for part in parts:
         name, _, weight = part.rpartition(":")
         if not name:
-            raise UsageError(f"style '{text}': give each style a weight, as fierce:0.6,heavy:0.4")
+            raise UsageError(f"style '{text}': give each style a weight, such as fierce:0.6,heavy:0.4")
         out.append((name, _weight(text, weight)))
     return out
 

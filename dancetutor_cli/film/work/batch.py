@@ -73,11 +73,11 @@ def parse_meters(text: str) -> tuple[int, int]:
     """ "8", "8-12", "8-" or "-12"; UsageError for anything else."""
     match = re.fullmatch(r"\s*(\d*)\s*(-?)\s*(\d*)\s*", text)
     if not match or not (match[1] or match[3]):
-        raise UsageError(f"meter '{text}': write a number such as 9, or a range such as 8-12")
+        raise UsageError(f"--meter {text}: write a number such as 9, or a range such as 8-12")
     low = int(match[1] or 0)
     high = int(match[3]) if match[3] else (10**9 if match[2] else low)
     if high < low:
-        raise UsageError(f"meter '{text}': the range runs backwards")
+        raise UsageError(f"--meter {text}: the range runs backwards")
     return low, high
 
 
@@ -85,7 +85,7 @@ def parse_shard(text: str) -> tuple[int, int]:
     """ "2/5" to (2, 5); UsageError for anything else."""
     match = re.fullmatch(r"\s*(\d{1,6})\s*/\s*(\d{1,6})\s*", text)
     if not match or not 1 <= int(match[1]) <= int(match[2]):
-        raise UsageError(f"shard '{text}': write it as 2/5 for the second of five parts")
+        raise UsageError(f"--shard {text}: write it as 2/5 for the second of five parts")
     return int(match[1]), int(match[2])
 
 
@@ -94,11 +94,11 @@ def check_name(template: str) -> None:
     try:
         fields = [name for _, name, _, _ in string.Formatter().parse(template) if name is not None]
     except ValueError as error:
-        raise UsageError(f"name '{template}': {error}") from error
+        raise UsageError(f"--name {template}: {error}") from error
     if unknown := [name for name in fields if name not in FIELDS]:
-        raise UsageError(f"name '{template}': there is no {{{unknown[0]}}}; choose {', '.join(FIELDS)}")
+        raise UsageError(f"--name {template}: there is no {{{unknown[0]}}}; choose {', '.join(FIELDS)}")
     if "/" in template or "\\" in template:
-        raise UsageError(f"name '{template}': the films of a batch are in one folder; leave slashes out")
+        raise UsageError(f"--name {template}: the films of a batch are in one folder; leave slashes out")
 
 
 def film_list(batch: BatchRequest) -> FilmList:
