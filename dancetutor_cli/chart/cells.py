@@ -28,7 +28,7 @@ TEXTS = {
 }
 _SEVERAL = "the chart is for {} players ({} mark their notes, as in StepF2); each has feet of their own"
 _NOTE = re.compile(rb"\{([0-4MLFKXYZxyz])\|[A-Za-z]\|([01])\|[0-9]\}")
-FAKE_HEAD = ord("f")  # of a hold that is none, so that its end goes with it
+FAKE_HEAD = ord("f")  # head of a fake hold; its end is removed too
 MINES_HEAD = ord("m")
 _STEPMANIAX = {b"DL": ord("3"), b"DM": MINES_HEAD}  # two letters that are one note
 _FAKED = {b"0": "0", b"2": "f", b"3": "3", b"4": "f", b"x": "f", b"y": "f", b"z": "f"}

@@ -42,7 +42,7 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
     for name in names:
         if name not in STRIPPED:
             raise UsageError(
-                f"there is no marker style '{name}'{did_you_mean(name, STYLES)}; choose {', '.join(STYLES)}"
+                f"there is no kind of markers '{name}'{did_you_mean(name, STYLES)}; choose {', '.join(STYLES)}"
             )
     if not names:
         raise UsageError(f"--markers: name one or more of {', '.join(STYLES)}")
@@ -66,7 +66,7 @@ class AnnotateOptions:
 @click.command(cls=GroupedCommand)
 @click.argument("paths", nargs=-1, required=True, type=GivenPath(holds_charts=True), metavar="PATH...")
 @click.option(
-    "--markers", "styles", callback=_styles, metavar="STYLE[,STYLE]",
+    "--markers", "styles", callback=_styles, metavar="KIND[,KIND]",
     help=f"How to write the feet: {', '.join(STYLES)} (theme shows them during play).  [default: measure. "
     "--strip removes all of them; background: the entry of a film that render added]",
 )  # fmt: skip
@@ -110,7 +110,7 @@ def command(paths: tuple[Path, ...], selection: Selection, options: AnnotateOpti
 
     if not given["strip"] and "background" in (options.styles or ()):
         raise UsageError(
-            "the marker style 'background' is a film: `render --background --into-file` writes it; --strip removes it"
+            "the kind 'background' is a film: `render --background --into-file` writes it; --strip removes it"
         )
     if selection.player is not None:
         raise UsageError("--player is for analyze, animate, render and page; annotate writes both players' feet")

@@ -110,7 +110,7 @@ class _Gaits:
 def load_gait(name: str) -> tuple[Gait, Gait]:
     """The slow and the quick form of a gait: one of `configs/gaits` by name, or a file.
 
-    Raises UsageError for a name that there is not, FileError with the line for a file that is wrong.
+    Raises UsageError for an unknown name, FileError with the line for a file that is wrong.
     """
     gaits = load(named_file("gaits", name), _Gaits)
     return gaits.slow, gaits.quick

@@ -76,7 +76,7 @@ def load_settings(
     """The numbers of `configs/motion.yaml`, replaced first by those of a form, then of styles, then of another file.
 
     styles : the numbers of each of them, and how much of it there is, 0 to 1
-    Raises FileError naming the file, the line and the names that exist, UsageError for a form that there is not.
+    Raises FileError naming the file, the line and the names that exist, UsageError for an unknown form.
     """
     settings = default_settings()
     if form != USUAL:

@@ -150,7 +150,7 @@ def load_preset(name_or_path: str | Path, *, confined: bool = False) -> Preset:
 
     confined : a file may only extend what comes with the program or lies in its own folder: it may be a stranger's
 
-    A file may say `extends: NAME` and then only what differs. Raises UsageError for a preset that there is not;
+    A file may say `extends: NAME` and then only what differs. Raises UsageError for an unknown preset;
     FileError for a file that cannot be read, or with an unknown key or value, with its line and the names that exist.
     """
     return _load(named_file("presets", name_or_path), (), confined)

@@ -175,6 +175,8 @@ def _lines(path: Path) -> list[str]:
         if path.stat().st_size >= MAX_FILE:
             raise FileError(path, "is too large for a BVH file; the limit is 100 MB")
         return path.read_text("utf-8", errors="replace").splitlines()
+    except FileNotFoundError:
+        raise FileError(path, "no such file or folder") from None
     except OSError as error:
         raise FileError(path, f"cannot be read: {error.strerror}") from error
 

@@ -47,7 +47,7 @@ FilePlan = tuple[FileChange, list[Lack]]
 def write(style: str, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FilePlan | FileError]:
     """The files that a style puts beside a song. folder : where they go; what is merged lies there or by the song.
 
-    Yields an error in place of a file that there cannot be; the others come nevertheless.
+    Yields an error for each file that cannot be made, and goes on with the others.
     """
     if style == SIDECAR:
         path = folder / sidecar.sidecar_path(song.path).name

@@ -106,12 +106,12 @@ class _Panel(NamedTuple):
 
     @property
     def dots(self) -> bool:
-        """Whether its values stand alone."""
+        """Whether the curve has single points."""
         return "contact" in self.title
 
     @property
     def colours(self) -> tuple[str, ...]:
-        """Of its lines."""
+        """The colours of the lines."""
         return (LINE,) if len(self.lines) == 1 else (INPUT, LINE)
 
 

@@ -51,7 +51,7 @@ class Language:
 
 @cache
 def load_language(name: str = ENGLISH) -> Language:
-    """The words of a language; UsageError for a name that there is not, FileError for a file that is wrong."""
+    """The words of a language; UsageError for an unknown name, FileError for a file that is wrong."""
     from dancetutor_cli.run.schema import convert
     from dancetutor_cli.run.yaml_files import read
 

@@ -195,7 +195,7 @@ def config_names(folder: str) -> list[str]:
 def named_file(folder: str, name: str | Path) -> Path:
     """The file of `configs/` that a user names, or a file of the user's own.
 
-    folder : "presets": what is named, but for its last letter. UsageError for a name that there is not
+    folder : "presets": what is named, but for its last letter. UsageError for an unknown name
     """
     names, path = config_names(folder), Path(name)
     if str(name) in names:

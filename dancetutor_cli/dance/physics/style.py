@@ -127,7 +127,7 @@ class Style:
 def load_style(name: str) -> Style:
     """A style of `configs/styles` by name, or of a file: what it does not name is as in `neutral`.
 
-    Raises UsageError for a name that there is not, FileError with the line for a file that is wrong.
+    Raises UsageError for an unknown name, FileError with the line for a file that is wrong.
     """
     path = named_file("styles", name)
     if path == config_path(f"styles/{NEUTRAL}.yaml"):

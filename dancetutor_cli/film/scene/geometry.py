@@ -108,7 +108,7 @@ F32 = NDArray[np.float32]
 FEET = tuple(f"{side}_{part}" for side in "lr" for part in ("talocrural", "metatarsal"))  # joints of the feet
 TRUNK = ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4")
 BELOW = (*TRUNK, *(f"{side}_{part}" for side in "lr" for part in ("sternoclavicular", "hip", "knee")), *FEET)
-ABOVE = 4.0  # metres: more than she ever has between herself and the light
+ABOVE = 4.0  # metres: more than the dancer ever has above her, up to the light
 OWN, SHARED = (
     0.5,
     0.2,

@@ -134,7 +134,7 @@ class ForbiddenNotes(ChartRule):
 
     @classmethod
     def fault(cls, option: str, value: Any) -> str | None:
-        """Names of kinds that there are not."""
+        """What is wrong with an unknown kind."""
         unknown = [kind for kind in value if kind not in KINDS] if option == "kinds" else []
         return f"there is no kind '{unknown[0]}'; choose {', '.join(KINDS)}" if unknown else None
 

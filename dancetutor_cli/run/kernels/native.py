@@ -36,7 +36,7 @@ Kind = tuple[np.dtype[Any], int] | None  # of an array: its numbers and dimensio
 
 
 def inner_kernel(function: F, **options: Any) -> F:
-    """A kernel that kernels call. For everybody else it stays the function that it is."""
+    """A kernel that other kernels call. Python calls it as an ordinary function."""
     INNER_KERNELS[function] = options
     return function
 
