@@ -27,8 +27,8 @@ def find_settings_file(start: Path) -> Path | None:
 
 
 def check_not_a_link_out(path: Path) -> None:
-    """Raise FileError if a dancetutor.yaml that lies there is a link out of its folder: an error message would describe a
-    file that the chart's author may not read."""
+    """Raise FileError if a dancetutor.yaml that lies there is a link out of its folder: an error message
+    would describe a file that the chart's author may not read."""
     if path.is_symlink() and is_outside(path, path.parent):
         raise FileError(path, "is a link to a file outside its folder; put a copy there, or name it with --config")
 

@@ -198,7 +198,7 @@ class TimedRule(ChartRule):
 
     @classmethod
     def fault(cls, option: str, value: Any) -> str | None:
-        """A time is a number or by-meter, a share one of per cent."""
+        """What is wrong with `max_seconds` (a number, or by-meter) or `share` (a percentage)."""
         if option == "max_seconds" and isinstance(value, str) and value != BY_METER:
             return f"must be a number of seconds, or {BY_METER}"
         return "must be a number of per cent, at most 100" if option == "share" and value > 100 else None

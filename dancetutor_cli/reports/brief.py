@@ -184,7 +184,7 @@ class BriefReport:
         return line if plain <= self._width else line[: self._width - 1 + len(line) - plain] + "…"
 
 
-_HINT = "--full prints every finding with its rows, --statistics only counts, --format json everything"
+_HINT = "--full prints all findings with rows, --statistics counts, --format json all"
 
 
 _MOVES = {  # those that the line of a chart counts, by name

@@ -89,7 +89,9 @@ class Tally:
     def summary(self) -> str:
         """ "2 files, 7 charts: 1 error, 3 warnings, 2 infos"."""
         found = [plural(self.severities[name], name) for name in reversed(RANKS) if self.severities[name]]
-        text = f"{plural(self.files, 'file')}, {plural(self.charts, 'chart')}: {', '.join(found) or 'no findings'}"
+        text = f"{plural(self.files, 'file')}, {plural(self.charts, 'chart')}"
+        if found or self.charts or not self.unreadable:
+            text += f": {', '.join(found) or 'no findings'}"
         if files := self.unreadable - self.folders:
             text += f"; {plural(files, 'file')} could not be read"
         return text + (f"; no file to read in {plural(self.folders, 'folder')}" if self.folders else "")

@@ -214,8 +214,8 @@ def _much_of(charts: list[PackChart]) -> Iterator[tuple[float, str]]:
             share = one.rows_of(technique) / one.result.row_count
             enough = one.rows_of(technique) >= _LEAST_ROWS and len(others) >= _FEWEST_SONGS
             if enough and share >= _TIMES * usual:
-                beside = f"{100 * share:.0f} % of its rows (others of this meter: {100 * usual:.0f} %)"
-                words = f"{one.name}: {technique} in {beside}"
+                beside = f"{100 * share:.0f} % of rows (this meter: {100 * usual:.0f} %)"
+                words = f"{one.name}: {_SHORT.get(technique, technique)} in {beside}"
                 yield share / usual, words
 
 
@@ -270,7 +270,7 @@ def _by_technique(charts: list[PackChart]) -> str:
     """How many charts have each technique."""
     counts = {technique: sum(one.rows_of(technique) > 0 for one in charts) for technique in TECHNIQUES}
     first, *others = [(_SHORT.get(name, name), count) for name, count in counts.items() if count] or [("steps", 0)]
-    return f"  {first[0]} in {plural(first[1], 'chart')}" + "".join(f", {name} in {count}" for name, count in others)
+    return f"  {first[0]} in {plural(first[1], 'chart')}" + "".join(f", {name} {count}" for name, count in others)
 
 
 def _listed(what: str, words: Iterable[str], most: int) -> Iterator[str]:
