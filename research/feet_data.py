@@ -16,10 +16,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli import chart as reader
-from dancetutor_cli import feet as play
+from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
-from dancetutor_cli.feet import Pad, Rows, load_pad, overrides_for
+from dancetutor_cli.chart.reader import load
+from dancetutor_cli.feet.pads import Pad, load_pad
+from dancetutor_cli.feet.play import Play, Rows, prepare
+from dancetutor_cli.feet.preset import Preset
+from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.song_feet import overrides_for
 
 sys.path.append(str(Path(__file__).resolve().parent.parent / "tools"))
 from unpacking import unpack
@@ -86,13 +90,13 @@ def load_pins(paths: list[Path]) -> list[Labelled]:
     """Charts in which an author has pinned feet (`{dt1! ...}`, `dancetutor.yaml`, data.sme)."""
     out = []
     for path in paths:
-        song = reader.load(path)
+        song = load(path)
         for number, chart in enumerate(song.charts):
             pad, overrides = load_pad(chart.steps_type), overrides_for(song, chart)[0]
             feet = (overrides.limbs == 0) | (overrides.limbs == 1)
             if pad is None or not feet.any():
                 continue
-            rows = play.prepare(chart, pad)
+            rows = prepare(chart, pad)
             row = np.searchsorted(rows.tick, overrides.ticks).clip(max=len(rows) - 1)
             there = feet & (rows.tick[row] == overrides.ticks) & (overrides.columns < len(pad))
             there[there] &= rows.steps[row[there], overrides.columns[there]] > 0
@@ -102,8 +106,8 @@ def load_pins(paths: list[Path]) -> list[Labelled]:
 
 
 @cache
-def _song(path: Path) -> reader.Song:
-    return reader.load(path)
+def _song(path: Path) -> Song:
+    return load(path)
 
 
 def one_label(root: Path, entry: dict) -> Labelled | None:  # type: ignore[type-arg]
@@ -118,7 +122,7 @@ def one_label(root: Path, entry: dict) -> Labelled | None:  # type: ignore[type-
     pad = load_pad(chart.steps_type)
     if pad is None:
         sys.exit(f"{entry['chart']}: no pad for {chart.steps_type}")
-    rows = play.prepare(chart, pad)
+    rows = prepare(chart, pad)
     row_of = {tick: row for row, tick in enumerate(rows.tick.tolist())}
     cells = [
         (row_of[tick], int(column), "LR".index(foot))
@@ -163,9 +167,9 @@ def folds(labels: list[Labelled], count: int, seed: int = 1) -> NDArray[np.int64
     return np.array([of[label.group] for label in labels])
 
 
-def right_rows(label: Labelled, preset: play.Preset, *, margins: bool = False) -> tuple[NDArray[np.bool_], play.Play]:
+def right_rows(label: Labelled, preset: Preset, *, margins: bool = False) -> tuple[NDArray[np.bool_], Play]:
     """For each labelled row, in order, whether all its feet are right; and the play."""
-    found = play.solve(label.rows, label.pad, preset, margins=margins)
+    found = solve(label.rows, label.pad, preset, margins=margins)
     wrong = np.zeros(len(label.rows), dtype=bool)
     np.logical_or.at(wrong, label.row, found.limb[label.row, label.column] != label.foot)
     return ~wrong[np.unique(label.row)], found

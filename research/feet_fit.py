@@ -33,8 +33,7 @@ from feet_lattice import (
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from dancetutor_cli.feet import Preset
-from dancetutor_cli.feet.preset import MAX_WEIGHT
+from dancetutor_cli.feet.preset import MAX_WEIGHT, Preset
 from dancetutor_cli.feet.solver.engine import cost_at
 from dancetutor_cli.feet.solver.tables import DISTANCE_UNIT
 from dancetutor_cli.feet.solver.vocabulary import MOST_MS

@@ -14,7 +14,8 @@ from feet_data import Labelled
 from numba import njit
 from numpy.typing import NDArray
 
-from dancetutor_cli.feet import Pad, Preset
+from dancetutor_cli.feet.pads import Pad
+from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.solver.engine import Engine, engine_for
 from dancetutor_cli.feet.solver.store import ACTION, EVENTS, FACTS, FACTS_KNOWN, LIMBS, NEXT, TERMS_SHIFT
 from dancetutor_cli.feet.solver.tables import DISTANCE_UNIT

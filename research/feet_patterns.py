@@ -15,7 +15,8 @@ from feet_data import Labelled
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
-from dancetutor_cli.feet import Pad, Rows, StepKind, load_pad
+from dancetutor_cli.feet.pads import Pad, load_pad
+from dancetutor_cli.feet.play import Rows, StepKind
 
 Floats = NDArray[np.float64]
 BPM = 170.0  # 48, 24 and 16 ticks are 353, 176 and 118 ms

@@ -26,8 +26,7 @@ from feet_lattice import CURVES, WEIGHTS
 from feet_patterns import load_patterns
 from numpy.typing import NDArray
 
-from dancetutor_cli import feet
-from dancetutor_cli.feet import Preset
+from dancetutor_cli.feet.preset import Preset, load_preset
 
 HERE = Path(__file__).resolve().parent
 PRESETS = HERE.parent / "configs" / "presets"
@@ -198,7 +197,7 @@ def fit_all(write: bool, only: str | None, *, both: bool, resume: bool = False) 
     for task in tasks():
         if only not in (None, task.preset):
             continue
-        home, began = feet.load_preset(task.preset), time.process_time()
+        home, began = load_preset(task.preset), time.process_time()
         print(f"{task.preset}: rows right")
         every = [*task.judged, *task.guard, *task.unmade]
         told("before, the preset as it is", before := outcome(every, home))
@@ -242,7 +241,7 @@ def main() -> None:
     pins = feet_data.load_pins(arguments.pins)
     if not pins:
         sys.exit("no feet are pinned in these files; see `dancetutor annotate --help` for pins")
-    text = own_preset(pins, feet.load_preset(arguments.preset), arguments.preset)
+    text = own_preset(pins, load_preset(arguments.preset), arguments.preset)
     if arguments.out:
         arguments.out.write_text(text, encoding="utf-8")
     else:

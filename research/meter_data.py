@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from dancetutor_cli import chart as reader
-from dancetutor_cli.chart import find_files
 from dancetutor_cli.chart.model import Song
+from dancetutor_cli.chart.reader import load
+from dancetutor_cli.chart.selection import find_files
 from dancetutor_cli.lint.analysis import solved
 from dancetutor_cli.lint.meter.model import Feature, features
 from dancetutor_cli.lint.meter.score import Oddities
@@ -57,7 +57,7 @@ def labelled(folder: Path, wanted: Iterable[Feature]) -> list[Labelled]:
     songs: list[tuple[Labelled, str]] = []
     for path in find_files([folder]):
         try:
-            song = reader.load(path)
+            song = load(path)
         except DancetutorError:
             continue
         if is_modded(song):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.feet import load_preset
+from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.film.layout import load_layout
 from dancetutor_cli.lint.check import load_baseline
 from dancetutor_cli.lint.configuration import load_configuration

@@ -9,10 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli import chart as chart_room
-from dancetutor_cli import feet as play_room
 from dancetutor_cli.chart.model import Chart, Kind, Song
 from dancetutor_cli.chart.names import TICKS_PER_MEASURE
+from dancetutor_cli.chart.reader import load
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "charts" / "two_left_feet"
@@ -27,7 +28,7 @@ KINDS = {"hold": Kind.HOLD, "roll": Kind.ROLL, "mine": Kind.MINE}
 
 @pytest.fixture(scope="module", params=["ssc", "sm"])
 def song(request: pytest.FixtureRequest) -> Song:
-    return chart_room.load(FOLDER / f"two_left_feet.{request.param}")
+    return load(FOLDER / f"two_left_feet.{request.param}")
 
 
 def comments(song: Song, chart: Chart) -> dict[int, str]:
@@ -60,10 +61,10 @@ def test_the_charts_are_those_promised(song: Song) -> None:
 
 
 def test_every_pattern_stands_where_its_comment_says(song: Song) -> None:
-    preset = play_room.load_preset("thesis")
+    preset = load_preset("thesis")
     shown: set[str] = set()
     for chart in song.charts:
-        play = play_room.solve_chart(chart, preset)
+        play = solve_chart(chart, preset)
         assert play is not None
         measure = play.rows.tick // TICKS_PER_MEASURE
         for number, text in comments(song, chart).items():
@@ -82,9 +83,9 @@ def test_every_pattern_stands_where_its_comment_says(song: Song) -> None:
 
 
 def test_spins_and_doublesteps_stand_nowhere_else(song: Song) -> None:
-    preset = play_room.load_preset("thesis")
+    preset = load_preset("thesis")
     for chart in song.charts:
-        play = play_room.solve_chart(chart, preset)
+        play = solve_chart(chart, preset)
         assert play is not None
         named = comments(song, chart)
         for row, moves in enumerate(play.moves):

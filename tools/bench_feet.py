@@ -8,7 +8,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from dancetutor_cli.feet import Preset, load_preset, solve
+from dancetutor_cli.feet.preset import Preset, load_preset
+from dancetutor_cli.feet.solver.solve import solve
 
 sys.path.append(str(Path(__file__).resolve().parent.parent / "research"))
 import feet_data

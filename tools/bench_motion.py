@@ -6,11 +6,13 @@ import time
 
 import numpy as np
 
-from dancetutor_cli.chart import load
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.dance.bake import bake, bake_plan, planned
 from dancetutor_cli.dance.ik import full_body as ik
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-from dancetutor_cli.feet import load_pad, load_preset, solve_chart
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.run.reading import charts_path
 
 Row = tuple[str, float, str, str, str]

@@ -16,10 +16,13 @@ from pathlib import Path
 import numpy as np
 from unpacking import unpack
 
-from dancetutor_cli import chart as charts
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
-from dancetutor_cli.feet import Pad, Preset, Rows, load_pad, load_preset, prepare, solve
+from dancetutor_cli.chart.reader import load
+from dancetutor_cli.feet.pads import Pad, load_pad
+from dancetutor_cli.feet.play import Rows, prepare
+from dancetutor_cli.feet.preset import Preset, load_preset
 from dancetutor_cli.feet.solver.engine import Engine
+from dancetutor_cli.feet.solver.solve import solve
 from dancetutor_cli.run.errors import DancetutorError
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -50,7 +53,7 @@ def prepared() -> dict[str, list[tuple[Rows, Pad]]]:
         if path.suffix.lower() not in (".sm", ".ssc"):
             continue
         try:
-            song = charts.load(path)
+            song = load(path)
         except DancetutorError:
             continue
         for chart in song.charts:

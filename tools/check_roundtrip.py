@@ -13,8 +13,7 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
-from dancetutor_cli.chart import find_files
-from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.chart.selection import Selection, find_files
 from dancetutor_cli.markers.annotate import AnnotateOutcome, AnnotateRequest, Item, annotate_song
 from dancetutor_cli.markers.comments import STYLES
 from dancetutor_cli.run.errors import FileError

@@ -77,7 +77,7 @@ def _configuration(path: Path) -> object:
 
 
 def _preset(path: Path) -> object:
-    from dancetutor_cli.feet import load_preset
+    from dancetutor_cli.feet.preset import load_preset
 
     return load_preset(path, confined=True)
 
@@ -104,11 +104,12 @@ def _baseline(path: Path) -> object:
 
 
 def _play(path: Path) -> object:
-    from dancetutor_cli import chart as charts
-    from dancetutor_cli.feet import load_pad, prepare
+    from dancetutor_cli.chart.reader import load
+    from dancetutor_cli.feet.pads import load_pad
+    from dancetutor_cli.feet.play import prepare
     from dancetutor_cli.feet.play_json import read_play
 
-    chart = charts.load(charts_path() / "two_left_feet" / "two_left_feet.ssc").charts[0]
+    chart = load(charts_path() / "two_left_feet" / "two_left_feet.ssc").charts[0]
     pad = load_pad(chart.steps_type)
     assert pad is not None
     return read_play(path, chart, prepare(chart, pad, 0.35), pad)
@@ -116,9 +117,9 @@ def _play(path: Path) -> object:
 
 def _editor(path: Path) -> object:
     """data.sme beside a song: read for its feet, and merged with ours."""
-    from dancetutor_cli import chart as charts
+    from dancetutor_cli.chart.reader import load
     from dancetutor_cli.chart.selection import Selection
-    from dancetutor_cli.feet import overrides_for
+    from dancetutor_cli.feet.song_feet import overrides_for
     from dancetutor_cli.markers.annotate import AnnotateRequest, Item, annotate_song
 
     folder = path.with_suffix(".d")
@@ -126,7 +127,7 @@ def _editor(path: Path) -> object:
     (folder / "data.sme").write_bytes(path.read_bytes())
     song = folder / "x.sm"
     song.write_bytes(b"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n1000\n0100\n0010\n0001\n;\n")
-    read = charts.load(song)
+    read = load(song)
     overrides_for(read, read.charts[0])
     return annotate_song([Item(song, song)], AnnotateRequest(("smeditor",), None, Selection()))
 

@@ -16,8 +16,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from dancetutor_cli import chart as reader
-from dancetutor_cli.chart import find_files
+from dancetutor_cli.chart.reader import load
+from dancetutor_cli.chart.selection import find_files
 from dancetutor_cli.lint.analysis import solved
 from dancetutor_cli.lint.check import check_chart, check_file, merged_by_foot
 from dancetutor_cli.lint.findings import Finding
@@ -47,7 +47,7 @@ def linted(
     for path in find_files([folder]):
         task = run.task(path)
         try:
-            song = reader.load(path)
+            song = load(path)
         except DancetutorError:
             continue
         file = FileSubject(song)

@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from dancetutor_cli import chart as reader
-from dancetutor_cli.chart import find_files
+from dancetutor_cli.chart.reader import load
+from dancetutor_cli.chart.selection import find_files
 from dancetutor_cli.lint.analysis import solved
 from dancetutor_cli.lint.rule import TimedRule, all_rules
 from dancetutor_cli.lint.rule_settings import default_rules
@@ -40,7 +40,7 @@ def subjects(folder: Path) -> Iterator[tuple[ChartSubject, Any]]:
     seen: set[tuple[str, bytes, bytes]] = set()
     for path in find_files([folder]):
         try:
-            song = reader.load(path)
+            song = load(path)
         except DancetutorError:
             continue
         task = run.task(path)

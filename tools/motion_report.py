@@ -160,9 +160,10 @@ def pick(count: int, seed: int) -> list[Wanted]:
 
 def _everything(paths: tuple[Path, ...] | list[Path]) -> list[Wanted]:
     """Every chart below `paths` with a pad and enough steps; of a .sm and .ssc of one song the latter."""
-    from dancetutor_cli.chart import find_files, load, twin
     from dancetutor_cli.chart.model import Kind
-    from dancetutor_cli.feet import load_pad
+    from dancetutor_cli.chart.reader import load
+    from dancetutor_cli.chart.selection import find_files, twin
+    from dancetutor_cli.feet.pads import load_pad
 
     out = []
     for path in find_files([p for p in paths if p.exists()]):

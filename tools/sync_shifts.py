@@ -19,9 +19,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.chart import find_files, load
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.music import music_file
+from dancetutor_cli.chart.reader import load
+from dancetutor_cli.chart.selection import find_files
 from dancetutor_cli.lint.findings import Sync
 from dancetutor_cli.lint.song_sync import hear
 from dancetutor_cli.lint.sync import Judgement, Onsets, judge

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dancetutor_cli import chart
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import CHART_SUFFIXES, SONG_SUFFIXES
 
@@ -27,7 +26,7 @@ def find_files(paths: Sequence[Path], exclude: Sequence[str] = ()) -> list[Path]
     exclude : patterns of what is left out of folders, see `is_excluded`
 
     Symbolic links to folders are not followed. What cannot be looked into stands for itself in the list (a path that
-    is not there, a folder that cannot be read or holds no charts): `chart.load` says what is wrong with it, and the
+    is not there, a folder that cannot be read or holds no charts): `reader.load` says what is wrong with it, and the
     other files go on.
     """
     found: dict[str, Path] = {}
@@ -171,11 +170,13 @@ def note_bytes(path: Path, selection: Selection, data: bytes | None = None) -> i
 
     data : what to read in place of the file. A large file that is meant in part is not read only for this.
     """
+    from dancetutor_cli.chart import reader
+
     try:
         size = path.stat().st_size if data is None else len(data)
         if selection.is_all or size > _LARGE:
             return size
-        song = chart.load(path) if data is None else chart.parse(data, path)
+        song = reader.load(path) if data is None else reader.parse(data, path)
         return sum(end - start for start, end in (one.notes_span for one in selection.charts(song)))
     except (OSError, DancetutorError):
         return 0

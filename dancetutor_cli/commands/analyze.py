@@ -9,8 +9,7 @@ from typing import IO, TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.chart import find_files
-from dancetutor_cli.chart.selection import Selection, note_bytes
+from dancetutor_cli.chart.selection import Selection, find_files, note_bytes
 from dancetutor_cli.commands.analyze_options import AnalyzeOptions
 from dancetutor_cli.commands.arguments import GivenPath, Source, open_output, sources
 from dancetutor_cli.commands.drawings import check_plot, check_sheet, write_plot, write_sheet

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.chart import one_song
-from dancetutor_cli.chart.selection import Selection, note_bytes
+from dancetutor_cli.chart.selection import Selection, note_bytes, one_song
 from dancetutor_cli.chart.timing import FASTEST, SLOWEST, heard
 from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, default_name, warn
 from dancetutor_cli.commands.first_run import announce_compiling

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from dancetutor_cli.chart import find_files
-from dancetutor_cli.chart.selection import Selection, note_bytes
+from dancetutor_cli.chart.selection import Selection, find_files, note_bytes
 from dancetutor_cli.commands.arguments import GivenPath, within_folders
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand

@@ -12,8 +12,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
-from dancetutor_cli.chart import find_files
-from dancetutor_cli.chart.selection import without_links_out
+from dancetutor_cli.chart.selection import find_files, without_links_out
 from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import UCS_SUFFIX, plain_name, write_atomic

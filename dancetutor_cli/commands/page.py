@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.chart import one_song
-from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.chart.selection import Selection, one_song
 from dancetutor_cli.commands.arguments import GivenPath, warn
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand

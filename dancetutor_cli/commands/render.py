@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.chart import one_song
-from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.chart.selection import Selection, one_song
 from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, default_name, warn
 from dancetutor_cli.commands.film_options import RenderOptions, film_options, film_request
 from dancetutor_cli.commands.first_run import announce_compiling

@@ -89,9 +89,9 @@ def _quoted(value: object) -> str:
 
 def _charts(path: Path, data: bytes | None) -> tuple[Chart, ...]:
     """The charts of a file; none of one that cannot be read, which `analyze` says."""
-    from dancetutor_cli import chart
+    from dancetutor_cli.chart import reader
 
     try:
-        return (chart.load(path) if data is None else chart.parse(data, path)).charts
+        return (reader.load(path) if data is None else reader.parse(data, path)).charts
     except (DancetutorError, OSError):
         return ()

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
-from dancetutor_cli import chart as charts
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import quiet_option
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.feet import DEFAULT_PRESET
+from dancetutor_cli.feet.preset import DEFAULT_PRESET
 from dancetutor_cli.film.choices import QUALITIES, Quality
 from dancetutor_cli.film.clock import Practice
 from dancetutor_cli.film.layout import FilmLook, load_layout
@@ -47,12 +47,14 @@ def _solve() -> None:
 
     Tables that are full, as those of many charts become, are filled into larger ones.
     """
-    from dancetutor_cli.feet import load_pad, load_preset, solve_chart
+    from dancetutor_cli.feet.pads import load_pad
+    from dancetutor_cli.feet.preset import load_preset
     from dancetutor_cli.feet.solver import store
     from dancetutor_cli.feet.solver.engine import Engine
+    from dancetutor_cli.feet.solver.solve import solve_chart
     from dancetutor_cli.feet.solver.store import grown
 
-    song, preset, pad = charts.load(charts_path() / _SONG), load_preset("thesis"), load_pad(_TYPES[0])
+    song, preset, pad = load(charts_path() / _SONG), load_preset("thesis"), load_pad(_TYPES[0])
     solve_chart(song.charts[0], preset)
     assert pad is not None
     tables = Engine(pad, preset).tables

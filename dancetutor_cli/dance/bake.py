@@ -47,7 +47,7 @@ from dancetutor_cli.run.errors import DancetutorError
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
-    from dancetutor_cli.feet import Pad
+    from dancetutor_cli.feet.pads import Pad
     from dancetutor_cli.feet.play import Play
 
 BEATS_AFTER = 16  # beats after the last row for which the dancer still moves with the music

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.context import Context
     from dancetutor_cli.dance.physics.blend import Blend
     from dancetutor_cli.dance.plan import Plan
-    from dancetutor_cli.feet import Pad
+    from dancetutor_cli.feet.pads import Pad
     from dancetutor_cli.feet.play import Play
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dancetutor_cli import chart as charts
 from dancetutor_cli.chart.pack_files import find_settings_file
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.settings import USUAL, load_settings
 from dancetutor_cli.feet.preset import PresetChoice, choice_of, mismatch, preset_for
@@ -129,7 +129,7 @@ def read_chart(request: DanceRequest, section: str | None = None) -> ChartChoice
     if section is not None:
         check_part(section)
     choice = choice_for(request.path, request.preset)
-    song = charts.load(request.path)
+    song = load(request.path)
     first = request.selection.one(song)
     chart = song.charts[first.index]
     parts: tuple[Chart, ...] = (first,)

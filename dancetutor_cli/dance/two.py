@@ -10,15 +10,15 @@ import numpy as np
 from dancetutor_cli.chart.note_data import ONE_PAD, OWN_PADS
 from dancetutor_cli.dance.context import PANEL, panels_on_ground
 from dancetutor_cli.dance.footwork.turning import leading_foot
-from dancetutor_cli.feet import load_pad
 from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.feet.play import Play, prepare
 from dancetutor_cli.run.errors import UsageError
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
     from dancetutor_cli.dance.request import DanceRequest
-    from dancetutor_cli.feet import Pad
+    from dancetutor_cli.feet.pads import Pad
 
 SIDE_NOTES = 8  # notes at either end that show where a player stands
 # Steps type as written -> the pad on which both stand: in couple charts each has half of it. Otherwise its own pad.

@@ -7,10 +7,12 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from dancetutor_cli.chart.model import Chart, Song
-from dancetutor_cli.feet import FeetProblem, Ignores, Overrides, Pad, SongFeet, load_pad
+from dancetutor_cli.feet.overrides import FeetProblem, Ignores, Overrides
+from dancetutor_cli.feet.pads import Pad, load_pad
 from dancetutor_cli.feet.play import Play, Rows, prepare_all
 from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.solver import solve
+from dancetutor_cli.feet.song_feet import SongFeet
 
 _AT_ONCE = 16  # charts whose rows are prepared together
 

@@ -9,8 +9,8 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from dancetutor_cli import chart as reader
 from dancetutor_cli.chart.names import is_lights
+from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.preset import PresetChoice, mismatch, preset_for
 from dancetutor_cli.lint.check import check_chart, check_file, merged_by_foot
@@ -320,7 +320,7 @@ def _unselected(song: Song, selected: tuple[Chart, ...]) -> tuple[str, ...]:
 
 def load_song(task: AnalyzeTask) -> Song:
     """Read the task's file; FileError if that fails."""
-    return reader.load(task.path) if task.data is None else reader.parse(task.data, task.path)
+    return load(task.path) if task.data is None else parse(task.data, task.path)
 
 
 def solved(song: Song, charts: tuple[Chart, ...], task: AnalyzeTask) -> Iterator[ChartSubject]:

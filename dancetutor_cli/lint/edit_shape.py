@@ -16,7 +16,7 @@ import numpy as np
 
 from dancetutor_cli.chart.model import Chart
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
-from dancetutor_cli.feet import StepKind
+from dancetutor_cli.feet.play import StepKind
 
 if TYPE_CHECKING:
     from dancetutor_cli.feet.pads import Pad

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart import twin
 from dancetutor_cli.chart.model import Chart, Kind, Song
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE, is_lights
 from dancetutor_cli.chart.reader import load
+from dancetutor_cli.chart.selection import twin
 from dancetutor_cli.feet.play import Play, runs
 from dancetutor_cli.run.errors import FileError
 

@@ -12,10 +12,10 @@ import numpy as np
 
 from dancetutor_cli.chart.model import Chart
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
-from dancetutor_cli.feet import Play, StepKind, solve
+from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.solver.engine import engine_for
-from dancetutor_cli.feet.solver.solve import OneTap, Outline, forced_limbs, move_tap
+from dancetutor_cli.feet.solver.solve import OneTap, Outline, forced_limbs, move_tap, solve
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.lint.check import check_rule, rules_of
 from dancetutor_cli.lint.edit_shape import Edit, PanelMove, Shape, free_panels

@@ -9,8 +9,8 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dancetutor_cli import chart as reader
 from dancetutor_cli.chart.edits import apply, unified
+from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.preset import mismatch, preset_for
 from dancetutor_cli.markers import background, edit
@@ -112,7 +112,7 @@ def _attempt(item: Item, request: AnnotateRequest, second: bool) -> AnnotateOutc
 
 
 def _annotate(item: Item, request: AnnotateRequest, second: bool) -> AnnotateOutcome:
-    song = reader.load(item.source)
+    song = load(item.source)
     if song.format == "ucs":
         request, beside = _request_for_ucs(item.source, request)
         second = False
@@ -243,12 +243,12 @@ class _Work:
     def _without_added(self) -> Song:
         """The song without the charts that an earlier run has added for the charts that are meant."""
         splices = edit.without_added(self.song, self._charts(self.song))
-        return reader.parse(apply(self.song.data, splices), self.song.path) if splices else self.song
+        return parse(apply(self.song.data, splices), self.song.path) if splices else self.song
 
     def _without_background(self, song: Song) -> Song:
         """The song without the entries of films; the very same object if there are none."""
         splices = background.remove(song)
-        return reader.parse(apply(song.data, splices), song.path) if splices else song
+        return parse(apply(song.data, splices), song.path) if splices else song
 
     def _take(self, plan: MarkerPlan) -> None:
         self.changes.append(FileChange(self.item.target, self.song.data, plan.data))

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from dancetutor_cli import chart as reader
-from dancetutor_cli.chart import find_files
 from dancetutor_cli.chart.edits import Splice, apply, unchanged
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.msd import Tag, blanked, scan
+from dancetutor_cli.chart.reader import load, parse
+from dancetutor_cli.chart.selection import find_files
 from dancetutor_cli.run.errors import FileError, UsageError
 from dancetutor_cli.run.files import UCS_SUFFIX, remove_leftovers, write_atomic
 
@@ -171,12 +171,12 @@ def enter(film: Path, files: Sequence[Path]) -> list[str]:
 
 def _enter(film: Path, file: Path) -> list[str]:
     remove_leftovers(file.parent)
-    song = reader.load(file)
-    without = reader.parse(apply(song.data, remove(song)), file)
+    song = load(file)
+    without = parse(apply(song.data, remove(song)), file)
     added = add(without, film.name)
     new = apply(without.data, added.splices)
     after = unchanged(song, new, free=(TAG,))
-    if reader.parse(apply(new, remove(after)), file).data != without.data:
+    if parse(apply(new, remove(after)), file).data != without.data:
         raise FileError(file, "refused, nothing was written: the entry could not be removed again")
     if new != song.data:
         write_atomic(file, new, expect=song.data)

@@ -16,9 +16,10 @@ from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.note_data import parts, written_parts
 from dancetutor_cli.chart.pack_files import song_stems
 from dancetutor_cli.chart.reader import parse
-from dancetutor_cli.feet import sme, solve_chart
+from dancetutor_cli.feet import sme
 from dancetutor_cli.feet.annotations import step_rows
 from dancetutor_cli.feet.preset import Preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.feet.song_feet import overrides_for
 from dancetutor_cli.markers import comments, edit, sidecar, theme
 from dancetutor_cli.markers.comments import (

@@ -11,10 +11,10 @@ import numpy as np
 from dancetutor_cli.chart.density import bpm_text
 from dancetutor_cli.chart.model import Chart, Kind, Song
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
-from dancetutor_cli.feet import solve
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.feet.play import Play, StepKind
+from dancetutor_cli.feet.solver.solve import solve
 from dancetutor_cli.film.overlay.text import clean
 
 if TYPE_CHECKING:

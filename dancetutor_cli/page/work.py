@@ -9,18 +9,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dancetutor_cli import chart as charts
 from dancetutor_cli.character import load_character, name_in_gait
 from dancetutor_cli.character.mesh import with_foot_colours
 from dancetutor_cli.chart.music import find_music
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.motion import shifted
 from dancetutor_cli.dance.performance import pad_of, perform, play_of_all, playable, pooled, solve
 from dancetutor_cli.dance.request import check_request, read_chart
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-from dancetutor_cli.feet import alternatives, load_pad, load_preset
+from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.feet.play_json import read_play
+from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solved import solve_song
+from dancetutor_cli.feet.solver.alternatives import alternatives
 from dancetutor_cli.film.scroll import parse_segments
 from dancetutor_cli.lint.passages import hardest
 from dancetutor_cli.page.document import Blob, IndexEntry, document, index_page
@@ -325,7 +327,7 @@ def page_jobs(
     taken = {Path(INDEX).stem}
     for path in chart_files((request.dance.path,), exclude):
         try:
-            song = charts.load(path)
+            song = load(path)
         except NoChartsError:  # the music of a menu: nobody meant it to be danced
             continue
         except (DancetutorError, OSError) as error:

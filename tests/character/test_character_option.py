@@ -20,7 +20,7 @@ from dancetutor_cli.character.humanoid import find_humanoid
 from dancetutor_cli.character.mesh import rest_vertices
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.feet import load_pad
+from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.scene.renderer import MOST_JOINTS, create

@@ -9,8 +9,8 @@ import pytest
 
 from dancetutor_cli.character import load_character, load_dancer
 from dancetutor_cli.character.mesh import on_foot, rest_vertices, with_foot_colours
-from dancetutor_cli.feet import load_pad
 from dancetutor_cli.feet.limbs import limb_colours
+from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.film.scene.scene import Scene
 from dancetutor_cli.film.scene.visibility import feet_hidden
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli import chart
 from dancetutor_cli.chart.model import Kind, Song
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.run.errors import ChartError
 
 STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT, Kind.MINE)
@@ -26,7 +26,7 @@ def songs(corpus: Path, index: list[dict[str, str]]) -> dict[str, Song]:
     found = {}
     for row in index:
         try:
-            found[row["path"]] = chart.load(corpus / row["path"])
+            found[row["path"]] = load(corpus / row["path"])
         except ChartError as error:
             assert row["n_charts"] == "0", error
             assert "no charts" in str(error)

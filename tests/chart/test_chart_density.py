@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.chart import Chart, parse
 from dancetutor_cli.chart.density import breakdown, density
+from dancetutor_cli.chart.model import Chart
+from dancetutor_cli.chart.reader import parse
 
 SIXTEENTHS = "\n".join(["1000", "0100", "0010", "0001"] * 4)
 REST = "0000\n0000\n0000\n0000"

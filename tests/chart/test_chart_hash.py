@@ -12,9 +12,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.hash import HashError, chart_hash, hash_of, minimised, normalised_bpms
 from dancetutor_cli.chart.names import is_lights
+from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.run.errors import ChartError
 
 NOTES = b"1000\n0000\n0100\n0000\n,\n0010\n0000\n0001\n0000\n"

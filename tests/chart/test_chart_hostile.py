@@ -8,9 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli import chart
-from dancetutor_cli.chart import msd, music_file
+from dancetutor_cli.chart import msd, reader
 from dancetutor_cli.chart.model import Song
+from dancetutor_cli.chart.music import music_file
+from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.lint.analysis import _unselected
 from dancetutor_cli.run.errors import ChartError, FileError
 
@@ -41,14 +42,14 @@ def test_as_expected(row: dict[str, str]) -> None:
     path = HOSTILE / row["file"]
     if row["expected"] == "clear error":
         with pytest.raises(ChartError) as caught:
-            chart.load(path)
+            reader.load(path)
         message = str(caught.value)
         assert "\n" not in message
         assert str(path) in message
         assert caught.value.line is not None
         assert "no chart" in message
         return
-    song = chart.load(path)
+    song = reader.load(path)
     wanted = row["itgmania_charts_and_notes"]
     assert counts(song) == wanted.removeprefix(
         "?:0 "
@@ -61,7 +62,7 @@ def test_as_expected(row: dict[str, str]) -> None:
 
 @pytest.mark.parametrize("row", FOR_RENDER, ids=lambda row: str(row["file"]))
 def test_music_that_is_refused(row: dict[str, str]) -> None:
-    song = chart.load(HOSTILE / row["file"])
+    song = reader.load(HOSTILE / row["file"])
     assert counts(song) == row["itgmania_charts_and_notes"]
     assert "unsafe-music" in codes(song)
     with pytest.raises(FileError, match="refused") as caught:
@@ -98,12 +99,12 @@ def test_music_that_is_refused(row: dict[str, str]) -> None:
     ],
 )
 def test_the_warning_names_the_cause(name: str, code: str) -> None:
-    assert code in codes(chart.load(HOSTILE / name))
+    assert code in codes(reader.load(HOSTILE / name))
 
 
 def test_particular_values() -> None:
     def load(name: str) -> Song:
-        return chart.load(HOSTILE / name)
+        return reader.load(HOSTILE / name)
 
     assert load("offset_junk.sm").timing.offset == 1
     assert load("duplicate_tags.sm").title == "second"
@@ -120,7 +121,7 @@ def test_particular_values() -> None:
 
 def _error(name: str) -> str:
     with pytest.raises(ChartError) as caught:
-        chart.load(HOSTILE / name)
+        reader.load(HOSTILE / name)
     return str(caught.value)
 
 
@@ -129,10 +130,10 @@ def test_endless_signs_and_charts_take_no_longer_than_their_bytes() -> None:
     head, notes = "#TITLE:T;\n#BPMS:0=120;\n", "#NOTES:dance-single:C:Edit:9::\n1000\n0001\n;\n"
     begin = time.monotonic()
     for end in ("#" * 20_000_000, ":" * 500_000, "\\" * 500_000, "\t#" * 200_000, "//" * 500_000):
-        song = chart.parse((head + notes + end).encode(), Path("x.sm"))
+        song = parse((head + notes + end).encode(), Path("x.sm"))
         assert len(song.charts) == 1 and len(song.charts[0].notes) == 2
     assert time.monotonic() - begin < 20
-    song = chart.parse((head + notes * 3000).encode(), Path("x.sm"))
+    song = parse((head + notes * 3000).encode(), Path("x.sm"))
     assert len(song.charts) == 3000
     assert _unselected(song, tuple(song.charts[1:])) == ("dance-single Edit 9",)
     assert time.monotonic() - begin < 40

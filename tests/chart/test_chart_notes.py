@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dancetutor_cli import chart
 from dancetutor_cli.chart.model import Chart, Kind
+from dancetutor_cli.chart.reader import parse
 
 HEAD = b"#BPMS:0=120;#NOTES:\n%s:d:Hard:9:0,0:"
 
@@ -20,7 +20,7 @@ def read(notes: bytes, steps_type: bytes = b"dance-single", suffix: str = ".sm")
         text = b"#VERSION:0.83;#BPMS:0=120;#NOTEDATA:;#STEPSTYPE:%s;#DIFFICULTY:Hard;#METER:9;#NOTES:" % steps_type
     else:
         text = HEAD % steps_type
-    return chart.parse(text + notes, Path(f"x{suffix}")).charts[0]
+    return parse(text + notes, Path(f"x{suffix}")).charts[0]
 
 
 def notes(read_chart: Chart) -> list[tuple[int, int, str, int]]:
@@ -188,7 +188,7 @@ def test_difficulties_as_the_games_show_them(
     difficulty: bytes, description: bytes, meter: bytes, expected: str
 ) -> None:
     text = b"#BPMS:0=120;#NOTES:dance-single:%s:%s:%s:0:\n1000\n;" % (description, difficulty, meter)
-    assert chart.parse(text, Path("x.sm")).charts[0].difficulty == expected
+    assert parse(text, Path("x.sm")).charts[0].difficulty == expected
 
 
 LINES = st.sampled_from(

@@ -10,14 +10,15 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.edits import apply
 from dancetutor_cli.chart.model import Chart
 from dancetutor_cli.chart.note_data import parts, written_parts
+from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.commands import cli
-from dancetutor_cli.feet import load_preset, overrides_for
 from dancetutor_cli.feet.annotations import step_rows
 from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.song_feet import overrides_for
 from dancetutor_cli.lint.analysis import analyze_file
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.fix_edits import move_notes

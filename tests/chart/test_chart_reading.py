@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dancetutor_cli import chart
 from dancetutor_cli.chart import msd
 from dancetutor_cli.chart.model import Song
+from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.run.errors import ChartError, FileError
 
 CHART = b"#BPMS:0=120;#NOTES:dance-single:d:Hard:9:0:\n1000\n0100\n0010\n0001\n;"
@@ -21,7 +21,7 @@ SSC = b"#VERSION:0.83;#TITLE:T;#BPMS:0=120;#NOTEDATA:;#STEPSTYPE:dance-single;#D
 
 
 def read(data: bytes, name: str = "x.sm") -> Song:
-    return chart.parse(data, Path(name))
+    return parse(data, Path(name))
 
 
 def tags(data: bytes) -> list[tuple[str, list[bytes]]]:
@@ -103,11 +103,11 @@ def test_errors_name_the_cause(data: bytes, name: str, part: str) -> None:
 
 def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="no such file"):
-        chart.load(tmp_path / "missing.sm")
+        load(tmp_path / "missing.sm")
     with pytest.raises(FileError, match=r"no \.sm, \.ssc or \.ucs file"):
-        chart.load(tmp_path)
+        load(tmp_path)
     with pytest.raises(FileError):
-        chart.load(Path("nul\0.sm"))
+        load(Path("nul\0.sm"))
 
 
 def test_the_last_of_equal_tags_wins_and_names_have_no_case() -> None:
@@ -211,7 +211,7 @@ def test_notes_outside_notedata_are_named() -> None:
 
 def test_reading_imports_nothing_slow() -> None:
     code = (
-        "import sys; from dancetutor_cli.chart import load; from dancetutor_cli.chart import select; "
+        "import sys; from dancetutor_cli.chart.reader import load; from dancetutor_cli.chart.selection import select; "
         "print(*sorted(m.split('.')[0] for m in sys.modules))"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli import chart
 from dancetutor_cli.chart.model import Chart, Kind, Song
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.run.errors import ChartError
 
 with warnings.catch_warnings():
@@ -44,7 +44,7 @@ def pairs(corpus: Path) -> list[tuple[Song, object]]:
     found = []
     for path in sorted(corpus.rglob("*.s*"))[::3]:  # a third of the files
         try:
-            song = chart.load(path)
+            song = load(path)
         except ChartError:
             continue
         found.append((song, simfile.open(str(path), strict=False)))

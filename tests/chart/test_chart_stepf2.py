@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.chart import Kind, parse
-from dancetutor_cli.chart.model import Chart
+from dancetutor_cli.chart.model import Chart, Kind
+from dancetutor_cli.chart.reader import parse
 
 
 def notes(*rows: str, steps_type: str = "pump-single") -> tuple[list[tuple[int, int, str]], list[str]]:

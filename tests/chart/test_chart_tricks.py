@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dancetutor_cli import chart
 from dancetutor_cli.chart.model import Song
+from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.chart.timing_tags import beat, number
 
@@ -20,12 +20,12 @@ NOTES = "1000\n0100\n0010\n0001\n"
 
 def sm(**tags: str) -> Song:
     head = "".join(f"#{name}:{value};\n" for name, value in tags.items())
-    return chart.parse(f"{head}#NOTES:dance-single:d:Hard:9:0:\n{NOTES};".encode(), Path("x.sm"))
+    return parse(f"{head}#NOTES:dance-single:d:Hard:9:0:\n{NOTES};".encode(), Path("x.sm"))
 
 
 def ssc(song: str, own: str = "") -> Song:
     text = f"{song}#NOTEDATA:;#STEPSTYPE:dance-single;#DIFFICULTY:Hard;#METER:9;{own}#NOTES:\n{NOTES};"
-    return chart.parse(text.encode(), Path("x.ssc"))
+    return parse(text.encode(), Path("x.ssc"))
 
 
 def codes(song: Song) -> set[str]:

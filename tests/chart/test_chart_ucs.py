@@ -11,10 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from ucs_files import DEMO, Block, written
 
-from dancetutor_cli import feet
-from dancetutor_cli.chart import Chart, Kind, find_files, load, music_file, parse, twin
 from dancetutor_cli.chart.density import bpm_text
 from dancetutor_cli.chart.hash import chart_hash
+from dancetutor_cli.chart.model import Chart, Kind
+from dancetutor_cli.chart.music import music_file
+from dancetutor_cli.chart.reader import load, parse
+from dancetutor_cli.chart.selection import find_files, twin
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.run.errors import ChartError, MissingFileError
 
 NAME = Path("CS001.ucs")
@@ -68,8 +72,8 @@ def test_the_same_as_an_equal_ssc() -> None:
         assert getattr(mine.notes, name).tolist() == getattr(theirs.notes, name).tolist()
     assert mine.timing.seconds(mine.notes.tick).tolist() == theirs.timing.seconds(theirs.notes.tick).tolist()
     assert mine.timing == theirs.timing and mine.steps_type == theirs.steps_type
-    pump = feet.load_preset("pump")
-    one, two = feet.solve_chart(mine, pump), feet.solve_chart(theirs, pump)
+    pump = load_preset("pump")
+    one, two = solve_chart(mine, pump), solve_chart(theirs, pump)
     assert one is not None and two is not None
     assert one.limb.tolist() == two.limb.tolist() and one.total == two.total
     assert song.title == "CS001" and not mine.warnings

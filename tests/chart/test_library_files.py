@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli import chart
-from dancetutor_cli.chart import find_files, music_file, select, select_one, twin
 from dancetutor_cli.chart.model import Song
+from dancetutor_cli.chart.music import music_file
+from dancetutor_cli.chart.reader import load
+from dancetutor_cli.chart.selection import find_files, select, select_one, twin
 from dancetutor_cli.run.errors import FileError, UsageError
 
 NOTES = "#NOTES:{}:d:{}:{}:0:\n1000\n;"
@@ -23,7 +24,7 @@ def song(
     text = f"#MUSIC:{music};#BPMS:0=120;" + "".join(NOTES.format(*c) for c in charts)
     path = folder / "x.sm"
     path.write_bytes(text.encode())
-    return chart.load(path)
+    return load(path)
 
 
 def touch(folder: Path, *names: str) -> None:
@@ -47,7 +48,7 @@ def test_what_cannot_be_looked_into_stands_for_itself(tmp_path: Path) -> None:
     assert found == [tmp_path / "missing.sm", tmp_path / "a" / "y.ssc", tmp_path / "empty"]
     for path in (found[0], found[2]):
         with pytest.raises(FileError, match=r"no such file|no \.sm, \.ssc or \.ucs"):
-            chart.load(path)
+            load(path)
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may read every folder")
@@ -93,7 +94,7 @@ def test_a_chart_may_have_music_of_its_own(tmp_path: Path) -> None:
     touch(tmp_path, "a.ogg", "b.ogg")
     text = b"#VERSION:0.83;#MUSIC:a.ogg;#BPMS:0=120;#NOTEDATA:;#STEPSTYPE:dance-single;#MUSIC:b.ogg;#NOTES:\n1000\n;"
     (tmp_path / "y.ssc").write_bytes(text)
-    both = chart.load(tmp_path / "y.ssc")
+    both = load(tmp_path / "y.ssc")
     assert music_file(both).name == "a.ogg"
     assert music_file(both, both.charts[0]).name == "b.ogg"
 
@@ -153,7 +154,7 @@ def test_selection(tmp_path: Path) -> None:
 
 
 def test_a_folder_of_one_song_stands_for_its_file(tmp_path: Path) -> None:
-    from dancetutor_cli.chart import one_song
+    from dancetutor_cli.chart.selection import one_song
 
     song = tmp_path / "pack" / "song"
     song.mkdir(parents=True)

@@ -9,8 +9,8 @@ import numpy as np
 
 from dancetutor_cli.dance.context import Context, context_of
 from dancetutor_cli.dance.settings import default_settings
-from dancetutor_cli.feet import Pad, load_pad
 from dancetutor_cli.feet.limbs import Limb, Part
+from dancetutor_cli.feet.pads import Pad, load_pad
 from dancetutor_cli.feet.play import Play, Rows, StepKind
 
 L, R, LH, RH = Limb.LEFT_FOOT, Limb.RIGHT_FOOT, Limb.LEFT_HAND, Limb.RIGHT_HAND

@@ -12,13 +12,13 @@ from bake_mirror import apart, mirrored_motion, mirrored_play
 from bake_plays import MEDLEY, L, R, chart, pad, play, stream
 from dance_requests import solved_one
 
-from dancetutor_cli.chart import load
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.dance.bake import bake, plan_of
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.dance.trajectory.height import jump_lean
-from dancetutor_cli.feet import Pad, load_pad
+from dancetutor_cli.feet.pads import Pad, load_pad
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.run.reading import charts_path
 

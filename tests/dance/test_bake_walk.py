@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from bake_plays import L, R, chart, context, pad, play, stream
 
-from dancetutor_cli.chart import load
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.dance.bake import bake, plan_of
 from dancetutor_cli.dance.footwork.walks import side_of
 from dancetutor_cli.dance.gait import blended, blended_pose, gait_pose, load_gait, walking
@@ -16,7 +16,9 @@ from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import points_in_world, sole_points, world_transforms
 from dancetutor_cli.dance.settings import default_settings
-from dancetutor_cli.feet import load_pad, load_preset, solve_chart
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.run.reading import charts_path
 
 WALK = default_settings().walk

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from dance_requests import film_request, solved_one
 
-from dancetutor_cli.chart import load
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play

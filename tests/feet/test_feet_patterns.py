@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from dancetutor_cli import feet as play
+from dancetutor_cli.feet.preset import load_preset
 
 RESEARCH = Path(__file__).parents[2] / "research"
 X = (-1, 0, 0, 1)  # of left, down, up, right
@@ -93,6 +93,6 @@ def test_no_foot_steps_while_it_holds_and_only_turns_cross(tools: SimpleNamespac
 
 def test_feet_of_made_patterns(tools: SimpleNamespace) -> None:
     """97.5 % of the rows of seeds that chose nothing."""
-    itg = play.load_preset("itg")
+    itg = load_preset("itg")
     right = [tools.data.right_rows(label, itg)[0] for label in tools.patterns.load_patterns(range(5000, 5012))]
     assert np.concatenate(right).mean() >= 0.975

@@ -8,13 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.model import Song
-from dancetutor_cli.feet import load_preset, overrides_for, solve_chart
+from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.annotations import pinned
 from dancetutor_cli.feet.limbs import LETTERS, Limb, NotationError, Part, letter, marker
 from dancetutor_cli.feet.limbs import parse as parse_tokens
 from dancetutor_cli.feet.overrides import FeetProblem, Overrides, contradictions
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
+from dancetutor_cli.feet.song_feet import overrides_for
 
 LEFT, RIGHT, LEFT_HAND, RIGHT_HAND = Limb.LEFT_FOOT, Limb.RIGHT_FOOT, Limb.LEFT_HAND, Limb.RIGHT_HAND
 HEAD = (

@@ -7,9 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.chart import Song, load
-from dancetutor_cli.feet import load_preset, overrides_for, solve_chart
+from dancetutor_cli.chart.model import Song
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.feet.limbs import Limb, Part
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
+from dancetutor_cli.feet.song_feet import overrides_for
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
 from dancetutor_cli.lint.results import ResultCache
 from dancetutor_cli.lint.run import LintRequest, LintRun

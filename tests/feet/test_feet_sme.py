@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
-from dancetutor_cli.chart import load
 from dancetutor_cli.chart.model import Song
-from dancetutor_cli.feet import overrides_for
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.feet.limbs import Limb, Part
+from dancetutor_cli.feet.song_feet import overrides_for
 
 LEFT, RIGHT = Limb.LEFT_FOOT, Limb.RIGHT_FOOT
 CHART = "#NOTES:\n {}:\n :\n {}:\n 8:\n :{}\n1000\n0100\n0011\n0001\n;\n"

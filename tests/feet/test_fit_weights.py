@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 from play_rows import pad_of, rows_of
 
-from dancetutor_cli import feet as play
+from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.engine import cost_at
+from dancetutor_cli.feet.solver.solve import solve
 
 RESEARCH = Path(__file__).parents[2] / "research"
-ITG = play.load_preset("itg")
+ITG = load_preset("itg")
 
 
 @pytest.fixture(scope="module")
@@ -103,7 +104,7 @@ def test_an_authors_pins_make_a_preset(tools: SimpleNamespace, jumper, tmp_path:
     many = jumper * 40
     path = tmp_path / "mine.yaml"
     path.write_text(tools.weights.own_preset(many, never, "itg"), encoding="utf-8")
-    mine = play.load_preset(path)
+    mine = load_preset(path)
     assert mine.name == "mine" and cost_at(mine.curve("footswitch"), np.array([400]))[0] < 900
     assert tools.weights.own_preset(jumper[:1], ITG, "itg").startswith("extends: itg\n")
 
@@ -123,7 +124,7 @@ def test_a_preset_that_loses_rows_of_a_set_is_not_written(
     weights = tools.weights
     words = ("LRRLRLLR", "RLLRLRRL")
     jacks = [replace(x, foot=np.array(["LR".index(f) for f in word])) for x, word in zip(jumper, words, strict=True)]
-    solved = [play.solve(label.rows, label.pad, ITG).limb[label.row, label.column] for label in jumper]
+    solved = [solve(label.rows, label.pad, ITG).limb[label.row, label.column] for label in jumper]
     others = [replace(label, kind="other", foot=feet) for label, feet in zip(jumper, solved, strict=True)]
     for name in ("itg.yaml", "pump.yaml"):
         (tmp_path / name).write_text((weights.PRESETS / name).read_text(encoding="utf-8"), encoding="utf-8")

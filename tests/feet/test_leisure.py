@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.chart import parse
-from dancetutor_cli.feet import Preset, load_preset, solve_chart
+from dancetutor_cli.chart.reader import parse
+from dancetutor_cli.feet.preset import Preset, load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 
 # sixteenths at 90 BPM: 0.5 s before the pair and after it; the foot of one of its arrows has to leave the other's
 PASSAGES = [

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.chart.names import COLUMNS
-from dancetutor_cli.feet import load_pad, load_pads
+from dancetutor_cli.feet.pads import load_pad, load_pads
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import config_path
 

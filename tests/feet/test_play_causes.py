@@ -8,17 +8,19 @@ import numpy as np
 import pytest
 from play_rows import letters, pad_of, rows_of
 
-from dancetutor_cli import feet
-from dancetutor_cli.feet import Blame, Play, Preset
+from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.preset import Preset, load_preset
+from dancetutor_cli.feet.solver.alternatives import Blame, blame
+from dancetutor_cli.feet.solver.solve import solve
 
-ITG, THESIS = feet.load_preset("itg"), feet.load_preset("thesis")
+ITG, THESIS = load_preset("itg"), load_preset("thesis")
 SINGLE = pad_of("dance-single")
 
 
 def blamed(picture: str, gap: int = 24, preset: Preset = ITG) -> tuple[Play, tuple[Blame, ...]]:
     """The play of a picture at 150 beats a minute, and the causes of its doublesteps."""
-    found = feet.solve(rows_of(picture, gap, 150.0), SINGLE, preset)
-    return found, feet.blame(found, SINGLE, preset)
+    found = solve(rows_of(picture, gap, 150.0), SINGLE, preset)
+    return found, blame(found, SINGLE, preset)
 
 
 @pytest.mark.parametrize("preset", [ITG, THESIS], ids=["itg", "thesis"])
@@ -61,7 +63,7 @@ def test_a_mine_makes_a_foot_go_again(picture: str, gap: int, row: int, mine: tu
     assert cause == Blame(row, False, "mine", *mine)
     mines = found.rows.mines.copy()
     mines[mine] = False
-    without = feet.solve(replace(found.rows, mines=mines), SINGLE, ITG)
+    without = solve(replace(found.rows, mines=mines), SINGLE, ITG)
     assert "doublestep" not in without.moves[row]
 
 
@@ -75,7 +77,7 @@ def test_every_doublestep_of_busy_rows_has_a_cause(busy_plays: list[Play]) -> No
     """What is named is there, and lies before the doublestep or in its row."""
     seen = set()
     for found in busy_plays:
-        causes = feet.blame(found, SINGLE, ITG)
+        causes = blame(found, SINGLE, ITG)
         rows = [i for i, names in enumerate(found.moves) if {"doublestep", "forced-doublestep"} & set(names)]
         assert [one.row for one in causes] == rows
         for one in causes:
@@ -121,5 +123,5 @@ def busy_plays() -> list[Play]:
                 word[held] = "2"
             words.append("".join(word))
         words.append("".join("3" if p == held else "." for p in range(4)))
-        out.append(feet.solve(rows_of(" ".join(words), 24, 150.0), SINGLE, ITG))
+        out.append(solve(rows_of(" ".join(words), 24, 150.0), SINGLE, ITG))
     return out

@@ -12,13 +12,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from play_rows import check_mirror, pad_of, timed
 
-from dancetutor_cli import chart as reader
-from dancetutor_cli import feet
 from dancetutor_cli.chart.model import Chart, Song
-from dancetutor_cli.feet import Limb, Rows, StepKind
+from dancetutor_cli.chart.reader import load, parse
+from dancetutor_cli.feet.limbs import Limb, Part
+from dancetutor_cli.feet.play import Rows, StepKind, prepare
+from dancetutor_cli.feet.preset import load_preset, preset_names
+from dancetutor_cli.feet.solver.solve import solve, solve_chart
 from dancetutor_cli.run.errors import DancetutorError
 
-PRESETS = {name: feet.load_preset(name) for name in feet.preset_names()}
+PRESETS = {name: load_preset(name) for name in preset_names()}
 
 
 @cache
@@ -29,7 +31,7 @@ def sample(
     found = []
     for path in sorted(p for p in corpus.rglob("*") if p.suffix.lower() in (".sm", ".ssc")):
         try:
-            song = reader.load(path)
+            song = load(path)
         except DancetutorError:
             continue
         found += [(song, chart) for chart in song.charts if chart.steps_type in steps_types]
@@ -41,7 +43,7 @@ def test_mirroring_real_charts_left_right_mirrors_the_feet(corpus: Path, name: s
     sure = total = 0
     for _, chart in sample(corpus, 20):
         pad = pad_of(chart.steps_type)
-        rows = feet.prepare(chart, pad)
+        rows = prepare(chart, pad)
         sure += check_mirror(rows, pad, PRESETS[name], left_right=True)
         total += len(rows)
     assert total > 20_000 and sure > total // 2
@@ -51,8 +53,8 @@ def test_mirroring_up_down_mirrors_the_feet_of_thesis_without_hands(corpus: Path
     checked = 0
     for _, chart in sample(corpus, 20):
         pad = pad_of(chart.steps_type)
-        rows = feet.prepare(chart, pad)
-        if ((rows.steps > 0).sum(axis=1) <= 2).all() and (feet.solve(rows, pad, PRESETS["thesis"]).limb <= 1).all():
+        rows = prepare(chart, pad)
+        if ((rows.steps > 0).sum(axis=1) <= 2).all() and (solve(rows, pad, PRESETS["thesis"]).limb <= 1).all():
             checked += check_mirror(rows, pad, PRESETS["thesis"], left_right=False)
     assert checked > 5_000
 
@@ -84,7 +86,7 @@ def test_mirroring_odd_rows(rows: Rows, name: str) -> None:
 def same_feet(before: Chart, after: Chart) -> None:
     """Both charts have the same rows, limbs and costs in every preset."""
     for preset in PRESETS.values():
-        one, other = feet.solve_chart(before, preset), feet.solve_chart(after, preset)
+        one, other = solve_chart(before, preset), solve_chart(after, preset)
         assert one is not None and other is not None
         assert one.rows.tick.tolist() == other.rows.tick.tolist()
         assert np.array_equal(one.limb, other.limb) and np.array_equal(one.cost, other.cost)
@@ -96,7 +98,7 @@ def test_shifting_the_offset_changes_nothing(corpus: Path) -> None:
     for song, chart in sample(corpus, 60):
         shifted = re.sub(rb"#OFFSET:([^;]*);", lambda m: b"#OFFSET:%.3f;" % (float(m[1] or 0) + 0.123), song.data)
         if shifted != song.data:
-            after = reader.parse(shifted, song.path).charts[chart.index]
+            after = parse(shifted, song.path).charts[chart.index]
             assert after.timing.offset != chart.timing.offset
             same_feet(chart, after)
             checked += 1
@@ -124,7 +126,7 @@ def test_writing_rows_on_a_finer_grid_changes_nothing(corpus: Path) -> None:
         first, count = chart.measures.first_row, chart.measures.row_count
         if len(set(chart.rows.line.tolist())) < len(chart.rows.line) or not len(first):
             continue  # several rows on one line
-        after = reader.parse(finer(song, chart), song.path).charts[chart.index]
+        after = parse(finer(song, chart), song.path).charts[chart.index]
         if count.max() <= 192 and len(after.rows.tick) > len(chart.rows.tick):
             same_feet(chart, after)
             checked += 1
@@ -135,9 +137,9 @@ def test_writing_rows_on_a_finer_grid_changes_nothing(corpus: Path) -> None:
 def test_limbs_and_panels_agree(corpus: Path, name: str) -> None:
     """Where a foot pressed is where it stands after the row (a bracket: its heel)."""
     for _, chart in sample(corpus, 80):
-        found = feet.solve_chart(chart, PRESETS[name])
+        found = solve_chart(chart, PRESETS[name])
         assert found is not None
         for foot in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
-            rows, columns = np.nonzero((found.limb == foot) & (found.part != feet.Part.TOE))
+            rows, columns = np.nonzero((found.limb == foot) & (found.part != Part.TOE))
             whole = np.isin(found.rows.steps[rows, columns], (StepKind.TAP, StepKind.HOLD, StepKind.LIFT))
             assert (found.feet[rows[whole], foot] == columns[whole]).all()

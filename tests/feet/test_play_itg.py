@@ -9,19 +9,21 @@ import numpy as np
 import pytest
 from play_rows import letters, pad_of, rows_of
 
-from dancetutor_cli import chart as reader
-from dancetutor_cli import feet as play
-from dancetutor_cli.feet import Limb, Part, Play, Preset
+from dancetutor_cli.chart.reader import load
+from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.overrides import Overrides
+from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.preset import Preset, load_preset
+from dancetutor_cli.feet.solver.solve import solve, solve_chart
 
-ITG, DDR, STAMINA = (play.load_preset(name) for name in ("itg", "ddr", "stamina"))
+ITG, DDR, STAMINA = (load_preset(name) for name in ("itg", "ddr", "stamina"))
 
 
 def solved(
     picture: str, gap: int = 24, bpm: float = 150.0, preset: Preset = ITG, overrides: Overrides | None = None
 ) -> Play:
     """The play of a dance-single chart, rows by default 0.2 s apart."""
-    return play.solve(rows_of(picture, gap, bpm), pad_of("dance-single"), preset, overrides)
+    return solve(rows_of(picture, gap, bpm), pad_of("dance-single"), preset, overrides)
 
 
 @pytest.mark.parametrize(
@@ -108,7 +110,7 @@ def test_hands_come_down_in_front_of_her() -> None:
     """All four corners of a Pump pad: feet go to two beside each other, hands to the two ahead of them."""
     pad = pad_of("pump-single")
     for picture in ("1...1 11.11", ".1.1. 11.11", "11.11"):
-        found = play.solve(rows_of(picture, 48, 150.0), pad, play.load_preset("pump"))
+        found = solve(rows_of(picture, 48, 150.0), pad, load_preset("pump"))
         limb, facing = found.limb[-1].tolist(), np.radians(found.facing[-1])
         assert sorted(limb) == [-1, 0, 1, 2, 3]
         feet = pad.panels[[limb.index(0), limb.index(1)]].mean(axis=0)
@@ -127,7 +129,7 @@ def test_holdswitch() -> None:
     """The left foot holds down and has to step on up, out of a bracket's reach: the right foot takes over the hold."""
     found = solved(".2.. ..1. .3.. ...1", overrides=Overrides.of({(0, 1): (0, 0), (24, 2): (0, 0)}))
     assert move_rows(found, "holdswitch") == [1] and found.feet[1].tolist() == [2, 1]
-    without = play.load_preset("itg").with_values(switches={"holdswitches": False})
+    without = load_preset("itg").with_values(switches={"holdswitches": False})
     assert move_rows(solved(".2.. ..1. .3.. ...1", preset=without), "holdswitch") == []
 
 
@@ -179,7 +181,7 @@ def test_a_roll_may_be_tapped_by_turns_with_other_steps() -> None:
 
 def test_overrides_are_kept_in_every_preset() -> None:
     picture = "1... ...1 .1.. .1.. ..1. 1..1 2... .1.. 3..1"
-    for preset in (ITG, DDR, STAMINA, play.load_preset("thesis")):
+    for preset in (ITG, DDR, STAMINA, load_preset("thesis")):
         for cells in (
             {(0, 0): (1, 0)},
             {(24, 3): (0, 0), (48, 1): (0, 0), (72, 1): (0, 0)},
@@ -208,11 +210,11 @@ def test_labels(shared_data: Path) -> None:
     root = shared_data / "feet"
     right: dict[str, list[bool]] = {"song": [], "pattern": []}
     for label in json.loads((root / "labels.json").read_text()):
-        song = reader.load(root / label["chart"])
+        song = load(root / label["chart"])
         chart = next(
             c for c in song.charts if (c.steps_type, c.difficulty) == (label["steps_type"], label["difficulty"])
         )
-        found = play.solve_chart(chart, ITG)
+        found = solve_chart(chart, ITG)
         assert found is not None
         row_of = {round(tick / 48, 3): row for row, tick in enumerate(found.rows.tick.tolist())}
         for entry in label["rows"]:
@@ -232,7 +234,7 @@ def test_one_foot_twice_belongs_into_the_slow_gap() -> None:
         for number in range(60):
             column = int(rng.choice([other for other in range(4) if other != column]))
             words += ["." * column + "1" + "." * (3 - column)] + ["...."] * (2 * (number % 2))
-        found = play.solve(rows_of(" ".join(words), 12, 15_000 / 65), pad_of("dance-single"), ITG)
+        found = solve(rows_of(" ".join(words), 12, 15_000 / 65), pad_of("dance-single"), ITG)
         foot = found.limb.max(axis=1)
         again = np.flatnonzero(foot[1:] == foot[:-1]) + 1
         quick, slow = quick + int((again % 2 == 1).sum()), slow + int((again % 2 == 0).sum())

@@ -8,14 +8,16 @@ import numpy as np
 import pytest
 from play_rows import letters, pad_of, rows_of
 
-from dancetutor_cli import feet as play
-from dancetutor_cli.feet import Play
+from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.overrides import Overrides
+from dancetutor_cli.feet.play import Ambiguity, Play, Rows
+from dancetutor_cli.feet.preset import Preset, load_preset
+from dancetutor_cli.feet.solver.solve import solve
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.yaml_files import read
 
-ITG, THESIS = play.load_preset("itg"), play.load_preset("thesis")
+ITG, THESIS = load_preset("itg"), load_preset("thesis")
 
 
 def solved(picture: str, gap: int = 24, feet: str = "", steps_type: str = "dance-single") -> Play:
@@ -26,7 +28,7 @@ def solved(picture: str, gap: int = 24, feet: str = "", steps_type: str = "dance
         for column, foot in enumerate(word)
         if foot != "."
     }
-    return play.solve(rows_of(picture, gap, 150.0), pad_of(steps_type), ITG, Overrides.of(cells) if cells else None)
+    return solve(rows_of(picture, gap, 150.0), pad_of(steps_type), ITG, Overrides.of(cells) if cells else None)
 
 
 def named(found: Play, move: str) -> list[int]:
@@ -76,13 +78,13 @@ def test_a_crossover_beside_a_crossed_jump_is_neither_in_front_nor_behind() -> N
 
 
 def test_hands_and_what_nobody_can_play() -> None:
-    thesis = play.solve(rows_of("11.. 1111 1..."), pad_of("dance-single"), THESIS)
+    thesis = solve(rows_of("11.. 1111 1..."), pad_of("dance-single"), THESIS)
     assert named(thesis, "hand") == [1] and named(thesis, "unplayable") == []
     pad = pad_of("dance-single")
     blocked = rows_of("22.. ..22 1111 3333")
-    blocked = play.Rows(*(getattr(blocked, name)[:3] for name in play.Rows.__slots__))
-    found = play.solve(blocked, pad, THESIS)
-    assert named(found, "unplayable") == [2] and (found.limb[2] == play.Limb.UNPLAYED).all()
+    blocked = Rows(*(getattr(blocked, name)[:3] for name in Rows.__slots__))
+    found = solve(blocked, pad, THESIS)
+    assert named(found, "unplayable") == [2] and (found.limb[2] == Limb.UNPLAYED).all()
 
 
 @pytest.mark.parametrize(
@@ -146,14 +148,14 @@ def test_thresholds_are_those_of_the_configuration() -> None:
 
 
 @pytest.mark.parametrize("preset", [ITG, THESIS], ids=["itg", "thesis"])
-def test_two_kinds_of_ties(preset: play.Preset) -> None:
+def test_two_kinds_of_ties(preset: Preset) -> None:
     """Up alone may come with either foot, and what follows does not care, or does."""
-    either = play.solve(rows_of("..1. .... .... 1..1", 48), pad_of("dance-single"), preset)
+    either = solve(rows_of("..1. .... .... 1..1", 48), pad_of("dance-single"), preset)
     assert either.ambiguity is not None and either.margin is not None
-    assert either.margin[0] == 0 and either.ambiguity[0] == play.Ambiguity.RESOLVED
-    depends = play.solve(rows_of("..1. .1.. ..1. .1..", 48), pad_of("dance-single"), preset)
+    assert either.margin[0] == 0 and either.ambiguity[0] == Ambiguity.RESOLVED
+    depends = solve(rows_of("..1. .1.. ..1. .1..", 48), pad_of("dance-single"), preset)
     assert depends.ambiguity is not None and depends.margin is not None
     assert depends.margin.tolist() == [0, 0, 0, 0]
-    assert depends.ambiguity.tolist() == [play.Ambiguity.OPEN] * 3 + [play.Ambiguity.RESOLVED]  # nothing comes after
-    sure = play.solve(rows_of("1... ...1", 48), pad_of("dance-single"), preset)
+    assert depends.ambiguity.tolist() == [Ambiguity.OPEN] * 3 + [Ambiguity.RESOLVED]  # nothing comes after
+    sure = solve(rows_of("1... ...1", 48), pad_of("dance-single"), preset)
     assert sure.margin is not None and (sure.margin > 0).all() and not np.any(sure.ambiguity)

@@ -8,8 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.chart import Chart, load, parse
-from dancetutor_cli.feet import Overrides, Rows, StepKind, default_preset, load_pad, load_preset, prepare
+from dancetutor_cli.chart.model import Chart
+from dancetutor_cli.chart.reader import load, parse
+from dancetutor_cli.feet.overrides import Overrides
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.play import Rows, StepKind, prepare
+from dancetutor_cli.feet.preset import default_preset, load_preset
 from dancetutor_cli.feet.solver.engine import Engine, engine_for
 from dancetutor_cli.feet.solver.solve import OneTap, forced_limbs, move_tap
 from dancetutor_cli.feet.solver.store import BASE, MOVES

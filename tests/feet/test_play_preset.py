@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from play_rows import pad_of, rows_of
 
-from dancetutor_cli import feet
 from dancetutor_cli.feet.play import roll_gap
+from dancetutor_cli.feet.preset import DEFAULT_PRESET, default_preset, load_preset, preset_names
 from dancetutor_cli.feet.solver.engine import cost_at
+from dancetutor_cli.feet.solver.solve import solve
 from dancetutor_cli.feet.solver.vocabulary import MODELS
 from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.run.reading import config_path
@@ -26,17 +27,17 @@ def written(folder: Path, text: str) -> Path:
 
 
 def test_the_presets_that_come_along() -> None:
-    assert feet.preset_names() == NAMES
-    assert feet.DEFAULT_PRESET == "itg"
-    for name in feet.preset_names():
-        preset = feet.load_preset(name)
+    assert preset_names() == NAMES
+    assert DEFAULT_PRESET == "itg"
+    for name in preset_names():
+        preset = load_preset(name)
         assert preset.name == name and preset == pickle.loads(pickle.dumps(preset)) and hash(preset)
         assert [n for n, _ in preset.weights] == list(MODELS[preset.model].weights)
 
 
 @pytest.mark.parametrize("name", ["itg", "thesis"])
 def test_every_value_has_a_sentence(name: str) -> None:
-    preset = feet.load_preset(name)
+    preset = load_preset(name)
     lines = config_path(f"presets/{name}.yaml").read_text(encoding="utf-8").splitlines()
     for key, _ in (*preset.weights, *preset.curves, *preset.switches):
         number = next(i for i, line in enumerate(lines) if line.startswith(f"  {key}:"))
@@ -44,7 +45,7 @@ def test_every_value_has_a_sentence(name: str) -> None:
 
 
 def test_thesis_is_the_cost_model() -> None:
-    thesis = feet.load_preset("thesis")
+    thesis = load_preset("thesis")
     assert [value for _, value in thesis.weights] == [1, 12, 10, 3, 5, 15, 1, 5, 1, 2, 1000]
     assert thesis.roll_window == 0.35 and thesis.switch("allow-doublestep")
 
@@ -56,17 +57,17 @@ def test_a_curve_is_straight_between_its_knots_and_level_beyond_them() -> None:
 
 
 def test_confidence_belongs_to_the_weights_it_was_measured_with(tmp_path: Path) -> None:
-    assert feet.load_preset("itg").confidence and feet.load_preset("pump").confidence
+    assert load_preset("itg").confidence and load_preset("pump").confidence
     path = written(tmp_path, "extends: itg\nweights:\n  spin: 50\n")
-    assert feet.load_preset(path).confidence == () == feet.load_preset("stamina").confidence
+    assert load_preset(path).confidence == () == load_preset("stamina").confidence
 
 
 def test_a_preset_of_ones_own_extends_another(tmp_path: Path) -> None:
     path = written(tmp_path, "extends: thesis\nweights:\n  spin: 50\n")
-    mine, thesis = feet.load_preset(path), feet.load_preset("thesis")
+    mine, thesis = load_preset(path), load_preset("thesis")
     assert mine.weight("spin") == 50 and mine.weight("doublestep") == thesis.weight("doublestep")
     (tmp_path / "other.yaml").write_text("extends: mine.yaml\nswitches: {allow-doublestep: false}\n")
-    other = feet.load_preset(str(tmp_path / "other.yaml"))
+    other = load_preset(str(tmp_path / "other.yaml"))
     assert other.weight("spin") == 50 and not other.switch("allow-doublestep") and other.name == "other"
 
 
@@ -106,48 +107,48 @@ def test_a_preset_of_ones_own_extends_another(tmp_path: Path) -> None:
 def test_what_is_wrong_is_named_with_file_and_line(tmp_path: Path, text: str, line: int | None, words: str) -> None:
     path = written(tmp_path, text)
     with pytest.raises(FileError) as caught:
-        feet.load_preset(path)
+        load_preset(path)
     place = f"{path}:{line}: " if line else f"{path}: "
     assert str(caught.value).startswith(place) and words in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
 def test_a_preset_knows_for_which_pads_it_was_made(tmp_path: Path) -> None:
-    made = {name: feet.load_preset(name).pads for name in NAMES}
+    made = {name: load_preset(name).pads for name in NAMES}
     assert made == {
         "pump": ("pump",),
         "beginner": ("dance", "pump", "smx"),
         "smx": ("smx",),
         **dict.fromkeys(("ddr", "itg", "stamina", "thesis"), ("dance",)),
     }
-    mine = feet.load_preset(written(tmp_path, "extends: itg\npads: [pump-double, dance]\n"))
+    mine = load_preset(written(tmp_path, "extends: itg\npads: [pump-double, dance]\n"))
     assert [mine.is_for(kind) for kind in ("dance-solo", "pump-double", "pump-single")] == [True, True, False]
-    assert feet.load_preset(written(tmp_path, "extends: pump\n")).pads == ("pump",)
-    assert feet.load_preset(written(tmp_path, "extends: itg\npads: []\n")).is_for("kb7-single")
+    assert load_preset(written(tmp_path, "extends: pump\n")).pads == ("pump",)
+    assert load_preset(written(tmp_path, "extends: itg\npads: []\n")).is_for("kb7-single")
 
 
 def test_the_default_goes_by_the_steps_type() -> None:
     kinds = ("dance-single", "dance-solo", "pump-single", "PUMP-halfdouble", "kb7-single")
-    assert [feet.default_preset(kind) for kind in kinds] == ["itg", "itg", "pump", "pump", "itg"]
+    assert [default_preset(kind) for kind in kinds] == ["itg", "itg", "pump", "pump", "itg"]
 
 
 def test_a_strangers_preset_extends_nothing_outside_its_folder(tmp_path: Path) -> None:
     (tmp_path / "base.yaml").write_text("extends: itg\nweights: {spin: 7}\n")
     (tmp_path / "inside").mkdir()
     path = written(tmp_path / "inside", "extends: ../base.yaml\n")
-    assert feet.load_preset(path).weight("spin") == 7
+    assert load_preset(path).weight("spin") == 7
     with pytest.raises(FileError, match="outside this file's folder"):
-        feet.load_preset(path, confined=True)
+        load_preset(path, confined=True)
     (tmp_path / "inside" / "link.yaml").symlink_to(tmp_path / "base.yaml")
     with pytest.raises(FileError, match="outside this file's folder"):
-        feet.load_preset(written(tmp_path / "inside", "extends: link.yaml\n"), confined=True)
+        load_preset(written(tmp_path / "inside", "extends: link.yaml\n"), confined=True)
 
 
 def test_an_unknown_preset_names_those_that_exist(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=", ".join(NAMES)):
-        feet.load_preset("gpt")
+        load_preset("gpt")
     with pytest.raises(DancetutorError, match="cannot be read"):
-        feet.load_preset(tmp_path / "none.yaml")
+        load_preset(tmp_path / "none.yaml")
 
 
 @pytest.mark.parametrize(
@@ -171,8 +172,8 @@ def test_gap_of_a_roll(bpm: float, window: float, ticks: int) -> None:
 def test_confidence_follows_the_margin() -> None:
     """Between 0 and 1 by the preset's curve; sure where there is no other way, unknown where nothing is stepped."""
     rows = rows_of("1... ..1. .M.. ...1 .1.1 ..1. 1111", 24, 150.0)
-    pad, preset = pad_of("dance-single"), feet.load_preset("itg").with_values()
-    found = feet.solve(rows, pad, preset)
+    pad, preset = pad_of("dance-single"), load_preset("itg").with_values()
+    found = solve(rows, pad, preset)
     assert found.confidence is not None and found.margin is not None
     known = {margin: tenths / 1000 for margin, tenths in preset.confidence}
     stepped = rows.steps.any(axis=1)
@@ -181,5 +182,5 @@ def test_confidence_follows_the_margin() -> None:
         below = max((knot for knot in known if knot <= margin), default=0)
         above = min((knot for knot in known if knot >= margin), default=max(known))
         assert margin < 0 or known[below] - 0.001 <= sure <= known[above]
-    assert feet.solve(rows, pad, preset, margins=False).confidence is None
-    assert feet.solve(rows, pad, feet.load_preset("thesis")).confidence is None
+    assert solve(rows, pad, preset, margins=False).confidence is None
+    assert solve(rows, pad, load_preset("thesis")).confidence is None

@@ -11,13 +11,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from play_rows import first, letters, pad_of, rows_of
 
-from dancetutor_cli import feet
-from dancetutor_cli.feet import Ambiguity, Pad, Preset, Rows
+from dancetutor_cli.feet.pads import Pad
+from dancetutor_cli.feet.play import Ambiguity, Rows
+from dancetutor_cli.feet.preset import Preset, load_preset, preset_names
+from dancetutor_cli.feet.solver.alternatives import alternatives
 from dancetutor_cli.feet.solver.engine import Engine, _arrays, _nodes, engine_for
+from dancetutor_cli.feet.solver.solve import solve
 from dancetutor_cli.feet.solver.store import ACTION, BASE, COST, FACTS, FIRST, LIMBS, NEXT, TIMES
 from dancetutor_cli.feet.solver.tables import moves
 
-PRESETS = {name: feet.load_preset(name) for name in feet.preset_names()}
+PRESETS = {name: load_preset(name) for name in preset_names()}
 Ways = dict[tuple[int, ...], int]
 
 
@@ -75,7 +78,7 @@ def test_against_every_way(steps_type: str, name: str) -> None:
 def check_rows(rows: Rows, pad: Pad, preset: Preset) -> None:
     ways = every_way(rows, pad, preset)
     least = min(ways.values())
-    found = feet.solve(rows, pad, preset)
+    found = solve(rows, pad, preset)
     assert found.total == least
     assert found.margin is not None and found.ambiguity is not None
     wanted = found.limb.tolist()
@@ -91,7 +94,7 @@ def check_rows(rows: Rows, pad: Pad, preset: Preset) -> None:
 
 
 def check_alternatives(rows: Rows, pad: Pad, preset: Preset, ways: Ways) -> None:
-    best = feet.alternatives(rows, pad, preset, 7)
+    best = alternatives(rows, pad, preset, 7)
     assert [other.play.total for other in best] == sorted(ways.values())[:7]
     assert len({other.play.limb.tobytes() for other in best}) == len(best)
     for other in best:
@@ -114,7 +117,7 @@ def codes_cost(limb: np.ndarray, ways: Ways) -> int:
 def test_alternatives_say_what_decides() -> None:
     """A run that starts on the wrong foot needs a doublestep or a crossover; the second best says which."""
     rows = rows_of("1... ...1 .1.. ..1. ...1 .1.. 1...")
-    first, second = feet.alternatives(rows, pad_of("dance-single"), PRESETS["thesis"], 2)
+    first, second = alternatives(rows, pad_of("dance-single"), PRESETS["thesis"], 2)
     assert first.extra == 0 and first.rows == () and first.terms == {}
     assert second.extra == sum(second.terms.values()) and second.rows
 
@@ -122,15 +125,15 @@ def test_alternatives_say_what_decides() -> None:
 def test_cost_terms_add_up_to_the_cost(corpus_rows: list[tuple[str, Rows]]) -> None:
     for steps_type, rows in corpus_rows:
         for preset in PRESETS.values():
-            found = feet.solve(rows, pad_of(steps_type), preset)
-            assert found.total == feet.alternatives(rows, pad_of(steps_type), preset, 1)[0].play.total
+            found = solve(rows, pad_of(steps_type), preset)
+            assert found.total == alternatives(rows, pad_of(steps_type), preset, 1)[0].play.total
             assert len(found.terms) == found.cost.shape[1] and (found.cost >= 0).all()
 
 
 def test_of_ways_as_cheap_the_left_foot_begins_and_stands_left() -> None:
     pad, preset = pad_of("dance-single"), PRESETS["itg"]
-    assert letters(feet.solve(rows_of("..1."), pad, preset)) == "..L."
-    assert feet.solve(rows_of(".11."), pad, preset).limb.tolist() == [[-1, 0, 1, -1]]
+    assert letters(solve(rows_of("..1."), pad, preset)) == "..L."
+    assert solve(rows_of(".11."), pad, preset).limb.tolist() == [[-1, 0, 1, -1]]
 
 
 def test_what_was_solved_before_changes_nothing(corpus_rows: list[tuple[str, Rows]]) -> None:

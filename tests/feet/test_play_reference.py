@@ -14,11 +14,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from play_reference import Reference, Row, rows_of
 
-from dancetutor_cli import chart as charts
 from dancetutor_cli.chart.model import Chart, Kind
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
-from dancetutor_cli.feet import Play, Preset, load_pad, load_preset, prepare, solve, solve_chart
+from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.play import Play, prepare
+from dancetutor_cli.feet.preset import Preset, load_preset
+from dancetutor_cli.feet.solver.solve import solve, solve_chart
 from dancetutor_cli.run.errors import DancetutorError
 
 LETTERS = {Kind.TAP: "1", Kind.HOLD: "2", Kind.ROLL: "4", Kind.MINE: "M", Kind.LIFT: "L"}
@@ -59,7 +62,7 @@ def sampled(corpus: Path, count: int, longest: int) -> list[Chart]:
     random.Random(11).shuffle(files)
     for path in files:
         try:
-            song = charts.load(path)
+            song = load(path)
         except DancetutorError:
             continue
         limit = {"dance-single": longest, "dance-double": longest // 2}
@@ -84,7 +87,7 @@ def test_every_known_cost(corpus: Path, shared_data: Path) -> None:
         by_file.setdefault(row["path"], []).append(row)
     wrong = []
     for path, rows in by_file.items():
-        song = charts.load(corpus / path)
+        song = load(corpus / path)
         for row in rows:
             plays = [
                 solve_chart(c, preset)
@@ -126,7 +129,7 @@ def test_random_charts(steps_type: str) -> None:
     @settings(max_examples=150, deadline=None)
     @given(chart_text(steps_type))
     def check(text: str) -> None:
-        assert_same(charts.parse(text.encode(), Path("random.sm")).charts[0])
+        assert_same(parse(text.encode(), Path("random.sm")).charts[0])
 
     check()
 
@@ -134,7 +137,7 @@ def test_random_charts(steps_type: str) -> None:
 @settings(max_examples=100, deadline=None)
 @given(chart_text("dance-single"))
 def test_doublesteps_forbidden(text: str) -> None:
-    chart = charts.parse(text.encode(), Path("random.sm")).charts[0]
+    chart = parse(text.encode(), Path("random.sm")).charts[0]
     preset = no_doublesteps()
     pad = load_pad(chart.steps_type)
     assert pad is not None

@@ -14,7 +14,7 @@ from dancetutor_cli.character.mesh import rest_vertices
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig.body import joint_matrices
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-from dancetutor_cli.feet import load_pad
+from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout

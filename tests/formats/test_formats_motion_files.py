@@ -9,12 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.chart import load
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.dance.bake import bake, plan_of
 from dancetutor_cli.dance.performance import as_heard
 from dancetutor_cli.dance.plan import Press
-from dancetutor_cli.feet import load_pad, load_preset, prepare, solve_chart
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.play import prepare
 from dancetutor_cli.feet.play_json import read_play
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.formats.moves_json import moves_data, write_moves
 from dancetutor_cli.formats.npz import read_npz, write_npz
 from dancetutor_cli.run.errors import FileError

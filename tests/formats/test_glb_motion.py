@@ -10,15 +10,17 @@ import pytest
 from glb_channels import channels_of
 
 from dancetutor_cli.character import load_dancer
-from dancetutor_cli.chart import load
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.performance import as_heard
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import palm_points, points_in_world, sole_points, world_transforms
-from dancetutor_cli.feet import load_pad, load_preset, solve_chart
 from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.formats.glb import write_glb
 from dancetutor_cli.run.reading import charts_path
 

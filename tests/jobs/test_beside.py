@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from dancetutor_cli.chart import load
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.commands.analyze import command
-from dancetutor_cli.feet import load_preset
+from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.lint.figures import tech_counts, tech_rows
 from dancetutor_cli.lint.subject import solved_chart
 from dancetutor_cli.lint.techniques import TEN, read_theirs

@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from numpy.typing import NDArray
 
 from dancetutor_cli.commands.analyze import command as analyze
-from dancetutor_cli.feet import Play
+from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.solver import solve as solver
 
 ROWS = "1000\n0100\n0M00\n0010\n0001\n1000\n0100\n0010\n"

@@ -10,7 +10,7 @@ import pytest
 from dance_requests import film_request
 
 from dancetutor_cli.__main__ import main
-from dancetutor_cli.chart import load
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands import render
 from dancetutor_cli.film.layout import FilmLook, load_layout

@@ -12,8 +12,7 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.commands.first_run import announce_compiling
-from dancetutor_cli.feet import load_preset
-from dancetutor_cli.feet.preset import PresetChoice
+from dancetutor_cli.feet.preset import PresetChoice, load_preset
 from dancetutor_cli.feet.solver import compiled
 from dancetutor_cli.run.kernels.store import StoredCode, kernel_folder, source_digest, source_modules
 
@@ -152,8 +151,8 @@ def test_kept_kernels_need_no_numba() -> None:
 
 
 def test_a_solve_leaves_the_files_that_are_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    from dancetutor_cli.chart import parse
-    from dancetutor_cli.feet import solve_chart
+    from dancetutor_cli.chart.reader import parse
+    from dancetutor_cli.feet.solver.solve import solve_chart
 
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     song = parse(b"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single::Hard:9::\n1000\n0001\n;\n", Path("x.sm"))

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.edits import apply
+from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.lint.fix_edits import Fix, notes_of, safe_fixes
 
 GRID = [4, 8, 12, 16, 24, 32, 48, 64]

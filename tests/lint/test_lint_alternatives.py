@@ -8,10 +8,13 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from dancetutor_cli.chart import parse
+from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.commands.analyze import command
-from dancetutor_cli.feet import Overrides, load_pad, load_preset, solve_chart
 from dancetutor_cli.feet.limbs import MEANING
+from dancetutor_cli.feet.overrides import Overrides
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.lint.figures import alternatives_of, causes_of, with_causes
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.subject import ChartSubject

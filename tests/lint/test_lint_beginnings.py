@@ -7,8 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from dancetutor_cli.chart import load
-from dancetutor_cli.feet import Play, load_preset, solve_chart
+from dancetutor_cli.chart.reader import load
+from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.lint.other_foot import Beginnings
 from dancetutor_cli.run.reading import charts_path
 

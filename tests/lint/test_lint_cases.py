@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.feet import Play, load_preset
-from dancetutor_cli.feet.preset import PresetChoice
+from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.preset import PresetChoice, load_preset
 from dancetutor_cli.feet.solver import solve
 from dancetutor_cli.lint import song_sync
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file

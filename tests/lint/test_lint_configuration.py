@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.chart.pack_files import Condition, find_settings_file
-from dancetutor_cli.feet import preset_names
+from dancetutor_cli.feet.preset import preset_names
 from dancetutor_cli.lint.configuration import (
     Configuration,
     load_configuration,
@@ -80,7 +80,7 @@ def test_values_that_no_rule_can_use_are_refused(option: str, words: str, tmp_pa
 
 
 def test_every_kind_of_note_can_be_forbidden() -> None:
-    from dancetutor_cli.chart import parse
+    from dancetutor_cli.chart.reader import parse
     from dancetutor_cli.lint.note_facts import NoteFacts
     from dancetutor_cli.lint.rules.rows import KINDS
 

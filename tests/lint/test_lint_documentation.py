@@ -14,8 +14,11 @@ from typing import Any
 import pytest
 import yaml
 
-from dancetutor_cli.chart import parse
-from dancetutor_cli.feet import Overrides, load_pad, load_preset, solve_chart
+from dancetutor_cli.chart.reader import parse
+from dancetutor_cli.feet.overrides import Overrides
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.lint.rule import ChartRule, ReaderRule, all_rules
 from dancetutor_cli.lint.rule_settings import default_rules
 from dancetutor_cli.lint.subject import ChartSubject
@@ -102,6 +105,6 @@ def test_most_chart_rules_draw_their_patterns() -> None:
 
 
 def _has_itg() -> bool:
-    from dancetutor_cli.feet import preset_names
+    from dancetutor_cli.feet.preset import preset_names
 
     return "itg" in preset_names()

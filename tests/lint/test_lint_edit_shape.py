@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from dancetutor_cli.chart import load
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.commands import cli
-from dancetutor_cli.feet import load_preset
+from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.findings import Finding

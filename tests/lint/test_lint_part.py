@@ -9,10 +9,11 @@ import click
 import numpy as np
 import pytest
 
-from dancetutor_cli import chart as charts
 from dancetutor_cli.__main__ import main
+from dancetutor_cli.chart.model import Song
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.timing import FASTEST, SLOWEST
-from dancetutor_cli.feet import load_preset
+from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.film.clock import parse_rates
 from dancetutor_cli.lint.passages import check_part, part_of
 from dancetutor_cli.run.errors import UsageError
@@ -23,16 +24,16 @@ ENDS = 40.0
 
 
 @pytest.fixture(scope="module")
-def song() -> charts.Song:
-    return charts.load(DEMO)
+def song() -> Song:
+    return load(DEMO)
 
 
-def part(song: charts.Song, text: str) -> tuple[float, float]:
+def part(song: Song, text: str) -> tuple[float, float]:
     check_part(text)
     return part_of(text, song, song.charts[3], load_preset("itg"), ENDS)
 
 
-def test_every_form_that_help_names_is_read(song: charts.Song) -> None:
+def test_every_form_that_help_names_is_read(song: Song) -> None:
     seconds = song.charts[3].timing.seconds_of_beats
     assert part(song, "10:25") == (10.0, 25.0)
     assert part(song, "b16:b48") == pytest.approx(tuple(seconds(np.array([16.0, 48.0]))))
@@ -43,7 +44,7 @@ def test_every_form_that_help_names_is_read(song: charts.Song) -> None:
 
 
 @pytest.mark.parametrize("text", ["DT202:99", "DT999:1", "DT202:0", "spin", "9:2", ""])
-def test_a_wrong_section_is_reported(song: charts.Song, text: str) -> None:
+def test_a_wrong_section_is_reported(song: Song, text: str) -> None:
     with pytest.raises(UsageError, match="section"):
         part(song, text)
 

@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli import chart as charts
-from dancetutor_cli.feet import Play, load_preset
+from dancetutor_cli.chart.model import Song
+from dancetutor_cli.chart.reader import load
+from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.lint.passages import Passage, check_part, hardest, part_of, passage_settings
 from dancetutor_cli.lint.subject import solved_chart
 from dancetutor_cli.page.document import languages
@@ -21,17 +23,17 @@ DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
 
 
 @pytest.fixture(scope="module")
-def song() -> charts.Song:
-    return charts.load(DEMO)
+def song() -> Song:
+    return load(DEMO)
 
 
-def played(song: charts.Song, index: int = 3) -> Play:
+def played(song: Song, index: int = 3) -> Play:
     play = solved_chart(song, song.charts[index], load_preset("itg")).play
     assert play is not None
     return play
 
 
-def test_the_passage_with_the_spin_is_the_hardest_of_the_demo_song(song: charts.Song) -> None:
+def test_the_passage_with_the_spin_is_the_hardest_of_the_demo_song(song: Song) -> None:
     found = hardest(played(song), song.charts[3].timing)
     first = found[0]
     assert first.first <= 11 < first.last  # the spin and the doublestep are in measures 11 and 12
@@ -40,7 +42,7 @@ def test_the_passage_with_the_spin_is_the_hardest_of_the_demo_song(song: charts.
 
 
 @pytest.mark.parametrize("index", range(6))
-def test_passages_keep_apart_and_lie_on_measures(song: charts.Song, index: int) -> None:
+def test_passages_keep_apart_and_lie_on_measures(song: Song, index: int) -> None:
     chart = song.charts[index]
     found = hardest(played(song, index), chart.timing)
     assert len(found) <= passage_settings().most
@@ -54,19 +56,19 @@ def test_passages_keep_apart_and_lie_on_measures(song: charts.Song, index: int) 
         assert one.rate == pytest.approx(one.steps / (one.end - one.start))
 
 
-def test_a_harder_move_makes_a_passage_harder(song: charts.Song) -> None:
+def test_a_harder_move_makes_a_passage_harder(song: Song) -> None:
     play, timing = played(song), song.charts[3].timing
     settings = passage_settings()
     before = hardest(play, timing, settings)[0].score
     assert hardest(play, timing, replace(settings, spin=settings.spin + 7.5))[0].score == pytest.approx(before + 1.0)
 
 
-def test_nothing_stands_out_where_all_is_alike(song: charts.Song) -> None:
+def test_nothing_stands_out_where_all_is_alike(song: Song) -> None:
     play = played(song)
     assert hardest(play, song.charts[3].timing, replace(passage_settings(), harder=50.0)) == ()
 
 
-def test_a_section_can_be_the_hardest_passage(song: charts.Song) -> None:
+def test_a_section_can_be_the_hardest_passage(song: Song) -> None:
     chart = song.charts[3]
     found = hardest(played(song), chart.timing)
     check_part("hardest:1")

@@ -15,12 +15,11 @@ import pytest
 from click.testing import CliRunner
 from dance_requests import film_request, solved_one
 
-from dancetutor_cli import chart as charts
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.analyze import command as analyze
 from dancetutor_cli.dance.request import DanceRequest, choice_for, read_chart
-from dancetutor_cli.feet import Preset, load_preset, preset_names
-from dancetutor_cli.feet.preset import PresetChoice, choice_of, mismatch, preset_for
+from dancetutor_cli.feet.preset import Preset, PresetChoice, choice_of, load_preset, mismatch, preset_for, preset_names
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.work.batch import BatchRequest, film_list
@@ -55,7 +54,7 @@ def song(tmp_path: Path) -> Path:
 
 
 def analyzed(song: Path, given: str | None = None) -> list[str]:
-    read = charts.load(song)
+    read = load(song)
     plays = [subject.play for subject in solved(read, read.charts, LintRun(LintRequest(preset=given)).task(song))]
     return [play.preset for play in plays if play is not None]
 
@@ -280,7 +279,7 @@ def test_the_path_of_a_chart_may_be_relative(song: Path, monkeypatch: pytest.Mon
         "overrides:\n  - when: {path: 'song/*', difficulty: Hard}\n    preset: stamina\n"
     )
     monkeypatch.chdir(song.parent)
-    chart = charts.load(song).charts[1]
+    chart = load(song).charts[1]
     assert preset_for(chart, Path("song.sm"), choice_for(Path("song.sm"), None)).name == "stamina"
     assert preset_for(chart, Path("song.sm"), PresetChoice()).name == "itg"
 

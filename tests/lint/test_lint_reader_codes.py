@@ -9,10 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli import chart as reader
+from dancetutor_cli.chart import reader
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.feet import load_preset
-from dancetutor_cli.feet.preset import PresetChoice
+from dancetutor_cli.feet.preset import PresetChoice, load_preset
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
 from dancetutor_cli.lint.configuration import load_configuration, with_selection
 from dancetutor_cli.lint.rule import all_rules

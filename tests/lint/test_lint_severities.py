@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.chart import parse
-from dancetutor_cli.feet import load_preset
+from dancetutor_cli.chart.reader import parse
+from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.lint.check import check_chart, check_file
 from dancetutor_cli.lint.configuration import load_configuration, with_assignments
 from dancetutor_cli.lint.findings import Finding

@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.chart import load, parse
+from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.feet import load_pad, load_preset, solve_chart
-from dancetutor_cli.feet.preset import PresetChoice
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.preset import PresetChoice, load_preset
 from dancetutor_cli.feet.solver.engine import engine_for
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.feet.solver.store import BASE
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file

@@ -8,8 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.chart import parse
-from dancetutor_cli.feet import Ignores, Overrides, load_pad, load_preset, solve_chart
+from dancetutor_cli.chart.reader import parse
+from dancetutor_cli.feet.overrides import Ignores, Overrides
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.configuration import load_configuration, with_assignments, with_selection
 from dancetutor_cli.lint.findings import Finding

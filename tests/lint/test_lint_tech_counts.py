@@ -13,11 +13,13 @@ from typing import Any
 
 import pytest
 
-from dancetutor_cli.chart import load, parse
 from dancetutor_cli.chart.model import Kind
+from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.feet import Overrides, load_pad, load_preset, solve_chart
-from dancetutor_cli.feet.preset import PresetChoice
+from dancetutor_cli.feet.overrides import Overrides
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.preset import PresetChoice, load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
 from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.figures import tech_counts

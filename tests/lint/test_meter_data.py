@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.chart import parse
+from dancetutor_cli.chart.reader import parse
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "research"))
 from meter_data import Families, Labelled, is_modded, placeholder, sorted_out

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.chart import load, parse
-from dancetutor_cli.feet import Play, load_preset
+from dancetutor_cli.chart.reader import load, parse
+from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.lint.findings import Estimate
 from dancetutor_cli.lint.meter.estimate import MeteredChart, label_scales_of, on_scale, scales_of, size
 from dancetutor_cli.lint.meter.model import features, model_for

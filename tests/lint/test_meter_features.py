@@ -12,8 +12,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dancetutor_cli.chart import parse
-from dancetutor_cli.feet import Play, load_preset, solve_chart
+from dancetutor_cli.chart.reader import parse
+from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.lint.meter.model import THINGS, Feature, features, features_of, model_for
 
 ALL = [Feature(thing, seconds, "mean") for thing in THINGS for seconds in (1, 10, 60)]

@@ -13,12 +13,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dancetutor_cli.chart import load, parse
 from dancetutor_cli.chart.model import Chart
+from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.chart.timing import Timing
-from dancetutor_cli.feet import Play, load_preset
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.lint.meter.score import ODDITIES, Oddities, timing_oddities
 from dancetutor_cli.lint.subject import ChartSubject, share_plays, solved_chart
 from dancetutor_cli.run.reading import charts_path

@@ -11,8 +11,8 @@ import pytest
 from click.testing import CliRunner
 from synthetic import SyntheticSong, song
 
-from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.audio import Sound
+from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.commands.analyze import command
 from dancetutor_cli.lint.findings import Sync, sync_of
 from dancetutor_cli.lint.song_sync import hear, song_sync

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.edits import apply
 from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.annotations import StepRows, step_rows
 from dancetutor_cli.feet.limbs import LETTERS
 from dancetutor_cli.markers import comments

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from markers_songs import SM_CHART, song_of
 
-from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.edits import apply
 from dancetutor_cli.chart.model import Song
+from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.markers.background import add, check_name, entry, remove
 from dancetutor_cli.run.errors import FileError, UsageError
 

@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from markers_songs import sm, song_of
 
 from dancetutor_cli.chart.model import Song
-from dancetutor_cli.feet import load_preset, solve_chart
 from dancetutor_cli.feet.annotations import step_rows
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.markers import sidecar
 from dancetutor_cli.markers.comments import ChartFeet, row_letters
 from dancetutor_cli.run.errors import FileError

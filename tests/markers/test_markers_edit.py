@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from markers_songs import chart_files, readable, sm, song_of
 
-from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.edits import apply
 from dancetutor_cli.chart.model import Chart, Kind, Song
-from dancetutor_cli.feet import load_preset, solve_chart
+from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.markers import edit
 from dancetutor_cli.markers.comments import ChartFeet
 from dancetutor_cli.markers.planning import solve_charts

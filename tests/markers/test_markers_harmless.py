@@ -12,9 +12,9 @@ import pytest
 from markers_readers import READERS
 from markers_songs import annotated, chart_files, readable, sm, song_of, stripped
 
-from dancetutor_cli.chart import parse
 from dancetutor_cli.chart.edits import HarmError, hash_input, unchanged
 from dancetutor_cli.chart.model import Song
+from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.annotations import step_rows
 
 DATA = sm(b"\r\n1000\r\n0100\r\n,  // measure 1\r\n0010\r\n0001\r\n;\r\n")

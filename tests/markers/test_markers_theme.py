@@ -9,8 +9,9 @@ from typing import Any
 
 import pytest
 
-from dancetutor_cli.chart import parse
-from dancetutor_cli.feet import load_preset, solve_chart
+from dancetutor_cli.chart.reader import parse
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.markers import theme
 from dancetutor_cli.markers.comments import Lack
 from dancetutor_cli.markers.planning import solve_charts
@@ -58,7 +59,7 @@ def test_brackets_of_a_passage_are_one() -> None:
 
 
 def test_turns_say_to_which_side() -> None:
-    from dancetutor_cli.chart import load
+    from dancetutor_cli.chart.reader import load
     from dancetutor_cli.run.reading import charts_path
 
     song = load(charts_path() / "two_left_feet" / "two_left_feet.ssc")

@@ -5,9 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dancetutor_cli import chart as charts
-from dancetutor_cli.feet import StepKind, load_pad, load_preset, prepare, solve
+from dancetutor_cli.chart.reader import load
 from dancetutor_cli.feet.overrides import Overrides
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.play import StepKind, prepare
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve
 from dancetutor_cli.page.facts import flips_of
 from dancetutor_cli.run.reading import charts_path
 
@@ -16,7 +19,7 @@ DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
 
 def test_a_flip_costs_what_the_solver_s_margin_says() -> None:
     """A row of one step has one other way: its margin, which the solver finds by another way, is the flip's cost."""
-    chart, preset = charts.load(DEMO).charts[3], load_preset("itg")
+    chart, preset = load(DEMO).charts[3], load_preset("itg")
     pad = load_pad(chart.steps_type)
     assert pad is not None
     play = solve(prepare(chart, pad, preset.roll_window), pad, preset)
@@ -36,7 +39,7 @@ def test_a_flip_costs_what_the_solver_s_margin_says() -> None:
 
 
 def test_what_changes_with_it_is_the_cheapest_play_with_those_feet() -> None:
-    chart, preset = charts.load(DEMO).charts[3], load_preset("itg")
+    chart, preset = load(DEMO).charts[3], load_preset("itg")
     pad = load_pad(chart.steps_type)
     assert pad is not None
     play = solve(prepare(chart, pad, preset.roll_window), pad, preset)

@@ -19,8 +19,7 @@ from xml.etree import ElementTree
 import pytest
 
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.feet import load_preset
-from dancetutor_cli.feet.preset import PresetChoice
+from dancetutor_cli.feet.preset import PresetChoice, load_preset
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
 from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.findings import Finding

@@ -14,9 +14,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from dancetutor_cli.chart import parse
-from dancetutor_cli.feet import load_pad, load_preset, solve_chart
+from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.limbs import hex_colour, limb_colours
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.preset import load_preset
+from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.reports.sheet import html_page, make_sheet, svg_sheet

@@ -10,8 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.feet import Pad
-from dancetutor_cli.feet.pads import HOME_WIDTH
+from dancetutor_cli.feet.pads import HOME_WIDTH, Pad
 from dancetutor_cli.run.errors import UsageError
 
 # Bits of the two words of a packed row, `Tables.pattern`, from the lowest one at the right. A mask has one bit for each

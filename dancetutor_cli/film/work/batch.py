@@ -11,9 +11,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from dancetutor_cli import chart as charts
-from dancetutor_cli.chart import find_files, twin
-from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.chart.reader import load
+from dancetutor_cli.chart.selection import Selection, find_files, twin
 from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.media.film_formats import PICTURES
 from dancetutor_cli.film.work import segments
@@ -110,7 +109,7 @@ def film_list(batch: BatchRequest) -> FilmList:
     taken: set[str] = set()
     for path in chart_files(batch.paths, batch.exclude):
         try:
-            song = charts.load(path)
+            song = load(path)
         except NoChartsError:  # the music of a menu, which nobody means to dance
             without.append(path)
             continue

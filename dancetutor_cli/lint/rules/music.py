@@ -27,7 +27,7 @@ class MissingMusic(FileRule):
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """At most one finding."""
-        from dancetutor_cli.chart import music_file
+        from dancetutor_cli.chart.music import music_file
 
         try:
             music_file(subject.song)

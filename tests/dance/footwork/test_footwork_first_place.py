@@ -16,8 +16,8 @@ from dancetutor_cli.dance.foot_path import foot_path
 from dancetutor_cli.dance.footwork.walks import first_place
 from dancetutor_cli.dance.plan import Walk
 from dancetutor_cli.dance.settings import default_settings
-from dancetutor_cli.feet import Pad, load_pad
 from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.pads import Pad, load_pad
 from dancetutor_cli.feet.play import Play
 
 SETTINGS = default_settings()

@@ -10,7 +10,7 @@ from dancetutor_cli.dance.foot_path import both_feet
 from dancetutor_cli.dance.plan import FootTrack, Jump, Plan, Step, Swing
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.dance.trajectory.legs import ankle_of, push_off, raised, upright_hips
-from dancetutor_cli.feet import load_pad
+from dancetutor_cli.feet.pads import load_pad
 
 SETTINGS = default_settings()
 TIMES = np.arange(0.0, 3.0, 1 / 240)

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dancetutor_cli import chart as charts
 from dancetutor_cli.__main__ import main
-from dancetutor_cli.feet import load_pad, load_preset
+from dancetutor_cli.chart.reader import parse
+from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.film.media.subtitles import cues_of, subtitle_words
 from dancetutor_cli.film.notes import Cue
 from dancetutor_cli.film.overlay.sprites import callout_words
@@ -26,7 +27,7 @@ LEFT, RIGHT = ("left foot",), ("right foot",)
 
 
 def cues(rows: str) -> list[Cue]:
-    song = charts.parse((HEAD + rows.replace(" ", "\n") + "\n;\n").encode(), Path("song.sm"))
+    song = parse((HEAD + rows.replace(" ", "\n") + "\n;\n").encode(), Path("song.sm"))
     play = solved_chart(song, song.charts[0], load_preset("itg")).play
     pad = load_pad("dance-single")
     assert play is not None and pad is not None
@@ -77,7 +78,7 @@ def test_subtitles_name_doublesteps_and_brackets_as_the_notes_do() -> None:
     play: Any = SimpleNamespace(rows=rows, limb=limb, feet=feet, moves=moves, facing=np.zeros(3))
     words, timing = (
         subtitle_words(ENGLISH),
-        charts.parse((HEAD + "0000\n;\n").encode(), Path("song.sm")).charts[0].timing,
+        parse((HEAD + "0000\n;\n").encode(), Path("song.sm")).charts[0].timing,
     )
     found = [(one.text, one.who, one.move) for one in cues_of(play, timing, words, PanelNames(pad, False, ENGLISH))]
     assert found == [

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dancetutor_cli.feet import load_pad
+from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.feet.solver.techniques import half_turned
 from dancetutor_cli.film.choices import Ahead, parse_ahead
 from dancetutor_cli.film.notes import Callout

@@ -190,7 +190,7 @@ def test_the_style_file_is_complete() -> None:
 
 
 def test_directions_are_those_of_the_pad() -> None:
-    from dancetutor_cli.feet import load_pad
+    from dancetutor_cli.feet.pads import load_pad
 
     for steps_type, expected in (("dance-single", DIRECTIONS), ("dance-double", DIRECTIONS * 2)):
         pad = load_pad(steps_type)

@@ -11,8 +11,8 @@ from film_plans import DIRECTIONS, film_plan
 
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-from dancetutor_cli.feet import load_pad
 from dancetutor_cli.feet.limbs import limb_colours
+from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.media.film_formats import FORMATS

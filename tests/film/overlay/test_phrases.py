@@ -15,8 +15,8 @@ from dancetutor_cli.dance.motion import Cut, Motion, sample
 from dancetutor_cli.dance.performance import perform, solve
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig.body import joint_matrices
-from dancetutor_cli.feet import load_pad
 from dancetutor_cli.feet.limbs import limb_colours
+from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.solved import Solved
 from dancetutor_cli.feet.solver.techniques import half_turned

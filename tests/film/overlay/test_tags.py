@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from film_plans import film_plan
 
-from dancetutor_cli.feet import load_pad
+from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.media.film_formats import FORMATS

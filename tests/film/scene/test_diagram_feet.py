@@ -13,7 +13,7 @@ from dancetutor_cli.dance.motion import Cut, sample
 from dancetutor_cli.dance.performance import perform, solve
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig.body import joint_matrices, sole_points
-from dancetutor_cli.feet import load_pad
+from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.film.scene.dancer import sole_line
 from dancetutor_cli.film.scene.scene import PANEL, Scene, foot_marks
 

@@ -10,7 +10,7 @@ import pytest
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-from dancetutor_cli.feet import load_pad
+from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.film.clock import Moment
 from dancetutor_cli.film.notes import PanelLights, Presses
 from dancetutor_cli.film.scene.dancer import Dancer, Shot

@@ -11,7 +11,7 @@ from film_plans import film_plan
 
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-from dancetutor_cli.feet import load_pad
+from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.film.clock import Moment
 from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout

@@ -12,7 +12,7 @@ from dancetutor_cli.dance.context import bar_of
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.settings import load_settings
-from dancetutor_cli.feet import load_pad
+from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.film.clock import Moment
 from dancetutor_cli.film.notes import PanelLights, Presses
 from dancetutor_cli.film.picture import Frame
