@@ -9,13 +9,14 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import Chart
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.solver.engine import engine_for
-from dancetutor_cli.feet.solver.solve import OneTap, Outline, forced_limbs, move_tap, solve
+from dancetutor_cli.feet.solver.solve import forced_limbs, move_tap, solve
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.lint.check import check_rule, rules_of
 from dancetutor_cli.lint.edit_shape import Edit, PanelMove, Shape, free_panels
@@ -101,7 +102,7 @@ class _Trial:
     settings: Settings
     preset: Preset
     before: set[_Place]
-    _outlines: dict[PanelMove, Outline] = field(default_factory=dict)
+    _solved_moves: dict[PanelMove, tuple[int, NDArray[np.int64]]] = field(default_factory=dict)
     _edited: dict[Edit, _Edited] = field(default_factory=dict)
 
     def good(self, finding: Finding) -> Iterator[Edit]:
@@ -114,7 +115,7 @@ class _Trial:
         for edit in self._candidates(finding):
             if len(edit.moves) == 1:
                 move = edit.moves[0]
-                if self._outline(move).total >= self.subject.play.total or self._still_happens(move, place):
+                if self._after_move(move)[0] >= self.subject.play.total or self._still_happens(move, place):
                     continue
             if edit not in self._edited:
                 solved += 1
@@ -141,26 +142,22 @@ class _Trial:
         assert self.subject.play is not None and self.subject.pad is not None
         return Shape(self.subject.play, self.subject.pad, self.subject.chart)
 
-    def _outline(self, edit: PanelMove) -> Outline:
-        if edit not in self._outlines:
-            self._outlines[edit] = self._one_tap.outline_with(edit.row, edit.column, edit.to)
-        return self._outlines[edit]
+    def _after_move(self, move: PanelMove) -> tuple[int, NDArray[np.int64]]:
+        """What the cheapest way costs after a move, and what happens in each row; see `Engine.cost_and_events`."""
+        if move not in self._solved_moves:
+            play, pad = self.subject.play, self.subject.pad
+            assert play is not None and pad is not None
+            rows = move_tap(play.rows, *move)
+            engine = engine_for(pad, self.preset)
+            self._solved_moves[move] = engine.cost_and_events(rows, forced_limbs(rows, self.subject.overrides))
+        return self._solved_moves[move]
 
-    @cached_property
-    def _one_tap(self) -> OneTap:
-        play, pad, overrides = self.subject.play, self.subject.pad, self.subject.overrides
-        assert play is not None and pad is not None
-        return OneTap(engine_for(pad, self.preset), play.rows, lambda rows: forced_limbs(rows, overrides))
-
-    def _still_happens(self, edit: PanelMove, place: _Place) -> bool:
+    def _still_happens(self, move: PanelMove, place: _Place) -> bool:
         rule, beat = place
         if rule not in _MOVES or beat is None or self.subject.play is None:
             return False
         row = int(self.subject.play.rows.tick.searchsorted(round(beat * TICKS_PER_BEAT)))
-        new, bit = self._outline(edit), EVENTS.index(_MOVES[rule])
-        if new.first <= row < new.first + len(new.events):
-            return bool(new.events[row - new.first] >> bit & 1)
-        return _MOVES[rule] in self.subject.play.moves[row]
+        return bool(self._after_move(move)[1][row] >> EVENTS.index(_MOVES[rule]) & 1)
 
     def _subject_after(self, edit: Edit) -> ChartSubject:
         subject = self.subject

@@ -17,7 +17,7 @@ from dancetutor_cli.feet.preset import Preset, load_preset, preset_names
 from dancetutor_cli.feet.solver.alternatives import alternatives
 from dancetutor_cli.feet.solver.engine import Engine, _arrays, _nodes, engine_for
 from dancetutor_cli.feet.solver.solve import solve
-from dancetutor_cli.feet.solver.store import ACTION, BASE, COST, FACTS, FIRST, LIMBS, NEXT, TIMES
+from dancetutor_cli.feet.solver.store import ACTION, COST, FACTS, FIRST, LIMBS, MOVES, NEXT, TIMES
 from dancetutor_cli.feet.solver.tables import moves
 
 PRESETS = {name: load_preset(name) for name in preset_names()}
@@ -150,6 +150,8 @@ def test_what_was_solved_before_changes_nothing(corpus_rows: list[tuple[str, Row
         assert (used.cheapest(rows).limb == fresh.cheapest(rows).limb).all()
         assert used.tables.state_key[:40].tolist() != fresh.tables.state_key[:40].tolist()
         assert (used.cheapest(first(rows, 99)).limb == Engine(pad, preset).cheapest(first(rows, 99)).limb).all()
+        used.tables.counts[MOVES] = 3_000_000  # so full that the tables start again
+        assert (used.cheapest(rows).limb == fresh.cheapest(rows).limb).all() and used.tables.counts[MOVES] < 3_000_000
 
 
 def test_little_room_changes_nothing(corpus_rows: list[tuple[str, Rows]]) -> None:
@@ -159,7 +161,8 @@ def test_little_room_changes_nothing(corpus_rows: list[tuple[str, Rows]]) -> Non
         usual, little = Engine(pad, preset), Engine(pad, preset)
         expected = usual.cheapest(rows, None, margins=True)
         little._making = little._making._replace(moves=moves(len(preset.weights), 1))
-        used = int(usual.solved(rows)[1].row[len(rows) + 1, FIRST])
+        nodes = usual._run(_arrays(rows, None), usual._empty_path(*rows.steps.shape, margins=False))
+        used = int(nodes.row[len(rows) + 1, FIRST])
         for room in (1, used, used + 1):
             found = little._empty_path(*rows.steps.shape, margins=True)
             little._run_to_end(0, _arrays(rows, None), _nodes(len(rows), np.empty(room, dtype=np.int64)), found)
@@ -179,7 +182,7 @@ def test_more_times_between_rows_than_there_is_room_for(corpus_rows: list[tuple[
             found, expected = (engine.cheapest(rows, None, margins=True) for engine in (little, enough))
             for field in ("limb", "part", "margin", "ambiguity"):
                 assert np.array_equal(getattr(found, field), getattr(expected, field)), (steps_type, seed, field)
-            total = int(little.solved(rows)[1].row[n, BASE])
+            total = little.cost_and_events(rows)[0]
             assert total == little.with_details(rows, found).cost[:n].sum() > 0
         assert len(little.tables.timed_cost) >= int(little.tables.counts[TIMES]) >= n - 1
 

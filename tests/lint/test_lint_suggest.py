@@ -11,9 +11,8 @@ from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.feet.preset import PresetChoice, load_preset
-from dancetutor_cli.feet.solver.engine import engine_for
+from dancetutor_cli.feet.solver.engine import Engine, engine_for
 from dancetutor_cli.feet.solver.solve import solve_chart
-from dancetutor_cli.feet.solver.store import BASE
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
 from dancetutor_cli.lint.check import check_chart
@@ -82,15 +81,19 @@ def test_an_edit_is_tried_once_and_rules_look_at_the_cheapest_only(
 
     tried: list[object] = []
     checked: list[object] = []
-    moved, subject_after = suggest.OneTap.outline_with, suggest._Trial._subject_after
-    monkeypatch.setattr(suggest.OneTap, "outline_with", lambda self, *edit: (tried.append(edit), moved(self, *edit))[1])
+    solved, subject_after = Engine.cost_and_events, suggest._Trial._subject_after
+    monkeypatch.setattr(
+        Engine, "cost_and_events",
+        lambda self, rows, forced: (tried.append(rows.steps.tobytes()), solved(self, rows, forced))[1],
+    )  # fmt: skip
     monkeypatch.setattr(
         suggest._Trial, "_subject_after", lambda self, edit: (checked.append(edit), subject_after(self, edit))[1]
     )
     result = analysed([*SPIN, *SPIN, *SPIN, *SPIN], tmp_path)
     assert sum(finding.suggestion is not None for finding, _ in result.all_findings()) >= 2
-    assert len(tried) == len(set(tried))
     assert len(checked) == len(set(checked)) <= 2  # the same edit mends all of them
+    analysed(SPIN, tmp_path)
+    assert 1 < len(tried) == len(set(tried))
 
 
 def test_rules_are_asked_until_one_decides(tmp_path: Path) -> None:
@@ -119,9 +122,8 @@ def test_the_outline_of_a_way_is_that_of_the_whole_solve(preset: str) -> None:
         play = solve_chart(chart, chosen)
         assert pad is not None and play is not None
         engine = engine_for(pad, chosen)
-        _, nodes, path = engine.solved(play.rows)
-        assert int(nodes.row[len(play.rows), BASE]) == play.total
-        events = engine.events(path)
+        cost, events = engine.cost_and_events(play.rows)
+        assert cost == play.total
         for name in ("doublestep", "spin"):
             bit = EVENTS.index(name)
             assert (events >> bit & 1).tolist() == [name in moves for moves in play.moves]

@@ -18,10 +18,7 @@ from dancetutor_cli.feet.solver.compiled import runs_as_python
 from dancetutor_cli.feet.solver.solvers import EXPLAIN, solve_itg, solve_thesis
 from dancetutor_cli.feet.solver.store import RowArrays, RowStates, SolverPath, empty_tables, grown
 from dancetutor_cli.feet.solver.tables import (
-    EARLIER,
-    FORCED,
     MOST_MOVES,
-    TAPS,
     UNPLAYED,
     Making,
     Rules,
@@ -85,8 +82,6 @@ class Engine:
         )
         self._making = Making(rules, moves(len(preset.weights)))
         self.tables = empty_tables(len(preset.weights))
-        self.era = 0  # numbers of the tables hold as long as this stays
-        self._numbers: dict[tuple[int, int], int] = {}  # of patterns, as far as `pattern_with` has looked
         self._node = np.zeros(_NODES_KEPT, dtype=np.int64)
         self._untold = (
             np.empty((0, 6), dtype=np.int64), np.zeros((1, len(self.terms)), dtype=np.int32),
@@ -120,48 +115,11 @@ class Engine:
         found, nodes = self._empty_path(n, c, margins=False)._replace(edit=edits), self._room(n, c)
         return self._run_to_end(0, arrays, nodes, found)
 
-    def events(self, path: NDArray[np.int32]) -> NDArray[np.int64]:
-        """What happens in the rows of a way given by its moves, (n,) bits of `EVENTS`."""
-        return np.asarray(self.tables.wide[path, store.EVENTS] & store.EVENT_BITS)
-
-    def solved(
-        self, rows: Rows, forced: NDArray[np.int64] | None = None
-    ) -> tuple[RowArrays, RowStates, NDArray[np.int32]]:
-        """All that the programme found out on the way through rows, to go on from it, and the moves of the way."""
-        arrays, found = _arrays(rows, forced), self._empty_path(*rows.steps.shape, margins=False)
-        nodes = self._run(arrays, found)
-        return arrays, nodes._replace(node=nodes.node[: nodes.row[len(rows) + 1, store.FIRST]].copy()), found.move
-
-    def keeps(self, era: int) -> bool:
-        """Whether numbers of an era still hold, and there is room for more."""
-        return self.era == era and not self._is_full()
-
-    def pattern_with(self, pattern: int, column: int, to: int, forced: int) -> int:
-        """Number of the pattern that a row has if its tap in a column is in another one; forced : see `RowArrays`."""
-        word, more = self.tables.pattern[pattern].tolist()
-        word ^= 1 << TAPS + column | 1 << TAPS + to
-        more = more & ~((1 << EARLIER) - 1) | forced << FORCED
-        count, known = int(self.tables.counts[store.PATTERNS]), self._numbers
-        known |= {(a, b): len(known) + n for n, (a, b) in enumerate(self.tables.pattern[len(known) : count].tolist())}
-        if (word, more) in known:
-            return known[word, more]
-        if count + 1 > len(self.tables.pattern) or 2 * (count + 1) > len(self.tables.pattern_hash):
-            self.tables = grown(self.tables, store.MORE_PATTERNS, 1)
-        t = self.tables
-        t.pattern[count] = word, more
-        t.counts[store.PATTERNS] += 1
-        t.pattern_hash[:] = -1
-        store.fill_patterns(t.pattern, count + 1, t.pattern_hash)
-        return count
-
-    def room(self, rows: int, known: int) -> RowStates:
-        """Room for the nodes of a few rows, until the next are asked for; known : how many are to be filled in."""
-        return _nodes(rows, self._node if 2 * known <= _NODES_KEPT else np.empty(2 * known, dtype=np.int64))
-
-    def go_on(self, arrays: RowArrays, nodes: RowStates) -> None:
-        """Nodes of all rows but the first, for which they are filled in."""
-        n, c = arrays.steps.shape
-        self._run_to_end(1, arrays, nodes, self._empty_path(n, c, margins=False))
+    def cost_and_events(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> tuple[int, NDArray[np.int64]]:
+        """What the cheapest way through rows costs, and what happens in each row, (n,) bits of `EVENTS`."""
+        arrays, path = _arrays(rows, forced), self._empty_path(*rows.steps.shape, margins=False)
+        nodes = self._run(arrays, path)
+        return int(nodes.row[len(rows), store.BASE]), self.tables.wide[path.move, store.EVENTS] & store.EVENT_BITS
 
     def layers(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> Layers:
         """Every state that the rows can end in, for a look at other ways than the cheapest."""
@@ -215,8 +173,6 @@ class Engine:
     def _start_anew_if_full(self) -> None:
         if self._is_full():
             self.tables = empty_tables(len(self.preset.weights))
-            self.era += 1
-            self._numbers.clear()
 
     def _room(self, n: int, c: int) -> RowStates:
         wanted = _nodes_of(n, c)
