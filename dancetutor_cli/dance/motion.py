@@ -17,7 +17,7 @@ from dancetutor_cli.feet.play import DroppedNote
 class Contact:
     """A limb that presses a panel: from `start` (the note) to `end`, seconds of the song's music.
 
-    limb, kind, part : values of `feet.play.Limb`, `StepKind` and `Part`; column : note column
+    limb, kind, part : values of `feet.limbs.Limb`, `StepKind` and `Part`; column : note column
     row : index of the row in the play; panel : (x, z) of the panel's centre in the world, metres
     """
 

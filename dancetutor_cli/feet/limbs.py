@@ -142,7 +142,7 @@ class LimbColours:
 
     @property
     def by_limb(self) -> tuple[RGB, RGB, RGB, RGB]:
-        """In the order of `feet.play.Limb`: left foot, right foot, left hand, right hand."""
+        """In the order of `feet.limbs.Limb`: left foot, right foot, left hand, right hand."""
         return (self.left_foot, self.right_foot, self.left_hand, self.right_hand)
 
 

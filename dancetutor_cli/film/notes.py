@@ -26,7 +26,7 @@ class NoteTrack:
 
     second, end_second : float64 (n,), of the music; end_second = second where there is no hold
     beat, end_beat : float64 (n,), as far as they are drawn (scroll segments applied)
-    column : int16 (n,); kind : uint8 (n,), `chart.model.Kind`; limb : int8 (n,), `feet.play.Limb`
+    column : int16 (n,); kind : uint8 (n,), `chart.model.Kind`; limb : int8 (n,), `feet.limbs.Limb`
     quantisation : int64 (n,), index into `QUANTISATIONS`; judged : bool (n,)
     player : int8 (n,), of a chart for two whose it is, 1 or 2; 0: anybody's
     gone_second, gone_beat : float64 (n,), from where on nobody plays it, of a roll maybe later than its head; endless

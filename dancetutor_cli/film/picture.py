@@ -12,7 +12,7 @@ Frame = NDArray[np.uint8]
 
 
 class PadLike(Protocol):
-    """The parts of a `pads.Pad` that the picture needs, in panel widths, x to the right, y to the screen."""
+    """The parts of a `feet.pads.Pad` that the picture needs, in panel widths, x to the right, y to the screen."""
 
     @property
     def panels(self) -> NDArray[np.float64]:

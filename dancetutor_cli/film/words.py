@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 # The names of moves in films: one table of a dancer's words in each language, for callouts and for subtitles.
 
 HOLD, MINE = "hold", "mine"  # a note held, a mine that a foot is on: not in `EVENTS`; neither are half turns
-LIMBS = ("left-foot", "right-foot", "left-hand", "right-hand")  # labels of a language, by `feet.play.Limb`
+LIMBS = ("left-foot", "right-foot", "left-hand", "right-hand")  # labels of a language, by `feet.limbs.Limb`
 IMPLIED_BY_BRACKET = {"doublestep", "forced-doublestep"}  # the words of a bracket already say which foot it is
 _OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up"}
 

@@ -61,7 +61,7 @@ class SheetStyle:
     """Sizes in CSS pixels, colours as "#rrggbb".
 
     unsure : per cent; rows whose feet are less sure are marked
-    beat : least and greatest height of a beat; limbs : by `feet.play.Limb`
+    beat : least and greatest height of a beat; limbs : by `feet.limbs.Limb`
     quantisation : colour of a note by the coarsest grid it stands on (4 for 4ths ...)
     """
 

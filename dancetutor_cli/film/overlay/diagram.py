@@ -38,7 +38,7 @@ STEPPED, RESTING = 0.94, 0.6  # size of the marks on those pads, in panels: of a
 class DiagramRows:
     """The rows with steps of a play; r rows, c columns.
 
-    second : float64 (r,), of the music; limb : int8 (r, c), `feet.play.Limb`, NONE where nothing is stepped
+    second : float64 (r,), of the music; limb : int8 (r, c), `feet.limbs.Limb`, NONE where nothing is stepped
     feet : int16 (r, 2 p), column that each foot of p dancers stands on after the row, left and right in turn, or -1
     """
 

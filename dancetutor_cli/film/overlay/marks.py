@@ -275,7 +275,7 @@ def has_visible_callout(callouts: Iterable[Callout], passes: Iterable[Pass]) -> 
 
 
 def visible_limbs(notes: NoteTrack, passes: Iterable[Pass]) -> set[int]:
-    """The limbs, `feet.play.Limb`, whose notes are in the picture in these runs; a section may have fewer than the
+    """The limbs, `feet.limbs.Limb`, whose notes are in the picture in these runs; a section may have fewer than the
     song.
     """
     here = np.zeros(len(notes.second), dtype=np.bool_)

@@ -194,7 +194,7 @@ def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None, rim:
     """The mark of the limb that steps a note: letter, colour and shape. Left foot a disc, right foot a square, hands
     the same with a ring.
 
-    limb : value of `feet.play.Limb`, 0..3; -1 : no foot is left for it, a grey disc with a cross
+    limb : value of `feet.limbs.Limb`, 0..3; -1 : no foot is left for it, a grey disc with a cross
     rim : a light rim around the dark one, because the mark is on a note, and notes have all colours
     """
     p = blit.Painter(size, size)

@@ -174,7 +174,7 @@ class FrameState:
     joints : float64 (j, 4, 4), world matrices of the character's joints, see `dance.rig.body.joint_matrices`; None for
     the room without her
     camera : where it is seen from; frames from one camera (but for its pan) are quick, a moved camera redraws the stage
-    lit : float (panels,), 0 dark to 1 fully lit; lit_by : int (panels,), `feet.play.Limb` whose colour a panel has
+    lit : float (panels,), 0 dark to 1 fully lit; lit_by : int (panels,), `feet.limbs.Limb` whose colour a panel has
     """
 
     joints: Array | None
