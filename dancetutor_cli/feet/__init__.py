@@ -9,4 +9,5 @@ solved.solve_song             the way to feet of a song's charts; `markers` goes
 solved.Solved                 a chart, its `play.Play`, its pad and preset
 
 limbs, play_json              names and letters of limbs; plays in the JSON of `analyze`
+move_spans                    crossovers and other moves of a play that last for several rows
 """

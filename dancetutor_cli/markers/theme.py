@@ -14,7 +14,8 @@ import numpy as np
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.limbs import Limb
-from dancetutor_cli.feet.play import Play, runs
+from dancetutor_cli.feet.move_spans import crossover_spans
+from dancetutor_cli.feet.play import Play
 from dancetutor_cli.markers.comments import ChartFeet
 from dancetutor_cli.markers.sidecar import notes_hash
 from dancetutor_cli.run.errors import FileError
@@ -56,12 +57,11 @@ def cues_of(play: Play) -> tuple[ThemeCue, ...]:
 
 
 def _crossovers(play: Play) -> Iterator[ThemeCue]:
-    crossed = [any(name.startswith("crossover-") for name in moves) for moves in play.moves]
-    for first, last in _stretches(crossed):
-        moves = {name.removeprefix("crossover-") for row in range(first, last + 1) for name in play.moves[row]}
+    for span in crossover_spans(play):
+        rows = range(span.first, span.last + 1)
+        moves = {name.removeprefix("crossover-") for row in rows for name in play.moves[row]}
         way = next((name for name in ("full", "front", "back") if name in moves), "")
-        end = min(last + 1, len(play.rows) - 1)
-        yield _cue(play, CROSSOVER, (first, end), range(first, last + 1), way=way, who=_limb_names(play, first))
+        yield _cue(play, CROSSOVER, (span.first, span.end), rows, way=way, who=_limb_names(play, span.first))
 
 
 def _brackets(play: Play) -> Iterator[ThemeCue]:
@@ -105,11 +105,6 @@ def _limb_names(play: Play, row: int, bracketing: bool = False) -> set[str]:
     limbs = [Limb(one) for one in play.limb[row].tolist() if one in _FEET]
     wanted: Callable[[Limb], bool] = (lambda one: limbs.count(one) > 1) if bracketing else (lambda one: True)
     return {_FEET[one] for one in limbs if wanted(one)}
-
-
-def _stretches(flags: Sequence[bool]) -> Iterator[tuple[int, int]]:
-    """First and last row of each run."""
-    yield from ((first, after - 1) for first, after in runs(np.array(flags, dtype=bool)).tolist())
 
 
 def _near(rows: Sequence[int], ticks: Sequence[int]) -> Iterator[list[int]]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.feet.limbs import Limb
-from dancetutor_cli.feet.play import runs
+from dancetutor_cli.feet.move_spans import CROSSED, FULL, crossover_spans, spans
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
 from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.notes import Cue
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 # What the subtitles of a film name: the moves of a play with the foot that makes them, from begin to end.
 
-_CROSSED = ("crossover-half", "crossover-full")
 _WAYS = ("crossover-front", "crossover-back")  # these say more than crossover-half, which comes with them
 _RUNS = ("stream", "drill")
 
@@ -50,32 +49,25 @@ def cues_of(play: Play, timing: Timing, words: Mapping[str, str], view: PanelNam
         if name in words:
             found += (
                 Cue(float(play.rows.second[first]), float(play.rows.second[last]), words[name], (), name)
-                for first, last in _stretches(play, (name,))
+                for first, last in spans(play, (name,))
             )
     return tuple(sorted(found, key=lambda cue: (cue.second, cue.text)))
 
 
 def _crossovers(play: Play, words: Mapping[str, str], language: Language) -> Iterator[Cue]:
     """Until the row in which the feet are uncrossed; one that turns full on its way is reported again."""
-    second, last_row = play.rows.second, len(play.rows) - 1
-    turns = moves_and_turns(play)
-    for first, last in _stretches(play, _CROSSED):
-        end = float(second[min(last + 1, last_row)])
-        before: set[str] = set()
-        for row in range(first, last + 1):
-            full = {"crossover-full"} & set(play.moves[row])
-            now = full or {"crossover-half"}
-            if new := now - before:
-                way = [name for name in _WAYS if name in play.moves[row] and name in words and not full]
-                name = way[0] if way else new.pop()
-                if (word := words.get(name)) and not {*HALF_TURNS}.intersection(turns[row]):
-                    yield Cue(float(second[row]), end, word, _limb_names(play, row, language), name)
-            before |= {*now, "crossover-half"}
+    second, turns = play.rows.second, moves_and_turns(play)
+    for span in crossover_spans(play):
+        for row, kind in span.begins:
+            way = [name for name in _WAYS if name in play.moves[row] and name in words and kind != FULL]
+            name = way[0] if way else kind
+            if (word := words.get(name)) and not {*HALF_TURNS}.intersection(turns[row]):
+                yield Cue(float(second[row]), float(second[span.end]), word, _limb_names(play, row, language), name)
 
 
 def _moments(play: Play, words: Mapping[str, str], view: PanelNames) -> Iterator[Cue]:
     """Moves of one row, each time they come."""
-    named = set(words) - {*_CROSSED, *_WAYS, *_RUNS, HOLD}
+    named = set(words) - {*CROSSED, *_WAYS, *_RUNS, HOLD}
     for row, names in enumerate(moves_and_turns(play)):
         for name in named.intersection(names) - (IMPLIED_BY_BRACKET if "bracket" in names else set()):
             second = float(play.rows.second[row])
@@ -103,12 +95,6 @@ def _limb_names(play: Play, row: int, language: Language) -> tuple[str, ...]:
         if {Limb.LEFT_FOOT, Limb.RIGHT_FOOT} <= limbs
         else tuple(language.limbs[LIMBS[limb]] for limb in sorted(limbs))
     )
-
-
-def _stretches(play: Play, names: tuple[str, ...]) -> list[tuple[int, int]]:
-    """First and last row of each run of rows that have one of these names."""
-    inside = np.array([any(name in moves for name in names) for moves in play.moves], dtype=bool)
-    return [(first, after - 1) for first, after in runs(inside).tolist()]
 
 
 # Subtitles that name the moves, as an .srt file beside the film.

@@ -13,6 +13,7 @@ import numpy as np
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.move_spans import CROSSED, FULL, crossover_spans
 from dancetutor_cli.feet.play import MOVE
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
 from dancetutor_cli.film.notes import Callout
@@ -144,7 +145,6 @@ KINDS, LETTERS = 2, 42  # different moves in one call at most, and letters of th
 _ORDER = ("move", "info", "warning", "error")
 _OF_PASSAGES, _PASSAGE = ("DT305", "DT301"), 8 * TICKS_PER_BEAT  # one finding for so long (lint/rules)
 _OF_MINES = "DT303"  # the rule about such a mine
-_CROSSED = ("crossover-full", "crossover-half")  # these go on over several rows and are named where they begin
 
 
 @dataclass(frozen=True, slots=True)
@@ -333,19 +333,16 @@ def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[in
     if play is None or pad is None:
         return
     ticks = play.rows.tick.tolist()
-    crossed: dict[str, tuple[int, Phrase]] = {}  # kind of crossover -> where it began, of one that goes on
-    known: set[str] = set()  # kinds of it that are reported, or that its half turn says; a full one is a half one, too
-    for row, names in enumerate(moves_and_turns(play)):
-        now = next((name for name in _CROSSED if name in names), "")
-        if not now:
-            yield from (_Move(first, ticks[row - 1], phrase) for first, phrase in crossed.values())
-            crossed, known = {}, set()
-        elif now not in known and now in words and not {*HALF_TURNS}.intersection(names).intersection(words):
-            full = now == _CROSSED[0]
-            phrase = plain(words[now]) if full else crossing_phrase(words[now], (play, row), pad, style.language)
-            crossed[now] = ticks[row], phrase
-        known |= {now, _CROSSED[-1]} if now else set()
-        notices = {n for n in names if n in words and n not in _CROSSED}
+    turns = moves_and_turns(play)
+    for span in crossover_spans(play):
+        for row, kind in span.begins:
+            if kind in words and not {*HALF_TURNS}.intersection(turns[row]).intersection(words):
+                phrase = plain(words[kind])
+                if kind != FULL:
+                    phrase = crossing_phrase(words[kind], (play, row), pad, style.language)
+                yield _Move(ticks[row], ticks[span.last], phrase)
+    for row, names in enumerate(turns):
+        notices = {n for n in names if n in words and n not in CROSSED}
         for name in sorted(notices - IMPLIED_BY_BRACKET if "bracket" in notices else notices):
             if name in HALF_TURNS:
                 turned = turning_phrase(words[name], (play, row), pad, style.language)
@@ -358,12 +355,11 @@ def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[in
                 continue
             for text in filled(words[name], name, (play, row), PanelNames(pad, style.turned, style.language)):
                 yield _Move(ticks[row], ticks[row], plain(text + reason))
-    yield from (_Move(first, ticks[-1], phrase) for first, phrase in crossed.values())
 
 
 def _jumps(play: Play) -> list[int]:
     rows = zip(play.rows.tick.tolist(), play.moves, strict=True)
-    return [tick for tick, names in rows if "jump" in names and not {*_CROSSED}.intersection(names)]
+    return [tick for tick, names in rows if "jump" in names and not {*CROSSED}.intersection(names)]
 
 
 def _findings(findings: Iterable[Finding], style: CallStyle) -> Iterator[tuple[int, int, str, int]]:

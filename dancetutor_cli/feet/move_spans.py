@@ -1,0 +1,49 @@
+"""Moves of a play that last for several rows, such as crossovers, streams and drills: from where to where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dancetutor_cli.feet.play import runs
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from dancetutor_cli.feet.play import Play
+
+HALF, FULL = "crossover-half", "crossover-full"  # a row has one of them as long as the feet are crossed
+CROSSED = (HALF, FULL)
+
+
+@dataclass(frozen=True, slots=True)
+class CrossoverSpan:
+    """Rows, one after the other, in which the feet are crossed.
+
+    first, last : the first and the last of these rows; end : the row that uncrosses the feet, or the play's last
+    begins : the first row and its kind of `CROSSED`; also the row in which a half crossover becomes a full one
+    """
+
+    first: int
+    last: int
+    end: int
+    begins: tuple[tuple[int, str], ...]
+
+
+def spans(play: Play, names: Collection[str]) -> list[tuple[int, int]]:
+    """First and last row of each run of rows that have one of these names of `feet.solver.vocabulary.EVENTS`."""
+    inside = np.array([any(name in moves for name in names) for moves in play.moves], dtype=bool)
+    return [(first, after - 1) for first, after in runs(inside).tolist()]
+
+
+def crossover_spans(play: Play) -> list[CrossoverSpan]:
+    """Where the feet are crossed, in the order of rows."""
+    found = []
+    for first, last in spans(play, CROSSED):
+        full = next((row for row in range(first, last + 1) if FULL in play.moves[row]), None)
+        begins = ((first, HALF),) if full != first else ()
+        begins += () if full is None else ((full, FULL),)
+        found.append(CrossoverSpan(first, last, min(last + 1, len(play.moves) - 1), begins))
+    return found
