@@ -21,11 +21,11 @@ from dancetutor_cli.film.overlay import captions
 from dancetutor_cli.film.overlay import marks as beside
 from dancetutor_cli.film.overlay.announce import Calls, Runs
 from dancetutor_cli.film.overlay.blit import Box
-from dancetutor_cli.film.overlay.callouts import standing_tags
 from dancetutor_cli.film.overlay.diagram import FeetDiagram, Lettering, NextRows, PadMap, PadView, below, name_sprite
 from dancetutor_cli.film.overlay.header import Header, Lines, WordsRoom
 from dancetutor_cli.film.overlay.highway import Highway, Score
 from dancetutor_cli.film.overlay.marks import HighwayGeometry, lane_width_for_words
+from dancetutor_cli.film.overlay.phrases import standing_tags
 from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import Frame, darkened

@@ -13,7 +13,7 @@ from dancetutor_cli.commands import cli
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.film.overlay import text
-from dancetutor_cli.film.overlay.callouts import BACK, FRONT, JUMP
+from dancetutor_cli.film.overlay.phrases import BACK, FRONT, JUMP
 from dancetutor_cli.film.words import HOLD, LIMBS, MINE
 from dancetutor_cli.lint.rule import all_rules
 from dancetutor_cli.run.errors import FileError, UnavailableError, UsageError

@@ -17,7 +17,8 @@ from dancetutor_cli.feet.move_spans import CROSSED, FULL, crossover_spans
 from dancetutor_cli.feet.play import MOVE
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
 from dancetutor_cli.film.notes import Callout
-from dancetutor_cli.film.words import IMPLIED_BY_BRACKET, LIMBS, MINE, PanelNames, filled, short_words
+from dancetutor_cli.film.overlay.phrases import Phrase, crossing_phrase, plain, stepped_phrase, turning_phrase
+from dancetutor_cli.film.words import IMPLIED_BY_BRACKET, MINE, PanelNames, filled
 from dancetutor_cli.run.languages import Language, load_language
 
 if TYPE_CHECKING:
@@ -30,112 +31,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.notes import OnMine
     from dancetutor_cli.film.scroll import ScrollSegments
     from dancetutor_cli.lint.findings import Finding
-
-# What a call says of a move beside its name: which foot, in front or behind, and why; the sentences are data.
-
-FRONT, BACK, JUMP = "crossover-front", "crossover-back", "crossover-jump"
-TURN_FRONT, TURN_BEHIND, TURN_ROUND = "half-turn-front", "half-turn-behind", "half-turn-round"
-JUST = 2.0  # seconds; the longest time since a foot "has just stepped"
-
-
-class Phrase(NamedTuple):
-    """A move in words. move : its name for people, the same for all of its kind; text : with foot and way
-
-    tag : for the place beside the notes; why : a reason, or ""; several : how a count of different ones is written
-    """
-
-    move: str
-    text: str
-    tag: str
-    why: str = ""
-    several: str = ""
-
-    def counted(self, count: int, alike: bool) -> str:
-        """So many of them in a row; alike : all have the same words."""
-        if count == 1:
-            return self.text
-        if alike or not self.several:
-            return f"{self.text if alike else self.move} ×{count}"
-        return self.several.replace("{move}", self.move).replace("{count}", str(count)).replace("{said}", self.text)
-
-
-def plain(text: str) -> Phrase:
-    """Words that stand for themselves."""
-    return Phrase(text, text, short_words(text))
-
-
-def standing_tags(language: Language) -> tuple[str, ...]:
-    """The tags that are the same in every film."""
-    return tuple(language.calls[f"{name}-tag"] for name in (FRONT, BACK, JUMP))
-
-
-def stepped_phrase(move: str, name: str, limbs: list[int], language: Language) -> Phrase:
-    """A move of the one foot that steps, for example a footswitch. limbs : of its row"""
-    feet = {limb for limb in limbs if limb in (0, 1)}
-    text = language.calls.get(name)
-    if text is None or len(feet) != 1:
-        return plain(move)
-    return Phrase(move, text.replace("{who}", language.limbs[LIMBS[feet.pop()]]), short_words(move))
-
-
-def crossing_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language) -> Phrase:
-    """A crossover at its first row: which foot crosses, in front or behind, and why it is that foot.
-
-    move : its name for people; at : the play and the row in which it begins. That it is in front, towards the screen,
-    is said by `feet.solver`; of two feet that jump the one nearer to the screen is in front.
-    """
-    (play, row), calls = at, language.calls
-    feet = [foot for foot in (0, 1) if foot in play.limb[row]]
-    if len(feet) == 2:
-        ahead = np.asarray(pad.panels)[play.feet[row]][:, 1]
-        name, foot = JUMP, int(np.argmax(ahead))
-        if ahead[0] == ahead[1]:
-            return plain(move)
-    else:
-        names = [name for name in (FRONT, BACK) if name in play.moves[row]]
-        if not feet or not names:
-            return plain(move)
-        (foot,), name = feet, names[0]
-    who, other = language.limbs[LIMBS[foot]], language.limbs[LIMBS[1 - foot]]
-    reason = "" if name == JUMP else _reason(play, row, foot)
-    why = calls[reason].replace("{other}", other) if reason else ""
-    return Phrase(move, calls[name].replace("{who}", who), calls[f"{name}-tag"], why, calls["several"])
-
-
-def turning_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language) -> Phrase:
-    """Half a turn: which foot goes round, whether it lands in front of the other one or behind it, and why.
-
-    move : its name for people, which says where she looks then; at : the play and the row that turns her. In front is
-    towards the screen; of two feet that jump it is reported which one is.
-    """
-    (play, row), calls = at, language.calls
-    feet = [foot for foot in (0, 1) if foot in play.limb[row]]
-    if not feet or (play.feet[row] < 0).any():
-        return plain(move)
-    ahead = np.asarray(pad.panels)[play.feet[row]][:, 1]
-    if len(feet) == 2 and ahead[0] == ahead[1]:
-        return plain(move)
-    foot = feet[0] if len(feet) == 1 else int(np.argmax(ahead))
-    over = float(ahead[foot] - ahead[1 - foot])
-    name = TURN_FRONT if over > 0 else TURN_BEHIND if over < 0 else TURN_ROUND
-    where = calls[name].replace("{who}", language.limbs[LIMBS[foot]])
-    reason = _reason(play, row, foot) if len(feet) == 1 else ""
-    why = calls[reason].replace("{other}", language.limbs[LIMBS[1 - foot]]) if reason else ""
-    return Phrase(move, f"{move}, {where}", short_words(move), why, calls["several"].replace("{said}", where))
-
-
-def _reason(play: Play, row: int, foot: int) -> str:
-    """The reason why this foot crosses or turns the dancer: its label in the language's `calls`, or ""."""
-    rows, other = play.rows, 1 - foot
-    before = slice(0, row)
-    if ((play.limb[before] == other) & (rows.hold_end[before] > rows.tick[row])).any():
-        return "why-hold"
-    stepped = np.flatnonzero((play.limb[before] >= 0).any(axis=1))
-    if len(stepped) == 0 or rows.second[row] - rows.second[stepped[-1]] > JUST:
-        return ""
-    last = play.limb[stepped[-1]]
-    return "why-turn" if other in last and foot not in last else ""
-
 
 JOIN = 2 * TICKS_PER_BEAT, 0.8  # moves that follow within so many ticks, or seconds, are called out together,
 REST = 1.2  # if there is not so long a rest before them, seconds, and no jump with uncrossed feet;
@@ -160,6 +55,15 @@ class CallStyle:
     language: Language = field(default_factory=load_language)
 
 
+class _Notice(NamedTuple):
+    """A finding of the linter. tick : of its row; rule : its code; weight : index into `_ORDER`"""
+
+    tick: int
+    text: str
+    rule: str
+    weight: int
+
+
 class _Move(NamedTuple):
     """first, last : ticks; weight : index into `_ORDER`"""
 
@@ -179,15 +83,15 @@ class _Passage:
     weight: int = 0
     moves: list[_Move] = field(default_factory=list)
 
-    def takes(self, move: _Move, notices: _TickTable) -> bool:
+    def takes(self, move: _Move, table: _TickTable) -> bool:
         """Whether a move is part of it."""
-        second, tick, name = notices.second, move.first, move.phrase.move
+        second, tick, name = table.second, move.first, move.phrase.move
 
         def within(since: int, most: tuple[int, float]) -> bool:
             return tick - since <= most[0] or second[tick] - second[since] <= most[1]
 
         near = within(self.last, JOIN) and second[tick] - second[self.last] < REST and within(self.first, LONGEST)
-        near = near and not notices.parted(self.last, tick)
+        near = near and not table.parted(self.last, tick)
         short = len(self.kinds) < KINDS and len(", ".join([*self.kinds, name])) <= LETTERS
         return near and move.weight == self.weight and (name in self.kinds or short)
 
@@ -261,22 +165,21 @@ def callouts_of(
     """
     ticks = () if play is None else play.rows.tick[(play.limb == Limb.UNPLAYED).any(axis=1)].tolist()
     mined = sorted({one.tick for one in on_mines}) if MINE in style.words else []
-    findings = list(_findings(about.findings(), style)) if style.findings or ticks or mined else []
-    why = {} if style.findings else dict(_reasons(ticks, findings, style.language))
-    mined_name = style.language.finding_name(_OF_MINES, "mine under hold")
-    under = {} if style.findings else {tick: text for tick, _, text, _ in findings if mined_name in text}
+    notices = list(_notices(about.findings(), style)) if style.findings or ticks or mined else []
+    why = {} if style.findings else dict(_reasons(ticks, notices))
+    under = {} if style.findings else {notice.tick: notice.text for notice in notices if notice.rule == _OF_MINES}
     found = list(_moves(about.pad, play, style, why))
     if style.findings:
-        found += (_Move(first, last, plain(text), weight) for first, last, text, weight in findings)
+        found += (_Move(notice.tick, notice.tick, plain(notice.text), notice.weight) for notice in notices)
     mine = style.words.get(MINE, "")
     found += (_Move(tick, tick, plain(mine + (f" ({under[tick]})" if tick in under else ""))) for tick in mined)
     timing = about.chart.timing
     asked = sorted({tick for move in found for tick in move[:2]})
     seconds = dict(zip(asked, timing.seconds(np.array(asked, dtype=np.int64)).tolist(), strict=True))
-    notices = _TickTable(seconds, [] if play is None else _jumps(play))
+    table = _TickTable(seconds, [] if play is None else _jumps(play))
     passages: list[_Passage] = []
     for move in sorted(found):
-        here = next((p for p in reversed(passages[-2:]) if p.takes(move, notices)), None)
+        here = next((p for p in reversed(passages[-2:]) if p.takes(move, table)), None)
         if here is None:
             here = _Passage(move.first, move.last, weight=move.weight)
             passages.append(here)
@@ -309,22 +212,21 @@ def callouts_of(
     )
 
 
-def _reasons(
-    ticks: Iterable[int], findings: Iterable[tuple[int, int, str, int]], language: Language
-) -> Iterator[tuple[int, str]]:
+def _reasons(ticks: Iterable[int], notices: Iterable[_Notice]) -> Iterator[tuple[int, str]]:
     """The findings of the linter for some rows, by tick: the finding of the row, or that of the passage, which lasts as
     long as there are such rows.
     """
-    notices = sorted((tick, text) for tick, _, text, _ in findings)
-    names = tuple(language.finding_name(rule, rule) for rule in _OF_PASSAGES)
+    notices = sorted(notices)
     last, passage = -_PASSAGE, ""
     for tick in ticks:
-        here = [text for at, text in notices if at == tick]
-        before = [text for at, text in notices if text.endswith(names) and tick - _PASSAGE <= at <= tick]
-        passage = before[-1] if before else passage if tick - last <= _PASSAGE else ""
+        of_row = [notice.text for notice in notices if notice.tick == tick]
+        of_passages = [
+            notice.text for notice in notices if notice.rule in _OF_PASSAGES and tick - _PASSAGE <= notice.tick <= tick
+        ]
+        passage = of_passages[-1] if of_passages else passage if tick - last <= _PASSAGE else ""
         last = tick
-        if here or passage:
-            yield tick, here[0] if here else passage
+        if of_row or passage:
+            yield tick, of_row[0] if of_row else passage
 
 
 def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[int, str]) -> Iterator[_Move]:
@@ -342,8 +244,8 @@ def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[in
                     phrase = crossing_phrase(words[kind], (play, row), pad, style.language)
                 yield _Move(ticks[row], ticks[span.last], phrase)
     for row, names in enumerate(turns):
-        notices = {n for n in names if n in words and n not in CROSSED}
-        for name in sorted(notices - IMPLIED_BY_BRACKET if "bracket" in notices else notices):
+        named = {n for n in names if n in words and n not in CROSSED}
+        for name in sorted(named - IMPLIED_BY_BRACKET if "bracket" in named else named):
             if name in HALF_TURNS:
                 turned = turning_phrase(words[name], (play, row), pad, style.language)
                 yield _Move(ticks[row], ticks[row], turned)
@@ -362,9 +264,9 @@ def _jumps(play: Play) -> list[int]:
     return [tick for tick, names in rows if "jump" in names and not {*CROSSED}.intersection(names)]
 
 
-def _findings(findings: Iterable[Finding], style: CallStyle) -> Iterator[tuple[int, int, str, int]]:
+def _notices(findings: Iterable[Finding], style: CallStyle) -> Iterator[_Notice]:
     for finding in findings:
         if finding.beat is not None and finding.note_column is not None and finding.severity in _ORDER:
-            tick = round(finding.beat * TICKS_PER_BEAT)
             text = style.language.finding_name(finding.rule, finding.name.replace("-", " "))
-            yield tick, tick, text if style.findings else f"{finding.rule} {text}", _ORDER.index(finding.severity)
+            text = text if style.findings else f"{finding.rule} {text}"
+            yield _Notice(round(finding.beat * TICKS_PER_BEAT), text, finding.rule, _ORDER.index(finding.severity))

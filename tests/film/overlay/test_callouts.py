@@ -13,7 +13,7 @@ from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.feet.solver.techniques import half_turned
 from dancetutor_cli.film.choices import Ahead, parse_ahead
 from dancetutor_cli.film.notes import Callout
-from dancetutor_cli.film.overlay.callouts import CalloutSubject, CallStyle, _reasons, callouts_of
+from dancetutor_cli.film.overlay.callouts import CalloutSubject, CallStyle, _Notice, _reasons, callouts_of
 from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.film.scroll import parse_segments
 from dancetutor_cli.run.errors import UsageError
@@ -184,8 +184,12 @@ def test_a_note_that_is_let_go_is_reported() -> None:
 
 
 def test_a_finding_for_a_passage_is_reported_of_all_its_rows() -> None:
-    found = [(48, 48, "fast step", 3), (96, 96, "jump footswitch", 1), (96 + 480, 96 + 480, "unplayable", 3)]
-    said = dict(_reasons([0, 48, 72, 96, 400, 480, 576, 800], found, load_language()))
+    notices = [
+        _Notice(48, "fast step", "DT305", 3),
+        _Notice(96, "jump footswitch", "DT209", 1),
+        _Notice(576, "unplayable", "DT301", 3),
+    ]
+    said = dict(_reasons([0, 48, 72, 96, 400, 480, 576, 800], notices))
     assert said == {
         48: "fast step",
         72: "fast step",

@@ -22,11 +22,9 @@ from dancetutor_cli.feet.solved import Solved
 from dancetutor_cli.feet.solver.techniques import half_turned
 from dancetutor_cli.film.choices import Ahead
 from dancetutor_cli.film.overlay.announce import _foot_colour
-from dancetutor_cli.film.overlay.callouts import (
-    CalloutSubject,
-    CallStyle,
+from dancetutor_cli.film.overlay.callouts import CalloutSubject, CallStyle, callouts_of
+from dancetutor_cli.film.overlay.phrases import (
     Phrase,
-    callouts_of,
     crossing_phrase,
     standing_tags,
     stepped_phrase,
