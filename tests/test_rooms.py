@@ -19,7 +19,7 @@ LISTED = dict(TABLE.findall((ROOT / "docs" / "architecture.md").read_text(encodi
 ORDER = list(LISTED)
 FRONT = "most above"  # of a room that orders the others
 FILM_PARTS = ("overlay", "scene", "media")
-WHOLE = ("film.py", "plan.py")  # that put the parts together, or make something of the whole film
+WHOLE = ("film.py", "placement.py", "plan.py")  # that put the parts together, or make something of the whole film
 MAPPED = (
     *(
         "run",

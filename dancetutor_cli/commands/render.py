@@ -224,7 +224,7 @@ def _allow_long(subject: FilmSubject, file: Path, yes: bool) -> None:
 
 
 def _make(request: FilmRequest, subject: FilmSubject, target: Path, kind: str, options: RenderOptions) -> None:
-    from dancetutor_cli.film import film as extras
+    from dancetutor_cli.film.work import extras
     from dancetutor_cli.film.work.planning import PreparedFilm, prepare
     from dancetutor_cli.film.work.render import make_film
     from dancetutor_cli.run.pool import default_jobs

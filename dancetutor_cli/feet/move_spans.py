@@ -43,7 +43,7 @@ def crossover_spans(play: Play) -> list[CrossoverSpan]:
     found = []
     for first, last in spans(play, CROSSED):
         full = next((row for row in range(first, last + 1) if FULL in play.moves[row]), None)
-        begins = ((first, HALF),) if full != first else ()
-        begins += () if full is None else ((full, FULL),)
-        found.append(CrossoverSpan(first, last, min(last + 1, len(play.moves) - 1), begins))
+        begins = [] if full == first else [(first, HALF)]
+        begins += [] if full is None else [(full, FULL)]
+        found.append(CrossoverSpan(first, last, min(last + 1, len(play.moves) - 1), tuple(begins)))
     return found

@@ -15,7 +15,7 @@ from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.notes import Callout, Presses
-from dancetutor_cli.film.words import MOMENT_STEP, MOST_MOMENTS, clear, dancing, moments
+from dancetutor_cli.film.placement import MOMENT_STEP, MOST_MOMENTS, clear, dancing, moments
 from dancetutor_cli.run.reading import config_names
 
 BOX = (100, 10, 300, 60)
@@ -96,9 +96,9 @@ CASES = [
 @pytest.mark.parametrize(("layout", "camera"), CASES)
 def test_calls_cover_neither_head_nor_feet(layout: str, camera: str | None) -> None:
     film = jumping(layout, camera)
-    calls = film._calls
+    calls = film.placement.calls
     assert calls is not None
-    one, (left, top, _, _) = film.plan.callouts[0], film._box("dancer")
+    one, (left, top, _, _) = film.plan.callouts[0], film.boxes.box("dancer")
     said = calls._sprite(one.text, one.severity).shape
     box = (calls.box[2] - said[1], calls.box[1], calls.box[2], calls.box[1] + said[0])
     seen = film._dancer.heads_and_feet([film.plan.clock.moment(k) for k in range(film.plan.clock.frames)])
@@ -123,11 +123,11 @@ def test_the_songs_words_end_before_her_head(layout: str, camera: str | None, wo
     (motion,) = film.plan.motions[1.0]
     root = motion.root * [1.4, 1.0, 1.0] - [0.0, 0.06, 0.0]
     film = Film(replace(film.plan, words=told, motions={1.0: (replace(motion, root=root),)}))
-    left, top, _, _ = film._box("dancer")
+    left, top, _, _ = film.boxes.box("dancer")
     seen = film._dancer.heads_and_feet([film.plan.clock.moment(k) for k in range(6, 42)]) + np.array([left, top] * 2)
-    assert film._header is not None
-    for number, (ink, x, y) in enumerate(film._header.lines):
-        if number == 0 and len(film._header.parts[0].lines) == 1:
+    assert film.placement.header is not None
+    for number, (ink, x, y) in enumerate(film.placement.header.lines):
+        if number == 0 and len(film.placement.header.parts[0].lines) == 1:
             continue
         within = (seen[:, 0] < x + ink.shape[1] - 6 * film.scale) & (seen[:, 2] > x)
         within &= (seen[:, 1] < y + 0.8 * ink.shape[0]) & (seen[:, 3] > y + 0.2 * ink.shape[0])

@@ -19,9 +19,9 @@ from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.notes import Callout, Presses
+from dancetutor_cli.film.placement import FADE, PASSING_STEP, stay
 from dancetutor_cli.film.scene.camera import Camera
 from dancetutor_cli.film.scene.visibility import Silhouette
-from dancetutor_cli.film.words import FADE, PASSING_STEP, stay
 
 SIZE = (320, 180)
 CALL = Callout(4.0, 8.0, "right foot: heel down-right, toe centre", "move", 3.0, 4.0, "heel down-right, toe centre")
@@ -84,7 +84,7 @@ def walked(layout: str, start: float, away: bool) -> Film:
 def test_the_legend_waits_until_she_has_walked_past_it(layout: str, start: float) -> None:
     film, words = walked(layout, start, away=True), walked(layout, start, away=True)
     words.layout = replace(words.layout, legend=None)
-    left, top, right, bottom = (round(edge) for edge in film._legend.boxes[0])  # type: ignore[union-attr]
+    left, top, right, bottom = (round(edge) for edge in film.placement.legend.boxes[0])  # type: ignore[union-attr]
     for number in (0, 4, 8, 12, 20, 28, 40):
         one, bare = (each.frame(number)[top:bottom, max(0, left) : right] for each in (film, words))
         assert (one != bare).any() == (12 <= number < 32), number
@@ -92,7 +92,7 @@ def test_the_legend_waits_until_she_has_walked_past_it(layout: str, start: float
 
 def test_from_the_other_side_the_legend_stands_all_the_time() -> None:
     film = walked("side-by-side", -1.1, away=True)
-    legend = film._legend
+    legend = film.placement.legend
     assert legend is not None
     assert film._stay(legend, 0).opacity(0.0) == film._stay(legend, 0).opacity(10.0) == 1
 
@@ -102,27 +102,27 @@ def test_words_beside_her_picture_do_not_wait_for_her() -> None:
     film = walked("practice", -2.5, away=True)
     runs = replace(film.plan, clock=Clock((Pass(0.0, 11.0, 0.5),), 4), motions={0.5: film.plan.motions[1.0]})
     film = Film(runs)
-    assert film._runs.boxes and film._runs.boxes[0][0] > film._box("dancer")[2]
-    assert film._stay(film._runs, 0).opacity(0.0) == 1
+    assert film.placement.runs.boxes and film.placement.runs.boxes[0][0] > film.boxes.box("dancer")[2]
+    assert film._stay(film.placement.runs, 0).opacity(0.0) == 1
 
 
 def test_what_is_called_out_on_a_phone_does_not_cover_her_head() -> None:
     film, size = walked("vertical", 0.0, away=False), (1080, 1920)
     film = Film(replace(film.plan, look=replace(film.plan.look, size=size), callouts=(CALL,)))
-    calls, (left, top, right, bottom) = film._calls, film._box("dancer")
-    assert calls is not None and film._header is not None
+    calls, (left, top, right, bottom) = film.placement.calls, film.boxes.box("dancer")
+    assert calls is not None and film.placement.header is not None
     said = calls._sprite(CALL.text, CALL.severity).shape
     box = (calls.box[2] - said[1] - left, calls.box[1] - top, calls.box[2] - left, calls.box[1] + said[0] - top)
     joints, who = film._joints.at(20), film._dancer
     outline = Silhouette(who.scene.character)
     assert not outline.behind([box], joints, who.camera, (right - left, bottom - top))
-    assert box[0] + left >= max(line[2] for part in film._header.parts for line in part.boxes)
+    assert box[0] + left >= max(line[2] for part in film.placement.header.parts for line in part.boxes)
 
 
 def test_a_title_of_one_line_is_always_there() -> None:
     film = walked("side-by-side", 1.1, away=False)
-    assert film._header is not None
-    title, below = film._header.parts
+    assert film.placement.header is not None
+    title, below = film.placement.header.parts
     assert len(title.lines) == 1 and film._stay(title, 0).opacity(0.0) == 1
     assert film._stay(below, 0).opacity(0.0) == 0
 
@@ -137,24 +137,24 @@ def titled(layout: str) -> Film:
 def test_a_title_of_several_lines_makes_way_for_her() -> None:
     """Its second line would go through her head as she walks on."""
     film = titled("side-by-side")
-    assert film._header is not None
-    title, _ = film._header.parts
+    assert film.placement.header is not None
+    title, _ = film.placement.header.parts
     assert len(title.lines) > 1
-    assert title.boxes[0][1] == film._header.top
+    assert title.boxes[0][1] == film.placement.header.top
     stays = film._stay(title, 0)
     assert stays.opacity(0.0) == 0 and stays.opacity(5.0) == 1
     picture = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
     title.draw(picture, 0.0)
     assert not picture.any()
     title.draw(picture, 1.0)
-    assert picture[: round(film._header.title_end[1])].any()
+    assert picture[: round(film.placement.header.title_end[1])].any()
 
 
 def test_on_a_phone_a_title_stands_from_the_first_picture_on() -> None:
     """It stands above her head even in two lines; what is below it waits until she has walked past."""
     film = titled("vertical")
-    assert film._header is not None
-    title, below = film._header.parts
+    assert film.placement.header is not None
+    title, below = film.placement.header.parts
     assert len(title.lines) > 1
     assert film._stay(title, 0).opacity(0.0) == 1
     assert film._stay(below, 0).opacity(0.0) == 0

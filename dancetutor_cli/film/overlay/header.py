@@ -68,7 +68,8 @@ class WordsRoom(NamedTuple):
 ALL = WordsRoom()
 
 
-class Lines(NamedTuple):
+@dataclass(frozen=True, slots=True, eq=False)
+class Lines:
     """Words that come and go together. lines : each with its left top corner, pixels
 
     boxes : where those stand that make way for her: left, top, right, bottom

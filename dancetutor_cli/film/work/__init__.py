@@ -2,6 +2,7 @@
 
 request, planning             what is wanted, checked; everything laid on the film's clock
 segments, render              pieces of a film drawn and encoded by any process; one film put in its place
+extras                        what is made besides a film: a picture for each row, a poster, subtitles
 batch, records                films of folders; which of them are done
 motion_film                   a film of a motion without a chart
 worker_imports, worker_imports_gl   what processes that draw load once for all of them

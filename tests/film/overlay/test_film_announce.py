@@ -16,7 +16,7 @@ from dancetutor_cli.film.overlay.announce import CALL_STAYS, Calls, Runs, _foot_
 from dancetutor_cli.film.overlay.sprites import highway_style
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import Frame
-from dancetutor_cli.film.words import CALLS_WIDE, calls_room
+from dancetutor_cli.film.placement import CALLS_WIDE, PartBoxes, calls_room
 from dancetutor_cli.run.languages import load_language
 from dancetutor_cli.run.reading import config_names
 
@@ -142,7 +142,7 @@ def test_the_time_left_is_that_to_the_next_move_of_a_passage() -> None:
 def test_a_call_has_two_lines_at_most(name: str, columns: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """In a layout's box, and in the narrowest place beside her that calls are put in."""
     layout = load_layout(name)
-    room = calls_room(layout, lambda part: layout.box(part, layout.size, columns), 1.0, None)
+    room = calls_room(PartBoxes(layout, layout.size, columns), None)
     left, top, right, bottom = room.box
     made: list[tuple[list[str], float]] = []
     label = announce.flag

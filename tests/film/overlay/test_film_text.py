@@ -241,11 +241,11 @@ def test_the_legend_stands_below_many_words(layout: str) -> None:
     words = Words(TITLES[3] + " " + TITLES[2], ARTISTS[1], "Hard 8", "Hard", "dance-double · 128-164 BPM", "steps by x")
     plan = replace(film_plan(np.arange(1.0, 4.0)), look=look, directions=DIRECTIONS * 2, words=words)
     film = Film(plan)
-    assert film._header is not None and film._legend is not None
-    (left, top, _, bottom), height = film._legend.boxes[0], look.size[1]
+    assert film.placement.header is not None and film.placement.legend is not None
+    (left, top, _, bottom), height = film.placement.legend.boxes[0], look.size[1]
     assert bottom < height
-    for one in (box for part in film._header.parts for box in part.boxes):
-        assert one[3] <= top + 12 * film.scale or one[0] >= left + film._legend.lines[0][0].shape[1]
+    for one in (box for part in film.placement.header.parts for box in part.boxes):
+        assert one[3] <= top + 12 * film.scale or one[0] >= left + film.placement.legend.lines[0][0].shape[1]
 
 
 def test_the_legend_has_hands_only_where_some_are_shown() -> None:
@@ -255,7 +255,7 @@ def test_the_legend_has_hands_only_where_some_are_shown() -> None:
     counts = []
     for start, end in ((0.0, 5.0), (38.0, 42.0), (34.0, 37.0)):
         clock = replace(plan.clock, passes=(Pass(start, end, 1.0),))
-        legend = Film(replace(plan, clock=clock))._legend
+        legend = Film(replace(plan, clock=clock)).placement.legend
         assert legend is not None
         counts.append(len(legend.lines))
     assert counts[1] == counts[2] == counts[0] + 2

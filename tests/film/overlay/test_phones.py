@@ -112,7 +112,7 @@ def test_only_pads_of_more_than_a_square_have_the_wide_boxes(steps: str, wide: b
     plan = film_plan(np.arange(1.0, 7.0), columns=np.arange(6))
     layout = load_layout("side-by-side")
     film = Film(replace(plan, look=FilmLook(layout, layout.size), pad=pad, directions=pad.directions))
-    assert film._box("dancer") == layout.box("dancer", layout.size, 8 if wide else 4)
+    assert film.boxes.box("dancer") == layout.box("dancer", layout.size, 8 if wide else 4)
 
 
 def standing() -> Motion:
@@ -133,11 +133,11 @@ def test_on_a_phone_the_feet_are_seen_from_above_on_doubles_too(two: bool) -> No
         words = replace(plan.words, title=title)
         look = FilmLook(layout, layout.size, quality="draft", renderer="cpu")
         film = Film(replace(plan, look=look, pad=pad, directions=pad.directions, motions=motions, words=words))  # type: ignore[union-attr, arg-type]
-        box = film._feet_box
+        box = film.placement.feet
         assert (box is None) == two
-        assert film._legend is not None and film._header is not None
+        assert film.placement.legend is not None and film.placement.header is not None
         if box is not None:
-            assert box[1] > film._header.bottom and film._legend.boxes[0][1] > box[3]
+            assert box[1] > film.placement.header.bottom and film.placement.legend.boxes[0][1] > box[3]
             assert box[3] < layout.box("dancer", layout.size, 8)[3]
             assert (box[2] - box[0]) / 6 > 48, "pixels of a panel"
 

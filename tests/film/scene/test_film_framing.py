@@ -48,7 +48,7 @@ def standing(name: str, steps: str) -> Film:
 
 def framing(film: Film) -> Framing:
     """Of a film in which she stands."""
-    left, top, right, bottom = film._box("dancer")
+    left, top, right, bottom = film.boxes.box("dancer")
     camera, (width, height) = film._dancer.view(Moment(5.0, 1.0)), film.size
     low, high = film._dancer.scene.extent
     places = [(x, 0.0, z) for x in (low[0], high[0]) for z in (low[2], high[2])]
