@@ -82,8 +82,9 @@ def walked(layout: str, start: float, away: bool) -> Film:
 
 @pytest.mark.parametrize(("layout", "start"), [("side-by-side", 1.1), ("dancer", 1.7)])
 def test_the_legend_waits_until_she_has_walked_past_it(layout: str, start: float) -> None:
-    film, words = walked(layout, start, away=True), walked(layout, start, away=True)
-    words.layout = replace(words.layout, legend=None)
+    film = walked(layout, start, away=True)
+    look = replace(film.plan.look, layout=replace(film.layout, legend=None))
+    words = Film(replace(film.plan, look=look))
     left, top, right, bottom = (round(edge) for edge in film.placement.legend.boxes[0])  # type: ignore[union-attr]
     for number in (0, 4, 8, 12, 20, 28, 40):
         one, bare = (each.frame(number)[top:bottom, max(0, left) : right] for each in (film, words))

@@ -182,12 +182,19 @@ def pixels_per_metre(camera: Camera, joints: Array, size: tuple[int, int]) -> fl
     return camera.focal * size[1] / max(depth, NEAR)
 
 
+# What feet and hands leave on the floor: entries of a row of `feet_on_floor`.
+HEEL_X, HEEL_Z, TOE_X, TOE_Z, GROUND = range(5)  # the line between heel and toe, and the height below it, metres
+NEARNESS = 5  # to the ground, 0 to 1, or NO_FOOT
+RED, GREEN, BLUE = 6, 7, 8  # of the mark, 0 to 255
+STRENGTH, PRESSED = 9, 10  # of the mark, and how much it presses a lit panel, 0 to 1
+
+
 def feet_on_floor(scene: Scene, state: FrameState) -> Array:
-    """Feet, then hands: rows of (heel x, z, toe x, z, ground, nearness to the ground 0..1 or NO_FOOT, red, green, blue,
-    strength of the mark 0..1, how much it presses a lit panel 0..1), (4, 11). A hand that is not near the floor
-    leaves nothing on it. Of two who dance the feet of the second come in place of hands."""
+    """Rows of feet, then hands, (4, 11), with the entries above. A hand that is not near the floor leaves nothing on
+    it. For two dancers, the rows of hands are the feet of the second.
+    """
     out = np.zeros((4, 11))
-    out[:, 5] = NO_FOOT
+    out[:, NEARNESS] = NO_FOOT
     if state.joints is None:
         return out
     low = scene.look.light.contact_height

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import renderers_scene as rs
 
-from dancetutor_cli.film.scene.dancer import Follow, is_wide
+from dancetutor_cli.film.scene.follow import Follow, is_wide
 from dancetutor_cli.film.scene.renderer import create
 
 SIZE = (640, 360)

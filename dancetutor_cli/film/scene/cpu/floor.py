@@ -9,13 +9,30 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.film.scene.cpu.raster import kernel
 from dancetutor_cli.film.scene.cpu.standing import SEVERAL, TILE, quantise
-from dancetutor_cli.film.scene.renderer import PLANTED, RING_SHARE, SHADOW_FADE, Cast
+from dancetutor_cli.film.scene.renderer import (
+    BLUE,
+    GREEN,
+    GROUND,
+    HEEL_X,
+    HEEL_Z,
+    NEARNESS,
+    PLANTED,
+    PRESSED,
+    RED,
+    RING_SHARE,
+    SHADOW_FADE,
+    STRENGTH,
+    TOE_X,
+    TOE_Z,
+    Cast,
+)
 from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
 Array = NDArray[np.float64]
 # Half a ring's width and its distance from the sole, metres, in the air, and what standing adds: tight and thick.
 RING = (0.0040, 0.0060, 0.0220, -0.0090)
 OUTSIDE = 0.030  # metres from the sole: no ring is farther out
+CONTACT_DARK, CONTACT_SOFT, PANEL_LIGHT, SOLE_RADIUS = range(4)  # entries of `Live.numbers`: shares, metres
 LIT = 0.80  # part of its light that a lit panel keeps in the deepest shadow, which must not hide a pressed panel
 
 
@@ -89,13 +106,13 @@ def _bilinear(picture: Any, x: float, y: float) -> float:  # pragma: no cover
 
 @njit(cache=True, inline="always")
 def _from_foot(x: float, z: float, feet: Any, f: int) -> float:  # pragma: no cover
-    """Distance from the line between heel and toe of foot f, columns 0 to 3."""
-    dx, dz = feet[f, 2] - feet[f, 0], feet[f, 3] - feet[f, 1]
+    """Distance from the line between heel and toe of foot f."""
+    dx, dz = feet[f, TOE_X] - feet[f, HEEL_X], feet[f, TOE_Z] - feet[f, HEEL_Z]
     length = dx * dx + dz * dz
     t = 0.0
     if length > 0.0:
-        t = min(1.0, max(0.0, ((x - feet[f, 0]) * dx + (z - feet[f, 1]) * dz) / length))
-    ax, az = x - feet[f, 0] - t * dx, z - feet[f, 1] - t * dz
+        t = min(1.0, max(0.0, ((x - feet[f, HEEL_X]) * dx + (z - feet[f, HEEL_Z]) * dz) / length))
+    ax, az = x - feet[f, HEEL_X] - t * dx, z - feet[f, HEEL_Z] - t * dz
     return float(np.sqrt(ax * ax + az * az))
 
 
@@ -127,7 +144,7 @@ class Live(NamedTuple):
     """What changes on the floor from frame to frame.
 
     lit, lit_colour : `renderer.panel_lights`; feet : `renderer.feet_on_floor`
-    numbers : contact darkness, its softness, strength of lit panels, sole radius
+    numbers : by `CONTACT_DARK` and the indices behind it
     """
 
     lit: Array
@@ -167,15 +184,15 @@ def _trodden(low: Any, high: Any, coarse: float, live: Any) -> bool:  # pragma: 
     pixel
     """
     feet, numbers = live.feet, live.numbers
-    far = numbers[3] + max(1.6 * numbers[1], OUTSIDE + coarse)
+    far = numbers[SOLE_RADIUS] + max(1.6 * numbers[CONTACT_SOFT], OUTSIDE + coarse)
     for f in range(feet.shape[0]):
         if (
-            feet[f, 5] >= 0.0
-            and low[1] - 0.03 <= feet[f, 4] <= high[1] + 0.03
-            and low[0] <= max(feet[f, 0], feet[f, 2]) + far
-            and high[0] >= min(feet[f, 0], feet[f, 2]) - far
-            and low[2] <= max(feet[f, 1], feet[f, 3]) + far
-            and high[2] >= min(feet[f, 1], feet[f, 3]) - far
+            feet[f, NEARNESS] >= 0.0
+            and low[1] - 0.03 <= feet[f, GROUND] <= high[1] + 0.03
+            and low[0] <= max(feet[f, HEEL_X], feet[f, TOE_X]) + far
+            and high[0] >= min(feet[f, HEEL_X], feet[f, TOE_X]) - far
+            and low[2] <= max(feet[f, HEEL_Z], feet[f, TOE_Z]) + far
+            and high[2] >= min(feet[f, HEEL_Z], feet[f, TOE_Z]) - far
         ):
             return True
     return False
@@ -205,8 +222,8 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
     glow, white, foot = standing.glow, standing.white, standing.footprint
     shadow, dark, axes, origin, scale = shade.mask, shade.dark, shade.cast.axes, shade.cast.origin, shade.cast.scale
     lit, lit_colour, feet, numbers = live.lit, live.lit_colour, live.feet, live.numbers
-    radius = numbers[3]
-    far = 0.35 + 2.0 * numbers[1]  # nothing of a foot is farther than that from both heel and toe
+    radius = numbers[SOLE_RADIUS]
+    far = 0.35 + 2.0 * numbers[CONTACT_SOFT]  # nothing of a foot is farther than that from both heel and toe
     for i in range(box[1] // TILE, (box[3] + TILE - 1) // TILE):
         for j in range((box[0] + shift) // TILE, (box[2] + shift + TILE - 1) // TILE):
             near_feet = _touched(standing.tiles, i, j, shade, live)
@@ -219,7 +236,7 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
                     if take <= 0.0:
                         continue
                     p = panel[row, c]
-                    shine = glow[row, c] * lit[p] * numbers[2] if p >= 0 else 0.0
+                    shine = glow[row, c] * lit[p] * numbers[PANEL_LIGHT] if p >= 0 else 0.0
                     x, y, z = ground[row, c, 0], ground[row, c, 1], ground[row, c, 2]
                     keep = 1.0
                     if dark > 0.0:
@@ -230,50 +247,50 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
                     ring, owner, pressed = 0.0, 0, 0.0
                     for f in range(near_feet):
                         if (
-                            feet[f, 5] < 0.0
-                            or abs(y - feet[f, 4]) > 0.03
-                            or max(abs(x - feet[f, 0]), abs(x - feet[f, 2])) > far
-                            or max(abs(z - feet[f, 1]), abs(z - feet[f, 3])) > far
+                            feet[f, NEARNESS] < 0.0
+                            or abs(y - feet[f, GROUND]) > 0.03
+                            or max(abs(x - feet[f, HEEL_X]), abs(x - feet[f, TOE_X])) > far
+                            or max(abs(z - feet[f, HEEL_Z]), abs(z - feet[f, TOE_Z])) > far
                         ):
                             continue
                         d = _from_foot(x, z, feet, f) - radius
-                        near = feet[f, 5]
-                        reach = numbers[1] * (1.6 - 0.6 * near)
+                        near = feet[f, NEARNESS]
+                        reach = numbers[CONTACT_SOFT] * (1.6 - 0.6 * near)
                         if d < reach:
-                            keep *= 1.0 - numbers[0] * near * (1.0 - smooth(0.0, reach, d))
+                            keep *= 1.0 - numbers[CONTACT_DARK] * near * (1.0 - smooth(0.0, reach, d))
                         if d > OUTSIDE + foot[row, c]:
                             continue
                         soft = 0.5 * foot[row, c]
                         planted = smooth(PLANTED[0], PLANTED[1], near)
                         wide, off = RING[0] + RING[1] * planted, RING[2] + RING[3] * planted
                         band = min(1.0, max(0.0, (wide - abs(d - off)) / (2.0 * soft) + 0.5))
-                        band *= feet[f, 9]
+                        band *= feet[f, STRENGTH]
                         if band <= ring:
                             continue
                         light = 0.0  # on the panel that this foot presses: the colour of the panel is the foot's
                         if (
-                            feet[f, 10] > 0.0
+                            feet[f, PRESSED] > 0.0
                             and p >= 0
-                            and lit_colour[p, 0] == feet[f, 6]
-                            and lit_colour[p, 1] == feet[f, 7]
-                            and lit_colour[p, 2] == feet[f, 8]
+                            and lit_colour[p, 0] == feet[f, RED]
+                            and lit_colour[p, 1] == feet[f, GREEN]
+                            and lit_colour[p, 2] == feet[f, BLUE]
                         ):
-                            light = lit[p] * feet[f, 10]
+                            light = lit[p] * feet[f, PRESSED]
                         if light <= 0.0:
-                            band *= 1.0 - (1.0 - RING_SHARE) * feet[f, 10]
+                            band *= 1.0 - (1.0 - RING_SHARE) * feet[f, PRESSED]
                         if band > ring:
                             ring, owner, pressed = band, f, light
                     if keep >= 1.0 and shine <= 0.0 and ring <= 0.0:
                         continue
                     keep = 1.0 - (1.0 - keep) * take
-                    hot = white[row, c] * lit[p] * numbers[2] if p >= 0 else 0.0
+                    hot = white[row, c] * lit[p] * numbers[PANEL_LIGHT] if p >= 0 else 0.0
                     for k in range(3):
                         value = colour[row, c, k] * keep
                         if shine > 0.0:
                             bright = lit_colour[p, k] * (LIT + (1.0 - LIT) * keep)
                             value += (bright - value) * shine
                             value += (255.0 - value) * hot
-                        ink = feet[owner, 6 + k]
+                        ink = feet[owner, RED + k]
                         ink += (255.0 - ink) * pressed
                         value += (ink - value) * ring * take
                         out[row, column, k] = quantise(value, row, c)

@@ -12,6 +12,7 @@ from OpenGL import GL
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.scene.camera import Camera
 from dancetutor_cli.film.scene.cpu.standing import SEVERAL, TILE, GroundTiles, draw_background
+from dancetutor_cli.film.scene.renderer import GROUND, NEARNESS
 from dancetutor_cli.film.scene.scene import Scene
 
 # Textures and framebuffers of the OpenGL renderer. Import only after `available.load_pyrender`.
@@ -186,7 +187,7 @@ def trodden(tiles: GroundTiles, feet: Array, far: float) -> NDArray[np.bool_]:
     """
     out = np.zeros(tiles.panel.shape, dtype=bool)
     reach = far + tiles.coarse
-    for heel_x, heel_z, toe_x, toe_z, ground in feet[feet[:, 5] >= 0.0, :5]:
+    for heel_x, heel_z, toe_x, toe_z, ground in feet[feet[:, NEARNESS] >= 0.0, : GROUND + 1]:
         here = (tiles.low[..., 1] - _NEAR <= ground) & (tiles.high[..., 1] + _NEAR >= ground)
         for k, a, b in ((0, heel_x, toe_x), (2, heel_z, toe_z)):
             here &= (tiles.low[..., k] <= max(a, b) + reach) & (tiles.high[..., k] >= min(a, b) - reach)

@@ -44,11 +44,17 @@ from dancetutor_cli.film.scene.gl.programs import (
 )
 from dancetutor_cli.film.scene.look import LightLook
 from dancetutor_cli.film.scene.renderer import (
+    BLUE,
+    GROUND,
     MOST_JOINTS,
+    NEARNESS,
+    PRESSED,
+    RED,
     RING_SHARE,
     SAMPLES,
     SHADOW_FADE,
     SHADOW_MAP,
+    STRENGTH,
     Cast,
     DancerVisibility,
     camera_matrix,
@@ -218,10 +224,10 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             fade=np.array([*SHADOW_FADE, look.light.shadow_far]),
             contact=np.array([look.light.contact, look.light.contact_soft, look.stage.glow]),
             radius=SOLE_RADIUS,
-            foot=feet[:, :4],
-            foot_state=feet[:, [4, 5, 9, 10]],
+            foot=feet[:, :GROUND],
+            foot_state=feet[:, [GROUND, NEARNESS, STRENGTH, PRESSED]],
             beside=RING_SHARE,
-            foot_colour=feet[:, 6:9] / 255.0,
+            foot_colour=feet[:, RED : BLUE + 1] / 255.0,
             shadow=_SHADOW_UNIT,
             **{name: unit for unit, name in enumerate(units)},
         )
