@@ -15,7 +15,7 @@ from pathlib import Path
 
 from dancetutor_cli.chart.selection import Selection, find_files
 from dancetutor_cli.markers.annotate import AnnotateOutcome, AnnotateRequest, Item, annotate_song
-from dancetutor_cli.markers.comments import STYLES
+from dancetutor_cli.markers.styles import STYLES
 from dancetutor_cli.run.errors import FileError
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -22,6 +22,7 @@ from dancetutor_cli.commands.shared_options import (
     selection_options,
     verbose_option,
 )
+from dancetutor_cli.markers.styles import STRIPPED, STYLES
 from dancetutor_cli.reports.terminal import JoinedWarnings, coloured, safe
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.files import check_folder
@@ -29,8 +30,6 @@ from dancetutor_cli.run.files import check_folder
 if TYPE_CHECKING:
     from dancetutor_cli.markers.annotate import AnnotateOutcome, AnnotateRequest, Item
 
-STYLES = ("measure", "rows", "sidecar", "smeditor", "edit", "theme")
-STRIPPED = (*STYLES, "background")  # and what `render --background --into-file` has entered
 _MANY = 24  # songs from which on starting worker processes pays
 
 
@@ -217,7 +216,7 @@ class _Talk:
 
     def begin(self) -> None:
         if "rows" in self.request.styles and not self.request.strip and not self.quiet:
-            from dancetutor_cli.markers.comments import WARNING
+            from dancetutor_cli.markers.rows import WARNING
 
             click.echo(f"warning: {WARNING}", err=True)
 

@@ -1,7 +1,8 @@
 """Feet written into chart files and beside them, and taken out again.
 
-annotate                      the piece of work of `annotate`: the files of one song
-planning                      what would change, before anything is written
-comments, edit, sidecar       feet in comments, as a chart for two pads, in files beside it
-theme, background             cues for themes; a film behind the notes
+annotate, plan                  the piece of work of `annotate`: the files of one song; what would change in one of them
+styles, model                   the styles of markers by name; what all of them share
+measure, rows                   feet in comments of the note data
+sidecar, smeditor, feet_text    feet in files beside the chart file
+edit, theme, background         feet as a chart for two pads; cues for themes; a film behind the notes
 """

@@ -12,28 +12,16 @@ from typing import TYPE_CHECKING
 from dancetutor_cli.chart.edits import apply, unified
 from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.feet.preset import mismatch, preset_for
+from dancetutor_cli.feet.preset import preset_for
 from dancetutor_cli.markers import background, edit
-from dancetutor_cli.markers.comments import (
-    BACKGROUND,
-    EDIT,
-    FILE_STYLES,
-    MEASURE,
-    ROWS,
-    SIDECAR,
-    TEXT,
-    UCS_STYLES,
-    FileChange,
-    Lack,
-)
+from dancetutor_cli.markers.model import FileChange, Lack, NoteChange
+from dancetutor_cli.markers.styles import BESIDE, OF_EACH_FILE, OF_UCS, file_style
 from dancetutor_cli.run.errors import FileError, NoChartsError
 from dancetutor_cli.run.files import ChangedError, back_up, make_folder, remove_leftovers, write_atomic
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
-    from dancetutor_cli.feet.preset import Preset
     from dancetutor_cli.lint.run import LintRun
-    from dancetutor_cli.markers.planning import FilePlan, MarkerPlan
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,9 +88,9 @@ def annotate_song(items: Sequence[Item], request: AnnotateRequest) -> list[Annot
     return [_attempt(item, request, ssc and item.source.suffix.lower() != ".ssc") for item in items]
 
 
-def _attempt(item: Item, request: AnnotateRequest, second: bool) -> AnnotateOutcome:
+def _attempt(item: Item, request: AnnotateRequest, is_sm_of_pair: bool) -> AnnotateOutcome:
     try:
-        return _annotate(item, request, second)
+        return _annotate(item, request, is_sm_of_pair)
     except NoChartsError as error:  # music of a menu: nothing to write
         return AnnotateOutcome(item.source, notes=(str(error),))
     except FileError as error:
@@ -111,15 +99,15 @@ def _attempt(item: Item, request: AnnotateRequest, second: bool) -> AnnotateOutc
         return AnnotateOutcome(item.source, error=str(FileError(item.source, error.strerror or str(error))))
 
 
-def _annotate(item: Item, request: AnnotateRequest, second: bool) -> AnnotateOutcome:
+def _annotate(item: Item, request: AnnotateRequest, is_sm_of_pair: bool) -> AnnotateOutcome:
     song = load(item.source)
     if song.format == "ucs":
         request, beside = _request_for_ucs(item.source, request)
-        second = False
     else:
-        beside = [style for style in request.styles if style in FILE_STYLES and (style == SIDECAR or not second)]
-    if request.into_file and not request.strip and EDIT in beside:
-        beside.remove(EDIT)
+        possible = OF_EACH_FILE if is_sm_of_pair else BESIDE
+        beside = [style for style in request.styles if style in possible]
+    if request.into_file and not request.strip and "edit" in beside:
+        beside.remove("edit")
     work = _Work(item, request, song, tuple(beside))
     if request.strip:
         work.strip()
@@ -130,16 +118,15 @@ def _annotate(item: Item, request: AnnotateRequest, second: bool) -> AnnotateOut
 
 def _request_for_ucs(path: Path, request: AnnotateRequest) -> tuple[AnnotateRequest, list[str]]:
     """What of a request can be done for a .ucs, into which nothing is written; FileError if nothing of it."""
-    wanted = [TEXT if style in (MEASURE, ROWS) else style for style in request.styles]
-    beside = [style for style in UCS_STYLES if style in wanted]
+    beside = list(dict.fromkeys(OF_UCS[style] for style in request.styles if style in OF_UCS))
     if not beside and not request.strip:
         there = "measure (a text beside it) and sidecar"
-        raise FileError(path, f"a .ucs file has no place for the markers {', '.join(wanted)}; choose {there}")
+        raise FileError(path, f"a .ucs file has no place for the markers {', '.join(request.styles)}; choose {there}")
     return replace(request, styles=(), into_file=False), beside
 
 
 class _Work:
-    """One file in work: the planned changes, then the changes themselves."""
+    """One file in work: the planned changes, then the changes themselves. beside : the styles that write files."""
 
     def __init__(self, item: Item, request: AnnotateRequest, song: Song, beside: tuple[str, ...]) -> None:
         self.item, self.request, self.song, self.beside = item, request, song, beside
@@ -151,68 +138,67 @@ class _Work:
         self.counts: Counter[str] = Counter()
 
     def write(self) -> None:
-        """Plan all styles that are asked for."""
-        from dancetutor_cli.markers import planning
+        """Plan all styles that are asked for: charts that we added are out while feet are found, and come back last."""
+        from dancetutor_cli.markers import plan
 
-        choice = _configured(self.request.preset).presets(self.item.source)
-        added = EDIT in self.request.styles and self.request.into_file
-        base = self._without_added() if added else self.song
-
-        def preset_of(chart: Chart) -> Preset:
-            return preset_for(chart, self.item.source, choice)
-
-        feet = list(planning.solve_charts(base, self._charts(base), preset_of, self.notes, self.problems))
-        for chart in (one.chart for one in feet):
-            if unfit := mismatch(preset_of(chart), chart.steps_type):
-                self.notes.append(f"{base.path}: {chart.label}: {unfit}")
-        plan = planning.mark(base, feet, self.request.styles, self.request.force)
-        if added:
-            planning.add_charts(base, self.song, plan, feet)
-        planning.checked(base, plan)
-        self._take(plan)
-        alone = [one for one in feet if not (one.chart.players or one.chart.player)]
-        if self.beside and len(alone) < len(feet):
+        presets = _configured(self.request.preset).presets(self.item.source)
+        into_file = "edit" in self.request.styles and self.request.into_file
+        song = self._without_added() if into_file else self.song
+        found = plan.solve_charts(song, self._charts(song), lambda chart: preset_for(chart, self.item.source, presets))
+        self.notes += found.notes
+        self.problems += found.problems
+        change = plan.mark(song, found.charts, self.request.styles, self.request.force)
+        data = apply(song.data, change.splices)
+        if into_file:
+            data, lacks = plan.add_charts(song, self.song, data, found.charts)
+            change.lacks += lacks
+        plan.check(song, data)
+        self._add_chart_file(data, change)
+        alone = [one for one in found.charts if not (one.chart.players or one.chart.player)]
+        if self.beside and len(alone) < len(found.charts):
             self.notes.append(
-                f"{base.path}: charts for two players can have markers only in the styles measure and rows"
+                f"{song.path}: charts for two players can have markers only in the styles measure and rows"
             )
-        for style in self.beside if alone or not feet else ():
+        for name in self.beside if alone or not found.charts else ():
             try:
-                for planned in planning.write(style, self.song, self.item.target.parent, alone):
-                    self._add(planned)
+                for planned in file_style(name).write(self.song, self.item.target.parent, alone):
+                    if isinstance(planned, FileError):
+                        self.errors.append(str(planned))
+                    else:
+                        self._add_beside(planned)
             except FileError as error:
                 self.errors.append(str(error))
 
     def strip(self) -> None:
         """Plan the removal of all styles that are asked for."""
-        from dancetutor_cli.markers import planning
+        from dancetutor_cli.markers import plan
 
-        base = self._without_added() if EDIT in self.request.styles else self.song
-        added = base
-        if BACKGROUND in self.request.styles:
-            base = self._without_background(base)
-        charts = self._charts(base)
-        plan = planning.unmark(base, charts, self.request.styles, self.request.force)
-        planning.checked(base, plan)
-        self._take(plan)
-        if base is not added:
+        own = self._without_added() if "edit" in self.request.styles else self.song
+        song = self._without_background(own) if "background" in self.request.styles else own
+        charts = self._charts(song)
+        change = plan.unmark(song, charts, self.request.styles, self.request.force)
+        data = apply(song.data, change.splices)
+        plan.check(song, data)
+        self._add_chart_file(data, change)
+        if song is not own:
             self.lacks.append(Lack("has a film in its background changes to take out"))
-        if added is not self.song:
+        if own is not self.song:
             self.lacks.append(Lack("has charts for two pads to take out"))
-        for style in self.beside if self._in_place else ():
+        for name in self.beside if self._in_place else ():
             try:
-                for planned in planning.strip(style, self.song, charts):
-                    self._add(planned)
+                for planned in file_style(name).strip(self.song, charts):
+                    self._add_beside(planned)
             except FileError as error:
                 if self.request.named:
                     raise
                 self.notes.append(str(error))
 
     def outcome(self) -> AnnotateOutcome:
-        """Bring the changes to the disk if that is wanted, and say what became of the file."""
+        """Write the changes if that is wanted, and say what became of the file."""
         selection = self.request.selection
         if self.request.write:
             for change in self.changes:
-                self._bring(change)
+                self._write_change(change)
         return AnnotateOutcome(
             self.item.source,
             error="; ".join(self.errors) or None,
@@ -250,22 +236,18 @@ class _Work:
         splices = background.remove(song)
         return parse(apply(song.data, splices), song.path) if splices else song
 
-    def _take(self, plan: MarkerPlan) -> None:
-        self.changes.append(FileChange(self.item.target, self.song.data, plan.data))
-        self.lacks += plan.lacks
-        self.notes += plan.notes
-        self.counts += plan.counts
+    def _add_chart_file(self, data: bytes, change: NoteChange) -> None:
+        self.changes.append(FileChange(self.item.target, self.song.data, data))
+        self.lacks += change.lacks
+        self.notes += change.notes
+        self.counts += change.counts
 
-    def _add(self, planned: FilePlan | FileError) -> None:
-        if isinstance(planned, FileError):
-            self.errors.append(str(planned))
-            return
-        change, lacks = planned
+    def _add_beside(self, change: FileChange) -> None:
         self.changes.append(change)
-        self.lacks += lacks
+        self.lacks += change.lacks
 
-    def _bring(self, change: FileChange) -> None:
-        """Bring one change to the disk; with -o also what is the same as before, so that the copy is whole."""
+    def _write_change(self, change: FileChange) -> None:
+        """Write one change; with -o also what is the same as before, so that the copy is whole."""
         if self._in_place and not change.needed:
             return
         if not change.path.parent.is_dir():

@@ -16,7 +16,7 @@ from dancetutor_cli.chart.names import TICKS_PER_MEASURE
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play
-from dancetutor_cli.markers.comments import ChartFeet
+from dancetutor_cli.markers.model import ChartFeet, FileChange, old_content, removed, written
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
 
@@ -119,6 +119,21 @@ def is_ours(chart: Chart) -> bool:
     """Whether a chart is one that this style has added."""
     made = chart.steps_type == TARGET and chart.difficulty == "Edit"
     return made and chart.description.startswith(_NAME)
+
+
+def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileChange | FileError]:
+    """The .edit files of a song; an error in place of one that there cannot be."""
+    for path, data in edit_files(song, feet):
+        if isinstance(data, FileError):
+            yield data
+        else:
+            yield written(folder / path.name, old_content(folder / path.name, song), data)
+
+
+def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
+    """The .edit files gone."""
+    for path in edit_paths(song, charts):
+        yield removed(path, read_bytes(path, CHART_LIMIT), None)
 
 
 def edit_files(song: Song, feet: Sequence[ChartFeet]) -> Iterator[tuple[Path, bytes | EditError]]:

@@ -16,11 +16,18 @@ from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.move_spans import crossover_spans
 from dancetutor_cli.feet.play import Play
-from dancetutor_cli.markers.comments import ChartFeet
+from dancetutor_cli.markers.model import (
+    ChartFeet,
+    FileChange,
+    json_lines,
+    not_ours,
+    old_content,
+    own_json,
+    removed,
+    written,
+)
 from dancetutor_cli.markers.sidecar import notes_hash
-from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.files import encoded
-from dancetutor_cli.run.reading import parse_json
 
 # What a theme can show a player before it comes: crossovers, brackets and turns, from when and for how long.
 
@@ -118,19 +125,37 @@ def _near(rows: Sequence[int], ticks: Sequence[int]) -> Iterator[list[int]]:
         yield passage
 
 
-# The style `theme`: what comes next, as `SONG.cues.json` and `SONG.cues.lua` beside the file, for themes to show.
+# The style `theme`: the cues in two files beside the chart file, as JSON and as Lua.
 
 JSON, LUA = ".cues.json", ".cues.lua"
 _SCHEMA = 1
 _HEAD = b"-- dancetutor cues"  # first words of a Lua table that is ours
+_OURS = "a table of cues by dancetutor"
 
 
-def paths_for(song: Path) -> tuple[Path, Path]:
+def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileChange]:
     """The two files of a song; its .sm and its .ssc share them."""
-    return song.with_name(song.stem + JSON), song.with_name(song.stem + LUA)
+    table, lua = (folder / (song.path.stem + suffix) for suffix in (JSON, LUA))
+    old, script = old_content(table, song), old_content(lua, song)
+    check_lua(lua, script)
+    content = cue_table(table, old, song, feet)
+    yield written(table, old, as_json(content))
+    yield written(lua, script, as_lua(content))
 
 
-def write(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> dict[str, Any]:
+def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
+    """The two files without some charts of a song."""
+    table, lua = (song.path.with_name(song.path.stem + suffix) for suffix in (JSON, LUA))
+    old, script = old_content(table, song), old_content(lua, song)
+    check_lua(lua, script)
+    gone = {chart.index for chart in charts}
+    kept = [entry for entry in charts_in(table, old) if entry["index"] not in gone]
+    content = {**cue_table(table, None, song, ()), "charts": kept}
+    yield removed(table, old, as_json(content) if kept and old else None)
+    yield removed(lua, script, as_lua(content) if kept and script else None)
+
+
+def cue_table(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> dict[str, Any]:
     """What the files say, from the old JSON at `path` and new charts; charts that are not in `feet` stay.
 
     Raises FileError if the old file is not ours.
@@ -141,38 +166,30 @@ def write(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) 
     return {"schema": _SCHEMA, "program": "dancetutor", "title": song.title, "charts": charts}
 
 
-def without_charts(path: Path, old: bytes | None, charts: Sequence[Chart]) -> list[Any]:
-    """The entries of the JSON at `path` that belong to other charts than these."""
-    gone = {chart.index for chart in charts}
-    return [entry for entry in charts_in(path, old) if entry["index"] not in gone]
-
-
 def charts_in(path: Path, old: bytes | None) -> list[Any]:
     """The charts of an old JSON file; FileError if it is not ours."""
     if old is None:
         return []
-    try:
-        data = parse_json(encoded(old.decode("utf-8", "surrogateescape")), path)
-        if data["program"] == "dancetutor" and all(isinstance(entry["index"], int) for entry in data["charts"]):
-            return list(data["charts"])
-    except (FileError, KeyError, TypeError):
-        pass
-    raise FileError(path, "is not a table of cues by dancetutor; move it away or choose another style")
+    return list(own_json(path, old, _OURS, _holds_charts)["charts"])
+
+
+def _holds_charts(data: Any) -> bool:
+    return all(isinstance(entry["index"], int) for entry in data["charts"])
 
 
 def check_lua(path: Path, old: bytes | None) -> None:
     """FileError if the Lua file that is there is not ours."""
     if old is not None and not old.startswith(_HEAD):
-        raise FileError(path, "is not a table of cues by dancetutor; move it away or choose another style")
+        raise not_ours(path, _OURS)
 
 
 def as_json(table: dict[str, Any]) -> bytes:
-    """The JSON file: a line for each cue, so that version control shows which have changed."""
+    """The JSON file: a line for each cue."""
     head = {key: value for key, value in table.items() if key != "charts"}
     blocks = []
     for chart in table["charts"]:
         about = json.dumps({key: value for key, value in chart.items() if key != "cues"}, ensure_ascii=False)
-        cues = ",\n".join("   " + json.dumps(cue, ensure_ascii=False) for cue in chart["cues"])
+        cues = json_lines(chart["cues"])
         blocks.append(f'  {about[:-1]}, "cues": [\n{cues}]}}' if cues else f'  {about[:-1]}, "cues": []}}')
     text = json.dumps(head, ensure_ascii=False)[:-1] + ', "charts": [\n' + ",\n".join(blocks) + "]}\n"
     return encoded(text)

@@ -13,7 +13,7 @@ from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.annotations import StepRows, step_rows
 from dancetutor_cli.feet.limbs import LETTERS
-from dancetutor_cli.markers import comments
+from dancetutor_cli.markers import measure, rows
 from dancetutor_cli.run.errors import FileError
 
 HEADER = b"#TITLE:Song;\n#OFFSET:0;\n#BPMS:0=120;\n"
@@ -43,9 +43,9 @@ def annotated(song: Song, seed: int = 1, styles: Sequence[str] = ("measure",), f
         found = step_rows(song.data, chart)
         letters = random_letters(chart, found, seed)
         if "measure" in styles:
-            splices += comments.write_measures(song.data, chart, found, letters, force)[0]
+            splices += measure.write_measures(song.data, chart, found, letters, force)[0]
         if "rows" in styles:
-            splices += comments.write_rows(song.data, chart, found, letters)[0]
+            splices += rows.write_rows(song.data, chart, found, letters)[0]
     return apply(song.data, splices)
 
 
@@ -53,9 +53,9 @@ def stripped(song: Song, styles: Sequence[str] = ("measure",), force: bool = Fal
     splices = []
     for chart in song.charts:
         if "measure" in styles:
-            splices += comments.strip_measures(song.data, chart, force)
+            splices += measure.strip_measures(song.data, chart, force)
         if "rows" in styles:
-            splices += comments.strip_rows(song.data, chart)
+            splices += rows.strip_rows(song.data, chart)
     return apply(song.data, splices)
 
 

@@ -16,8 +16,8 @@ from dancetutor_cli.chart.model import Song
 from dancetutor_cli.feet.annotations import step_rows
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.solve import solve_chart
-from dancetutor_cli.markers import sidecar
-from dancetutor_cli.markers.comments import ChartFeet, row_letters
+from dancetutor_cli.markers import sidecar, smeditor
+from dancetutor_cli.markers.model import ChartFeet, row_letters
 from dancetutor_cli.run.errors import FileError
 
 MEASURES = b"\n1000\n0001\n0110\n0M00\n,\n2002\n0000\n0010\n3003\n;\n"
@@ -93,22 +93,22 @@ def test_a_file_that_is_no_sidecar_is_left_alone(text: bytes) -> None:
 
 def test_data_sme_has_the_form_of_the_specification() -> None:
     song = two_charts()
-    new = sidecar.write_editor_data(PATH, None, song, feet_of(song))
+    new = smeditor.write_editor_data(PATH, None, song, feet_of(song))
     assert new is not None
     assert new.startswith(
         b'{"version":1,"parity":{"dance-single":[{"overrides":[[0,0,"Left"],[1,3,"Right"],[2,1,"Right"],[2,2,"Left"],'
         b'[4,0,"Left"],[4,3,"Right"]],"ignores":{}},{"overrides":[[0,0,"Left"]'
     )
-    assert sidecar.write_editor_data(PATH, new, song, feet_of(song)) == new
-    assert sidecar.strip_editor_data(PATH, new, song, song.charts) is None
-    one = sidecar.strip_editor_data(PATH, new, song, song.charts[:1])
+    assert smeditor.write_editor_data(PATH, new, song, feet_of(song)) == new
+    assert smeditor.strip_editor_data(PATH, new, song, song.charts) is None
+    one = smeditor.strip_editor_data(PATH, new, song, song.charts[:1])
     assert one is not None
-    assert sidecar.write_editor_data(PATH, one, song, feet_of(song)[:1]) == new
+    assert smeditor.write_editor_data(PATH, one, song, feet_of(song)[:1]) == new
 
 
 def test_beats_have_three_digits() -> None:
     song = song_of(sm(b"\n" + b"".join(b"1000\n" if i == 1 else b"0000\n" for i in range(12)) + b";\n"))
-    assert sidecar.overrides(feet_of(song)[0]) == [[0.333, 0, "Left"]]
+    assert smeditor.overrides(feet_of(song)[0]) == [[0.333, 0, "Left"]]
 
 
 def test_what_a_person_set_is_never_touched() -> None:
@@ -122,7 +122,7 @@ def test_what_a_person_set_is_never_touched() -> None:
         "version": 1,
     }
     old = json.dumps(theirs, indent=3).encode()
-    new = sidecar.write_editor_data(PATH, old, song, feet_of(song))
+    new = smeditor.write_editor_data(PATH, old, song, feet_of(song))
     assert new is not None
     data = json.loads(new)
     assert list(data) == ["future", "parity", "version", "dancetutor"]
@@ -132,17 +132,17 @@ def test_what_a_person_set_is_never_touched() -> None:
     assert entry["overrides"][:2] == [[2, 1, "Right"], [1.0, 3, 2]]
     assert [item[:2] for item in entry["overrides"][2:]] == [[0, 0], [2, 2], [4, 0], [4, 3]]
     assert (entry["ignores"], entry["note"]) == ({"1": ["DS"]}, "x")
-    assert sidecar.write_editor_data(PATH, new, song, feet_of(song)) == new
-    assert sidecar.strip_editor_data(PATH, new, song, song.charts) == old
+    assert smeditor.write_editor_data(PATH, new, song, feet_of(song)) == new
+    assert smeditor.strip_editor_data(PATH, new, song, song.charts) == old
 
 
 def test_a_change_by_a_person_after_us_is_theirs() -> None:
     song = song_of(sm(MEASURES))
-    data = json.loads(sidecar.write_editor_data(PATH, None, song, feet_of(song)) or b"")
+    data = json.loads(smeditor.write_editor_data(PATH, None, song, feet_of(song)) or b"")
     overrides = data["parity"]["dance-single"][0]["overrides"]
     overrides[0] = [0, 0, "Right"]
     data["parity"]["dance-single"][0]["ignores"] = {"2": ["AM"]}
-    left = sidecar.strip_editor_data(PATH, json.dumps(data).encode(), song, song.charts)
+    left = smeditor.strip_editor_data(PATH, json.dumps(data).encode(), song, song.charts)
     assert json.loads(left or b"") == {
         "version": 1, "parity": {"dance-single": [{"overrides": [[0, 0, "Right"]], "ignores": {"2": ["AM"]}}]},
     }  # fmt: skip
@@ -150,11 +150,11 @@ def test_a_change_by_a_person_after_us_is_theirs() -> None:
 
 def test_after_smeditor_has_saved_all_feet_are_a_persons() -> None:
     song = song_of(sm(MEASURES))
-    data = json.loads(sidecar.write_editor_data(PATH, None, song, feet_of(song)) or b"")
+    data = json.loads(smeditor.write_editor_data(PATH, None, song, feet_of(song)) or b"")
     del data["dancetutor"]
     saved = json.dumps(data, separators=(",", ":")).encode()
-    assert sidecar.strip_editor_data(PATH, saved, song, song.charts) == saved
-    assert sidecar.write_editor_data(PATH, saved, song, feet_of(song)) == saved
+    assert smeditor.strip_editor_data(PATH, saved, song, song.charts) == saved
+    assert smeditor.write_editor_data(PATH, saved, song, feet_of(song)) == saved
 
 
 @pytest.mark.parametrize(
@@ -164,7 +164,7 @@ def test_after_smeditor_has_saved_all_feet_are_a_persons() -> None:
 def test_an_odd_file_is_left_alone(text: bytes) -> None:
     song = song_of(sm(MEASURES))
     with pytest.raises(FileError, match=r"left alone|did not write"):
-        sidecar.write_editor_data(PATH, text, song, feet_of(song))
+        smeditor.write_editor_data(PATH, text, song, feet_of(song))
 
 
 _OVERRIDE = st.tuples(st.integers(0, 8), st.integers(0, 3), st.sampled_from(["Left", "Right", 1, 2, 3, 4])).map(list)
@@ -183,7 +183,7 @@ _FEET = feet_of(_SONG)
 
 @given(_SME)
 def test_any_data_sme_round_trips(old: bytes) -> None:
-    new = sidecar.write_editor_data(PATH, old, _SONG, _FEET)
+    new = smeditor.write_editor_data(PATH, old, _SONG, _FEET)
     assert new is not None
-    assert sidecar.write_editor_data(PATH, new, _SONG, _FEET) == new
-    assert sidecar.strip_editor_data(PATH, new, _SONG, _SONG.charts) == old
+    assert smeditor.write_editor_data(PATH, new, _SONG, _FEET) == new
+    assert smeditor.strip_editor_data(PATH, new, _SONG, _SONG.charts) == old

@@ -15,8 +15,8 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.markers import edit
-from dancetutor_cli.markers.comments import ChartFeet
-from dancetutor_cli.markers.planning import solve_charts
+from dancetutor_cli.markers.model import ChartFeet
+from dancetutor_cli.markers.plan import solve_charts
 
 THESIS = load_preset("thesis")
 SONG = Path(__file__).resolve().parents[2] / "charts" / "two_left_feet"
@@ -24,7 +24,7 @@ SONG = Path(__file__).resolve().parents[2] / "charts" / "two_left_feet"
 
 def feet_of(song: Song) -> list[ChartFeet]:
     singles = [chart for chart in song.charts if chart.steps_type == "dance-single"]
-    return list(solve_charts(song, singles, lambda chart: THESIS, [], []))
+    return solve_charts(song, singles, lambda chart: THESIS).charts
 
 
 def added(song: Song) -> tuple[list[ChartFeet], list[Chart], bytes]:

@@ -11,8 +11,8 @@ from markers_songs import HEADER, SM_CHART, annotated, sm, song_of, stripped
 
 from dancetutor_cli.chart.edits import Splice, apply
 from dancetutor_cli.feet.annotations import step_rows
-from dancetutor_cli.markers import comments
-from dancetutor_cli.markers.comments import State
+from dancetutor_cli.markers import measure
+from dancetutor_cli.markers.measure import State
 
 # The example of the specification: two measures, four rows with steps and then two.
 PLAIN = sm(b"\n1000\n0100\n0010\n1001\n,  // measure 1\n0100\n1011\n0000\n0000\n;\n")
@@ -23,17 +23,17 @@ MARKED = sm(b"//{dt1 LRL(LR)}\n1000\n0100\n0010\n1001\n,  // measure 1 {dt1 R(LL
 def mark(data: bytes, letters: Sequence[str], force: bool = False) -> bytes:
     song = song_of(data)
     (chart,) = song.charts
-    return apply(data, comments.write_measures(data, chart, step_rows(data, chart), letters, force)[0])
+    return apply(data, measure.write_measures(data, chart, step_rows(data, chart), letters, force)[0])
 
 
 def states(data: bytes, letters: Sequence[str]) -> list[State]:
     (chart,) = song_of(data).charts
-    return [one.state for one in comments.write_measures(data, chart, step_rows(data, chart), letters)[1]]
+    return [one.state for one in measure.write_measures(data, chart, step_rows(data, chart), letters)[1]]
 
 
 def unmark(data: bytes, force: bool = False) -> bytes:
     (chart,) = song_of(data).charts
-    return apply(data, comments.strip_measures(data, chart, force))
+    return apply(data, measure.strip_measures(data, chart, force))
 
 
 def test_the_example_of_the_specification() -> None:

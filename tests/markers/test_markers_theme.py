@@ -13,8 +13,7 @@ from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.markers import theme
-from dancetutor_cli.markers.comments import Lack
-from dancetutor_cli.markers.planning import solve_charts
+from dancetutor_cli.markers.plan import solve_charts
 from dancetutor_cli.markers.theme import LEAST_TURN, ThemeCue, cues_of
 from dancetutor_cli.run.errors import FileError
 
@@ -74,9 +73,8 @@ def test_turns_say_to_which_side() -> None:
 
 def said(path: Path) -> dict[str, Any]:
     song = parse(f"{HEAD}{CROSSOVER}\n;\n".encode(), path)
-    problems: list[Lack] = []
-    feet = list(solve_charts(song, song.charts, lambda chart: load_preset("itg"), [], problems))
-    return theme.write(path, None, song, feet)
+    feet = solve_charts(song, song.charts, lambda chart: load_preset("itg")).charts
+    return theme.cue_table(path, None, song, feet)
 
 
 def lua_value(value: Any) -> Any:
@@ -160,7 +158,7 @@ def test_what_other_charts_have_stays_and_strangers_are_left_alone() -> None:
     table = said(Path("x.sm"))
     old = theme.as_json(table)
     song = parse(f"{HEAD}{CROSSOVER}\n;\n".encode(), Path("x.sm"))
-    assert theme.write(Path("x.cues.json"), old, song, ())["charts"] == table["charts"]
+    assert theme.cue_table(Path("x.cues.json"), old, song, ())["charts"] == table["charts"]
     for stranger in (b"{}", b"[1]", b'{"program": "dancetutor", "charts": [{}]}', b"\xff"):
         with pytest.raises(FileError, match="not a table of cues by dancetutor"):
             theme.charts_in(Path("x.cues.json"), stranger)

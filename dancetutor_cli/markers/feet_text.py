@@ -1,0 +1,53 @@
+"""The style of a .ucs for people: `SONG.feet.txt`, its lines with the feet behind its rows, "..M.X  ..L.R".
+
+Nothing but rows may stand in a .ucs, so nothing is written into it. Lines have the same numbers in both files.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.markers.model import ChartFeet, FileChange, old_content, removed, written
+from dancetutor_cli.run.errors import FileError
+
+SUFFIX = ".feet.txt"
+_OURS = b"feet by dancetutor, preset "  # begins its last line
+
+
+def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileChange]:
+    """The text with the feet of a .ucs."""
+    path = folder / (song.path.stem + SUFFIX)
+    old = old_content(path, song)
+    yield written(path, old, write_feet_text(path, old, song, feet))
+
+
+def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
+    """The text gone."""
+    path = song.path.with_name(song.path.stem + SUFFIX)
+    old = old_content(path, song)
+    check_text(path, old)
+    yield removed(path, old, None)
+
+
+def write_feet_text(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> bytes:
+    """The content of the text; FileError if what lies there is not ours."""
+    check_text(path, old)
+    lines = [line.rstrip(b"\r\n") for line in song.data.splitlines(keepends=True)]
+    newline = b"\r\n" if b"\r\n" in song.data else b"\n"
+    for one in feet:
+        columns = one.chart.columns
+        for row, steps, letters in zip(one.rows.row.tolist(), one.rows.steps, one.letters, strict=True):
+            letter = iter(letters.encode("ascii"))
+            cells = bytes(next(letter) if step else ord(".") for step in steps[:columns].tolist())
+            at = int(one.chart.rows.line[row]) - 1
+            lines[at] = lines[at].rstrip() + b"  " + cells
+    preset = ", ".join(dict.fromkeys(one.play.preset for one in feet)).encode()
+    return newline.join([*lines, _OURS + preset, b""])
+
+
+def check_text(path: Path, old: bytes | None) -> None:
+    """FileError if a file that lies where the text goes is not ours."""
+    if old is not None and not old.rstrip().rpartition(b"\n")[2].startswith(_OURS):
+        raise FileError(path, "was not written by dancetutor; move it away or choose --markers sidecar")

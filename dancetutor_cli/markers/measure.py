@@ -1,0 +1,165 @@
+"""The style `measure`, the default: one `{dt1 ...}` in a comment on the line that opens a measure."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+from dancetutor_cli.chart.edits import Splice
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.feet.annotations import StepRows, markers_in, measure_lines
+from dancetutor_cli.feet.limbs import NotationError, marker, parse
+from dancetutor_cli.markers.model import ChartFeet, Lack, NoteChange
+
+
+class State(Enum):
+    """The content of a file compared with what it should be."""
+
+    CURRENT = "current"
+    MISSING = "missing"
+    STALE = "stale"  # tokens do not fit the rows
+    DIFFERENT = "different"  # they fit, but say other feet
+    PINNED = "pinned"
+    IMPOSSIBLE = "impossible"  # rows stand on the line of the comma
+
+
+@dataclass(frozen=True, slots=True)
+class MeasureState:
+    """One measure that has a marker or should have one. line : 1-based line of the comment."""
+
+    measure: int
+    line: int
+    state: State
+
+
+_WORDS = {
+    State.MISSING: "have no feet yet",
+    State.STALE: "have feet that no longer fit their rows",
+    State.DIFFERENT: "have other feet than the solver finds",
+}
+
+
+def write(song: Song, feet: ChartFeet, force: bool) -> NoteChange:
+    """Bring the markers of a chart up to date. What lacks is one line for each kind, with the first place."""
+    chart = feet.chart
+    splices, states = write_measures(song.data, chart, feet.rows, feet.letters, force)
+    change = NoteChange(splices, Counter(one.state.value for one in states))
+    by_state = {state: [one for one in states if one.state is state] for state in State}
+    for state, text in _WORDS.items():
+        if found := by_state[state]:
+            number = f"{len(found)} measures" if len(found) > 1 else f"measure {found[0].measure}"
+            text = text if len(found) > 1 else text.replace("have", "has", 1)
+            change.lacks.append(Lack(f"{chart.label}: {number} {text}", found[0].line))
+    if found := by_state[State.IMPOSSIBLE]:
+        single = len(found) == 1
+        text = "1 measure begins on the line of its" if single else f"{len(found)} measures begin on the line of their"
+        left = "it is" if single else "they are"
+        change.notes.append(f"{song.path}:{found[0].line}: {chart.label}: {text} comma; {left} left alone")
+    return change
+
+
+def strip(song: Song, chart: Chart, force: bool) -> NoteChange:
+    """Take the markers of a chart out, and count those that stay because somebody has pinned them."""
+    left = 0 if force else pinned(song.data, chart)
+    return NoteChange(strip_measures(song.data, chart, force), Counter(pinned=left))
+
+
+def write_measures(
+    data: bytes, chart: Chart, rows: StepRows, letters: Sequence[str], force: bool = False
+) -> tuple[list[Splice], list[MeasureState]]:
+    """Replacements that bring the markers of a chart up to date, and how they were before.
+
+    Parameters
+    ----------
+    data : the bytes of the chart's file
+    rows, letters : its rows with steps, and the letters of each
+    force : overwrite pinned measures too
+    """
+    wanted = _by_measure(chart, rows, letters)
+    splices, states = [], []
+    for line in measure_lines(data, chart):
+        comment = data[line.start : line.end]
+        tokens = wanted.pop(line.measure, None)
+        if not comment and tokens is None:
+            continue
+        state = _state(comment, tokens, force)
+        if state is not None:
+            states.append(MeasureState(line.measure, int(chart.measures.line[line.measure]), state))
+        if state in (State.PINNED, None):
+            continue
+        new = _with(comment, marker(tokens), force) if tokens else _without(comment, force)
+        if new != comment:
+            splices.append(Splice(line.start, line.end, new))
+    states += (MeasureState(m, int(chart.measures.line[m]), State.IMPOSSIBLE) for m in wanted)
+    return splices, states
+
+
+def strip_measures(data: bytes, chart: Chart, force: bool = False) -> list[Splice]:
+    """Replacements that take the markers of a chart out; pinned ones only with `force`."""
+    splices = []
+    for line in measure_lines(data, chart):
+        comment = data[line.start : line.end]
+        new = _without(comment, force)
+        if new != comment:
+            splices.append(Splice(line.start, line.end, new))
+    return splices
+
+
+def pinned(data: bytes, chart: Chart) -> int:
+    """How many measures of a chart somebody has pinned."""
+    comments = (data[line.start : line.end] for line in measure_lines(data, chart))
+    return sum(any(match["pin"] for match in markers_in(comment)) for comment in comments)
+
+
+def _by_measure(chart: Chart, rows: StepRows, letters: Sequence[str]) -> dict[int, list[str]]:
+    wanted: dict[int, list[str]] = {}
+    for measure, text in zip(chart.rows.measure[rows.row].tolist(), letters, strict=True):
+        wanted.setdefault(measure, []).append(text)
+    return wanted
+
+
+def _state(comment: bytes, tokens: list[str] | None, force: bool) -> State | None:
+    """None: no marker, and none is needed."""
+    found = markers_in(comment)
+    if not found:
+        return State.MISSING if tokens else None
+    if not force and any(m["pin"] for m in found):
+        return State.PINNED
+    if tokens and len(found) == 1 and found[0][0] == marker(tokens):
+        return State.CURRENT
+    try:
+        shape = [len(token.letters) for token in parse(found[0]["text"])]
+    except NotationError:
+        return State.STALE
+    return State.DIFFERENT if tokens and shape == [len(text) for text in tokens] else State.STALE
+
+
+def _with(comment: bytes, text: bytes, force: bool) -> bytes:
+    """The comment with its first marker replaced and no other; a marker added where there is none."""
+    found = markers_in(comment)
+    if not found:
+        return comment + b" " + text if comment else b"//" + text
+    first = found[0]
+    rest = comment[first.end() :]
+    if len(found) > 1:
+        rest = _without(b"//" + rest, force)[2:]
+    return comment[: first.start()] + text + rest
+
+
+def _without(comment: bytes, force: bool) -> bytes:
+    """The comment without markers; nothing of it is left if a marker was all there was."""
+    while ours := [match for match in markers_in(comment) if force or not match["pin"]]:
+        comment = _cut(comment, *ours[-1].span())  # what is left may make a marker of two halves, hence the loop
+    return comment
+
+
+def _cut(comment: bytes, start: int, end: int) -> bytes:
+    """Take one marker and the one blank that joined it to other text out of a comment."""
+    before, after = comment[:start], comment[end:]
+    if before == b"//" and not after.strip(b" \t"):
+        return after
+    if before.endswith(b" "):
+        return before[:-1] + after
+    return before + after.removeprefix(b" ")

@@ -1,0 +1,118 @@
+"""What would change in a chart file before anything is written: charts are solved, note data gets its markers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dancetutor_cli.chart.edits import unchanged
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.chart.note_data import parts, written_parts
+from dancetutor_cli.chart.reader import parse
+from dancetutor_cli.feet.annotations import step_rows
+from dancetutor_cli.feet.preset import Preset, mismatch
+from dancetutor_cli.feet.solver.solve import solve_chart
+from dancetutor_cli.feet.song_feet import overrides_for
+from dancetutor_cli.markers import edit
+from dancetutor_cli.markers.model import ChartFeet, Lack, NoteChange, row_letters
+from dancetutor_cli.markers.styles import note_styles
+
+
+@dataclass(slots=True)
+class SongFeet:
+    """The feet of a song. problems : contradictions in what people said about them; notes : for people, too."""
+
+    charts: list[ChartFeet] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    problems: list[Lack] = field(default_factory=list)
+
+
+def solve_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart], Preset]) -> SongFeet:
+    """The feet of each chart that has a pad."""
+    found = SongFeet()
+    padless = set()
+    for chart in charts:
+        feet = []
+        for part in parts(chart):
+            overrides, _, wrong = overrides_for(song, part)
+            found.problems += (Lack(problem.message, problem.line, problem.column) for problem in wrong)
+            play = solve_chart(part, preset_of(part), overrides)
+            if play is None:
+                padless.add(part.steps_type)
+                continue
+            rows = step_rows(song.data, part)
+            feet.append(ChartFeet(part, rows, tuple(row_letters(part, rows, play)), play))
+        separate = written_parts(chart) != (chart,) or not chart.players
+        found.charts += feet if separate else [_in_shared_rows(song, chart, feet)]
+    padless = {name for name in padless if not name.startswith("lights")}
+    if padless:
+        found.notes.append(
+            f"{song.path}: there is no pad for {', '.join(sorted(padless))}, so these charts get no feet"
+        )
+    for chart in (one.chart for one in found.charts):
+        if unfit := mismatch(preset_of(chart), chart.steps_type):
+            found.notes.append(f"{song.path}: {chart.label}: {unfit}")
+    return found
+
+
+def _in_shared_rows(song: Song, chart: Chart, feet: Sequence[ChartFeet]) -> ChartFeet:
+    """The feet of two players whose notes stand in the same rows: letters from left to right.
+
+    The play is the first player's.
+    """
+    found = step_rows(song.data, chart)
+    of_row: dict[int, list[tuple[int, str]]] = {}
+    for one in feet:
+        for row, steps, text in zip(one.rows.row.tolist(), one.rows.steps, one.letters, strict=True):
+            columns = np.flatnonzero(steps) + one.chart.first_column
+            of_row.setdefault(row, []).extend(zip(columns.tolist(), text, strict=True))
+    letters = ("".join(letter for _, letter in sorted(of_row[row])) for row in found.row.tolist())
+    return ChartFeet(chart, found, tuple(letters), feet[0].play)
+
+
+def mark(song: Song, feet: Sequence[ChartFeet], names: Sequence[str], force: bool) -> NoteChange:
+    """The styles that live in note data, written. names : of styles; others are not meant."""
+    change = NoteChange([])
+    for one in feet:
+        for style in note_styles(names):
+            change.add(style.write(song, one, force))
+    if any(warning.code == "cr-only" for warning in song.warnings):
+        change.notes.append(f"{song.path}: lines end at CR alone; a comment would hide the rest, so none is written")
+    return change
+
+
+def unmark(song: Song, charts: Sequence[Chart], names: Sequence[str], force: bool) -> NoteChange:
+    """The styles that live in note data, taken out. names : of styles; others are not meant."""
+    change = NoteChange([])
+    for chart in charts:
+        before = len(change.splices)
+        for part in written_parts(chart):
+            for style in note_styles(names):
+                change.add(style.strip(song, part, force))
+        if found := len(change.splices) - before:
+            change.lacks.append(Lack(f"{chart.label}: {found} markers to remove", chart.line))
+    return change
+
+
+def add_charts(song: Song, before: Song, data: bytes, feet: Sequence[ChartFeet]) -> tuple[bytes, list[Lack]]:
+    """The lane-split charts added to the file, and what `--check` says about them.
+
+    song : without them; before : the song as it was read, perhaps with older ones; data : of `song`, with its markers
+    """
+    added = edit.added_charts(song, feet)
+    singles = [one.chart for one in feet if one.chart.steps_type == edit.SOURCE]
+    made = [chart for chart in parse(data + added, song.path).charts if edit.is_ours(chart)][-len(singles) :]
+    for chart, source in zip(made, singles, strict=True):
+        if len(chart.notes) != len(source.notes) or chart.timing != source.timing:
+            raise edit.EditError(song.path, f"{source.label}: cannot be added as a chart for two pads; nothing written")
+    if before.data.endswith(added) and len(before.data) - len(song.data) == len(added):
+        return data + added, []
+    return data + added, [Lack(f"{c.label}: its chart for two pads is missing or stale", c.line) for c in singles]
+
+
+def check(song: Song, data: bytes) -> None:
+    """Raise `chart.edits.HarmError` if the new bytes do not read like the song they were made from."""
+    if data != song.data:
+        unchanged(song, data, edit.is_ours)

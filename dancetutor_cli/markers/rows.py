@@ -1,0 +1,55 @@
+"""The style `rows`: letters behind every row with a step, `1000//dtL`; the most readable, but not for Etterna."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Sequence
+
+from dancetutor_cli.chart.edits import Splice
+from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.feet.annotations import StepRows
+from dancetutor_cli.markers.model import ChartFeet, Lack, NoteChange
+
+WARNING = "Etterna joins rows that carry a comment with the next one; the style 'rows' is for other games and editors"
+# Ours, directly behind the row; blanks that were there before, or the mark of an added chart, may follow.
+_OURS = re.compile(rb"//dt[LRlr<>.]+(?=[ \t]*(?:\r?\n|\Z)|//\{dt1 edit\})")
+_FREE = re.compile(rb"(?=[ \t]*(?:\r?\n|\Z))")
+
+
+def write(song: Song, feet: ChartFeet, force: bool) -> NoteChange:
+    """Put the letters behind the rows of a chart; nothing is pinned here, whatever `force` says."""
+    splices, lacking = write_rows(song.data, feet.chart, feet.rows, feet.letters)
+    lacks = [Lack(f"{feet.chart.label}: {lacking} rows have no letters", feet.chart.line)] if lacking else []
+    return NoteChange(splices, Counter(rows=len(feet.rows)), lacks)
+
+
+def strip(song: Song, chart: Chart, force: bool) -> NoteChange:
+    """Take the letters of a chart out."""
+    return NoteChange(strip_rows(song.data, chart))
+
+
+def write_rows(data: bytes, chart: Chart, rows: StepRows, letters: Sequence[str]) -> tuple[list[Splice], int]:
+    """Replacements that put the letters behind the rows of a chart, and how many rows lack theirs now."""
+    wanted = dict(zip(rows.row.tolist(), letters, strict=True))
+    splices = []
+    for row, end in enumerate(chart.rows.end.tolist()):
+        ours = _OURS.match(data, end) if data[end : end + 4] == b"//dt" else None
+        text = wanted.get(row)
+        if ours is None and (text is None or not _FREE.match(data, end) or _own_line_end(data, chart, row)):
+            continue
+        new = b"" if text is None else b"//dt" + text.encode("ascii")
+        if ours is None or ours[0] != new:
+            splices.append(Splice(end, ours.end() if ours else end, new))
+    return splices, len(splices)
+
+
+def strip_rows(data: bytes, chart: Chart) -> list[Splice]:
+    """Replacements that take the letters of a chart out."""
+    ends = (end for end in chart.rows.end.tolist() if data[end : end + 4] == b"//dt")
+    return [Splice(*match.span(), b"") for end in ends if (match := _OURS.match(data, end))]
+
+
+def _own_line_end(data: bytes, chart: Chart, row: int) -> bool:
+    """Whether the row has a CR inside, which some readers take for the end of a line."""
+    return b"\r" in data[chart.rows.start[row] : chart.rows.end[row]]
