@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.dance.rig.body import joint_matrices
 from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.film.choices import QUALITIES, Quality, RendererKind

@@ -16,7 +16,7 @@ import numpy as np
 from PIL import Image
 from pose_sheet import ROOT, Cell, cells, posed
 
-from dancetutor_cli.character.gltf import load_character
+from dancetutor_cli.character.characters import load_character
 from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.film.scene import renderer
 from dancetutor_cli.film.scene.camera import Camera

@@ -133,7 +133,7 @@ def _editor(path: Path) -> object:
 
 
 def _character(path: Path) -> object:
-    from dancetutor_cli.character import load_character
+    from dancetutor_cli.character.characters import load_character
 
     return load_character(str(path))
 

@@ -21,7 +21,7 @@ import numpy as np
 from earlier import baked_by
 from PIL import Image, ImageDraw
 
-from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.motion import Cut, Motion, sample
 from dancetutor_cli.dance.performance import perform, solve

@@ -201,7 +201,7 @@ _TRUNK = ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4", "skullbase")
 def body_of(skeleton: Skeleton) -> Skeleton:
     """The dancer's joints, resting where those of a fitted character rest; what it lacks lies in proportion.
 
-    skeleton : of a character of `character.load_character`; the project's own dancers come back as they are
+    skeleton : of a character of `character.characters.load_character`; the project's own dancers come back as they are
     """
     ours = dancer_skeleton()
     if skeleton.names == ours.names and np.allclose(skeleton.offsets, ours.offsets, atol=1e-9):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,18 +114,15 @@ def with_foot_colours(character: Character) -> Character:
 def _part(mesh: Mesh, triangles: NDArray[np.bool_], name: str, material: Material) -> Mesh:
     """Some triangles of a mesh, with only the vertices that they use."""
     kept, place = np.unique(mesh.triangles[triangles], return_inverse=True)
-    return replace(
-        mesh,
-        name=f"{mesh.name} {name}".strip(),
-        positions=mesh.positions[kept],
-        normals=mesh.normals[kept],
-        uv=mesh.uv[kept],
-        triangles=place.reshape(-1, 3).astype(np.int32),
-        joints=mesh.joints[kept],
-        weights=mesh.weights[kept],
-        material=material,
-        colors=None if mesh.colors is None else mesh.colors[kept],
-    )
+    part = take(mesh, kept, place.reshape(-1, 3))
+    return replace(part, name=f"{mesh.name} {name}".strip(), material=material)
+
+
+def take(mesh: Mesh, vertices: NDArray[np.integer[Any]], triangles: NDArray[np.int64]) -> Mesh:
+    """The mesh made of some of its vertices, in a new order and perhaps more than once."""
+    columns = {f: getattr(mesh, f)[vertices] for f in ("positions", "normals", "uv", "joints", "weights")}
+    colors = None if mesh.colors is None else mesh.colors[vertices]
+    return replace(mesh, **columns, triangles=triangles.astype(np.int32), colors=colors)
 
 
 # Two who dance: a character with a second one beside it, the same but for the colour of the clothes.

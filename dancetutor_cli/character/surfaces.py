@@ -1,273 +1,19 @@
-"""Materials and surfaces that both renderers can draw: cut-outs cut, open ones closed from behind."""
+"""Meshes both renderers can draw as they are: cut-outs cut, open surfaces closed from behind, vertex colours painted.
+
+The renderers draw closed, opaque, textured triangles and nothing else; that keeps a frame cheap. What a user's
+materials ask beyond that becomes geometry here, once, when the character is loaded.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.container import Container, as_dict
-from dancetutor_cli.character.mesh import Character, Material, Mesh
-
-# A glTF file's materials, as far as both renderers can draw them: base colour, its texture, cut-outs, two sides.
-
-MAX_SIDE = 2048  # texels; at 1080p a dancer is half as high
-ALL_TEXELS = 16 * 1024 * 1024  # of a character's textures; larger ones are halved until they fit
-PLAIN = Material("plain", (0.8, 0.8, 0.8, 1.0))
-Attribute = Callable[[str, int], NDArray[Any] | None]  # name, width -> values (v, width), None where there are none
-
-
-class Materials:
-    """The materials of one file; each image is decoded once, and only if a mesh wears it."""
-
-    def __init__(self, container: Container) -> None:
-        self.container = container
-        self.images: dict[int, NDArray[np.uint8]] = {}
-        self._side = 0
-
-    def read(self, primitive: dict[str, Any], attribute: Attribute, count: int) -> tuple[Material, NDArray[np.float32]]:
-        """The material of a primitive of `count` vertices and their places (v, 2) in its texture."""
-        uv = np.zeros((count, 2), dtype=np.float32)
-        if "material" not in primitive:
-            return PLAIN, uv
-        item = self.container.item("materials", primitive["material"])
-        factor, info = self._base(item)
-        cutoff = self._cutoff(item)
-        factor[:3] = srgb_from_linear(np.clip(factor[:3], 0, 1))
-        r, g, b, a = (round(float(x), 6) for x in np.clip(factor, 0, 1))
-        texture, image = None, self._image_of(info)
-        if image is not None:
-            transform = as_dict(as_dict(info.get("extensions")).get("KHR_texture_transform"))
-            places = attribute(f"TEXCOORD_{transform.get('texCoord', info.get('texCoord', 0))}", 2)
-            texture = self._pixels(image)
-            if places is not None:
-                uv = self._transformed(places, transform)
-        name = str(item.get("name", "material"))[:200]
-        two = item.get("doubleSided") is True
-        return Material(name, (r, g, b, 1.0 if cutoff is None else a), texture, cutoff, two), uv
-
-    def _base(self, item: dict[str, Any]) -> tuple[NDArray[np.float64], dict[str, Any]]:
-        """Linear base colour and texture info, of the metallic or the older specular workflow."""
-        pbr = as_dict(item.get("pbrMetallicRoughness"))
-        names = ("baseColorFactor", "baseColorTexture")
-        older = as_dict(item.get("extensions")).get("KHR_materials_pbrSpecularGlossiness")
-        if isinstance(older, dict) and not set(names) & set(pbr):
-            pbr, names = older, ("diffuseFactor", "diffuseTexture")
-        factor = self.container.numbers(pbr.get(names[0], [1, 1, 1, 1]), 4, "a material's colour")
-        return factor, as_dict(pbr.get(names[1]))
-
-    def _cutoff(self, item: dict[str, Any]) -> float | None:
-        """Least alpha that is drawn; None where alpha means nothing. What blends is cut out at one half."""
-        mode = item.get("alphaMode", "OPAQUE")
-        if mode == "MASK":
-            return float(self.container.numbers([item.get("alphaCutoff", 0.5)], 1, "an alphaCutoff")[0])
-        return 0.5 if mode == "BLEND" else None
-
-    def _image_of(self, info: dict[str, Any]) -> int | None:
-        """Index of the image of a texture info; None without one."""
-        if "index" not in info:
-            return None
-        item = self.container.item("textures", info["index"])
-        extensions = as_dict(item.get("extensions"))
-        source = item.get("source", as_dict(extensions.get("EXT_texture_webp")).get("source"))
-        if source is None:
-            if "KHR_texture_basisu" in extensions:
-                raise self.container.fail("has KTX2 textures, not supported here; export it with PNG or JPEG")
-            return None
-        return self.container.integer(source, 0, len(self.container.items("images")) - 1, "image of a texture")
-
-    def _pixels(self, image: int) -> NDArray[np.uint8]:
-        if image not in self.images:
-            self._side = self._side or self._longest_side()
-            self.images[image] = self.container.image(image, self._side)
-        return self.images[image]
-
-    def _longest_side(self) -> int:
-        """To what side textures are reduced, so that all base colours together stay below `ALL_TEXELS`."""
-        worn = {self._image_of(self._base(item)[1]) for item in self.container.items("materials")}
-        sizes = [self.container.image_size(index) for index in sorted(worn - {None}, key=str)]
-        side = MAX_SIDE
-        while side > 64 and sum(min(w, side) * min(h, side) for w, h in sizes) > ALL_TEXELS:
-            side //= 2
-        return side
-
-    def _transformed(self, uv: NDArray[Any], transform: dict[str, Any]) -> NDArray[np.float32]:
-        """Apply KHR_texture_transform: scale, rotation, offset."""
-        scale = self.container.numbers(transform.get("scale", [1, 1]), 2, "a texture's scale")
-        offset = self.container.numbers(transform.get("offset", [0, 0]), 2, "a texture's offset")
-        a = float(self.container.numbers([transform.get("rotation", 0)], 1, "a texture's rotation")[0])
-        turn = np.array([[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]])
-        return np.asarray((uv * scale) @ turn.T + offset, dtype=np.float32)
-
-
-def srgb_from_linear(x: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Linear light 0..1 to sRGB 0..1 (IEC 61966-2-1)."""
-    return np.asarray(np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.maximum(x, 1e-9) ** (1 / 2.4) - 0.055))
-
-
-def linear_from_srgb(x: NDArray[np.float64]) -> NDArray[np.float64]:
-    """sRGB 0..1 to linear light 0..1 (IEC 61966-2-1)."""
-    return np.asarray(np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4))
-
-
-# Transparent parts of a texture cut out of its mesh: hair cards, lashes, lace, leaves.
-#
-# A triangle whose texture is solid all over stays, one that is transparent all over goes, others are split in four
-# until they are small. Alpha that blends counts as solid from one half on.
-
-_SMALL = 0.003  # metres: about a pixel of her at 720p; shorter triangles are not split
-_LEVELS = 7  # at most this many times
-
-
-def cut_out(
-    mesh: Mesh, places: NDArray[np.float64], spare: int, bled: dict[int, NDArray[np.uint8]]
-) -> tuple[Mesh, NDArray[np.float64]]:
-    """The solid part of a mesh, and where its vertices are at rest.
-
-    places : of its vertices at rest, metres (v, 3); spare : how many triangles splitting may add
-    bled : textures made so far, by the id of the one they are made of, so that meshes that share one go on sharing
-    """
-    material = mesh.material
-    if material.cutoff is None:
-        return mesh, places
-    alpha = material.base_color[3]
-    if material.texture is None:
-        keep = mesh.triangles if alpha >= material.cutoff else mesh.triangles[:0]
-        return replace(mesh, triangles=keep), places
-    solid = material.texture[..., 3] * (alpha / 255.0) >= material.cutoff
-    if solid.all():
-        return mesh, places
-    if id(material.texture) not in bled:
-        bled[id(material.texture)] = _bled(material.texture, solid)
-    cutter = _Cutter(mesh, places, solid)
-    used, triangles = np.unique(cutter.solid_triangles(mesh.triangles.astype(np.int64), spare), return_inverse=True)
-    columns = cutter.columns[used]
-    normals = columns[:, 3:6] / np.maximum(np.linalg.norm(columns[:, 3:6], axis=1, keepdims=True), 1e-9)
-    out = Mesh(
-        mesh.name,
-        columns[:, :3].astype(np.float32),
-        normals.astype(np.float32),
-        columns[:, 6:8].astype(np.float32),
-        triangles.reshape(-1, 3).astype(np.int32),
-        cutter.joints[used],
-        cutter.weights[used],
-        replace(material, texture=bled[id(material.texture)]),
-    )
-    return out, columns[:, 8:]
-
-
-class _Cutter:
-    """Splits triangles; its vertices grow. columns (v, 11): place in the mesh, normal, uv, place at rest."""
-
-    def __init__(self, mesh: Mesh, places: NDArray[np.float64], solid: NDArray[np.bool_]) -> None:
-        self.columns = np.hstack([mesh.positions, mesh.normals, mesh.uv, places]).astype(np.float64)
-        self.joints, self.weights = mesh.joints, mesh.weights
-        self.solid = solid
-        twice = np.pad(np.tile(solid, (2, 2)), ((1, 0), (1, 0)))  # a triangle may lie over the texture's border
-        self.sums = twice.cumsum(axis=0, dtype=np.int32).cumsum(axis=1, dtype=np.int32)
-
-    def solid_triangles(self, triangles: NDArray[np.int64], spare: int) -> NDArray[np.int64]:
-        """What is left of the triangles (t, 3)."""
-        kept = []
-        for level in range(_LEVELS + 1):
-            share = self._share(triangles)
-            kept.append(triangles[share == 1])
-            triangles = triangles[(share > 0) & (share < 1)]
-            corners = self.columns[triangles, 8:]
-            longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0)
-            done = longest < _SMALL
-            spare -= 3 * int((~done).sum())
-            if level == _LEVELS or spare < 0:
-                done[:] = True
-            kept.append(triangles[done][self._solid_in_the_middle(triangles[done])])
-            triangles = triangles[~done]
-            if not len(triangles):
-                break
-            triangles = self._split(triangles)
-        return np.concatenate(kept)
-
-    def _share(self, triangles: NDArray[np.int64]) -> NDArray[np.float64]:
-        """How much of the texels in a triangle's box is solid, (t,); a box larger than the texture counts as mixed."""
-        height, width = self.solid.shape
-        uv = self.columns[triangles, 6:8]
-        low = uv.min(axis=1)
-        high = uv.max(axis=1) - np.floor(low)
-        low -= np.floor(low)
-        x0, y0 = (np.floor(low[:, k] * n).astype(np.int64) for k, n in ((0, width), (1, height)))
-        wide = (np.ceil(high * [width, height]) > [2 * width, 2 * height]).any(axis=1)
-        x1 = np.clip(np.ceil(high[:, 0] * width), x0 + 1, 2 * width).astype(np.int64)
-        y1 = np.clip(np.ceil(high[:, 1] * height), y0 + 1, 2 * height).astype(np.int64)
-        total = self.sums[y1, x1] - self.sums[y0, x1] - self.sums[y1, x0] + self.sums[y0, x0]
-        share = total / ((x1 - x0) * (y1 - y0))
-        return np.where(wide & (share > 0), 0.5, share)
-
-    def _solid_in_the_middle(self, triangles: NDArray[np.int64]) -> NDArray[np.bool_]:
-        height, width = self.solid.shape
-        middle = self.columns[triangles, 6:8].mean(axis=1)
-        middle -= np.floor(middle)
-        x, y = (middle * [width, height]).astype(np.int64).T
-        return np.asarray(self.solid[np.minimum(y, height - 1), np.minimum(x, width - 1)])
-
-    def _split(self, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Each triangle as four, with new vertices in the middle of its edges."""
-        count = len(self.columns)
-        edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-        keys, number = np.unique(edges[:, 0] * count + edges[:, 1], return_inverse=True)
-        pairs = np.stack([keys // count, keys % count], axis=1)
-        ab, bc, ca = (number.reshape(-1, 3) + count).T
-        a, b, c = triangles.T
-        self.columns = np.vstack([self.columns, self.columns[pairs].mean(axis=1)])
-        joints, weights = _mixed(self.joints[pairs], self.weights[pairs])
-        self.joints, self.weights = np.vstack([self.joints, joints]), np.vstack([self.weights, weights])
-        four = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
-        return np.concatenate([np.stack(corners, axis=1) for corners in four])
-
-
-def _mixed(joints: NDArray[np.uint16], weights: NDArray[np.float32]) -> tuple[NDArray[np.uint16], NDArray[np.float32]]:
-    """The mean of two vertices' weights (n, 2, 4), its four greatest: joints and weights (n, 4)."""
-    count = len(joints)
-    joints, weights = joints.reshape(count, 8), weights.reshape(count, 8).copy()
-    for k in range(4, 8):  # the same joint on both sides counts once, with both weights
-        for i in range(4):
-            same = joints[:, i] == joints[:, k]
-            weights[same, i] += weights[same, k]
-            weights[same, k] = 0
-    order = np.argsort(-weights, axis=1, kind="stable")[:, :4]
-    top = np.take_along_axis(weights, order, axis=1)
-    return np.take_along_axis(joints, order, axis=1), top / np.maximum(top.sum(axis=1, keepdims=True), 1e-9)
-
-
-def _bled(texture: NDArray[np.uint8], solid: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """The texture with the colour of solid texels run into the others, which else shine through at the rims."""
-    colour = texture[..., :3].astype(np.float32) * solid[..., None]
-    levels = [(colour, solid.astype(np.float32))]
-    while max(levels[-1][1].shape) > 1:
-        levels.append((_halved(levels[-1][0]), _halved(levels[-1][1])))
-    fill = levels[-1][0] / np.maximum(levels[-1][1][..., None], 1e-6)
-    for total, weight in reversed(levels[:-1]):
-        height, width = weight.shape
-        larger = fill.repeat(2, axis=0).repeat(2, axis=1)[:height, :width]
-        fill = np.where(weight[..., None] > 0, total / np.maximum(weight[..., None], 1e-6), larger)
-    out = np.full(texture.shape, 255, np.uint8)
-    out[..., :3] = np.rint(fill)
-    return out
-
-
-def _halved(image: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Sums of 2 by 2 texels; an odd last row or column stands alone."""
-    height, width = image.shape[:2]
-    rest = [(0, 0)] * (image.ndim - 2)
-    padded = np.pad(image, [(0, height % 2), (0, width % 2), *rest])
-    return np.asarray(padded[0::2, 0::2] + padded[1::2, 0::2] + padded[0::2, 1::2] + padded[1::2, 1::2])
-
-
-# Meshes both renderers can draw as they are: cut-outs cut, open surfaces closed from behind, vertex colours painted.
-#
-# The renderers draw closed, opaque, textured triangles and nothing else; that keeps a frame cheap. What a user's
-# materials ask beyond that becomes geometry here, once, when the character is loaded.
+from dancetutor_cli.character.cut_out import cut_out
+from dancetutor_cli.character.materials import linear_from_srgb, srgb_from_linear
+from dancetutor_cli.character.mesh import Character, Material, Mesh, take
 
 _BLOCK = 8  # texels a side that a colour fills: pure in three halvings of the texture
 _MOST_COLORS = 4096  # on a palette; more become 16 steps of red, green and blue
@@ -329,13 +75,6 @@ def _swatches(palette: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np
     return texture, ((np.stack([number % across, number // across], axis=1) + 0.5) / across).astype(np.float32)
 
 
-def take(mesh: Mesh, vertices: NDArray[np.int64], triangles: NDArray[np.int64]) -> Mesh:
-    """The mesh made of some of its vertices, in a new order and perhaps more than once."""
-    columns = {f: getattr(mesh, f)[vertices] for f in ("positions", "normals", "uv", "joints", "weights")}
-    colors = None if mesh.colors is None else mesh.colors[vertices]
-    return replace(mesh, **columns, triangles=triangles.astype(np.int32), colors=colors)
-
-
 def _two_sided(mesh: Mesh, places: NDArray[np.float64]) -> Mesh:
     """Open pieces of a two-sided mesh get a second layer that is seen from behind; closed ones have no behind."""
     two = mesh.material.double_sided
@@ -347,8 +86,7 @@ def _two_sided(mesh: Mesh, places: NDArray[np.float64]) -> Mesh:
     used, layer = np.unique(behind, return_inverse=True)
     both = np.concatenate([mesh.triangles, layer.reshape(-1, 3)[:, ::-1] + count])
     out = take(mesh, np.concatenate([np.arange(count), used]), both)
-    out.normals[count:] *= -1
-    return out
+    return replace(out, normals=np.concatenate([out.normals[:count], -out.normals[count:]]))
 
 
 def open_pieces(triangles: NDArray[np.int32], places: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -111,7 +111,7 @@ def command(file: Path, selection: Selection, dance: DanceOptions, options: Anim
     capture tools, or .json with only the steps of each foot. A chart for two players gives two files, NAME-p1 and
     NAME-p2; --player writes only one.
     """
-    from dancetutor_cli.character import DANCER, load_character, name_in_gait
+    from dancetutor_cli.character.characters import DANCER, load_character, name_in_gait
     from dancetutor_cli.character.mesh import partner_of
     from dancetutor_cli.dance.performance import perform, pooled, solve
     from dancetutor_cli.dance.request import check_request, choice_for, read_chart, with_style

@@ -190,7 +190,7 @@ def film_request(
     file: Path, selection: Selection, dance: DanceOptions, options: RenderOptions, film_format: FilmFormat
 ) -> FilmRequest:
     """The request that these options make."""
-    from dancetutor_cli.character import check_character
+    from dancetutor_cli.character.characters import check_character
     from dancetutor_cli.dance.request import with_style
     from dancetutor_cli.film.layout import FilmLook, load_layout
     from dancetutor_cli.film.media.encoder import even_size

@@ -58,6 +58,6 @@ def difficulties() -> Iterable[str]:
 
 def characters() -> Iterable[str]:
     """Who is built in."""
-    from dancetutor_cli.character import BUILT_IN
+    from dancetutor_cli.character.characters import BUILT_IN
 
     return BUILT_IN

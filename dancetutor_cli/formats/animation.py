@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.character.retarget import retarget
+from dancetutor_cli.character.onto_skeleton import onto
 from dancetutor_cli.dance.motion import Cut, padded_from, shifted
 from dancetutor_cli.dance.performance import Performance, Performer
 from dancetutor_cli.dance.pieces import PieceRunner, in_turn
@@ -81,7 +81,7 @@ class AnimatedDancer:
     @cached_property
     def motion(self) -> Motion:
         """The motion for the character's skeleton, beginning with those of the others."""
-        return shifted(padded_from(retarget(self.baked.motion, self.character), self.animation.begin), *self.place)
+        return shifted(padded_from(onto(self.baked.motion, self.character.skeleton), self.animation.begin), *self.place)
 
     @property
     def moves(self) -> tuple[Plan, Bar | None]:

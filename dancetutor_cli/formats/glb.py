@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.character.materials import linear_from_srgb
 from dancetutor_cli.character.mesh import Character, Mesh
-from dancetutor_cli.character.surfaces import linear_from_srgb
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton

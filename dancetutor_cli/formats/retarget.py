@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.character import load_character
+from dancetutor_cli.character.characters import load_character
 from dancetutor_cli.character.humanoid import humanoid_of
-from dancetutor_cli.character.retarget import onto, retarget
+from dancetutor_cli.character.onto_skeleton import onto
 from dancetutor_cli.dance.physics.blend import load_choice
 from dancetutor_cli.dance.physics.captured import on_body, upright
 from dancetutor_cli.dance.physics.hair import add_hair
@@ -153,12 +153,12 @@ class Retargeting:
     @cached_property
     def motion(self) -> Motion:
         """For the character's skeleton."""
-        return retarget(self.ragdoll_result.motion, self.character)
+        return onto(self.ragdoll_result.motion, self.character.skeleton)
 
     @cached_property
     def given(self) -> Motion:
         """The file's motion, before any physics, for the character's skeleton."""
-        return retarget(self.source_motion, self.character)
+        return onto(self.source_motion, self.character.skeleton)
 
     def point_paths(self) -> tuple[tuple[str, ...], Array, Array]:
         """Names of the p retargeting points, and their places (f, p, 3) at the keys of input and output, metres."""

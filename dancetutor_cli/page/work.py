@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dancetutor_cli.character import load_character, name_in_gait
+from dancetutor_cli.character.characters import load_character, name_in_gait
 from dancetutor_cli.character.mesh import with_foot_colours
 from dancetutor_cli.chart.music import find_music
 from dancetutor_cli.chart.reader import load
@@ -145,7 +145,7 @@ def look_up_page(request: PageRequest) -> PageSubject:
 
 def pack_page(page: PageSubject) -> Page:
     """The rest of it: bake and pack."""
-    from dancetutor_cli.character.retarget import retarget
+    from dancetutor_cli.character.onto_skeleton import onto
     from dancetutor_cli.page.content import pack_content
 
     request, solved = page.request, page.solved
@@ -154,7 +154,7 @@ def pack_page(page: PageSubject) -> Page:
     motions = [motion for some in (solved, beside) if some for motion in _motions(request, some)]
     motions += [] if page.second is None else [page.second]
     warnings = (*page.warnings, *warnings, *(note for motion in motions for note in motion.notes))
-    fitted = [retarget(motion, page.character) for motion in motions]
+    fitted = [onto(motion, page.character.skeleton) for motion in motions]
     doc, blob = pack_content(_content(page, beside, fitted, music))
     html = document(doc, blob, music[1] if music else None)
     return Page(html, page.title, page.label, warnings, blob, len(music[1]) if music else 0)

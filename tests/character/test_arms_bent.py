@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dancetutor_cli.character import load_character
+from dancetutor_cli.character.characters import load_character
 from dancetutor_cli.character.mesh import Character, Mesh
 from dancetutor_cli.dance.rig import quaternion as quat
 

@@ -13,7 +13,7 @@ from glb_edit import edited
 from PIL import Image
 
 from dancetutor_cli.__main__ import main
-from dancetutor_cli.character import load_character
+from dancetutor_cli.character.characters import load_character
 from dancetutor_cli.character.container import read_container, read_nodes
 from dancetutor_cli.character.gltf import read_character
 from dancetutor_cli.character.humanoid import find_humanoid

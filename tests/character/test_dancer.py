@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.character import load_character, load_dancer, name_in_gait
+from dancetutor_cli.character.characters import load_character, load_dancer, name_in_gait
 from dancetutor_cli.character.mesh import Character, Mesh
 from dancetutor_cli.dance.layers import finger_axis
 from dancetutor_cli.dance.rig import quaternion as quat

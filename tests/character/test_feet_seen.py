@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.character import load_character, load_dancer
+from dancetutor_cli.character.characters import load_character, load_dancer
 from dancetutor_cli.character.mesh import on_foot, rest_vertices, with_foot_colours
 from dancetutor_cli.feet.limbs import limb_colours
 from dancetutor_cli.feet.pads import load_pad

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from glb_edit import edited, joined, parts_of
 
-from dancetutor_cli.character import load_character
+from dancetutor_cli.character.characters import load_character
 from dancetutor_cli.character.gltf import read_character, unit_normals
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import PACKAGE

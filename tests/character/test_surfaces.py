@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 from glb_edit import edited, joined, parts_of
 
-from dancetutor_cli.character import load_character
+from dancetutor_cli.character.characters import load_character
 from dancetutor_cli.character.container import Container
 from dancetutor_cli.character.gltf import read_character
+from dancetutor_cli.character.materials import srgb_from_linear
 from dancetutor_cli.character.mesh import Character, Material, Mesh, rest_vertices
-from dancetutor_cli.character.surfaces import drawable, open_pieces, srgb_from_linear
+from dancetutor_cli.character.surfaces import drawable, open_pieces
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import PACKAGE
@@ -241,6 +242,6 @@ def test_strips_and_fans_are_triangles_that_face_one_way(tmp_path: Path, mode: i
 
 
 def test_many_large_textures_are_reduced_together(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("dancetutor_cli.character.surfaces.ALL_TEXELS", 128 * 128)
+    monkeypatch.setattr("dancetutor_cli.character.materials.ALL_TEXELS", 128 * 128)
     texture = read_character(SOURCE).meshes[0].material.texture
     assert texture is not None and max(texture.shape) <= 128

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from glb_edit import edited, joined, parts_of
 
-from dancetutor_cli.character import load_character
+from dancetutor_cli.character.characters import load_character
 from dancetutor_cli.character.container import read_container, read_nodes
 from dancetutor_cli.character.gltf import read_character
 from dancetutor_cli.character.humanoid import REQUIRED, find_humanoid, words_of
 from dancetutor_cli.character.mesh import Character
-from dancetutor_cli.character.retarget import retarget
+from dancetutor_cli.character.onto_skeleton import onto
 from dancetutor_cli.dance.motion import Contact, Motion
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import palm_points, world_transforms
@@ -275,7 +275,7 @@ def under_ball(skeleton: Skeleton, motion: Motion, side: str) -> np.ndarray:
 def test_feet_stand_where_the_dancers_do(shared_data: Path, name: str) -> None:
     motion = dance()
     character = load_character(str(shared_data / "characters" / name))
-    theirs = retarget(motion, character)
+    theirs = onto(motion, character.skeleton)
     assert theirs.skeleton is character.skeleton
     np.testing.assert_allclose(np.linalg.norm(theirs.rotations, axis=-1), 1, atol=1e-9)
     for side in "lr":
@@ -288,7 +288,7 @@ def test_feet_stand_where_the_dancers_do(shared_data: Path, name: str) -> None:
 def test_world_rotations_are_the_dancers(shared_data: Path, name: str) -> None:
     motion = dance()
     character = load_character(str(shared_data / "characters" / name))
-    theirs = retarget(motion, character)
+    theirs = onto(motion, character.skeleton)
     _, ours = world_transforms(motion.skeleton, motion.rotations, motion.root)
     _, turned = world_transforms(character.skeleton, theirs.rotations, theirs.root)
     for joint in ("HumanoidRoot", "vt4", "skullbase", "l_shoulder", "r_elbow", "l_talocrural", "r_radiocarpal"):
@@ -299,7 +299,7 @@ def test_world_rotations_are_the_dancers(shared_data: Path, name: str) -> None:
 @pytest.mark.parametrize("name", GOOD)
 def test_knees_bend_forwards_smoothly(shared_data: Path, name: str) -> None:
     character = load_character(str(shared_data / "characters" / name))
-    theirs = retarget(dance(), character)
+    theirs = onto(dance(), character.skeleton)
     places, _ = world_transforms(character.skeleton, theirs.rotations, theirs.root)
     index = character.skeleton.index
     for side in "lr":
@@ -315,7 +315,7 @@ def test_a_hand_reaches_the_panel_it_presses(shared_data: Path) -> None:
     contact = Contact(1.0, 1.2, 2, 0, 1, 0, 0, (0.0, 0.0))
     motion = Motion(motion.skeleton, 30.0, motion.times, motion.rotations, motion.root, (contact,))
     character = load_character(str(shared_data / "characters" / GOOD[1]))
-    theirs = retarget(motion, character)
+    theirs = onto(motion, character.skeleton)
     ours, turns = world_transforms(motion.skeleton, motion.rotations, motion.root)
     palm = palm_points(motion.skeleton)[0]
     wanted = ours[:, wrist] + quat.rotate(turns[:, wrist], palm.offset)
@@ -330,7 +330,7 @@ def test_a_hand_reaches_the_panel_it_presses(shared_data: Path) -> None:
 
 def test_our_own_skeletons_need_no_retargeting() -> None:
     motion = dance(3)
-    assert retarget(motion, load_character("mannequin")) is motion
+    assert onto(motion, load_character("mannequin").skeleton) is motion
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from bake_plays import RH, L, R, chart, pad, play, stream
 
-from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.motion import Motion, sample
 from dancetutor_cli.dance.quality.report import report

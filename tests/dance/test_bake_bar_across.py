@@ -14,7 +14,7 @@ from bake_mirror import mirrored_play
 from bake_plays import L, R, chart, pad, play, stream
 from dance_requests import baked
 
-from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.motion import Grip, Motion

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from bake_plays import MEDLEY, chart, pad, play, stream
 
-from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.dance import pieces
 from dancetutor_cli.dance.bake import bake, bake_plan, plan_of, planned
 from dancetutor_cli.dance.foot_path import foot_path, shoe_path

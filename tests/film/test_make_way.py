@@ -9,7 +9,7 @@ import pytest
 from film_plans import film_plan
 from numpy.typing import NDArray
 
-from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.character.mesh import rest_vertices
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig.body import joint_matrices

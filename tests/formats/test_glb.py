@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from glb_channels import channels_of
 
-from dancetutor_cli.character import load_character, load_dancer
+from dancetutor_cli.character.characters import load_character, load_dancer
 from dancetutor_cli.character.gltf import read_character
 from dancetutor_cli.character.mesh import Character, Material, Mesh
 from dancetutor_cli.dance.motion import Motion

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from glb_channels import channels_of
 
-from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.motion import Motion

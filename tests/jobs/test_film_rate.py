@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from dance_requests import baked, film_request
 
-from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.motion import sample
 from dancetutor_cli.dance.request import DanceRequest

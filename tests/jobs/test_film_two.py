@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from dance_requests import film_request
 
-from dancetutor_cli.character import load_character, load_dancer
+from dancetutor_cli.character.characters import load_character, load_dancer
 from dancetutor_cli.character.mesh import PREFIX, turned, with_partner
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.limbs import partner_colours

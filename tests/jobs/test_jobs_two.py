@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.character.mesh import partner_of
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.bake import bake

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.character.retarget import retarget
+from dancetutor_cli.character.onto_skeleton import onto
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.request import DanceRequest
@@ -52,8 +52,8 @@ def test_joints_are_drawn_where_they_were_baked(which: int, tmp_path: Path, monk
         path = tmp_path / "hands.sm"
         path.write_text(HANDS.format(notes="\n,\n".join(["1000\n0100\n0010\n0001\n1101\n0000\n1000\n0001"] * 8)))
     kept: list[Motion] = []
-    real = retarget
-    monkeypatch.setattr("dancetutor_cli.character.retarget.retarget", lambda *a: kept.append(real(*a)) or kept[-1])
+    real = onto
+    monkeypatch.setattr("dancetutor_cli.character.onto_skeleton.onto", lambda *a: kept.append(real(*a)) or kept[-1])
     page = work.make_page(work.PageRequest(DanceRequest(path, selection)))
     data = re.search(rb'id="data">([^<]*)<', page.html)
     assert data and kept

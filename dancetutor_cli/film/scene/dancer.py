@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.gltf import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.character.mesh import PREFIX, with_partner
 from dancetutor_cli.dance.motion import sample
 from dancetutor_cli.dance.rig.body import BALL_AHEAD, HALF_SHOE, joint_matrices

@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.gltf import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.character.mesh import Character, Mesh
 from dancetutor_cli.feet.limbs import LIMBS
 from dancetutor_cli.run.errors import UsageError

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.character import DANCER, load_character, name_in_gait
+from dancetutor_cli.character.characters import DANCER, load_character, name_in_gait
 from dancetutor_cli.character.mesh import with_foot_colours
-from dancetutor_cli.character.retarget import retarget
+from dancetutor_cli.character.onto_skeleton import onto
 from dancetutor_cli.chart.density import fastest_bpm
 from dancetutor_cli.dance.bake import mines_of
 from dancetutor_cli.dance.motion import Motion, shifted
@@ -300,7 +300,7 @@ def _fitted(
     def fitted(motion: Motion) -> Motion:
         if given and motion.skeleton.names == character.skeleton.names:
             return motion
-        return retarget(motion, character)
+        return onto(motion, character.skeleton)
 
     some = {rate: tuple(map(fitted, both)) for rate, both in motions.items()}
     return None if name == DANCER else character, some

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.character.gltf import BUILT_IN
+from dancetutor_cli.character.characters import BUILT_IN
 from dancetutor_cli.chart.music import find_music
 from dancetutor_cli.chart.names import TICKS_PER_MEASURE
 from dancetutor_cli.chart.pack_files import feet_fingerprint, find_settings_file
@@ -38,7 +38,7 @@ class FilmRequest:
     dance : which chart, and how it is danced; look : how it is shown
     section : "START:END" in seconds, beats or measures, or None for the whole song
     sync : seconds by which the music plays late against the notes
-    character : a name of `character.BUILT_IN`, or a .glb or .vrm file
+    character : a name of `character.characters.BUILT_IN`, or a .glb or .vrm file
     background : the film that a game plays behind the notes: as long as the music, and of the dancer alone
     motions : files of a baked motion that is drawn in place of the request's own dance, one for each dancer
     """

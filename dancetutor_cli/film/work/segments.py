@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.film.media.encoder import Encoding, encode_segment, join
 from dancetutor_cli.film.media.film_formats import PICTURES

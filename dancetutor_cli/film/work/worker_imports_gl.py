@@ -8,7 +8,7 @@ from __future__ import annotations
 import gc
 from contextlib import suppress
 
-from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.film import film as film
 from dancetutor_cli.film.media import yuv as yuv
 from dancetutor_cli.film.scene import dancer as dancer

@@ -149,7 +149,7 @@ def test_a_gif_is_at_least_640_pixels_wide() -> None:
 @pytest.mark.parametrize("camera", ["back", "front", "front-high"])
 @pytest.mark.parametrize("steps", ["dance-single", "dance-double", "pump-single"])
 def test_arrows_of_the_highway_point_as_those_of_the_pad_in_the_picture(camera: str, steps: str) -> None:
-    from dancetutor_cli.character import load_dancer
+    from dancetutor_cli.character.characters import load_dancer
 
     pad = load_pad(steps)
     assert pad is not None
@@ -251,7 +251,7 @@ def test_numbers_of_measures_can_be_read(name: str, columns: int, calls: tuple[C
 @pytest.mark.parametrize("steps", ["dance-double", "pump-double", "pump-halfdouble"])
 def test_practice_shows_the_whole_of_a_wide_pad(steps: str) -> None:
     """Wherever she is on it, and her no smaller for it."""
-    from dancetutor_cli.character import load_dancer
+    from dancetutor_cli.character.characters import load_dancer
 
     pad, layout = load_pad(steps), load_layout("practice")
     assert pad is not None and layout.dancer is not None

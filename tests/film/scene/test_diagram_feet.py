@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.character.gltf import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.motion import Cut, sample
 from dancetutor_cli.dance.performance import perform, solve

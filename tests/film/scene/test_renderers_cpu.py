@@ -13,7 +13,7 @@ import pytest
 import renderers_scene as rs
 from PIL import Image, ImageDraw
 
-from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.dance.context import panels_on_ground
 from dancetutor_cli.film.choices import QUALITIES
 from dancetutor_cli.film.scene import renderer

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import renderers_scene as rs
 
-from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.film.choices import QUALITIES
 from dancetutor_cli.film.scene import renderer
 from dancetutor_cli.film.scene.camera import with_pan_range

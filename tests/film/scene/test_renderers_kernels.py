@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import renderers_scene as rs
 
-from dancetutor_cli.character import load_character, name_in_gait
+from dancetutor_cli.character.characters import load_character, name_in_gait
 from dancetutor_cli.film.scene.cpu.floor import blur
 from dancetutor_cli.film.scene.cpu.raster import (
     BACK,

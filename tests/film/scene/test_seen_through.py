@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dancetutor_cli.character import load_dancer
+from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.character.mesh import PREFIX, with_partner
 from dancetutor_cli.dance.rig.body import joint_matrices
 from dancetutor_cli.feet.limbs import limb_colours

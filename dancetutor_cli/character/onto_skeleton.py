@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.character.mesh import Character
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import local_rotations, world_transforms
@@ -36,16 +35,11 @@ class _LimbGoal(NamedTuple):
     weight: Array
 
 
-def retarget(motion: Motion, character: Character) -> Motion:
-    """The motion for `character`'s skeleton; the same motion if it is the dancer's skeleton already.
+def onto(motion: Motion, own: Skeleton) -> Motion:
+    """The motion for a skeleton that rests as the dancer's does; the same motion if it is the dancer's already.
 
     Joints without a counterpart keep their rest rotation. Times and contacts stay.
     """
-    return onto(motion, character.skeleton)
-
-
-def onto(motion: Motion, own: Skeleton) -> Motion:
-    """The motion for a skeleton that rests as the dancer's does; as `retarget`."""
     if own.names == motion.skeleton.names and np.allclose(own.offsets, motion.skeleton.offsets, atol=1e-9):
         return motion
     positions, world = world_transforms(motion.skeleton, motion.rotations, motion.root)

@@ -1,0 +1,79 @@
+"""The characters that come with the program, and a user's own, each ready to be moved and drawn."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+from dancetutor_cli.character.fitting import fit_character
+from dancetutor_cli.character.gltf import read_character
+from dancetutor_cli.character.mesh import Character, Material, Mesh
+from dancetutor_cli.feet.limbs import LIMBS, limb_colours
+from dancetutor_cli.run.errors import UsageError, did_you_mean
+from dancetutor_cli.run.reading import PACKAGE
+
+DATA = PACKAGE / "character" / "data"
+DANCER = "dancer"  # who dances where nobody else is asked for
+IN_HEELS = "dancer-heels"  # the same dancer in heels.glb, whose shoes stand in for hers
+BUILT_IN = (DANCER, "mannequin", IN_HEELS)
+_SHOES = ("left shoe", "right shoe", "shoes")  # her meshes that other shoes stand in for
+SUFFIXES = (".glb", ".vrm")
+
+
+@cache
+def load_dancer() -> Character:
+    """The project's own dancer, on the joints of `dance.rig.skeleton.dancer_skeleton`, shoes in the configured colours.
+
+    Always the same one: her textures take a tenth of a second to read.
+    """
+    return _built_in(DANCER)
+
+
+def load_character(name_or_path: str) -> Character:
+    """The character called `name_or_path` ("dancer", "mannequin"), or the one in that .glb or .vrm file.
+
+    A user's character comes fitted to the rig: see `fitting.fit_character`.
+
+    Raises UsageError for an unknown name, FileError for a file that cannot be used; both are one line.
+    """
+    if name_or_path in BUILT_IN:
+        return _built_in(name_or_path)
+    path = Path(name_or_path)
+    if path.suffix.lower() not in SUFFIXES:
+        near, names = did_you_mean(name_or_path, BUILT_IN), ", ".join(BUILT_IN)
+        raise UsageError(f"there is no character {name_or_path!r}{near}; choose {names}, or a .glb or .vrm file")
+    return fit_character(path)
+
+
+def check_character(name_or_path: str) -> str:
+    """The name, or the file's absolute path, after making sure that `load_character` takes it.
+
+    Raises what `load_character` raises. It is for refusing a character before the slow work begins.
+    """
+    if name_or_path in BUILT_IN:
+        return name_or_path
+    load_character(name_or_path)
+    return str(Path(name_or_path).absolute())
+
+
+def name_in_gait(name: str, gait: str) -> str:
+    """The character to draw: the project's own dancer wears heels if the gait is `heels`."""
+    return IN_HEELS if name == DANCER and gait == "heels" else name
+
+
+def _built_in(name: str) -> Character:
+    character = read_character(DATA / f"{DANCER if name == IN_HEELS else name}.glb")
+    if name == IN_HEELS:
+        kept = (mesh for mesh in character.meshes if mesh.name not in _SHOES)
+        character = replace(character, name=name, meshes=(*kept, *read_character(DATA / "heels.glb").meshes))
+    return replace(character, meshes=tuple(_coloured(mesh) for mesh in character.meshes))
+
+
+def _coloured(mesh: Mesh) -> Mesh:
+    """A mesh whose material is named after a limb wears that limb's colour of configs/colours.yaml."""
+    name = mesh.material.name
+    if name not in LIMBS:
+        return mesh
+    r, g, b = (c / 255 for c in getattr(limb_colours(), name))
+    return replace(mesh, material=Material(name, (r, g, b, 1.0)))
