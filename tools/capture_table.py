@@ -21,6 +21,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 from spoil_bvh import FAULTS, joints_of, spoiled
 
+from dancetutor_cli.character.retargeting import Retargeting, RetargetTask
 from dancetutor_cli.dance.motion import Motion, sample
 from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, Wishes
 from dancetutor_cli.dance.quality.contact import stands
@@ -29,7 +30,7 @@ from dancetutor_cli.dance.quality.posture import shape_figures, smoothness_figur
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.formats.bvh import read_bvh, write_bvh
-from dancetutor_cli.formats.retarget import Retargeting, RetargetTask
+from dancetutor_cli.formats.captured import read_source
 from dancetutor_cli.run.errors import DancetutorError
 
 SECONDS = 6.0  # of a section
@@ -97,7 +98,7 @@ def _other_limbs(skeleton: Skeleton, joints: dict[str, int], draw: np.random.Gen
 def row(label: str, work: Retargeting) -> tuple[str, list[float]]:
     """A line of the table, and the output's figures."""
     sides = []
-    for motion in (work.source_motion, work.ragdoll_result.motion):
+    for motion in (work.input_on_body, work.ragdoll_result.motion):
         slides, body = [1000 * one.slide for one in stands(motion)] or [0.0], body_of(motion)
         shape, _ = shape_figures(body, motion.skeleton)
         smooth, _ = smoothness_figures(body, motion.skeleton)
@@ -140,7 +141,10 @@ def main() -> None:
                 continue
             try:
                 line, figures = row(
-                    label, Retargeting(RetargetTask(path, options.character, None, "neutral", Wishes(CORRECTIONS)))
+                    label,
+                    Retargeting(
+                        RetargetTask(path, options.character, "neutral", Wishes(CORRECTIONS)), read_source(path)
+                    ),
                 )
             except DancetutorError as error:
                 refused.append(f"{label}: {error}")

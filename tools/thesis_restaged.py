@@ -38,11 +38,12 @@ from thesis_figures import (
 )
 from thesis_pictures import picture
 
+from dancetutor_cli.character.retargeting import Retargeting, RetargetTask
 from dancetutor_cli.dance.motion import Motion, sample
 from dancetutor_cli.dance.physics.blend import Blend
 from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, Wishes, through_ragdoll
 from dancetutor_cli.dance.physics.style import PARTS, Spring, Style, load_style
-from dancetutor_cli.formats.retarget import Retargeting, RetargetTask
+from dancetutor_cli.formats.captured import read_source
 from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.files import write_atomic
 
@@ -259,7 +260,7 @@ def _soft_ankles() -> dict[str, Spring]:
 
 def clip(path: Path) -> Motion:
     """`SECONDS` of a capture on the dancer's body, forward and then backward; it begins, turns and ends slowly."""
-    motion = Retargeting(RetargetTask(path, "dancer", None, "neutral", Wishes())).source_motion
+    motion = Retargeting(RetargetTask(path, "dancer", "neutral", Wishes()), read_source(path)).input_on_body
     times = np.arange(round(2 * SECONDS * motion.fps) + 1) / motion.fps
     speed = np.clip((SECONDS - times) / TURN, -1.0, 1.0) * np.clip(
         np.minimum(times, 2 * SECONDS - times) / TURN, 0.0, 1.0

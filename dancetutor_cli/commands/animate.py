@@ -29,14 +29,14 @@ from dancetutor_cli.commands.shared_options import (
     selection_options,
     yes_option,
 )
-from dancetutor_cli.formats.writers import FORMATS
+from dancetutor_cli.formats.writers import FORMATS, MOVES, write_dancer
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import check_file, one_of
 
 if TYPE_CHECKING:
+    from dancetutor_cli.character.animation import AnimatedDancer
     from dancetutor_cli.dance.performance import Performance
     from dancetutor_cli.dance.request import ChartChoice
-    from dancetutor_cli.formats.animation import AnimatedDancer
 
 _FILE = GivenPath()
 AFTER = 2.5  # seconds after the last row that a section may still reach
@@ -65,7 +65,7 @@ class AnimateOptions:
     "--output",
     type=_FILE,
     metavar="FILE",
-    help=f"Write the output here: a {one_of(FORMATS)} file.  [default: SONG-difficulty.glb]",
+    help=f"Write the output here: a {one_of((*FORMATS, MOVES))} file.  [default: SONG-difficulty.glb]",
 )
 @click.option(
     "--fps",
@@ -111,17 +111,17 @@ def command(file: Path, selection: Selection, dance: DanceOptions, options: Anim
     capture tools, or .json with only the steps of each foot. A chart for two players gives two files, NAME-p1 and
     NAME-p2; --player writes only one.
     """
+    from dancetutor_cli.character.animation import AnimatedDancer, Animation
     from dancetutor_cli.character.characters import DANCER, load_character, name_in_gait
     from dancetutor_cli.character.mesh import partner_of
     from dancetutor_cli.dance.performance import perform, pooled, solve
     from dancetutor_cli.dance.request import check_request, choice_for, read_chart, with_style
-    from dancetutor_cli.formats.animation import AnimatedDancer, Animation
 
     if options.output is not None:
-        check_file(options.output, tuple(FORMATS))
+        check_file(options.output, (*FORMATS, MOVES))
     check_targets(options.report_to, options.plot)
     output, character = options.output, options.character
-    if output is not None and not FORMATS[output.suffix.lower()].has_motion:
+    if output is not None and output.suffix.lower() == MOVES:
         without = {"character": character != DANCER, "push": dance.push, "trip": dance.trip}
         if unused := [name for name, given in without.items() if given]:
             raise UsageError(f"{output}: has only the steps, which --{unused[0]} does not change; leave it out")
@@ -136,7 +136,7 @@ def command(file: Path, selection: Selection, dance: DanceOptions, options: Anim
     performance = perform(solve(request, choice), request, options.rate)
     warn(choice.warnings)
     target = output or default_name(choice.song, choice.parts[0], ".glb")
-    check_file(target, tuple(FORMATS))
+    check_file(target, (*FORMATS, MOVES))
     section = _section(choice, options.section, performance)
     _allow_long(performance, section, file, options.yes)
     places = _Places(target, options.report_to, options.plot)
@@ -188,10 +188,9 @@ def _allow_long(performance: Performance, section: tuple[float, float] | None, f
 
 
 def _write(dance: AnimatedDancer, places: _Places) -> None:
-    form = FORMATS[places.output.suffix.lower()]
     measured = places.report_to is not None or places.plot is not None
-    warn(dance.notes(form.has_motion or measured))
-    click.echo(f"{places.output}: {form.write(places.output, dance)}, {dance.label}")
+    warn(dance.notes(places.output.suffix.lower() != MOVES or measured))
+    click.echo(f"{places.output}: {write_dancer(places.output, dance)}, {dance.label}")
     if measured:
         from dancetutor_cli.dance.bake import mines_of
         from dancetutor_cli.dance.quality.report import report as report_of

@@ -12,13 +12,14 @@ from dancetutor_cli.commands.arguments import GivenPath, warn
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.motion_output import check_targets, write_report
 from dancetutor_cli.commands.shared_options import character_option, into, ragdoll_options, report_option
+from dancetutor_cli.formats.writers import FORMATS, keys
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.files import check_file, one_of, write_atomic
 
 if TYPE_CHECKING:
-    from dancetutor_cli.formats.retarget import Retargeting
+    from dancetutor_cli.character.retargeting import Retargeting
 
-SUFFIXES = (".glb", ".bvh", ".npz", ".mp4", ".html")
+SUFFIXES = (*FORMATS, ".mp4", ".html")
 _FILE = GivenPath()
 _CORRECTIONS = ("knees", "feet", "limits")  # as physics.pipeline has them; a test holds both together
 
@@ -78,8 +79,9 @@ def command(file: Path, options: RetargetOptions) -> None:
     The joints are found by their names; those of H-Anim, CMU, Mixamo, Unreal, Rigify and others are known. The limbs
     keep their directions, and the feet stand where the captured feet stood, in proportion to the character's legs.
     """
+    from dancetutor_cli.character.retargeting import Retargeting, RetargetTask
     from dancetutor_cli.dance.physics.pipeline import wishes_of
-    from dancetutor_cli.formats.retarget import Retargeting, RetargetTask
+    from dancetutor_cli.formats.captured import read_source
 
     check_file(options.output, SUFFIXES)
     if options.with_input and options.output.suffix.lower() != ".mp4":
@@ -88,8 +90,8 @@ def command(file: Path, options: RetargetOptions) -> None:
         )
     check_targets(options.report_to, options.plot)
     wishes = replace(wishes_of(options.push, options.trip), corrections=corrections_of(options.correct), own_legs=True)
-    task = RetargetTask(file, options.character, options.animation, options.style or "neutral", wishes)
-    work = Retargeting(task)
+    task = RetargetTask(file, options.character, options.style or "neutral", wishes)
+    work = Retargeting(task, read_source(file, options.animation))
     words = _written(work, options.output, options.with_input)
     warn(work.ragdoll_result.motion.notes)
     click.echo(f"{options.output}: {words}")
@@ -113,29 +115,19 @@ def _written(work: Retargeting, output: Path, with_input: bool) -> str:
     from dancetutor_cli.dance.physics.style import engine
 
     engine()
-    motion = work.motion
-    seconds = float(motion.times[-1] - motion.times[0])
+    motion = work.output_on_character
     suffix = output.suffix.lower()
     if suffix == ".mp4":
         from dancetutor_cli.film.work.motion_film import Comparison, film
 
-        compared = Comparison(work.given, *work.point_paths()) if with_input else None
+        seconds = float(motion.times[-1] - motion.times[0])
+        compared = Comparison(work.input_on_character, *work.point_paths()) if with_input else None
         return f"{film(output, work.character, motion, compared)} frames, {seconds:.1f} s"
-    if suffix == ".glb":
-        from dancetutor_cli.formats.glb import write_glb
-
-        write_glb(output, work.character, motion)
-    elif suffix == ".npz":
-        from dancetutor_cli.formats.npz import write_npz
-
-        write_npz(output, motion)
-    elif suffix == ".html":
+    if suffix == ".html":
         from dancetutor_cli.page.capture import CaptureContent, capture_page
 
         content = CaptureContent(work.title, work.character, motion, *work.point_paths(), *work.input_figure)
         write_atomic(output, capture_page(content))
     else:
-        from dancetutor_cli.formats.bvh import write_bvh
-
-        write_bvh(output, motion)
-    return f"{len(motion.times)} keys, {seconds:.1f} s"
+        FORMATS[suffix](output, work.character, motion)
+    return keys(motion)

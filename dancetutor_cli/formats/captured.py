@@ -12,6 +12,7 @@ from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.captured import CapturedMotion
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.formats.bvh import read_bvh
 from dancetutor_cli.formats.npz import read_npz
@@ -22,6 +23,18 @@ SUFFIXES = (".bvh", ".glb", ".vrm", ".npz")
 LEAST, MOST = 10.0, 240.0  # frames per second that a file without a rate of its own is sampled at
 LONGEST = 3600.0  # seconds of an animation
 _IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+def read_source(path: Path, animation: str | None = None) -> Motion | CapturedMotion:
+    """The motion in a file: one of the rig's joints (of `animate` or `retarget`) as it is, others as captured.
+
+    Takes and raises what `read_captured` does.
+    """
+    if path.suffix.lower() != ".npz":
+        return read_captured(path, animation)
+    motion = read_npz(path)
+    captured = captured_from_motion(path, motion)  # raises what is wrong with it
+    return motion if set(dancer_skeleton().names) <= set(motion.skeleton.names) else captured
 
 
 def read_captured(path: Path, animation: str | None = None) -> CapturedMotion:
@@ -39,11 +52,11 @@ def read_captured(path: Path, animation: str | None = None) -> CapturedMotion:
     if suffix not in SUFFIXES:
         raise FileError(path, f"the name of a motion must end in {one_of(SUFFIXES)}")
     if suffix in (".glb", ".vrm"):
-        return _of_container(read_container(path), animation)
-    return of_motion(path, read_bvh(path, ends=True) if suffix == ".bvh" else read_npz(path))
+        return _captured_from_container(read_container(path), animation)
+    return captured_from_motion(path, read_bvh(path, ends=True) if suffix == ".bvh" else read_npz(path))
 
 
-def of_motion(path: Path, motion: Motion) -> CapturedMotion:
+def captured_from_motion(path: Path, motion: Motion) -> CapturedMotion:
     """A motion as captured: its skeleton's rest pose has no turns."""
     skeleton = motion.skeleton
     for name, values in (("times", motion.times), ("rotations", motion.rotations), ("root", motion.root)):
@@ -67,13 +80,13 @@ def of_motion(path: Path, motion: Motion) -> CapturedMotion:
     )
 
 
-def _of_container(container: Container, wanted: str | None) -> CapturedMotion:
+def _captured_from_container(container: Container, wanted: str | None) -> CapturedMotion:
     nodes = read_nodes(container)
     channels = _channels(container, _find_animation(container, wanted))
     times = _times(container, channels)
-    local = _local(container, nodes, channels, times)
-    places, turns = _world(nodes, *local)
-    rest_places, rest_turns = _world(nodes, *_local(container, nodes, [], times[:1]))
+    local = _node_transforms(container, nodes, channels, times)
+    places, turns = _world_transforms(nodes, *local)
+    rest_places, rest_turns = _world_transforms(nodes, *_node_transforms(container, nodes, [], times[:1]))
     order = list(nodes.order)
     place = np.argsort(order)
     parents = np.array([-1 if nodes.parents[n] < 0 else place[nodes.parents[n]] for n in order], dtype=np.int32)
@@ -137,7 +150,7 @@ def _times(container: Container, channels: list[tuple[int, str, Array, Array]]) 
     return np.asarray(np.linspace(start, end, count))
 
 
-def _local(
+def _node_transforms(
     container: Container, nodes: Nodes, channels: list[tuple[int, str, Array, Array]], times: Array
 ) -> tuple[Array, Array, Array]:
     """Translations (f, n, 3), rotations (f, n, 4) and scales (f, n, 3) of all nodes at the times."""
@@ -170,7 +183,7 @@ def _quaternion(matrix: Array) -> Array:
     return quat.from_matrix(matrix)
 
 
-def _world(nodes: Nodes, moved: Array, turned: Array, scaled: Array) -> tuple[Array, Array]:
+def _world_transforms(nodes: Nodes, moved: Array, turned: Array, scaled: Array) -> tuple[Array, Array]:
     """World places (f, n, 3) and turns (f, n, 4); scales make bones longer, and turn nothing."""
     places, turns, scales = moved.copy(), turned.copy(), scaled.copy()
     for k in nodes.order:

@@ -1,10 +1,13 @@
-"""GLB out and in: a character with its skin, and the motion as an animation, with the keys that each joint needs."""
+"""GLB out: a character with its skin, and the motion as an animation that any glTF viewer plays.
+
+Source: glTF 2.0 specification, Khronos Group.
+"""
 
 from __future__ import annotations
 
 import json
 import struct
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -15,114 +18,9 @@ from dancetutor_cli.character.materials import linear_from_srgb
 from dancetutor_cli.character.mesh import Character, Mesh
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.dance.units import Array
-from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.formats.key_times import key_times_of, reaches
 from dancetutor_cli.run.files import write_atomic
 from dancetutor_cli.run.pictures import texture_bytes
-
-# Which keys of a motion each joint needs: a file need not repeat, for the sake of the feet, what hands and hair do.
-#
-# The keys that a bake adds between its frames hold soles on the ground and palms on panels and bar. The root and the
-# legs keep all of them; other joints only those without which a viewer, who turns joints at even speed between their
-# own keys, would draw something farther than a tolerance from where it is.
-
-Mask = NDArray[np.bool_]
-FREE = 0.002  # metres that a part of the body which touches nothing may be off between frames
-GRIPPING = 0.0003  # the same for a hand on the bar
-WAVING = 0.03  # and for hair, which is thrown about by what is so fast
-TOUCH = 0.06  # seconds around the touch of a palm in which its arm keeps all keys: contacts are measured there
-_ANKLES, _WRISTS, _HAIR = ("l_talocrural", "r_talocrural"), ("l_radiocarpal", "r_radiocarpal"), "braid"
-
-
-@dataclass(frozen=True, slots=True)
-class KeyTimes:
-    """Joints that share their keys. keep : (f,) which keys of the motion those are."""
-
-    joints: tuple[int, ...]
-    keep: Mask
-
-
-def clocks(motion: Motion) -> tuple[KeyTimes, ...]:
-    """Every joint of a motion in one clock; the first has the root and all that carries the feet, and all keys."""
-    every = np.ones(len(motion.times), dtype=bool)
-    frame = motion.times * motion.fps
-    regular = np.abs(frame - np.rint(frame)) < 1e-6
-    regular[[0, -1]] = True
-    feet, hands, hair, others = joint_groups(motion.skeleton)
-    held, gripped = _touches(motion)
-    free = np.full(len(every), FREE)
-    out = [KeyTimes(feet, every)]
-    for joints, least in ((hands, np.where(gripped, GRIPPING, free)), (hair, free + (WAVING - FREE)), (others, free)):
-        if joints:
-            wanted = _off(motion, joints, regular) > least
-            out.append(KeyTimes(joints, regular | wanted | (held if joints is hands else False)))
-    return tuple(out)
-
-
-def joint_groups(skeleton: Skeleton) -> tuple[tuple[int, ...], ...]:
-    """Joints that carry the feet, that carry the hands, of the hair, and all others."""
-    parents = skeleton.parents.tolist()
-
-    def line(ends: tuple[str, str]) -> set[int]:
-        tips = {skeleton.index(n) for n in ends if n in skeleton.names}
-        out = set(tips)
-        for j in reversed(range(len(parents))):  # parents come first
-            if j in out and parents[j] >= 0:
-                out.add(parents[j])
-        below = set(tips)  # toes and fingers
-        for j, parent in enumerate(parents):
-            if parent in below:
-                below.add(j)
-        return out | below
-
-    feet = line(_ANKLES) | {0}
-    hands = line(_WRISTS) - feet
-    hair = {j for j, name in enumerate(skeleton.names) if name.startswith(_HAIR)} - feet - hands
-    others = set(range(len(parents))) - feet - hands - hair
-    return tuple(tuple(sorted(g)) for g in (feet, hands, hair, others))
-
-
-def _touches(motion: Motion) -> tuple[Mask, Mask]:
-    """Keys (f,) near a palm's touch, and those at which a hand holds the bar."""
-    held, gripped = np.zeros((2, len(motion.times)), dtype=bool)
-    for contact in motion.contacts:
-        if contact.limb >= Limb.LEFT_HAND:
-            first, last = np.searchsorted(motion.times, (contact.start - TOUCH, contact.end + TOUCH))
-            held[first:last] = True
-    for grip in motion.grips:
-        first, last = np.searchsorted(motion.times, (grip.start, grip.end))
-        gripped[first : last + 1] = True
-    return held, gripped
-
-
-def _off(motion: Motion, joints: tuple[int, ...], regular: Mask) -> Array:
-    """How far (f,) joints would be drawn from where they are if only `regular` keys were there, metres."""
-    extra, frames = np.flatnonzero(~regular), np.flatnonzero(regular)
-    after = np.searchsorted(frames, extra)
-    before, following = frames[after - 1], frames[after]
-    share = ((motion.times[extra] - motion.times[before]) / (motion.times[following] - motion.times[before]))[:, None]
-    far = np.zeros(len(regular))
-    for j, reach in zip(joints, reaches(motion.skeleton)[list(joints)], strict=True):
-        q = quat.continuous(motion.rotations[:, j])
-        drawn = quat.normalize((1.0 - share) * q[before] + share * q[following])
-        far[extra] = np.maximum(far[extra], 2.0 * reach * np.linalg.norm(drawn - q[extra], axis=1))
-    return far
-
-
-def reaches(skeleton: Skeleton) -> Array:
-    """How far (j,) the vertices of each joint move at most, metres; a bone at the end is as long as the one before."""
-    length = np.linalg.norm(skeleton.offsets, axis=1)
-    out = length.copy()
-    for j in reversed(range(1, len(length))):
-        parent = skeleton.parents[j]
-        out[parent] = max(out[parent], length[j] + out[j])
-    return np.asarray(out)
-
-
-# GLB out and in: a character with its skin, and the motion as an animation any glTF viewer plays.
-#
-# Source: glTF 2.0 specification, Khronos Group.
 
 _BYTE, _SHORT, _USHORT, _UINT, _FLOAT = 5121, 5122, 5123, 5125, 5126
 _COMPONENTS = {"|u1": _BYTE, "<i2": _SHORT, "<u2": _USHORT, "<u4": _UINT, "<f4": _FLOAT}
@@ -136,10 +34,10 @@ def write_glb(path: Path, character: Character, motion: Motion | None = None) ->
     """Write a character, and the motion as its animation, atomically.
 
     The motion must be of the character's skeleton. Joints that never move have no channel, the others have the keys
-    that they need (`clocks`), as normalised 16-bit quaternions; legs are exact 32-bit ones, unless the steps
-    are so many that the file would get too large (then feet are off by 0.03 mm). glTF counts time from 0: the
-    animation's first key is at `motion.times[0]` or 0, whichever is later, and a negative start is kept in the
-    animation's extras as `start_second`.
+    that they need (`key_times`), as normalised 16-bit quaternions; legs are exact 32-bit ones, unless the steps are so
+    many that the file would get too large (then feet are off by 0.03 mm). glTF counts time from 0: the animation's
+    first key is at `motion.times[0]` or 0, whichever is later, and a negative start is kept in the animation's extras
+    as `start_second`.
 
     Raises FileError when the file cannot be written, ValueError when motion and character differ in joints.
     """
@@ -280,7 +178,7 @@ class _Writer:
         times = np.asarray(motion.times - start, dtype="<f4")
         apart = np.concatenate([[True], np.diff(times) > 0])  # two keys may fall together in 32 bits
         channels, before = _Channels(self), len(self.binary)
-        legs, *groups = clocks(motion)
+        legs, *groups = key_times_of(motion)
         for clock in groups:
             channels.turns(motion.rotations, clock.joints, times, apart & clock.keep, exact=False)
         keep = apart & legs.keep

@@ -1,75 +1,62 @@
-"""The formats of `animate`: from the suffix of a file to what writes it.
+"""From the suffix of a file to what writes a motion into it, for `animate` and `retarget`.
 
-A new format is a function here that imports its module, and a line in `FORMATS`; options and help follow.
+A new format is a function here that imports its module, and a line in `FORMATS`; the options of `animate` and their
+help follow.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from dancetutor_cli.character.animation import AnimatedDancer
+    from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.dance.motion import Motion
-    from dancetutor_cli.formats.animation import AnimatedDancer
+
+MOVES = ".json"  # no motion, only what feet and hands do: it does not matter who dances
 
 
-@dataclass(frozen=True, slots=True)
-class MotionFormat:
-    """write : writes the file, FileError if that fails; returns how much is in it, for people
-
-    has_motion : whether it holds a motion, so that it matters who dances
-    """
-
-    write: Callable[[Path, AnimatedDancer], str]
-    has_motion: bool = True
-
-
-def _glb(path: Path, dance: AnimatedDancer) -> str:
+def _glb(path: Path, character: Character, motion: Motion) -> str:
     from dancetutor_cli.formats.glb import write_glb
 
-    write_glb(path, dance.character, dance.motion)
-    return _keys(dance.motion)
+    write_glb(path, character, motion)
+    return keys(motion)
 
 
-def _npz(path: Path, dance: AnimatedDancer) -> str:
+def _npz(path: Path, character: Character, motion: Motion) -> str:
     from dancetutor_cli.formats.npz import write_npz
 
-    write_npz(path, dance.motion)
-    return _keys(dance.motion)
+    write_npz(path, motion)
+    return keys(motion)
 
 
-def _bvh(path: Path, dance: AnimatedDancer) -> str:
+def _bvh(path: Path, character: Character, motion: Motion) -> str:
     from dancetutor_cli.formats.bvh import frame_count, write_bvh
 
-    motion = dance.motion
     write_bvh(path, motion)
-    start, end = _span(motion)  # the file itself cannot say when it begins
+    start, end = motion.times[[0, -1]].tolist()  # the file itself cannot say when it begins
     return f"{frame_count(motion, motion.fps)} frames, {end - start:.1f} s from second {start:.3f} of the music"
 
 
-def _moves(path: Path, dance: AnimatedDancer) -> str:
+# Each writes the motion, FileError if that fails, and returns how much is in the file, for people.
+FORMATS: dict[str, Callable[[Path, Character, Motion], str]] = {".glb": _glb, ".npz": _npz, ".bvh": _bvh}
+
+
+def keys(motion: Motion) -> str:
+    """How much is in a motion, for people."""
+    start, end = motion.times[[0, -1]].tolist()
+    return f"{len(motion.times)} keys, {end - start:.1f} s"
+
+
+def write_dancer(path: Path, dance: AnimatedDancer) -> str:
+    """Write a dancer of `animate`, as a motion or as moves; returns how much is in the file, for people."""
+    if path.suffix.lower() != MOVES:
+        return FORMATS[path.suffix.lower()](path, dance.character, dance.motion)
     from dancetutor_cli.formats.moves_json import moves_data, write_moves
 
     plan, bar = dance.moves
     data = moves_data(plan, dance.title, dance.label, dance.section, bar)
     write_moves(path, data if dance.place == (0.0, 0.0) else {**data, "pad_at": [round(x, 6) for x in dance.place]})
     return "the moves"
-
-
-def _keys(motion: Motion) -> str:
-    start, end = _span(motion)
-    return f"{len(motion.times)} keys, {end - start:.1f} s"
-
-
-def _span(motion: Motion) -> tuple[float, float]:
-    return float(motion.times[0]), float(motion.times[-1])
-
-
-FORMATS = {
-    ".glb": MotionFormat(_glb),
-    ".npz": MotionFormat(_npz),
-    ".bvh": MotionFormat(_bvh),
-    ".json": MotionFormat(_moves, has_motion=False),
-}

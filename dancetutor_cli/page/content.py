@@ -21,7 +21,7 @@ from dancetutor_cli.film.scene.geometry import ABOVE, PackedMeshes, pack
 from dancetutor_cli.film.scene.props import JOINT, bar_matrix, with_bar
 from dancetutor_cli.film.scene.renderer import RING_SHARE, SHADOW_FADE
 from dancetutor_cli.film.scene.scene import PANEL, SOLE_RADIUS, Scene
-from dancetutor_cli.formats.glb import joint_groups, reaches
+from dancetutor_cli.formats.key_times import joint_groups, reaches
 from dancetutor_cli.page.document import Blob
 from dancetutor_cli.run.languages import load_language
 from dancetutor_cli.run.pictures import texture_bytes

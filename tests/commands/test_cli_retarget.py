@@ -85,7 +85,7 @@ def test_another_body_gets_springs_by_a_search_that_is_kept(
     tuning = json.loads(kept.read_text())
     assert 0.7 < tuning["stretch"] < 1.3 and min(tuning["density"].values()) >= 400
     first = out.read_bytes()
-    monkeypatch.setattr("dancetutor_cli.formats.retarget.tuned", None)  # it is not searched again
+    monkeypatch.setattr("dancetutor_cli.character.retargeting.tuned", None)  # it is not searched again
     run(bvh, "-o", out, "--character", character)
     assert out.read_bytes() == first
     assert read_npz(out).skeleton.rest[0, 1] < 0.7, "short legs"
@@ -114,7 +114,7 @@ def test_an_animation_of_a_character_is_a_motion_too(shared_data: Path, tmp_path
 def test_what_is_wrong_is_reported_in_one_line_and_nothing_is_written(bvh: Path, tmp_path: Path) -> None:
     out = tmp_path / "a.npz"
     assert "there is no correction 'knee' (did you mean knees?)" in said(bvh, "-o", out, "--correct", "knee")
-    assert "must end in .glb, .bvh, .npz, .mp4 or .html" in said(bvh, "-o", tmp_path / "a.fbx")
+    assert "must end in .glb, .npz, .bvh, .mp4 or .html" in said(bvh, "-o", tmp_path / "a.fbx")
     assert "must end in .bvh, .glb, .vrm or .npz" in said(tmp_path / "a.fbx", "-o", out)
     lame = tmp_path / "lame.bvh"
     lame.write_text(bvh.read_text().replace("l_talocrural", "l_thing").replace("r_radiocarpal", "r_thing"))

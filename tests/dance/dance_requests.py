@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from dancetutor_cli.character.animation import Animation
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.chart.timing import heard
 from dancetutor_cli.commands.animate import AFTER
@@ -18,7 +19,6 @@ from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.feet.solved import Solved
 from dancetutor_cli.film.layout import FilmLook
 from dancetutor_cli.film.work.request import FilmRequest
-from dancetutor_cli.formats.animation import Animation
 
 DANCE = {field.name for field in fields(DanceRequest)} - {"fps"}  # a film's frames per second are its own
 

@@ -14,6 +14,7 @@ import pytest
 from bake_plays import L, R, chart, pad, play, stream
 from dance_requests import animated
 
+from dancetutor_cli.character.animation import AnimatedDancer
 from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.bake import bake
@@ -22,7 +23,6 @@ from dancetutor_cli.dance.quality.figures import MotionReport
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.formats.animation import AnimatedDancer
 from dancetutor_cli.formats.bvh import write_bvh
 from dancetutor_cli.formats.glb import write_glb
 from dancetutor_cli.run.reading import charts_path

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from dancetutor_cli.character.retargeting import Retargeting, RetargetTask
 from dancetutor_cli.dance.physics.pipeline import Wishes
 from dancetutor_cli.dance.physics.plants import PIVOT, Plants, planted, tidied
 from dancetutor_cli.dance.physics.repin import AnkleTracks
@@ -13,7 +14,7 @@ from dancetutor_cli.dance.quality.figures import MotionReport
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.formats.bvh import write_bvh
-from dancetutor_cli.formats.retarget import Retargeting, RetargetTask
+from dancetutor_cli.formats.captured import read_source
 
 _SPEC = importlib.util.spec_from_file_location("spoil_bvh", Path(__file__).parents[2] / "tools" / "spoil_bvh.py")
 assert _SPEC is not None and _SPEC.loader is not None
@@ -31,7 +32,7 @@ def retargeted(source: Path, fault: str, folder: Path, corrections: tuple[str, .
     path = folder / f"{fault}.bvh"
     if not path.exists():
         write_bvh(path, tool.spoiled(source, (fault,), (0.1, 6.0)))
-    return Retargeting(RetargetTask(path, "dancer", None, "neutral", Wishes(corrections)))
+    return Retargeting(RetargetTask(path, "dancer", "neutral", Wishes(corrections)), read_source(path))
 
 
 def value(report: MotionReport, name: str) -> float:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from physics_phrase import phrase
 
+from dancetutor_cli.character.retargeting import Retargeting, RetargetTask
 from dancetutor_cli.dance.motion import Motion, sample
 from dancetutor_cli.dance.physics.ankles import eased_ankles
 from dancetutor_cli.dance.physics.arms import push_arms_out
@@ -18,7 +19,7 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.limbs import arm_in_torso
 from dancetutor_cli.dance.rig.skeleton import beyond, dancer_skeleton, excess
-from dancetutor_cli.formats.retarget import Retargeting, RetargetTask
+from dancetutor_cli.formats.captured import read_source
 
 SKELETON = dancer_skeleton()
 HIPS = np.array([[0.088, 0.86, 0.0], [-0.088, 0.86, 0.0]])
@@ -116,12 +117,11 @@ CLIPS = ("pymo_8walk", "fair_dab", "fair_jumping_jacks", "cmu_01_01_jumps")
 
 @pytest.mark.parametrize("clip", CLIPS)
 def test_captures_stand_as_seen_from_outside(shared_data: Path, clip: str) -> None:
-    work = Retargeting(
-        RetargetTask(shared_data / "bvh" / f"{clip}.bvh", "dancer", None, "neutral", Wishes(CORRECTIONS))
-    )
+    path = shared_data / "bvh" / f"{clip}.bvh"
+    work = Retargeting(RetargetTask(path, "dancer", "neutral", Wishes(CORRECTIONS)), read_source(path))
     motion = work.ragdoll_result.motion
     found = [one for name in ("talocrural", "metatarsal") for s in "lr" for one in _slides(motion, f"{s}_{name}")]
-    given = [one for s in "lr" for one in _slides(work.source_motion, f"{s}_talocrural")]
+    given = [one for s in "lr" for one in _slides(work.input_on_body, f"{s}_talocrural")]
     assert max(given) > 25, "the input slides"
     assert float(np.median(found)) < 5 and max(found) < 25
     past = {name: degrees.max() for name, degrees in excess(motion.skeleton, motion.rotations).items()}

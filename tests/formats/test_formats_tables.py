@@ -8,9 +8,11 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from dancetutor_cli.character.mesh import Character
 from dancetutor_cli.commands.analyze import command as analyze
 from dancetutor_cli.commands.animate import command as animate
 from dancetutor_cli.commands.render import command as render
+from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.film.media import film_formats
 from dancetutor_cli.formats import writers
 from dancetutor_cli.reports import formats as reports
@@ -20,7 +22,7 @@ DEMO = str(charts_path() / "two_left_feet" / "two_left_feet.ssc")
 BEGINS = {".glb": b"glTF", ".npz": b"PK", ".bvh": b"HIERARCHY", ".json": b"{"}
 
 
-@pytest.mark.parametrize("suffix", writers.FORMATS)
+@pytest.mark.parametrize("suffix", [*writers.FORMATS, writers.MOVES])
 def test_each_suffix_of_animate_is_written(suffix: str, tmp_path: Path) -> None:
     target = tmp_path / f"x{suffix}"
     run = CliRunner().invoke(animate, [DEMO, "--index", "0", "--section", "m4:m5", "-o", str(target)])
@@ -30,11 +32,11 @@ def test_each_suffix_of_animate_is_written(suffix: str, tmp_path: Path) -> None:
 
 
 def test_a_format_that_is_added_to_the_table_is_a_format(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def write(path: Path, dance: writers.Dance) -> str:
-        path.write_text(json.dumps(len(dance.motion.times)))
+    def write(path: Path, character: Character, motion: Motion) -> str:
+        path.write_text(json.dumps(len(motion.times)))
         return "the number of keys"
 
-    monkeypatch.setitem(writers.FORMATS, ".keys", writers.MotionFormat(write))
+    monkeypatch.setitem(writers.FORMATS, ".keys", write)
     target = tmp_path / "x.keys"
     run = CliRunner().invoke(animate, [DEMO, "--index", "0", "--section", "m4:m5", "-o", str(target)])
     assert run.exit_code == 0 and "x.keys: the number of keys, dance-single" in run.stdout
@@ -44,7 +46,7 @@ def test_a_format_that_is_added_to_the_table_is_a_format(tmp_path: Path, monkeyp
 @pytest.mark.parametrize(("command", "name"), [(animate, "x.xyz"), (render, "x.xyz")])
 def test_another_suffix_is_refused_with_those_that_there_are(command: object, name: str, tmp_path: Path) -> None:
     run = CliRunner().invoke(command, [DEMO, "--index", "0", "-o", str(tmp_path / name)])  # type: ignore[arg-type]
-    known = writers.FORMATS if command is animate else film_formats.FILES
+    known = (*writers.FORMATS, writers.MOVES) if command is animate else film_formats.FILES
     assert run.exit_code == 2 or run.exception
     said = run.output + str(run.exception)
     assert all(suffix in said for suffix in known)

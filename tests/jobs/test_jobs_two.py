@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from dancetutor_cli.character.animation import AnimatedDancer, Animation
 from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.character.mesh import partner_of
 from dancetutor_cli.chart.selection import Selection
@@ -17,7 +18,6 @@ from dancetutor_cli.dance.performance import Performance, perform, solve
 from dancetutor_cli.dance.quality.figures import body_of
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig.limbs import Capsule, depth
-from dancetutor_cli.formats.animation import AnimatedDancer, Animation
 
 Array = np.ndarray
 HEAD = "#TITLE:T;\n#OFFSET:0;\n#BPMS:0=120;\n"

@@ -12,10 +12,11 @@ from page_chromium import Browser, text
 from PIL import Image
 from test_page_document import unpacked
 
+from dancetutor_cli.character.retargeting import Retargeting, RetargetTask
 from dancetutor_cli.commands.retarget import command
 from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, Wishes
 from dancetutor_cli.formats.bvh import read_bvh, write_bvh
-from dancetutor_cli.formats.retarget import Retargeting, RetargetTask
+from dancetutor_cli.formats.captured import read_source
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "dance"))
@@ -29,7 +30,9 @@ SECOND = 0.5
 def work(tmp_path_factory: pytest.TempPathFactory) -> Retargeting:
     path = tmp_path_factory.mktemp("capture") / "walker.bvh"
     write_bvh(path, renamed(phrase(1.0), "lafan1"))
-    return Retargeting(RetargetTask(path, "dancer", None, "neutral", Wishes(corrections=CORRECTIONS, own_legs=True)))
+    return Retargeting(
+        RetargetTask(path, "dancer", "neutral", Wishes(corrections=CORRECTIONS, own_legs=True)), read_source(path)
+    )
 
 
 @pytest.fixture(scope="module")
@@ -50,8 +53,8 @@ def opened(browser: Browser, capture_file: Path) -> Browser:
 def at_second(work: Retargeting, second: float) -> dict[str, float]:
     """Centimetres of each point from the input, by the motions' own keys."""
     names, before, after = work.point_paths()
-    key = int(np.argmin(np.abs(work.source_motion.times - second)))
-    assert abs(work.source_motion.times[key] - second) < 1e-6
+    key = int(np.argmin(np.abs(work.input_on_body.times - second)))
+    assert abs(work.input_on_body.times[key] - second) < 1e-6
     return dict(zip(names, 100.0 * np.linalg.norm(after[key] - before[key], axis=1), strict=True))
 
 

@@ -1,4 +1,4 @@
-"""The piece of work of `retarget`: a captured motion and a character in, the character's motion out."""
+"""The work of `retarget`: a captured motion and a character in, the character's motion out, through the ragdoll."""
 
 from __future__ import annotations
 
@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.character.characters import load_character
+from dancetutor_cli.character.fitting import body_of
 from dancetutor_cli.character.humanoid import humanoid_of
 from dancetutor_cli.character.onto_skeleton import onto
+from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.blend import load_choice
 from dancetutor_cli.dance.physics.captured import on_body, upright
 from dancetutor_cli.dance.physics.hair import add_hair
@@ -26,8 +28,6 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.settings import default_settings
-from dancetutor_cli.formats.captured import of_motion, read_captured
-from dancetutor_cli.formats.npz import read_npz
 from dancetutor_cli.run.errors import DancetutorError, FileError
 from dancetutor_cli.run.files import write_atomic
 from dancetutor_cli.run.reading import config_path, read_json
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from dancetutor_cli.character.mesh import Character
-    from dancetutor_cli.dance.motion import Motion
     from dancetutor_cli.dance.physics.blend import Blend
     from dancetutor_cli.dance.physics.captured import CapturedMotion
     from dancetutor_cli.dance.physics.pipeline import RagdollResult, Wishes
@@ -51,23 +50,26 @@ SCHEMA = b"1"  # of what a body's tuning depends on besides body and neutral sty
 
 @dataclass(frozen=True, slots=True)
 class RetargetTask:
-    """What to retarget. source : the file; animation : the one wanted of a .glb, None for its first
+    """How to retarget. file : where the motion is from
 
     style : as `dance.physics.blend.load_choice` takes it; wishes : corrections, pushes, trips
     """
 
-    source: Path
+    file: Path
     character: str
-    animation: str | None
     style: str
     wishes: Wishes
 
 
 @dataclass
 class Retargeting:
-    """A task's results, made when they are first wanted. Everything raises a DancetutorError of one line."""
+    """A task's results, made when they are first wanted. Everything raises a DancetutorError of one line.
+
+    source : the file's motion, of the rig's joints (a Motion) or of joints of its own (see `formats.captured`)
+    """
 
     task: RetargetTask
+    source: Motion | CapturedMotion
 
     @cached_property
     def character(self) -> Character:
@@ -77,54 +79,35 @@ class Retargeting:
     @cached_property
     def body(self) -> Skeleton:
         """The rig's joints in the character's proportions."""
-        from dancetutor_cli.character.fitting import body_of
-
         return body_of(self.character.skeleton)
 
     @cached_property
-    def rig_motion(self) -> Motion | None:
-        """The file's motion, if it is one of the rig's joints: of `animate` or `retarget`."""
-        path = self.task.source
-        if path.suffix.lower() != ".npz":
-            return None
-        motion = read_npz(path)
-        if not set(dancer_skeleton().names) <= set(motion.skeleton.names):
-            return None
-        of_motion(path, motion)  # says what is wrong with it
-        return motion
-
-    @cached_property
-    def captured(self) -> CapturedMotion:
-        """The file's motion on its own skeleton."""
-        return read_captured(self.task.source, self.task.animation)
-
-    @cached_property
-    def captured_joints(self) -> dict[str, int]:
-        """The captured joint of each of the rig's that the file has."""
-        found = humanoid_of(self.task.source, self.captured.names, self.captured.parents).joints()
-        return {joint: node for node, joint in found.items()}
-
-    @cached_property
-    def source_motion(self) -> Motion:
+    def input_on_body(self) -> Motion:
         """The file's motion on the body, before any physics."""
-        if self.rig_motion is not None:
-            return onto(self.rig_motion, self.body)
-        return on_body(self.captured, self.captured_joints, self.body)
+        if isinstance(self.source, Motion):
+            return onto(self.source, self.body)
+        return on_body(self.source, self._captured_joints(self.source), self.body)
 
     @cached_property
     def input_figure(self) -> tuple[NDArray[np.int32], Array]:
-        """Parents (j,) and places (f, j, 3) in metres of the file's own skeleton, hips where `source_motion` has them.
+        """Parents (j,) and places (f, j, 3) in metres of the file's own skeleton, hips where `input_on_body` has them.
 
-        Over y, looking to +Z, in proportion to the body's legs, at the keys of `source_motion`.
+        Over y, looking to +Z, in proportion to the body's legs, at the keys of `input_on_body`.
         """
-        motion = self.source_motion
-        if self.rig_motion is not None:
-            return motion.skeleton.parents, world_transforms(motion.skeleton, motion.rotations, motion.root)[0]
-        joints, places = self.captured_joints, upright(self.captured, self.captured_joints, self.body)
+        motion = self.input_on_body
         hips = world_transforms(motion.skeleton, motion.rotations, motion.root)[0]
+        if isinstance(self.source, Motion):
+            return motion.skeleton.parents, hips
+        joints = self._captured_joints(self.source)
+        places = upright(self.source, joints, self.body)
         ours = hips[:, [motion.skeleton.index(f"{s}_hip") for s in "lr"]].mean(axis=1)
         theirs = places[:, [joints[f"{s}_hip"] for s in "lr"]].mean(axis=1)
-        return self.captured.parents, places + (ours - theirs)[:, None]
+        return self.source.parents, places + (ours - theirs)[:, None]
+
+    def _captured_joints(self, captured: CapturedMotion) -> dict[str, int]:
+        """The captured joint of each of the rig's that the file has."""
+        rig_joint_of = humanoid_of(self.task.file, captured.names, captured.parents).joints()
+        return {joint: node for node, joint in rig_joint_of.items()}
 
     @cached_property
     def blend(self) -> Blend:
@@ -141,28 +124,28 @@ class Retargeting:
     def ragdoll_result(self) -> RagdollResult:
         """Behind the ragdoll, on the body."""
         try:
-            passed = through_ragdoll(self.source_motion, self.blend, self.task.wishes)
+            passed = through_ragdoll(self.input_on_body, self.blend, self.task.wishes)
         except FileError:
             raise
         except DancetutorError as error:
-            raise FileError(self.task.source, str(error)) from error
+            raise FileError(self.task.file, str(error)) from error
         motion = passed.motion
         add_hair(motion.skeleton, motion.times, motion.rotations, motion.root, default_settings().hair)
         return passed
 
     @cached_property
-    def motion(self) -> Motion:
-        """For the character's skeleton."""
+    def output_on_character(self) -> Motion:
+        """Behind the ragdoll, for the character's skeleton."""
         return onto(self.ragdoll_result.motion, self.character.skeleton)
 
     @cached_property
-    def given(self) -> Motion:
+    def input_on_character(self) -> Motion:
         """The file's motion, before any physics, for the character's skeleton."""
-        return onto(self.source_motion, self.character.skeleton)
+        return onto(self.input_on_body, self.character.skeleton)
 
     def point_paths(self) -> tuple[tuple[str, ...], Array, Array]:
         """Names of the p retargeting points, and their places (f, p, 3) at the keys of input and output, metres."""
-        before, after = self.source_motion, self.ragdoll_result.motion
+        before, after = self.input_on_body, self.ragdoll_result.motion
         bones = bones_of(self.body)
         styles, _ = self.blend.within(after.times)  # the one with most first, as the distances are measured
         points = tuple(p for p in points_of(self.body, bones, styles[0]) if not p.extra)
@@ -172,7 +155,7 @@ class Retargeting:
     @property
     def title(self) -> str:
         """For people."""
-        return self.task.source.stem
+        return self.task.file.stem
 
     def report(self) -> MotionReport:
         """The quality of the motion on the body, its faults before and after, and the ragdoll's distances."""
@@ -180,7 +163,7 @@ class Retargeting:
 
         passed = self.ragdoll_result
         whole = report(passed.motion)
-        faults = fault_figures(self.source_motion, passed.motion, passed.plants)
+        faults = fault_figures(self.input_on_body, passed.motion, passed.plants)
         curves = {name: (t, v) for name, (t, v) in whole.curves.items() if len(v) and np.isfinite(v).any()}
         whole = replace(whole, figures=(*whole.figures, *faults), curves=curves)
         plain = not set(self.task.wishes.corrections) - {"limits"}
@@ -190,7 +173,7 @@ class Retargeting:
     def _point_curves(self) -> dict[str, tuple[Array, Array]]:
         """Over the keys, of input and output (f, 2): speed of each retargeting point, and how far bones are turned."""
         names, *paths = self.point_paths()
-        motions, times = (self.source_motion, self.ragdoll_result.motion), self.source_motion.times
+        motions, times = (self.input_on_body, self.ragdoll_result.motion), self.input_on_body.times
         speeds = [100.0 * np.linalg.norm(np.gradient(path, times, axis=0), axis=2) for path in paths]
         out = {f"speed of {name}, cm/s": np.stack([s[:, k] for s in speeds], axis=1) for k, name in enumerate(names)}
         for bone in bones_of(self.body):
