@@ -27,8 +27,12 @@ _LINK = re.compile(r"(\]\()([^)#\s]+)")
 CSS = """\
 .md-typeset table:not([class]) { display: table; font-size: .68rem; }
 .md-typeset img { border-radius: 4px; }
+.md-typeset table:not([class]) th, .md-typeset table:not([class]) td { padding: .5em .9em; }
+.md-typeset .language-sh pre > code { white-space: pre-wrap; }
 .md-grid { max-width: 68rem; }
 """
+WIDE = "---\nhide:\n  - navigation\n---\n\n"  # the first page has nothing beside it
+COLUMNS = 90  # of help
 
 
 def on_site(text: str, folder: str) -> str:
@@ -45,21 +49,56 @@ def on_site(text: str, folder: str) -> str:
 
 
 def options_page() -> str:
-    """The help of every command, as `--help` prints it in a terminal 100 columns wide."""
+    """The help of every command, as `--help` prints it in a terminal of COLUMNS."""
     parts = ["# Options of all commands\n", "What `dancetutor COMMAND --help` prints.\n"]
     for name, (module, _) in COMMANDS.items():
         command = importlib.import_module(f"dancetutor_cli.commands.{module}").command
-        context = click.Context(command, info_name=f"dancetutor {name}", max_content_width=100, terminal_width=100)
+        context = click.Context(
+            command, info_name=f"dancetutor {name}", max_content_width=COLUMNS, terminal_width=COLUMNS
+        )
         parts.append(f"## `{name}`\n\n```text\n{command.get_help(context)}\n```\n")
     return "\n".join(parts)
 
 
 def rules_page() -> str:
     """Every rule as `analyze --explain` prints it, in order of their codes."""
-    parts = ["# Rules of the linter\n", "What `dancetutor analyze --explain all` and `--explain RULE` print.\n"]
+    parts = ["# Rules of the linter\n", "The text that `dancetutor analyze --explain RULE` prints, for every rule.\n"]
     for code, rule in sorted(all_rules().items()):
-        parts.append(f"## {code} {rule.name}\n\n```text\n{explain(rule)}\n```\n")
+        head, _, text = explain(rule).partition("\n")
+        kind = head[head.index("(") + 1 : -1]
+        parts.append(f"## {code} {rule.name}\n\n*{kind}*\n\n{_as_markdown(text)}\n")
     return "\n".join(parts)
+
+
+def _as_markdown(text: str) -> str:
+    """Explanations as Markdown: lists after a blank line, each option in one, rows and tables as code."""
+    out: list[str] = []
+    block = ""
+    for line in text.splitlines():
+        kind = (
+            "item" if line.startswith("- ") else "option" if line.startswith("`") else "code" if line[:1] == " " else ""
+        )
+        if not line:
+            block = ""
+        elif kind == "code" and block not in ("item", "option"):
+            if block != "code":
+                out.append("")
+            block, line = "code", line if line.startswith("    ") else "  " + line
+        elif kind in ("item", "option"):
+            if block not in ("item", "option"):
+                out.append("")
+            block, line = kind, _escaped(line if kind == "item" else "- " + line)
+        else:
+            line = ("  " if block in ("item", "option") else "") + _escaped(line.strip())
+        out.append(line)
+    return "\n".join(out)
+
+
+def _escaped(line: str) -> str:
+    """A line of text whose signs mean nothing in Markdown, except for code between backticks."""
+    parts = line.split("`")
+    parts[::2] = [re.sub(r"([*_<\[\]]|^#)", r"\\\1", part) for part in parts[::2]]
+    return "`".join(parts)
 
 
 def gallery_page(folder: Path) -> str:
@@ -82,7 +121,8 @@ def prepare(folder: Path) -> None:
     for path in sorted((ROOT / "docs").glob("*.md")):
         (folder / path.name).write_text(on_site(path.read_text("utf-8"), "docs"), "utf-8")
     for name, target in TOP.items():
-        (folder / target).write_text(on_site((ROOT / name).read_text("utf-8"), ""), "utf-8")
+        head = WIDE if target == "index.md" else ""
+        (folder / target).write_text(head + on_site((ROOT / name).read_text("utf-8"), ""), "utf-8")
     shutil.copy(ROOT / ".github" / "frame.png", folder)
     (folder / "options.md").write_text(options_page(), "utf-8")
     (folder / "rules.md").write_text(rules_page(), "utf-8")
