@@ -75,9 +75,7 @@ def _as_markdown(text: str) -> str:
     out: list[str] = []
     block = ""
     for line in text.splitlines():
-        kind = (
-            "item" if line.startswith("- ") else "option" if line.startswith("`") else "code" if line[:1] == " " else ""
-        )
+        kind = "item" if line.startswith("- ") else {"`": "option", " ": "code"}.get(line[:1], "")
         if not line:
             block = ""
         elif kind == "code" and block not in ("item", "option"):
@@ -85,8 +83,8 @@ def _as_markdown(text: str) -> str:
                 out.append("")
             block, line = "code", line if line.startswith("    ") else "  " + line
         elif kind in ("item", "option"):
-            if block not in ("item", "option"):
-                out.append("")
+            if block != kind:
+                out.extend(("", "The options mean:", "") if kind == "option" else ("",))
             block, line = kind, _escaped(line if kind == "item" else "- " + line)
         else:
             line = ("  " if block in ("item", "option") else "") + _escaped(line.strip())
