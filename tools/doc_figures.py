@@ -49,8 +49,8 @@ def motion() -> str:
     for name in SHOWN:
         one = figures[name]
         unit = f" {one['unit']}" if one["unit"] else ""
-        bound = "at least" if one["at_least"] else "at most"
-        lines.append(f"| {name} | {one['value']:.3g}{unit} | {bound} {one['goal']:g}{unit} |")
+        bound = "at least " if one["at_least"] else "at most " if one["goal"] else ""
+        lines.append(f"| {name} | {round(one['value'], 3):.3g}{unit} | {bound}{one['goal']:g}{unit} |")
     return "\n".join(lines) + "\n"
 
 
