@@ -10,6 +10,7 @@ Prints for each section the largest distance of any joint, in millimetres, from 
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 import motion_report
@@ -49,7 +50,7 @@ def main() -> None:
             found = []
             for cut in (Cut(start, end), Cut(start - 2.0, end + 1.5, start, end)):
                 edge = END if cut.start < start else 0.0
-                parts = performance.motions(cut, walks_off=edge == 0.0)
+                parts = performance.motions(replace(cut, walks_off=edge == 0.0))
                 pairs = zip(whole, parts, strict=True)
                 found.append(max(apart(a.motion, b.motion, start + edge, end - edge) for a, b in pairs))
             worst = max(worst, *found)

@@ -27,12 +27,21 @@ OWN_FEET = 0.8  # below this share of the dance, the feet are those of the end
 SAME_PLACE = 0.002  # metres
 LONG_AGO = 60.0  # events before a cut get this many seconds before it
 NOW = 1e-6  # seconds
+SOON = 0.001  # seconds after a walk, when it is over
+
+
+def on_the_pad(plan: Plan, cut: Cut) -> Cut:
+    """The cut, in which she stands before her first step if nobody is to see how she walks there."""
+    arrivals = [walk.end for walk in plan.walks if walk.end <= plan.first and not cut.walks_on]
+    return replace(cut, steps_from=max([cut.steps_from, *(second + SOON for second in arrivals)]))
 
 
 def entrance_of(plan: Plan, cut: Cut) -> Plan | None:
     """The plan of a dancer who stands until the first step of a cut; None if the dance itself begins that way."""
     begin = cut.steps_from
-    if not any(cut.start < one.end and one.start < begin - NOW for one in plan.touches):
+    spans = [(one.start, one.end) for one in plan.touches]
+    spans += [(walk.start, walk.end) for walk in plan.walks if not cut.walks_on]
+    if not any(cut.start < end and start < begin - NOW for start, end in spans):
         return None
     tracks = [_from(track, begin) for track in plan.feet]
     before = [turn for turn in plan.turns if turn.end < begin]
@@ -60,12 +69,9 @@ def _from(track: FootTrack, second: float) -> FootTrack:
     return track_from(track, first, track.moves[first:])
 
 
-def rest_from(plan: Plan, cut: Cut, walks_off: bool) -> float | None:
-    """The second from which on the dancer comes to rest at the end of a cut; None if she dances on to its end.
-
-    walks_off : she may leave after the last note
-    """
-    walks = [walk.start for walk in plan.walks if walk.start > plan.last and not walks_off]
+def rest_from(plan: Plan, cut: Cut) -> float | None:
+    """The second from which on the dancer comes to rest at the end of a cut; None if she dances on to its end."""
+    walks = [walk.start for walk in plan.walks if walk.start > plan.last and not cut.walks_off]
     until = min([cut.steps_until, *walks])
     starts = [*(touch.start for touch in plan.touches), *(walk.start for walk in plan.walks)]
     return until if any(until - NOW <= start < cut.end for start in starts) else None

@@ -110,12 +110,16 @@ class Cut:
     """A part of a dance, from `start` to `end`, seconds of the music as it is heard.
 
     steps_from : she stands before this second, as she will begin; steps_until : from this one on she comes to rest
+    walks_on, walks_off : whether she may be seen to come before the first note, and to leave after the last one; else
+    she stands on the pad
     """
 
     start: float
     end: float
     steps_from: float = -np.inf
     steps_until: float = np.inf
+    walks_on: bool = True
+    walks_off: bool = True
 
 
 def shifted(motion: Motion, x: float, z: float) -> Motion:

@@ -13,6 +13,7 @@ from dancetutor_cli.dance.ends import (
     entrance_piece,
     exit_of,
     exit_piece,
+    on_the_pad,
     rest_from,
     with_entrance,
     with_exit,
@@ -73,32 +74,27 @@ class Performance:
         spans = [whole_span(one.plan, one.context) for one in self.dancers]
         return min(start for start, _ in spans), max(end for _, end in spans)
 
-    def motions(
-        self, wanted: Cut | None = None, run: PieceRunner = in_turn, walks_off: bool = True
-    ) -> list[BakedPiece]:
+    def motions(self, wanted: Cut | None = None, run: PieceRunner = in_turn) -> list[BakedPiece]:
         """What each dancer does on her own pad; `place` says where that is.
 
         Parameters
         ----------
         wanted : the part that is wanted, None: all of it
         run : does pieces of work, in turn or in several processes
-        walks_off : whether a dancer may be seen to leave after the last note; else she stays
         """
         wanted = wanted or Cut(*self.span)
         ragdoll = self._ragdoll(wanted)
-        return [self._motion(one, wanted, ragdoll, (run, walks_off)) for one in self.dancers]
+        return [self._motion(one, wanted, ragdoll, run) for one in self.dancers]
 
-    def _motion(
-        self, who: Performer, wanted: Cut, style: RagdollStyle | None, how: tuple[PieceRunner, bool]
-    ) -> BakedPiece:
-        (run, walks_off), fps = how, self.request.fps
-        plan, context = who.plan, who.context
+    def _motion(self, who: Performer, wanted: Cut, style: RagdollStyle | None, run: PieceRunner) -> BakedPiece:
+        plan, context, fps = who.plan, who.context, self.request.fps
+        wanted = on_the_pad(plan, wanted)
         done = cut(pieces_of(plan, context, fps, style), (wanted.start, wanted.end), run)
         motion = done.motion
         if (entrance := entrance_of(plan, wanted)) is not None:
             piece = entrance_piece(entrance, context, fps, wanted, style)
             motion = with_entrance(motion, _one(run, piece), wanted)
-        if (until := rest_from(plan, wanted, walks_off)) is not None:
+        if (until := rest_from(plan, wanted)) is not None:
             rest = exit_of(plan, (until, wanted.end), context.at(until))
             piece = exit_piece(rest, context, fps, (until, wanted.end), style)
             motion = with_exit(motion, _one(run, piece), until, wanted)

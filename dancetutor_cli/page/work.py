@@ -14,7 +14,7 @@ from dancetutor_cli.character.mesh import with_foot_colours
 from dancetutor_cli.chart.music import find_music
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.dance.motion import shifted
+from dancetutor_cli.dance.motion import Cut, shifted
 from dancetutor_cli.dance.performance import pad_of, perform, play_of_all, playable, pooled, solve
 from dancetutor_cli.dance.request import check_request, read_chart
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
@@ -161,9 +161,10 @@ def pack_page(page: PageSubject) -> Page:
 
 
 def _motions(request: PageRequest, solved: tuple[Solved, ...]) -> list[Motion]:
-    """Of each who dances, where she stands on the pad under all."""
+    """Of each who dances, where she stands on the pad under all: nobody is seen to walk on or off."""
     performance = perform(solved, request.dance)
-    done = performance.motions(run=pooled(request.jobs))
+    whole = Cut(*performance.span, walks_on=False, walks_off=False)
+    done = performance.motions(whole, run=pooled(request.jobs))
     return [shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True)]
 
 

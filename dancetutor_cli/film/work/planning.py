@@ -97,7 +97,8 @@ def film_dance(request: FilmRequest, subject: FilmSubject) -> FilmDance:
 
 def _cut(request: FilmRequest, performance: Performance, clock: Clock) -> tuple[Motion, ...]:
     """The part of a performance that the film shows, with each dancer at her place on the pad under all."""
-    done = performance.motions(clock.cut_at(performance.rate), pooled(), request.background)
+    wanted = replace(clock.cut_at(performance.rate), walks_off=request.background)
+    done = performance.motions(wanted, pooled())
     return tuple(shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True))
 
 
