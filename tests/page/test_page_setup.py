@@ -46,6 +46,7 @@ def test_arrow_keys_that_are_panels_do_nothing_else(opened: Browser) -> None:
     x, y, w, h = opened.box(".strip")
     for kind in ("mousePressed", "mouseReleased"):
         opened.mouse(kind, x + w / 2, y + h / 2)
+    opened.drawn()
     at = opened.run(NOW)
     opened.key("ArrowUp")  # a click on the strip leaves the keys as they are
     opened.key("ArrowLeft")
@@ -59,9 +60,8 @@ def test_the_speed_is_the_same_after_a_reload(opened: Browser) -> None:
     for _ in range(3):
         opened.key("-", "Minus")
     opened.call("Page.reload")
-    opened.wait(
-        "document.documentElement?.dataset.ready && document.querySelector('.rate-text')?.textContent === '85 %'"
-    )
+    opened.wait("document.documentElement?.dataset.ready")
+    opened.wait("document.querySelector('.rate-text')?.textContent === '85 %'")
     assert opened.problems == []
 
 
@@ -147,18 +147,14 @@ def test_a_phone_offers_ways_to_begin_below_the_picture(
     opened.turn(3)
     rows = "[...document.querySelectorAll('.chip')].filter(e => e.checkVisibility()).map(e => [e.id, e.offsetTop])"
     found = opened.run(rows)
-    assert [name for name, _ in found] == ["chip-along", "chip-wait", "chip-loop"] and len(
-        {top for _, top in found}
-    ) == 1
+    assert [name for name, _ in found] == ["chip-along", "chip-wait", "chip-loop"]
+    assert len({top for _, top in found}) == 1
     chip, picture = opened.box("#chip-along"), opened.box(".picture")
     assert chip[1] >= picture[1] + picture[3] and opened.box(".lanes")[2] >= 0.5 * width
     opened.click("#chip-along")
     opened.turn(0.06)
-    assert (
-        text(opened, ".play") == "❚❚"
-        and float(opened.run(NOW)) < 1
-        and opened.run("!!document.querySelector('.along')")
-    )
+    assert text(opened, ".play") == "❚❚" and float(opened.run(NOW)) < 1
+    assert opened.run("document.querySelector('.along') !== null")
     opened.click("#chip-wait")
     opened.turn(9)
     assert said(opened).startswith("waiting for you")
