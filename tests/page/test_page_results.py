@@ -123,6 +123,31 @@ def test_days_make_a_streak_and_a_clean_pass_is_remembered(opened: Browser, page
     assert "88 %" in opened.run("document.querySelector('.bars:not(.timing):not(.through)').getAttribute('aria-label')")
 
 
+def test_a_card_keeps_the_best_pass_and_a_tick(opened: Browser, page_file: Path) -> None:
+    """Below full speed too, over days: what was played of a passage, in a loop or in the song."""
+    loop(opened, "#m1-4@0.5")
+    assert text(opened, ".card .kept-best") == ""
+    for key in STEPS[:4]:
+        press(opened, "dfjk".index(key))
+        opened.turn(0.5)
+    opened.turn(16)
+    plays = opened.run(f"{RECORD}.plays")
+    (where,) = plays
+    score = plays[where][0]
+    assert plays[where][1] == 50 and 0 < score < 100
+    assert text(opened, ".card .kept-best") == f"best score {score} % at 50 % speed"
+    opened.open(page_file)  # the next day
+    assert text(opened, ".card .kept-best") == f"best score {score} % at 50 % speed"
+    assert not opened.run("document.querySelector('.card').classList.contains('passed-full')")
+    name = opened.run("Object.keys(localStorage).find(k => k.startsWith('dancetutor:practice:'))")
+    stored = json.dumps({"scores": {where: 96}})
+    opened.run(f"localStorage.setItem({json.dumps(name)}, {json.dumps(stored)})")
+    opened.call("Page.navigate", url="about:blank")
+    opened.open(page_file)
+    assert text(opened, ".card .kept-best") == "✓ passed at full speed · best score 96 % at 100 % speed"
+    assert opened.run("document.querySelector('.card').classList.contains('passed-full')") and opened.problems == []
+
+
 def test_loops_are_kept_by_name_and_forgotten(opened: Browser, page_file: Path) -> None:
     assert opened.run("document.querySelector('#loop-keep').disabled") is True
     opened.run("location.hash = '#m2-3@0.75'")
