@@ -6,6 +6,9 @@ comes from a browser: `tests/page/page_chromium.py` drives one, if there is one.
 
 from __future__ import annotations
 
+import functools
+import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -24,6 +27,12 @@ from dancetutor_cli.run.reading import config_names
 ROOT = Path(__file__).resolve().parent.parent
 DEMO = ROOT / "charts" / "two_left_feet" / "two_left_feet.ssc"
 HARD = ("--steps-type", "dance-single", "--difficulty", "hard")
+SCREENS = {  # picture -> command line, and how many lines of its output are shown
+    "linter.svg": ("analyze two_left_feet/two_left_feet.ssc --index 3 --full", 26),
+    "fix.svg": ("analyze two_left_feet/two_left_feet.ssc --index 3 --fix DT202 --diff", 40),
+    "beside.svg": ("analyze two_left_feet/two_left_feet.ssc --tech-counts beginner.csv", 40),
+    "first-steps.svg": ("", 40),
+}
 HEAD = "#TITLE:%s;\n#OFFSET:0;\n#BPMS:0=%d;\n#NOTES:%s::Hard:9::\n%s;\n"
 ROUTINE = (
     "10000000\n01000000\n00010000\n00100000\n,\n10000000\n00100000\n00010000\n01000000\n&\n"
@@ -136,13 +145,20 @@ def in_a_row(pictures: list[Image.Image], names: list[str], target: str) -> None
     sheet.save(ROOT / "docs" / target, quality=85, optimize=True)
 
 
-def linter(folder: Path) -> None:
-    """What `analyze` prints of a chart with findings."""
-    command = ("dancetutor", "analyze", "charts/two_left_feet/two_left_feet.ssc", *HARD, "--full")
-    run = [str(Path(sys.executable).with_name("dancetutor")), *command[1:], "--no-cache"]
-    title = ("--title", " ".join(command), "--lines", "26")
-    tool = [sys.executable, str(ROOT / "tools" / "terminal_picture.py"), str(ROOT / "docs" / "linter.svg"), *title]
-    subprocess.run([*tool, "--", *run], check=True, cwd=ROOT)
+def screen(name: str, folder: Path) -> None:
+    """What a command prints, of a copy of the demo song."""
+    shutil.copytree(DEMO.parent, folder / "two_left_feet")
+    program, environment = (
+        str(Path(sys.executable).with_name("dancetutor")),
+        os.environ | {"DANCETUTOR_CACHE": str(folder)},
+    )
+    beginner = [program, "analyze", "two_left_feet/two_left_feet.ssc", "--preset", "beginner", "--format", "csv"]
+    with (folder / "beginner.csv").open("w") as csv:
+        subprocess.run([*beginner, "--exit-zero"], check=True, cwd=folder, env=environment, stdout=csv)
+    words, lines = SCREENS[name]
+    tool = [sys.executable, str(ROOT / "tools" / "terminal_picture.py"), str(ROOT / "docs" / name)]
+    title = ["--title", f"dancetutor {words}".strip(), "--lines", str(lines)]
+    subprocess.run([*tool, *title, "--", program, *words.split()], check=True, cwd=folder, env=environment)
 
 
 def presets(folder: Path) -> None:
@@ -185,10 +201,10 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "background.jpg": background,
     "crossing.jpg": crossing,
     "page-two.jpg": page_two,
-    "linter.svg": linter,
     "presets.svg": presets,
     "styles.jpg": styles,
     "forms.jpg": forms,
+    **{name: functools.partial(screen, name) for name in SCREENS},
 }
 
 
