@@ -1,7 +1,8 @@
-"""Draw the pictures of films in README and docs again: `python tools/doc_pictures.py [NAME...]`, all if none is named.
+"""Draw the pictures of films and terminals in README and docs again: `python tools/doc_pictures.py [NAME...]`, or all.
 
-Run it after a change that is visible in films, so that nobody sees what the program no longer draws. docs/page-two.jpg
-comes from a browser: `tests/page/page_chromium.py` drives one, if there is one. `make docs-pictures` draws them all.
+Run it after a change that is visible in films or in printed lines, so that nobody sees what is no longer so.
+docs/page-two.jpg comes from a browser: `tests/page/page_chromium.py` drives one, if there is one. `make docs-pictures`
+draws them all.
 """
 
 from __future__ import annotations
