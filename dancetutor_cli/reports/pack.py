@@ -184,7 +184,7 @@ class Pack:
             if ini.problem is not None:
                 yield f"wrong: {safe_path(os.fspath(ini.path.parent.name))}/{safe(ini.path.name)}: {safe(ini.problem)}"
         if not found:
-            yield "missing: Pack.ini (it tells ITGmania whether the songs use null or ITG sync)"
+            yield "missing: Pack.ini (its SyncOffset says whether the songs use null or ITG sync)"
 
     def outliers(self) -> Iterator[str]:
         """Charts that stand out, a line each, the farthest first."""

@@ -79,11 +79,11 @@ MOVE_COLUMNS = (
     Column("jacks", 5, ("jack",)),
     Column("candles", 7, ("candle",)),
     Column("gallops", 7, ("gallop",)),
-    Column("hand\npresses", 7, ("hand",)),
+    Column("hand\npress", 5, ("hand",)),
 )
 _ROWS, _COST = Column("rows", 5, ()), Column("cost\nunits", 6, ())
 _ONE = {"rows": "row", "cost units": "cost unit", "spins": "spin", "brackets": "bracket", "jacks": "jack",
-        "candles": "candle", "gallops": "gallop", "hand presses": "hand press"}  # fmt: skip
+        "candles": "candle", "gallops": "gallop"}  # fmt: skip
 
 
 def chart_table(chart: ChartResult, terminal: Terminal, charts: Sequence[ChartResult] = ()) -> str:
@@ -122,7 +122,8 @@ def _cells(chart: ChartResult, shown: Sequence[Column]) -> list[str]:
 def _listed(chart: ChartResult, counts: dict[Column, int], width: int) -> str:
     """The same numbers as lines of words, without zeros, for a terminal that is too narrow for the table."""
     numbers = [(chart.row_count, "rows"), (chart.cost, "cost units")]
-    numbers += [(count, column.header.replace("\n", " ")) for column, count in counts.items() if count]
+    named = ((count, column.header.replace("\n", " ")) for column, count in counts.items() if count)
+    numbers += [(count, "hand presses" if name == "hand press" and count > 1 else name) for count, name in named]
     words = (f"{count} {_ONE.get(name, name) if count == 1 else name}".replace(" ", "\0") for count, name in numbers)
     return textwrap.fill(", ".join(words), max(width, 20)).replace("\0", " ") + "\n"
 

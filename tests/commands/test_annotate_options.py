@@ -152,7 +152,7 @@ def test_the_preset_of_the_configuration_holds(ssc: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "word"),
     [
-        (["--style", "tattoo"], "there is no marker style 'tattoo'; choose measure, rows"),
+        (["--style", "tattoo"], "there is no kind of markers 'tattoo'; choose measure, rows"),
         (["--style", ""], "name one or more"),
         (["--into-file"], "--markers edit"),
         (["--preset", "gpt"], "thesis"),

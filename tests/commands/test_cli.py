@@ -40,7 +40,7 @@ def assert_one_clear_line(result: subprocess.CompletedProcess[str], *words: str)
 def test_a_section_that_is_none_is_reported_before_the_file_is_looked_at(tmp_path: Path) -> None:
     for name, output in (("animate", "x.npz"), ("render", "x.mp4")):
         result = run([name, SONG, "--section", "m1", "-o", tmp_path / output], tmp_path)  # several charts match, too
-        assert_one_clear_line(result, "section 'm1' cannot be read")
+        assert_one_clear_line(result, "--section m1 cannot be read")
 
 
 def files_of(folder: Path) -> dict[str, bytes]:

@@ -48,7 +48,7 @@ def test_what_weights_leave_is_neutral() -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("fierce,heavy", r"style 'fierce,heavy': give each style a weight, as fierce:0\.6,heavy:0\.4"),
+        ("fierce,heavy", r"style 'fierce,heavy': give each style a weight, such as fierce:0\.6,heavy:0\.4"),
         ("fierce:0.9,heavy:0.4", r"the weights sum to 1\.3; they may sum to 1 at most, and what is missing is neutral"),
         ("fierce:0,heavy:1", r"a weight must be a number above 0, at most 1, not '0'"),
         ("fierce:nan", r"a weight must be a number above 0, at most 1, not 'nan'"),

@@ -40,9 +40,9 @@ def test_nothing_changed(tmp_path: Path) -> None:
 def test_a_row_has_another_panel_a_new_one_and_one_that_is_gone(tmp_path: Path) -> None:
     found = changed(tmp_path, lambda text: text.replace("0110\n00M0\n0000\n0001", "0101\n0000\n1000\n0001"))
     assert [change.chart for change in found] == ["dance-single Hard 9"]
-    assert found[0].messages == ("rows: 1 new, 1 gone, 1 other",)
+    assert found[0].messages == ("1 row added, 1 removed, 1 changed",)
     assert [str(row) for row in found[0].rows] == [
-        "measure 1 beat 4: 0110 → 0101", "measure 1 beat 5: gone 00M0", "measure 1 beat 6: new 1000",
+        "measure 1 beat 4: 0110 → 0101", "measure 1 beat 5: removed 00M0", "measure 1 beat 6: new 1000",
     ]  # fmt: skip
 
 
@@ -66,7 +66,7 @@ def test_meters_and_charts(tmp_path: Path) -> None:
     lines = said(tmp_path, lambda text: text.replace(":Hard:9:", ":Challenge:9:").replace(":Easy:3:", ":Easy:4:"))
     assert lines == [
         "a/a.sm [dance-single Easy 4]: meter 3 → 4",
-        "a/a.sm [dance-single Hard 9]: is gone",
+        "a/a.sm [dance-single Hard 9]: was removed",
         "a/a.sm [dance-single Challenge 9]: is new: 6 rows",
     ]
 
@@ -78,7 +78,7 @@ def test_files_come_and_go_and_may_be_broken(tmp_path: Path) -> None:
     (tmp_path / "new" / "a" / "a.sm").write_bytes(b"\0\1\2")
     lines = list(change_lines(list(compare(of_path(tmp_path / "old"), of_path(tmp_path / "new"))), None))
     assert lines[0].startswith("a/a.sm: can no longer be read")
-    assert lines[1:] == ["b.sm: is new", "c.sm: is gone"]
+    assert lines[1:] == ["b.sm: is new", "c.sm: was removed"]
 
 
 def test_the_command_reports_it_and_cuts_it_short(tmp_path: Path) -> None:

@@ -90,7 +90,7 @@ def test_quietly_an_entry_is_made_without_a_word(
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (("--into-file",), "belongs to --background"),
+        (("--into-file",), "works only with --background"),
         (("--background", "--section", "0:2"), "--section cannot be used with --background"),
         (("--background", "--layout", "highway"), "without a highway"),
         (("--background", "--into-file", "-o", "FOLDER/film.mp4"), ".dancetutor.mp4"),

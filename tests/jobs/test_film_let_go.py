@@ -49,8 +49,8 @@ def test_the_notes_are_marked_and_light_nothing(film: PreparedFilm) -> None:
 
 def test_words_say_it_and_what_the_linter_finds_there(film: PreparedFilm) -> None:
     """Without --show-findings; what it finds in rows that can be played is for authors."""
-    (one,) = (one for one in film.plan.callouts if "no foot left" in one.text)
-    assert one.text == "no foot left (DT305 fast step) ×2" and one.tag == "no foot left ×2"
+    (one,) = (one for one in film.plan.callouts if "no free foot" in one.text)
+    assert one.text == "no free foot (DT305 fast step) ×2" and one.tag == "no free foot ×2"
     assert all(one.severity == "move" for one in film.plan.callouts)
 
 

@@ -18,7 +18,7 @@ from dancetutor_cli.run.trust import CACHE_VARIABLE
 SONG = "#TITLE:T;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:dance-single:C:Easy:3::\n1000\n0000\n0001\n0000\n;\n"
 EDITED = SONG.replace("0001", "0100")
 NO_CHANGE = ""
-ONE_ROW = "a/a.sm [dance-single Easy 3]: rows: 1 other\n  measure 0 beat 2: 0001 → 0100\n"
+ONE_ROW = "a/a.sm [dance-single Easy 3]: 1 row changed\n  measure 0 beat 2: 0001 → 0100\n"
 needs_git = pytest.mark.skipif(shutil.which("git") is None, reason="no git here")
 
 
@@ -76,7 +76,7 @@ class TestLastRun:
     def test_files_come_and_go(self, pack: Path) -> None:
         analyze(pack)
         (pack / "a" / "a.sm").rename(pack / "b.sm")
-        assert changes(pack, "last") == "a/a.sm: is gone\nb.sm: is new, or was not analyzed before\n"
+        assert changes(pack, "last") == "a/a.sm: was removed\nb.sm: is new, or was not analyzed before\n"
 
     def test_without_a_cache_nothing_is_kept(self, pack: Path) -> None:
         analyze(pack, "--no-cache")
@@ -126,7 +126,7 @@ class TestRevisions:
         assert not (versions / "x").exists()
 
     def test_without_a_repository_or_git(self, pack: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        with pytest.raises(UsageError, match="is in no git repository"):
+        with pytest.raises(UsageError, match="is not in a git repository"):
             snapshots.of_revision("HEAD", pack)
         monkeypatch.setenv("PATH", "")
         with pytest.raises(UsageError, match="install git"):
@@ -206,4 +206,4 @@ class TestMovedNotes:
     def test_all_but_one_note(self, moved: Path) -> None:
         moved.write_text(HELD.replace("1000\n", f"{MEASURE}0100\n"))
         said = changes(moved, "last")
-        assert "all notes" not in said and "rows: 2 new, 2 gone" in said
+        assert "all notes" not in said and "2 rows added, 2 removed" in said

@@ -74,7 +74,7 @@ def test_terms_are_what_charts_of_the_level_do_not_have(tmp_path: Path) -> None:
     assert told.meter == pytest.approx(sum(bill.values()))
     assert (told.low, told.high) == (pytest.approx(told.meter - 0.2), pytest.approx(told.meter + 0.3))
     assert told.span == f" on the DDR scale (80 % likely: {told.low:.2f} to {told.high:.2f})"
-    terms = "level 5.90, rhythm +0.20, timing tempo changes +0.18, timing stops +0.03"
+    terms = "base level 5.90, rhythm +0.20, timing tempo changes +0.18, timing stops +0.03"
     assert told.bill.startswith(f"6.31{told.span}: {terms}")
 
 

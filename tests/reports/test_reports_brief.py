@@ -62,7 +62,7 @@ def test_three_lines_of_one_kind_are_one() -> None:
     lines = run("--brief", SONG, "--select", "DT213").stdout.splitlines()
     (line,) = [line for line in lines if "DT213" in line]
     own = run(SONG / "two_left_feet.ssc", "--select", "DT213").stdout.count(" DT213 ")  # the .sm says the same
-    assert line.startswith(f"DT213 {own} times in 5 charts, first in measure ")
+    assert line.startswith(f"DT213 unsure-feet: {own} in 5 charts, first in measure ")
 
 
 def test_a_rule_many_times_in_a_chart_is_one_line(tmp_path: Path) -> None:

@@ -60,14 +60,14 @@ def test_a_run_over_a_pack_ends_with_its_page(pack: Path) -> None:
         page = text[text.index("pack My Pack & Co") :].splitlines()
         assert page[0] == "pack My Pack & Co: 6 songs, 11 charts"
         assert len(page) <= LINES + 1 and page[-1].startswith("6 files, 11 charts")
-        assert any("no dance-single Hard: lacks" in line for line in page)
-        assert any("no music: two" in line for line in page)
+        assert any("missing: dance-single Hard of lacks" in line for line in page)
+        assert any("missing: music of two" in line for line in page)
         assert any("Pack.ini: SyncOffset is 'OUTFOX'" in line for line in page)
 
 
 def test_labels_are_counted_by_meter(pack: Path) -> None:
     (line,) = [line for line in printed(pack, "--full").splitlines() if line.startswith("  dance-single: ")]
-    assert line.startswith("  dance-single: 11 charts, half of them have meter 3 to 6; they play like meter ")
+    assert line.startswith("  dance-single: 11 charts, middle half rated 3 to 6; 10 play like ITG ")
 
 
 def test_a_song_or_a_quiet_run_has_no_page(pack: Path) -> None:
@@ -129,8 +129,8 @@ def test_the_html_is_one_file_and_what_people_wrote_is_text(pack: Path, tmp_path
     assert "http://" not in text and "https://" not in text
     assert "default-src 'none'" in text
     assert text.count("<figure>") == 5
-    assert re.search(r"<th>scores like \(ddr\)</th>.*<td>\d+\.\d</td><td>\d+\.\d\d</td>", text)
-    for said in ("no dance-single Hard: lacks", "no music: two", "OUTFOX", "&lt;script&gt;"):
+    assert re.search(r"<th>to score on \(DDR scale\)</th>.*<td>\d+\.\d</td><td>\d+\.\d\d</td>", text)
+    for said in ("missing: dance-single Hard of lacks", "missing: music of two", "OUTFOX", "&lt;script&gt;"):
         assert said in text
 
 

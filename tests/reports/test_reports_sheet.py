@@ -84,7 +84,7 @@ def test_rows_whose_feet_are_unsure_say_how_sure_they_are() -> None:
     assert all(abs(float(e.get("y", "")) - sheet.layout.y(t)) < 12 for e, t in zip(told[1:], ticks, strict=True))
     bands = [e for e in elements(drawn, "rect") if e.get("fill-opacity") == "0.2"]
     assert [float(e.get("y", "")) + 7 for e in bands] == [pytest.approx(sheet.layout.y(t), abs=0.1) for t in ticks]
-    assert "the foot here is 41 % sure" in drawn
+    assert "41 % sure of the foot here" in drawn
 
 
 def test_text_of_the_file_cannot_break_out() -> None:

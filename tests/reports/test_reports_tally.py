@@ -60,5 +60,5 @@ def test_summary_counts() -> None:
 def test_a_folder_is_no_file(tmp_path: Path) -> None:
     tally = Tally()
     tally.add(replace(result(error="x"), path=str(tmp_path)))
-    assert tally.summary() == "0 files, 0 charts: no findings; no file to read in 1 folder"
+    assert tally.summary() == "0 files, 0 charts; no file to read in 1 folder"
     assert tally.exit_status == 2

@@ -180,7 +180,7 @@ def test_the_foot_and_the_hand_are_named() -> None:
 
 def test_a_note_that_is_let_go_is_reported() -> None:
     (one,) = called(moves((4.0, "unplayable")))
-    assert one.text == "no foot left"
+    assert one.text == "no free foot"
 
 
 def test_a_finding_for_a_passage_is_reported_of_all_its_rows() -> None:

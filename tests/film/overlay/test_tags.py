@@ -23,7 +23,7 @@ from dancetutor_cli.run.reading import config_names
 
 GIF = round(FORMATS["gif"].side)
 CALL = Callout(2.0, 4.0, "crossover", "move", 1.0, 2.0, "crossover")
-TAGS = ("crossover ×12", "footswitch", "full crossover ×2", "left foot again ×14", "no foot left",
+TAGS = ("crossover ×12", "footswitch", "full crossover ×2", "left foot again ×14", "no free foot",
         "heel on down-right, toe on centre ×3")  # fmt: skip
 COLUMNS = ["dance-single", "pump-single", "dance-solo", "pump-halfdouble", "dance-double", "pump-double"]
 
