@@ -43,7 +43,7 @@ def changes(pack: Path, other: str, *words: str) -> str:
     assert result.exception is None, result.exception
     assert result.stderr == "" and result.return_value == 0
     head, _, rest = result.stdout.partition("\n")
-    assert not head or head.startswith("changed since ")
+    assert head.startswith("changed since " if rest else "no changes since ")
     return rest
 
 
