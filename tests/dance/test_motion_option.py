@@ -53,7 +53,7 @@ def test_a_file_makes_her_stand_lower(tmp_path: Path) -> None:
     ("option", "text", "said"),
     [
         ("--motion", "jump:\n  hight: 1\n", ":2: unknown key 'hight' in 'jump'; choose apex_near"),
-        ("--motion", None, "cannot be read"),
+        ("--motion", None, "no such file or folder"),
         ("--gait", "slow: {}\n", "slow.period is missing"),
     ],
 )

@@ -58,7 +58,7 @@ def test_a_file_changes_only_what_it_names(tmp_path: Path) -> None:
         ("face: {ease: 0}", ":1: face.ease must be a number from 0.001 to 1000 seconds, not 0"),
         ("face: {smile_time: 0}", ":1: face.smile_time must be a number from 0.001 to 1000 seconds, not 0"),
         ("groove: {phrase_ease: 0}", ":1: groove.phrase_ease must be a number from 0.001 to 1000 seconds, not 0"),
-        ("step: {fast: 0.2}\nlegs: {}", ":2: unknown key 'legs' (did you mean layers?); choose step"),
+        ("step: {fast: 0.2}\nlegs: {}", ":2: unknown key 'legs' (did you mean layers?)"),
         ("step: 3", ":1: step must be a mapping"),
         ("step: [1, 2", ":"),
     ],
@@ -72,7 +72,7 @@ def test_wrong_files_are_refused_with_the_line(text: str, said: str, tmp_path: P
 
 
 def test_a_file_that_is_not_there_is_reported(tmp_path: Path) -> None:
-    with pytest.raises(FileError, match="cannot be read"):
+    with pytest.raises(FileError, match="no such file or folder"):
         load_settings(tmp_path / "none.yaml")
 
 

@@ -91,7 +91,7 @@ def test_a_wrong_file_is_named_with_its_line(tmp_path: Path, old: str, new: str,
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
-    with pytest.raises(FileError, match="cannot be read"):
+    with pytest.raises(FileError, match="no such file or folder"):
         load_pads(tmp_path / "none.yaml")
 
 
