@@ -75,7 +75,9 @@ def choice(word: str, known: Iterable[str], *others: str) -> str:
     """
     names = list(known)
     near = did_you_mean(word, names)
-    if not names or (near and len(names) > _MANY):
+    if not names:
+        return "; no name is allowed here"
+    if near and len(names) > _MANY:
         return near
     return f"{near}; choose {', '.join([*names, *(f'or {other}' for other in others)])}"
 

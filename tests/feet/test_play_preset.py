@@ -77,7 +77,7 @@ def test_a_preset_of_ones_own_extends_another(tmp_path: Path) -> None:
         (
             "extends: thesis\nweights:\n  spinn: 5\n",
             3,
-            "unknown key 'spinn' in 'weights' (did you mean spin?); there are: crossover, doubl",
+            "unknown key 'spinn' in 'weights' (did you mean spin?); choose crossover, doubl",
         ),
         (
             "extends: thesis\nwheights: {}\n",
@@ -85,7 +85,7 @@ def test_a_preset_of_ones_own_extends_another(tmp_path: Path) -> None:
             "unknown key 'wheights' (did you mean weights?); choose extends, model",
         ),
         ("extends: thesis\nswitches:\n  brackets: true\n", 3, "choose allow-doublestep"),
-        ("extends: thesis\ncurves:\n  jack: {100: 1}\n", 3, "choose none"),
+        ("extends: thesis\ncurves:\n  jack: {100: 1}\n", 3, "no name is allowed here"),
         ("extends: itg\ncurves:\n  jack: 100\n", 3, "mapping of milliseconds to costs"),
         ("extends: itg\ncurves:\n  jack: {-1: 100}\n", 3, "must be a whole number from 0 to 2047 milliseconds"),
         ("extends: itg\ncurves:\n  jack: {100: 0.5}\n", 3, "curves.jack.100 must be a whole number from 0 to 1000000"),

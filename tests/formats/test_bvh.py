@@ -151,7 +151,7 @@ GOOD = HEAD + "0 90 0 0 0 0 0 0 0\n0 90 0 0 0 0 90 0 0\n"
         (GOOD.replace("}\nMOTION", "MOTION"), "before the hierarchy is closed"),
         (GOOD.replace("0 90 0 0 0 0 90 0 0", "0 90 0 0 0 0 inf 0 0"), "not numbers"),
         ("HIERARCHY\n" + "JOINT a\n", "not allowed"),
-        ("}" * 3 + "\n", "not a word"),
+        ("}" * 3 + "\n", "not a BVH file"),
     ],
 )
 def test_broken_files_say_what_is_wrong(tmp_path: Path, text: str, says: str) -> None:
