@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.solver.engine import Engine, engine_for
-from dancetutor_cli.feet.solver.store import ACTION, EVENTS, FACTS, FACTS_KNOWN, LIMBS, NEXT, TERMS_SHIFT
+from dancetutor_cli.feet.solver.store import FACTS, FACTS_KNOWN, LIMB_CODES, NEXT, TERMS_SHIFT, WIDE_ACTION, WIDE_EVENTS
 from dancetutor_cli.feet.solver.tables import DISTANCE_UNIT
 from dancetutor_cli.feet.solver.vocabulary import MODELS
 
@@ -153,10 +153,10 @@ def book(labels: list[Labelled], preset: Preset) -> Book:
         pad,
         lattices,
         t.terms[:, : len(WEIGHTS)].copy(),
-        (t.wide[:, EVENTS] >> TERMS_SHIFT).copy(),
+        (t.wide[:, WIDE_EVENTS] >> TERMS_SHIFT).copy(),
         t.move[:, FACTS].astype(np.int64),
         t.timed_key[: t.counts[FACTS_KNOWN]].copy(),
-        (t.wide[:, ACTION] & LIMBS).copy(),
+        (t.wide[:, WIDE_ACTION] & LIMB_CODES).copy(),
     )
 
 

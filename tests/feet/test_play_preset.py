@@ -11,6 +11,7 @@ from play_rows import pad_of, rows_of
 
 from dancetutor_cli.feet.play import roll_gap
 from dancetutor_cli.feet.preset import DEFAULT_PRESET, default_preset, load_preset, preset_names
+from dancetutor_cli.feet.solver import itg_costs, thesis_moves
 from dancetutor_cli.feet.solver.engine import cost_at
 from dancetutor_cli.feet.solver.solve import solve
 from dancetutor_cli.feet.solver.vocabulary import MODELS
@@ -184,3 +185,14 @@ def test_confidence_follows_the_margin() -> None:
         assert margin < 0 or known[below] - 0.001 <= sure <= known[above]
     assert solve(rows, pad, preset, margins=False).confidence is None
     assert solve(rows, pad, load_preset("thesis")).confidence is None
+
+
+def test_kernels_name_costs_in_the_order_of_the_vocabulary() -> None:
+    """They unpack numbers by position: two names exchanged would charge the wrong cost."""
+    for module, model in ((itg_costs, "itg"), (thesis_moves, "thesis")):
+        for number, name in enumerate(MODELS[model].weights):
+            assert getattr(module, name.replace("-", "_").upper()) == number, name
+    *curves, last = MODELS["itg"].curves
+    assert last == "distance"
+    for number, name in enumerate(curves):
+        assert getattr(itg_costs, "_F_" + name.replace("-", "_").upper()) == 1 << itg_costs._DISTANCE_BITS + number

@@ -17,7 +17,7 @@ from dancetutor_cli.feet.preset import Preset, load_preset, preset_names
 from dancetutor_cli.feet.solver.alternatives import alternatives
 from dancetutor_cli.feet.solver.engine import Engine, _arrays, _nodes, engine_for
 from dancetutor_cli.feet.solver.solve import solve
-from dancetutor_cli.feet.solver.store import ACTION, COST, FACTS, FIRST, LIMBS, MOVES, NEXT, TIMES
+from dancetutor_cli.feet.solver.store import COST, FACTS, FIRST, LIMB_CODES, MOVES, NEXT, TIMES, WIDE_ACTION
 from dancetutor_cli.feet.solver.tables import moves
 
 PRESETS = {name: load_preset(name) for name in preset_names()}
@@ -37,7 +37,7 @@ def every_way(rows: Rows, pad: Pad, preset: Preset) -> Ways:
                 for move in layers.moves(row, state):
                     time = t.timed_row[layers.elapsed[row]]
                     price = int(t.move[move, COST]) + int(t.timed_cost[time, t.move[move, FACTS]]) - 1
-                    reached = following[(*limbs, int(t.wide[move, ACTION]) & LIMBS)]
+                    reached = following[(*limbs, int(t.wide[move, WIDE_ACTION]) & LIMB_CODES)]
                     to = int(t.move[move, NEXT])
                     reached[to] = min(cost + price, reached.get(to, cost + price))
         ways = following

@@ -17,7 +17,7 @@ from dancetutor_cli.feet.play import Play, Rows, StepKind
 from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.solver.engine import Engine, Layers, engine_for
 from dancetutor_cli.feet.solver.solve import forced_limbs, play_of
-from dancetutor_cli.feet.solver.store import ACTION, COST, FACTS, LIMBS, NEXT
+from dancetutor_cli.feet.solver.store import COST, FACTS, LIMB_CODES, NEXT, WIDE_ACTION
 
 # The next best plays: the cheapest ways to step the rows that differ in at least one limb, and what decides.
 #
@@ -77,7 +77,11 @@ class _Ways:
         self._layers = layers
         t = engine.tables
         self._next, self._cost, self._facts = (t.move[:, column].tolist() for column in (NEXT, COST, FACTS))
-        self._action, self._time, self._time_row = (t.wide[:, ACTION] & LIMBS).tolist(), t.timed_cost, t.timed_row
+        self._action, self._time, self._time_row = (
+            (t.wide[:, WIDE_ACTION] & LIMB_CODES).tolist(),
+            t.timed_cost,
+            t.timed_row,
+        )
         self._known: dict[tuple[int, int, int], list[tuple[int, int]]] = {}
         self._rest = self._cheapest_rest()
 

@@ -19,7 +19,7 @@ from dancetutor_cli.feet.solver.solvers import EXPLAIN, solve_itg, solve_thesis
 from dancetutor_cli.feet.solver.store import RowArrays, RowStates, SolverPath, empty_tables, grown
 from dancetutor_cli.feet.solver.tables import (
     MOST_MOVES,
-    UNPLAYED,
+    UNPLAYED_CODE,
     Making,
     Rules,
     geometry,
@@ -116,10 +116,10 @@ class Engine:
         return self._run_to_end(0, arrays, nodes, found)
 
     def cost_and_events(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> tuple[int, NDArray[np.int64]]:
-        """What the cheapest way through rows costs, and what happens in each row, (n,) bits of `EVENTS`."""
+        """What the cheapest way through rows costs, and what happens in each row, (n,) bits of `vocabulary.EVENTS`."""
         arrays, path = _arrays(rows, forced), self._empty_path(*rows.steps.shape, margins=False)
         nodes = self._run(arrays, path)
-        return int(nodes.row[len(rows), store.BASE]), self.tables.wide[path.move, store.EVENTS] & store.EVENT_BITS
+        return int(nodes.row[len(rows), store.BASE]), self.tables.wide[path.move, store.WIDE_EVENTS] & store.EVENT_BITS
 
     def layers(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> Layers:
         """Every state that the rows can end in, for a look at other ways than the cheapest."""
@@ -134,11 +134,11 @@ class Engine:
     def path_along(self, path: list[int]) -> SolverPath:
         """A way through rows, given by its moves; without margins."""
         move = np.array(path, dtype=np.int32)
-        columns, action = np.arange(len(self.pad)), self.tables.wide[move, store.ACTION][:, None]
+        columns, action = np.arange(len(self.pad)), self.tables.wide[move, store.WIDE_ACTION][:, None]
         code, nothing = action >> 3 * columns & 7, np.empty(0, dtype=np.int64)
         return SolverPath(
             move,
-            np.where(code == UNPLAYED, Limb.UNPLAYED, code - 1).astype(np.int8),
+            np.where(code == UNPLAYED_CODE, Limb.UNPLAYED, code - 1).astype(np.int8),
             (action >> store.PART_SHIFT + 2 * columns & 3).astype(np.uint8),
             nothing,
             nothing.astype(np.uint8),

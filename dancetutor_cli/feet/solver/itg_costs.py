@@ -12,8 +12,7 @@ import math
 from dancetutor_cli.feet.solver.compiled import inner_kernel
 from dancetutor_cli.feet.solver.state import LAST, LEFT_AT, LEFT_HELD, LEFT_LIFTED, RIGHT_AT, SIDE, turn
 from dancetutor_cli.feet.solver.tables import DISTANCE_UNIT, EPSILON, LEFT, MIDDLE, RIGHT
-from dancetutor_cli.feet.solver.vocabulary import EVENTS as NAMES
-from dancetutor_cli.feet.solver.vocabulary import MODELS
+from dancetutor_cli.feet.solver.vocabulary import EVENTS, MODELS
 
 (
     MARKED_DOUBLESTEP, MARKED_FOOTSWITCH, SIDESWITCH, JUMP_FOOTSWITCH, HOLDSWITCH, BRACKET_IN_FRONT, BRACKET_IN_BACK,
@@ -21,7 +20,7 @@ from dancetutor_cli.feet.solver.vocabulary import MODELS
     FACING_ASIDE, STRETCH, LEAP, MINE, LIFTED, RELEASE, HAND, HAND_HOLD, HAND_BEHIND,
     UNPLAYABLE, SPLIT_IN_FRONT, SPLIT_IN_BACK, SPLIT_OUT_BACK, NEAR_HOLDSWITCH,
 ) = range(len(MODELS["itg"].weights))  # fmt: skip
-_BIT = {name: 1 << bit for bit, name in enumerate(NAMES)}
+_BIT = {name: 1 << bit for bit, name in enumerate(EVENTS)}
 (
     EVENT_HALF, EVENT_FULL, EVENT_FRONT, EVENT_BACK, EVENT_SPIN, EVENT_DOUBLESTEP, EVENT_FORCED, EVENT_JUMP_FOOTSWITCH,
     EVENT_HAND, EVENT_JUMP, EVENT_UNPLAYABLE, EVENT_BRACKET, EVENT_HOLDSWITCH,
@@ -40,10 +39,11 @@ _SWITCH = tuple(  # by the arrow of the panel
 _DISTANCE_BITS = 10
 _WEIGHTS, _CURVES = len(MODELS["itg"].weights), len(MODELS["itg"].curves)
 (
-    _F_DOUBLESTEP, _F_NEAR, _F_RELEASED, _F_FREED, _F_EARLY_FREED, _F_FORCED, _F_GROWN, _F_JACK, _F_SWITCH, _F_BRACKET,
-    _F_HELD_BRACKET, _F_BRACKET_JUMP, _F_JUMP, _F_AFTER_JUMP, _F_TELEPORT, _F_CROSSOVER, _F_CROSSOVER_START,
-    _F_FREED_STEP, _F_MIDDLE_SWITCH, _F_RELEASED_SWITCH, _F_SHARED_JACK, _F_JUMP_MOVE, _F_JUMP_EXCHANGE, _F_OTHER_SPLIT,
-    _F_BRACKET_AGAIN, _F_HELD_AGAIN, _F_HELD_TAP, _F_JUMP_AGAIN,
+    _F_DOUBLESTEP, _F_NEAR_DOUBLESTEP, _F_RELEASED_DOUBLESTEP, _F_FREED_DOUBLESTEP, _F_EARLY_FREED_DOUBLESTEP,
+    _F_FORCED_DOUBLESTEP, _F_GROWN_BRACKET, _F_JACK, _F_FOOTSWITCH, _F_BRACKET, _F_HELD_BRACKET, _F_BRACKET_JUMP,
+    _F_JUMP, _F_AFTER_JUMP, _F_TELEPORT, _F_CROSSOVER, _F_CROSSOVER_START, _F_FREED_STEP, _F_MIDDLE_SWITCH,
+    _F_RELEASED_SWITCH, _F_SHARED_JACK, _F_JUMP_MOVE, _F_JUMP_EXCHANGE, _F_OTHER_SPLIT, _F_BRACKET_AGAIN, _F_HELD_AGAIN,
+    _F_HELD_TAP, _F_JUMP_AGAIN,
 ) = (1 << _DISTANCE_BITS + i for i in range(_CURVES - 1))  # fmt: skip
 _ANKLE = 30  # 1/20 panels: a foot that goes farther than from corner to corner leaps
 _WIDE = 40  # 1/20 panels: feet farther apart than this are stretched
@@ -165,7 +165,7 @@ def _charge_step(before, foot, pressed, ended, terms, rules):  # type: ignore[no
     if not before[LAST] and pressed & ~stands:
         facts |= _F_AFTER_JUMP
     if pressed & other and not pressed & reserved_panels(before, 1 - foot, g.panels):
-        kind = _F_SWITCH
+        kind = _F_FOOTSWITCH
         for panel in range(len(g.arrow)):  # a bracket may take over two
             if pressed & other & 1 << panel:
                 kind = _F_MIDDLE_SWITCH if g.arrow[panel] == MIDDLE else kind
@@ -191,19 +191,19 @@ def _charge_doublestep(before, foot, pressed, ended, terms, rules):  # type: ign
     if before[LEFT_HELD + foot]:
         return _F_HELD_AGAIN, EVENT_FORCED  # a bracket on what it holds
     if before[LEFT_HELD + 1 - foot]:
-        return _F_FORCED, EVENT_FORCED
+        return _F_FORCED_DOUBLESTEP, EVENT_FORCED
     if ended[0] & other:
-        return _F_RELEASED, EVENT_FORCED
+        return _F_RELEASED_DOUBLESTEP, EVENT_FORCED
     if ended[1] & other:
-        return _F_FREED, EVENT_FORCED
+        return _F_FREED_DOUBLESTEP, EVENT_FORCED
     if ended[2] & other:
-        return _F_EARLY_FREED, EVENT_DOUBLESTEP
+        return _F_EARLY_FREED_DOUBLESTEP, EVENT_DOUBLESTEP
     if before[LEFT_LIFTED + foot]:
         terms[MARKED_DOUBLESTEP] = w[MARKED_DOUBLESTEP]
         return 0, EVENT_DOUBLESTEP
     if pressed & stands:
-        return _F_GROWN, EVENT_DOUBLESTEP
-    return _F_NEAR if g.near[before[foot]] & pressed else _F_DOUBLESTEP, EVENT_DOUBLESTEP
+        return _F_GROWN_BRACKET, EVENT_DOUBLESTEP
+    return _F_NEAR_DOUBLESTEP if g.near[before[foot]] & pressed else _F_DOUBLESTEP, EVENT_DOUBLESTEP
 
 
 @inner_kernel(inline="always")

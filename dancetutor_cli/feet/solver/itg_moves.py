@@ -28,22 +28,22 @@ from dancetutor_cli.feet.solver.itg_costs import (
 )
 from dancetutor_cli.feet.solver.state import LAST, LEFT_AT, LEFT_HELD, LEFT_HOLDS, NUMBERS, RIGHT_AT, pack, unpack
 from dancetutor_cli.feet.solver.tables import (
-    ACTION,
     COLUMN_BITS,
     EARLIER,
     EPSILON,
-    EVENTS,
     FRESH,
     HOLDS,
-    KEY,
     MINES,
-    PART,
+    MOVE_ACTION,
+    MOVE_EVENTS,
+    MOVE_KEY,
+    MOVE_PART,
+    MOVE_TIMED,
     RELEASED,
     ROLL_TAPS,
     ROLLS,
     TAPS,
-    TIMED,
-    UNPLAYED,
+    UNPLAYED_CODE,
 )
 
 _MASK = (1 << COLUMN_BITS) - 1
@@ -160,14 +160,14 @@ def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-d
     for p in range(g.place.shape[0]):
         if not steps >> p & 1:
             continue
-        limb = UNPLAYED
+        limb = UNPLAYED_CODE
         for j in range(4):
             if pressed[j] >> p & 1:
                 limb = j + 1
         action |= limb << 3 * p
         if limb <= 2 and g.panels[s[limb - 1], limb - 1, 1] >= 0:
             part |= (1 if g.panels[s[limb - 1], limb - 1, 0] == p else 2) << 2 * p
-        if limb == UNPLAYED:
+        if limb == UNPLAYED_CODE:
             terms[UNPLAYABLE] += w[UNPLAYABLE]
             events |= EVENT_UNPLAYABLE
         elif limb > 2:
@@ -178,7 +178,8 @@ def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-d
         if s[LEFT_HOLDS + hand]:
             terms[HAND_HOLD] += w[HAND_HOLD]
     wide = out.wide[m]
-    wide[KEY], wide[ACTION], wide[PART], wide[TIMED], wide[EVENTS] = pack(s), action, part, facts, events
+    wide[MOVE_KEY], wide[MOVE_ACTION], wide[MOVE_PART] = pack(s), action, part
+    wide[MOVE_TIMED], wide[MOVE_EVENTS] = facts, events
     return m + 1
 
 

@@ -26,7 +26,6 @@ from dancetutor_cli.feet.solver.itg_costs import charge_time
 from dancetutor_cli.feet.solver.itg_moves import start_itg
 from dancetutor_cli.feet.solver.state import PLACE_BITS, name_neighbours
 from dancetutor_cli.feet.solver.store import (
-    ACTION,
     BASE,
     COST_SHIFT,
     DONE,
@@ -34,7 +33,6 @@ from dancetutor_cli.feet.solver.store import (
     EDGE_COUNT,
     EDGE_MASK,
     EVENT_BITS,
-    EVENTS,
     FACTS,
     FACTS_KNOWN,
     FACTS_MASK,
@@ -43,7 +41,7 @@ from dancetutor_cli.feet.solver.store import (
     FIRST_EDGE,
     LAST_BIT,
     LAYER_SIZE,
-    LIMBS,
+    LIMB_CODES,
     MORE_NODES,
     MORE_TIMED,
     MOVES,
@@ -52,17 +50,20 @@ from dancetutor_cli.feet.solver.store import (
     PATTERNS,
     PLACE_MASK,
     START,
+    STATES,
     TERMS_SHIFT,
     TIMES,
     TO_LAYER,
     UNEXPLORED,
     UNKNOWN,
+    WIDE_ACTION,
+    WIDE_EVENTS,
     find,
+    number_of,
     number_of_layer,
-    number_of_state,
     slot_of,
 )
-from dancetutor_cli.feet.solver.tables import ROLLS, UNPLAYED
+from dancetutor_cli.feet.solver.tables import ROLLS, UNPLAYED_CODE
 from dancetutor_cli.feet.solver.thesis_moves import start_thesis
 from dancetutor_cli.feet.solver.vocabulary import MOST_MS  # fmt: skip
 
@@ -264,10 +265,10 @@ def trace(t, nodes, found):  # type: ignore[no-untyped-def]
         e = node[at] & EDGE_MASK
         at = first[r, FIRST] + (edge[e] & PLACE_MASK)
         path[r] = t.edge_move[e]
-        action = wide[path[r], ACTION]
+        action = wide[path[r], WIDE_ACTION]
         for p in range(c):
             code = action >> 3 * p & 7
-            limb[r, p] = _LEFT_OVER if code == UNPLAYED else code - 1
+            limb[r, p] = _LEFT_OVER if code == UNPLAYED_CODE else code - 1
             part[r, p] = action >> PART_SHIFT + 2 * p & 3
 
 
@@ -279,8 +280,8 @@ def explain_path(t, rows, rules, found):  # type: ignore[no-untyped-def]
     panels, angle = rules.geometry.panels, rules.geometry.angle
     for r in range(len(path)):
         move = path[r]
-        number = wide[move, EVENTS] >> TERMS_SHIFT
-        events[r] = wide[move, EVENTS] & EVENT_BITS
+        number = wide[move, WIDE_EVENTS] >> TERMS_SHIFT
+        events[r] = wide[move, WIDE_EVENTS] & EVENT_BITS
         for term in range(cost.shape[1]):
             cost[r, term] = terms[number, term] if term < terms.shape[1] else 0
         if moves[move, FACTS]:
@@ -317,7 +318,7 @@ def margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
         after[v] = same_after[v] = 0
     for r in range(n - 1, -1, -1):
         low, base, time = first[r, FIRST], first[r, BASE], t.timed_row[elapsed[r]]
-        ours, other, resolved = wide[path[r], ACTION] & LIMBS, _NEVER, _NEVER
+        ours, other, resolved = wide[path[r], WIDE_ACTION] & LIMB_CODES, _NEVER, _NEVER
         for v in range(first[r + 1, FIRST] - low):
             before[v] = same_before[v] = _NEVER
         start = np.int64(transition[chosen[r], FIRST_EDGE])
@@ -345,7 +346,7 @@ def begin(rows, t, nodes, rules):  # type: ignore[no-untyped-def]
     """Get rows ready for the programme; False if the tables have no room for as many patterns."""
     if t.counts[MOVES] == 0:  # move 0, state 0 and layer 0 are the start of every play
         key = start_thesis(rules.geometry) if rules.model == 0 else start_itg(rules.home)
-        t.move[0, NEXT] = number_of_state(key, t.state_key, t.state_hash, t.counts)
+        t.move[0, NEXT] = number_of(key, t.state_key, t.state_hash, t.counts, STATES)
         nodes.node[0] = START
         number_of_layer(nodes.node, 1, t)
         t.counts[MOVES] = t.counts[FACTS_KNOWN] = 1  # and facts 0 are none

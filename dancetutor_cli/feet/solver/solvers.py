@@ -1,4 +1,7 @@
-"""The solver's kernels, one for each model, and the states that rows can end in, met without costs."""
+"""The solver's kernels, one for each model, so that a command compiles and loads only the rules it needs.
+
+States that rows can end in are met without costs; the moves between them are kept for the dynamic programme.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from dancetutor_cli.feet.solver import tables as columns
 from dancetutor_cli.feet.solver.compiled import inner_kernel, kernel
 from dancetutor_cli.feet.solver.itg_moves import expand_itg
 from dancetutor_cli.feet.solver.kernel import advance, begin, explain_path, margins, trace, wait
 from dancetutor_cli.feet.solver.state import PLACE_BITS
 from dancetutor_cli.feet.solver.store import (
-    ACTION,
     COST,
     DONE,
     EDGE_COST_SHIFT,
@@ -26,7 +27,6 @@ from dancetutor_cli.feet.solver.store import (
     EDIT_OF,
     EDIT_ROW,
     EDIT_STEP,
-    EVENTS,
     FACTS,
     FACTS_KNOWN,
     FACTS_SHIFT,
@@ -64,24 +64,20 @@ from dancetutor_cli.feet.solver.store import (
     TRIED,
     UNEXPANDED,
     UNEXPLORED,
+    WIDE_ACTION,
+    WIDE_EVENTS,
     find,
-    number_of_facts,
+    number_of,
     number_of_layer,
-    number_of_state,
     number_of_terms,
-    slot_of,
+    slot_of_pair,
 )
-from dancetutor_cli.feet.solver.tables import MOST_MOVES
+from dancetutor_cli.feet.solver.tables import MOST_MOVES, MOVE_ACTION, MOVE_EVENTS, MOVE_KEY, MOVE_PART, MOVE_TIMED
 from dancetutor_cli.feet.solver.thesis_moves import expand_thesis
-from dancetutor_cli.feet.solver.vocabulary import EVENTS as NAMES
-
-# Meets the states that rows can end in, without costs, and keeps the moves between them for the dynamic programme.
-#
-# `solvers` has a kernel for each model, so that a command compiles and loads only the rules it needs.
+from dancetutor_cli.feet.solver.vocabulary import EVENTS
 
 _RANK_SHIFT = 31  # of a state's rank in its layer; its number stands below
 _PLACE = (1 << PLACE_BITS) - 1
-_KEY, _ACTION, _PART, _TIMED, _EVENTS = columns.KEY, columns.ACTION, columns.PART, columns.TIMED, columns.EVENTS
 
 
 @inner_kernel(inline="always")
@@ -93,15 +89,16 @@ def _keep(count, out, t):  # type: ignore[no-untyped-def]
     first = counts[MOVES]
     for i in range(count):
         move = first + i
-        moves[move, NEXT] = number_of_state(given[i, _KEY], keys, numbers, counts)
-        moves[move, FACTS] = number_of_facts(given[i, _TIMED], facts, t.timed_hash, counts)
-        wide[move, ACTION] = given[i, _ACTION] | given[i, _PART] << PART_SHIFT
+        moves[move, NEXT] = number_of(given[i, MOVE_KEY], keys, numbers, counts, STATES)
+        timed = given[i, MOVE_TIMED]
+        moves[move, FACTS] = number_of(timed, facts, t.timed_hash, counts, FACTS_KNOWN) if timed else 0
+        wide[move, WIDE_ACTION] = given[i, MOVE_ACTION] | given[i, MOVE_PART] << PART_SHIFT
         number = number_of_terms(given_terms[i], terms, terms_hash, counts)
-        wide[move, EVENTS] = given[i, _EVENTS] | number << TERMS_SHIFT
+        wide[move, WIDE_EVENTS] = given[i, MOVE_EVENTS] | number << TERMS_SHIFT
         cost = 0
         for term in range(given_terms.shape[1]):
             cost += given_terms[i, term]
-        moves[move, COST], moves[move, MOVE_LIMBS] = cost, given[i, _ACTION]
+        moves[move, COST], moves[move, MOVE_LIMBS] = cost, given[i, MOVE_ACTION]
     counts[MOVES] += count
     return first << 16 | count
 
@@ -121,15 +118,6 @@ def _room(t):  # type: ignore[no-untyped-def]
     if counts[TERMS_KNOWN] + MOST_MOVES > len(t.terms):
         return MORE_TERMS
     return DONE
-
-
-@inner_kernel
-def _slot_of_pair(key, pairs):  # type: ignore[no-untyped-def]
-    """Where a pair stands in its table, or would."""
-    at = slot_of(key, len(pairs))
-    while pairs[at, 0] >= 0 and pairs[at, 0] != key:
-        at = (at + 1) & (len(pairs) - 1)
-    return at
 
 
 @inner_kernel
@@ -233,7 +221,7 @@ def explorer(rules: Any) -> Any:
             if size > len(packed):
                 return MORE_SCRATCH
             for i in range(size):  # a short loop, so that the processor waits for many states' pairs at once
-                packed[i] = pairs[_slot_of_pair(np.int64(pattern[r]) << 32 | states[first + i], pairs), 1]
+                packed[i] = pairs[slot_of_pair(np.int64(pattern[r]) << 32 | states[first + i], pairs), 1]
                 known &= packed[i] != UNEXPANDED
             for i in range(0 if known else size):
                 if packed[i] != UNEXPANDED:
@@ -242,7 +230,7 @@ def explorer(rules: Any) -> Any:
                 if wanted != DONE:
                     return wanted
                 key = np.int64(pattern[r]) << 32 | states[first + i]
-                at = _slot_of_pair(key, pairs)
+                at = slot_of_pair(key, pairs)
                 word, more = t.pattern[pattern[r], 0], t.pattern[pattern[r], 1]
                 pairs[at, 0] = key
                 pairs[at, 1] = packed[i] = _keep(expand(keys[states[first + i]], word, more, rules, out), out, t)
@@ -272,7 +260,7 @@ def explorer(rules: Any) -> Any:
 # The solver's kernels, one for each model: each finds the cheapest way through rows, and what it needs for that.
 
 EXPLAIN = -1  # instead of a row to start from
-DOUBLESTEP = 1 << NAMES.index("doublestep")
+DOUBLESTEP = 1 << EVENTS.index("doublestep")
 explore: Any = None  # globals of each model's own; see `_way_finder` and `_solver`
 find_way: Any = None
 
@@ -327,7 +315,7 @@ def _solver(name: str, rules_of_model: Any) -> Any:
                 _exchange(rows, edit)
                 _, wanted = find_way(rows, np.int64(0), t, nodes, making, found)
                 _exchange(rows, edit)
-                if wanted != DONE or not t.wide[found.move[edit[EDIT_OF]], EVENTS] & DOUBLESTEP:
+                if wanted != DONE or not t.wide[found.move[edit[EDIT_OF]], WIDE_EVENTS] & DOUBLESTEP:
                     return number, wanted
             return len(found.edit), DONE
         if start == EXPLAIN:

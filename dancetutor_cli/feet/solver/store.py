@@ -1,4 +1,4 @@
-"""Where the solver keeps what it has met, by number: states, row patterns, moves, layers, nodes; room for more."""
+"""Where the solver keeps what it has met, by number: states, row patterns, moves, layers, nodes. Kernel code."""
 
 from __future__ import annotations
 
@@ -11,8 +11,6 @@ from dancetutor_cli.feet.solver.compiled import inner_kernel, kernel
 from dancetutor_cli.feet.solver.tables import MOST_MOVES
 from dancetutor_cli.feet.solver.vocabulary import MOST_MS as MOST_MS
 
-# Where the solver keeps what it has met: states, row patterns, moves and layers by number, and nodes. Kernel code.
-#
 # A layer is all states that a row can end in. Which they are depends only on the layer before and on the row's pattern,
 # so charts share layers, and what leads from one to the next: a transition, of one edge for each state and move.
 
@@ -22,7 +20,7 @@ from dancetutor_cli.feet.solver.vocabulary import MOST_MS as MOST_MS
     TIMES,
 ) = range(12)  # fmt: skip
 NEXT, COST, FACTS, MOVE_LIMBS = range(4)  # columns of `Tables.move`
-ACTION, EVENTS = range(2)  # columns of `Tables.wide`
+WIDE_ACTION, WIDE_EVENTS = range(2)  # columns of `Tables.wide`
 LAYER_FIRST, LAYER_SIZE = range(2)  # columns of `Tables.layer`
 TO_LAYER, FIRST_EDGE, EDGE_COUNT = range(3)  # columns of `Tables.transition`
 MET_IN, MET_PLACE = range(2)  # columns of `Tables.met`
@@ -44,10 +42,11 @@ START = 0  # number of the layer and the state before the first row
 ) = range(15)  # fmt: skip
 UNEXPANDED = -1  # in `Tables.pair`, where no pair stands
 UNKNOWN = 0  # in `Tables.timed_cost`, so that most of it is never touched
-PART_SHIFT = 32  # in `ACTION`: 3 bits for each column below, 2 bits for each column from here on
-LIMBS = (1 << PART_SHIFT) - 1
-TERMS_SHIFT = 32  # in `EVENTS`: bits of events below, number of the costs by term from here on
+PART_SHIFT = 32  # in `WIDE_ACTION`: 3 bits for each column below, 2 bits for each column from here on
+LIMB_CODES = (1 << PART_SHIFT) - 1
+TERMS_SHIFT = 32  # in `WIDE_EVENTS`: bits of events below, number of the costs by term from here on
 EVENT_BITS = (1 << TERMS_SHIFT) - 1
+_FIRST_FACTOR, _NEXT_FACTOR = 1000003, 2097593  # of the costs by term, which they mix into one number
 GOLDEN = 0x9E3779B97F4A7C15  # spreads numbers over a hash table
 
 
@@ -142,7 +141,8 @@ class SolverPath(NamedTuple):
     margin : int64, -1 no other way; ambiguity : uint8, see `Play`; (n,), or of length 0 if nobody wants to know
     cost : int32 (n + 1, t), of each row by term; the last is scratch, and the only one where nobody wants to know
     edit : int64 (k, 6), see `EDIT_ROW`; none but to try what the rows are without something
-    events : int32 (n,), bits of `EVENTS`; feet : int16 (n, 2), facing : float64 (n,), see `Play`; written with the cost
+    events : int32 (n,), bits of `vocabulary.EVENTS`; feet : int16 (n, 2), facing : float64 (n,), see `Play`; all three
+        are written with the cost
     """
 
     move: NDArray[np.int32]
@@ -175,44 +175,33 @@ def find(key, keys, numbers):  # type: ignore[no-untyped-def]
 
 
 @inner_kernel
-def number_of_state(key, keys, numbers, counts):  # type: ignore[no-untyped-def]
-    """Number of a packed state; a new one is entered."""
-    at = slot_of(key, len(numbers))
-    while numbers[at] >= 0:
-        if keys[numbers[at]] == key:
-            return np.int64(numbers[at])
-        at = (at + 1) & (len(numbers) - 1)
-    number = counts[STATES]
-    counts[STATES] += 1
-    numbers[at] = number
-    keys[number] = key
+def number_of(key, keys, numbers, counts, kind):  # type: ignore[no-untyped-def]
+    """Number of a key; a new one is entered. kind : place in `counts`"""
+    number = find(key, keys, numbers)
+    if number < 0:
+        at, number = ~number, np.int64(counts[kind])
+        counts[kind] += 1
+        numbers[at] = number
+        keys[number] = key
     return number
 
 
 @inner_kernel
-def number_of_facts(facts, known, numbers, counts):  # type: ignore[no-untyped-def]
-    """Number of packed facts about time; new ones are entered. Facts 0 are number 0."""
-    if facts == 0:
-        return np.int64(0)
-    at = slot_of(facts, len(numbers))
-    while numbers[at] >= 0:
-        if known[numbers[at]] == facts:
-            return np.int64(numbers[at])
-        at = (at + 1) & (len(numbers) - 1)
-    number = counts[FACTS_KNOWN]
-    counts[FACTS_KNOWN] += 1
-    numbers[at] = number
-    known[number] = facts
-    return number
+def slot_of_pair(key, pairs):  # type: ignore[no-untyped-def]
+    """Where a pair stands in its table, or would."""
+    at = slot_of(key, len(pairs))
+    while pairs[at, 0] >= 0 and pairs[at, 0] != key:
+        at = (at + 1) & (len(pairs) - 1)
+    return at
 
 
 @inner_kernel
 def _mixed(terms):  # type: ignore[no-untyped-def]
     """One number from the costs by term. Products do not wait for each other: this is asked for every move."""
-    mixed, factor = np.int64(0), np.int64(1000003)
+    mixed, factor = np.int64(0), np.int64(_FIRST_FACTOR)
     for term in range(len(terms)):
         mixed += terms[term] * factor
-        factor += 2097593
+        factor += _NEXT_FACTOR
     return mixed
 
 
@@ -264,30 +253,10 @@ def number_of_layer(states, count, t):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def fill_numbers(keys, count, table):  # type: ignore[no-untyped-def]
-    """Enter the first `count` keys into an empty hash table of their numbers."""
-    for number in range(count):
+def fill_numbers(keys, table):  # type: ignore[no-untyped-def]
+    """Enter the numbers of keys (n,), of which none comes twice, into an empty hash table."""
+    for number in range(len(keys)):
         at = slot_of(keys[number], len(table))
-        while table[at] >= 0:
-            at = (at + 1) & (len(table) - 1)
-        table[at] = number
-
-
-@kernel
-def fill_patterns(patterns, count, table):  # type: ignore[no-untyped-def]
-    """The same for row patterns."""
-    for number in range(count):
-        at = slot_of(patterns[number, 0] ^ patterns[number, 1] * 31, len(table))
-        while table[at] >= 0:
-            at = (at + 1) & (len(table) - 1)
-        table[at] = number
-
-
-@kernel
-def fill_terms(terms, count, table):  # type: ignore[no-untyped-def]
-    """The same for costs by term."""
-    for number in range(count):
-        at = slot_of(_mixed(terms[number]), len(table))
         while table[at] >= 0:
             at = (at + 1) & (len(table) - 1)
         table[at] = number
@@ -297,12 +266,16 @@ def fill_terms(terms, count, table):  # type: ignore[no-untyped-def]
 def fill_pairs(old, new):  # type: ignore[no-untyped-def]
     """Move all pairs into a larger empty table."""
     for i in range(len(old)):
-        if old[i, 0] < 0:
-            continue
-        at = slot_of(old[i, 0], len(new))
-        while new[at, 0] >= 0:
-            at = (at + 1) & (len(new) - 1)
-        new[at, 0], new[at, 1] = old[i, 0], old[i, 1]
+        if old[i, 0] >= 0:
+            at = slot_of_pair(old[i, 0], new)
+            new[at, 0], new[at, 1] = old[i, 0], old[i, 1]
+
+
+def _filled(keys: NDArray[np.int64], size: int) -> NDArray[np.int32]:
+    """A hash table of the numbers of keys."""
+    table = np.full(size, -1, dtype=np.int32)
+    fill_numbers(keys, table)
+    return table
 
 
 # Room in the solver's tables: what they start with, and more of it where a kernel asks for that.
@@ -344,41 +317,37 @@ def empty_tables(weights: int) -> Tables:
 
 def grown(t: Tables, wanted: int, rows: int) -> Tables:
     """The tables with more room for what is wanted."""
+    counts = t.counts
     if wanted == MORE_STATES:
-        table = np.full(2 * len(t.state_hash), -1, dtype=np.int32)
-        fill_numbers(t.state_key, t.counts[STATES], table)
+        table = _filled(t.state_key[: counts[STATES]], 2 * len(t.state_hash))
         met = np.zeros((2 * len(t.met), 2), dtype=np.int32)
         return t._replace(state_key=_longer(t.state_key), state_hash=table, met=met)
     if wanted == MORE_PATTERNS:
         least = 1 << int(len(t.pattern) + rows).bit_length()
-        table = np.full(4 * least, -1, dtype=np.int32)
-        fill_patterns(t.pattern, t.counts[PATTERNS], table)
-        return t._replace(pattern=_longer(t.pattern, least), pattern_hash=table)
+        row, more = t.pattern[: counts[PATTERNS]].T
+        return t._replace(pattern=_longer(t.pattern, least), pattern_hash=_filled(row ^ more * 31, 4 * least))
     if wanted == MORE_PAIRS:
         pair = np.full((2 * len(t.pair), 2), -1, dtype=np.int64)
         fill_pairs(t.pair, pair)
         return t._replace(pair=pair)
     if wanted == MORE_TERMS:
-        table = np.full(2 * len(t.terms_hash), -1, dtype=np.int32)
-        fill_terms(t.terms, t.counts[TERMS_KNOWN], table)
+        factors = _FIRST_FACTOR + _NEXT_FACTOR * np.arange(t.terms.shape[1])
+        table = _filled(t.terms[: counts[TERMS_KNOWN]].astype(np.int64) @ factors, 2 * len(t.terms_hash))
         return t._replace(terms=_longer(t.terms), terms_hash=table)
     if wanted == MORE_FACTS:
-        table = np.full(2 * len(t.timed_hash), -1, dtype=np.int32)
-        fill_numbers(t.timed_key, t.counts[FACTS_KNOWN], table)
+        table = _filled(t.timed_key[: counts[FACTS_KNOWN]], 2 * len(t.timed_hash))
         return t._replace(timed_key=_longer(t.timed_key), timed_hash=table)
     if wanted == MORE_TIMED:
-        times, (length, width), facts = int(t.counts[TIMES]), t.timed_cost.shape, int(t.counts[FACTS_KNOWN])
+        times, (length, width), facts = int(counts[TIMES]), t.timed_cost.shape, int(counts[FACTS_KNOWN])
         shape = (2 * length if times == length else length, 2 * facts if facts > width else width)
         cost = np.zeros(shape, dtype=np.int32)
         cost[:times, :width] = t.timed_cost[:times]
         return t._replace(timed_cost=cost)
     if wanted == MORE_LAYERS:
-        table = np.full(2 * len(t.layer_hash), -1, dtype=np.int32)
-        fill_numbers(t.layer_key, t.counts[LAYERS], table)
+        table = _filled(t.layer_key[: counts[LAYERS]], 2 * len(t.layer_hash))
         return t._replace(layer=_longer(t.layer), layer_key=_longer(t.layer_key), layer_hash=table)
     if wanted == MORE_TRANSITIONS:
-        table = np.full(2 * len(t.transition_hash), -1, dtype=np.int32)
-        fill_numbers(t.transition_key, t.counts[TRANSITIONS], table)
+        table = _filled(t.transition_key[: counts[TRANSITIONS]], 2 * len(t.transition_hash))
         return t._replace(
             transition=_longer(t.transition), transition_key=_longer(t.transition_key), transition_hash=table
         )

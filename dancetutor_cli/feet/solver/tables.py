@@ -24,12 +24,12 @@ from dancetutor_cli.run.errors import UsageError
 #     ROLLS, ROLL_TAPS     columns whose roll goes on after the row; virtual taps of rolls
 #     FORCED, EARLIER      limb codes of overrides; columns whose hold ended at the last row with steps
 #
-# A limb code is 0 for nobody, a `Limb` + 1, or UNPLAYED. `state` has the bits of a state. Other words, in `store`:
+# A limb code is 0 for nobody, a `Limb` + 1, or UNPLAYED_CODE. `state` has the bits of a state. Other words, in `store`:
 #
 #     edge           35 cost without time | 19 number of facts | 18 last one that leads there | 0 place of state before
 #     node           32 cost so far | 0 edge that led here
-#     wide           ACTION: 32 parts, 2 bits for each column | 0 limb codes, 3 bits for each column
-#                    EVENTS: 32 number of the costs by term | 0 events
+#     wide           WIDE_ACTION: 32 parts, 2 bits for each column | 0 limb codes, 3 bits for each column
+#                    WIDE_EVENTS: 32 number of the costs by term | 0 events
 #     pair           32 pattern | 0 state; beside it 16 first move | 0 number of moves
 
 MOST_PLACES = 32  # of a foot: panels, home, pairs of neighbours
@@ -40,13 +40,13 @@ TAPS, HOLDS, MINES, RELEASED, ROLLS, ROLL_TAPS = (i * COLUMN_BITS for i in range
 FRESH = 6 * COLUMN_BITS  # bit of a row: its holds have only just been released
 # where limb codes of overrides and holds that ended earlier start in the second word
 FORCED, EARLIER = 0, 3 * COLUMN_BITS
-UNPLAYED = 5  # a limb code: no limb is left for the step
+UNPLAYED_CODE = 5  # a limb code: no limb is left for the step
 FRESH_TICKS = 6  # a 32nd: a hold that ended so long ago has just been released
 DISTANCE_UNIT = 20  # distances are whole numbers of 1/20 panel widths
 
 # columns of `Moves.wide`: packed state after the row; limb codes, 3 bits for each column; `Part`, 2 bits for each
 # column; packed facts that cost by the time since the row before, 0 none; bits of `vocabulary.EVENTS`
-KEY, ACTION, PART, TIMED, EVENTS = range(5)
+MOVE_KEY, MOVE_ACTION, MOVE_PART, MOVE_TIMED, MOVE_EVENTS = range(5)
 UP, DOWN, LEFT, RIGHT, MIDDLE = range(5)
 # places in `Rules.limits`: from which time and length on, or up to it, moves are called what they are
 (

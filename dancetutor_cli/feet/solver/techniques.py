@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 # Names for what happens in a play, and from which time and length on it is called so: configs/moves.yaml.
 #
-# What happens is found by the kernels: in a row by the rules, in its neighbours by `happens`.
+# What happens is found by the kernels: in a row by the rules, in its neighbours by `state.name_neighbours`.
 
 
 class EventNames(Sequence[tuple[str, ...]]):

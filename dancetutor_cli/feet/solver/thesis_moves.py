@@ -24,22 +24,22 @@ from dancetutor_cli.feet.solver.state import (
     unpack,
 )
 from dancetutor_cli.feet.solver.tables import (
-    ACTION,
     COLUMN_BITS,
     EPSILON,
-    EVENTS,
     HOLDS,
-    KEY,
     MINES,
-    PART,
+    MOVE_ACTION,
+    MOVE_EVENTS,
+    MOVE_KEY,
+    MOVE_PART,
+    MOVE_TIMED,
     RELEASED,
     ROLL_TAPS,
     ROLLS,
     TAPS,
-    TIMED,
-    UNPLAYED,
+    UNPLAYED_CODE,
 )
-from dancetutor_cli.feet.solver.vocabulary import EVENTS as NAMES
+from dancetutor_cli.feet.solver.vocabulary import EVENTS
 
 BEFORE, AFTER, PRESS, PANELS = range(4)  # rows of `Moves.scratch`
 (
@@ -47,7 +47,7 @@ BEFORE, AFTER, PRESS, PANELS = range(4)  # rows of `Moves.scratch`
     HAND_HOLD, HAND_ACROSS, HAND_ASIDE, HAND_BEHIND, UNPLAYABLE,
 ) = range(11)  # fmt: skip
 _HALF, _FULL, _SPIN, _DOUBLESTEP, _FORCED, _JUMP_FOOTSWITCH, _HAND, _JUMP, _UNPLAYABLE, _FRONT, _BACK = (
-    1 << NAMES.index(name)
+    1 << EVENTS.index(name)
     for name in (
         "crossover-half", "crossover-full", "spin", "doublestep", "forced-doublestep", "jump-footswitch", "hand",
         "jump", "unplayable", "crossover-front", "crossover-back",
@@ -163,12 +163,12 @@ def _emit(out, m, asked, doublestep, rules):  # type: ignore[no-untyped-def]
     s[SIDE] = side
     action = events = 0
     for i in range(n):
-        limb = UNPLAYED
+        limb = UNPLAYED_CODE
         for j in range(4):
             if press[j] == panels[i]:
                 limb = j + 1
         action |= limb << 3 * panels[i]
-        if limb == UNPLAYED:
+        if limb == UNPLAYED_CODE:
             terms[UNPLAYABLE] += w[UNPLAYABLE]
             events |= _UNPLAYABLE
     if g.right[s[1], 0] < g.left[s[0], 0] - EPSILON:
@@ -203,7 +203,8 @@ def _emit(out, m, asked, doublestep, rules):  # type: ignore[no-untyped-def]
     if press[0] >= 0 and press[1] >= 0:
         events |= _JUMP
     wide = out.wide[m]
-    wide[KEY], wide[ACTION], wide[PART], wide[TIMED], wide[EVENTS] = pack(s), action, 0, 0, events
+    wide[MOVE_KEY], wide[MOVE_ACTION], wide[MOVE_EVENTS] = pack(s), action, events
+    wide[MOVE_PART] = wide[MOVE_TIMED] = 0
     return m + 1
 
 
@@ -285,7 +286,7 @@ def expand_thesis(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
     if n == 0:
         for i in range(5):
             out.wide[0, i] = 0
-        out.wide[0, KEY] = pack(before)
+        out.wide[0, MOVE_KEY] = pack(before)
         for i in range(out.terms.shape[1]):
             out.terms[0, i] = 0
         return 1
