@@ -10,7 +10,7 @@ import pytest
 
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.film.layout import load_layout
-from dancetutor_cli.lint.check import load_baseline
+from dancetutor_cli.lint.baseline import load_baseline
 from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.run import reading
 from dancetutor_cli.run.errors import DancetutorError, FileError, MissingFileError

@@ -96,7 +96,7 @@ def _motion(path: Path) -> object:
 
 
 def _baseline(path: Path) -> object:
-    from dancetutor_cli.lint.check import load_baseline
+    from dancetutor_cli.lint.baseline import load_baseline
 
     known = load_baseline(path)
     known.mark_seen("x.sm", "dance-single Hard", ["DT201"])

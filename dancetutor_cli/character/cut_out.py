@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.character.mesh import Mesh
 
-_SMALL = 0.003  # metres: about a pixel of her at 720p; shorter triangles are not split
+_SMALL = 0.003  # metres: about a pixel of the dancer at 720p; shorter triangles are not split
 _LEVELS = 7  # at most this many times
 
 

@@ -227,7 +227,8 @@ def command(selection: Selection, options: AnalyzeOptions) -> int:
 
 def _watch(request: LintRequest, options: AnalyzeOptions) -> int:
     """Run for all files, then for those that are saved, until Ctrl-C."""
-    from dancetutor_cli.lint.run import LintRun, changes
+    from dancetutor_cli.lint.run import LintRun
+    from dancetutor_cli.lint.watch import changes
 
     if any(str(path) == "-" for path in options.paths):
         raise UsageError("--watch needs files or folders, not standard input")

@@ -5,9 +5,11 @@ run.LintRun                   a run of `analyze`: configuration and rule_setting
   |   subject                   what a rule looks at: a file, or a chart with its play
   |   plays, candidates         plays of many charts as arrays; the rows that a rule would have to look at
   |   play_facts, note_facts    the same of one chart; facts about its notes and their place in the file
-  |   check, rule, rules        rules are run over them; findings of the baseline left out
+  |   check, rule, rules        rules are run over them
+  |   baseline, pack_syncs      findings that were there before; those of a pack's songs together
   |   figures, passages         what else is said of a chart: other ways, counts; hardest parts, sections by name
 findings.Finding              what a rule reports
+watch                         files that are saved while `analyze --watch` waits
 
 suggest, edit_shape           small edits that would remove a finding, and what they leave of the chart's shape
 fix_edits, fix                fixes as edits of bytes; put into a file and proved, one by one

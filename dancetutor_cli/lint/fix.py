@@ -20,12 +20,12 @@ from dancetutor_cli.lint.fix_edits import Fix, move_notes, notes_of
 from dancetutor_cli.lint.rule import ReaderRule, all_rules
 from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.lint.subject import ChartSubject, solved_chart
-from dancetutor_cli.lint.suggest import FIXED_BY_MOVES, move_edits
+from dancetutor_cli.lint.suggest import move_edits
 from dancetutor_cli.run.errors import FileError, NoChartsError
 from dancetutor_cli.run.files import ChangedError, back_up, remove_leftovers, write_atomic
 
-FIXABLE = (*FIXED_BY_MOVES, *fix_edits.RULES)  # rules that `--fix` knows a fix for
-_RANKED = "DT213"  # says the rows that are least sure: the next one takes the place of one that is gone
+# rules that `--fix` knows a fix for
+FIXABLE = (*(code for code, rule in all_rules().items() if rule.fixed_by_moves), *fix_edits.RULES)
 NO_MOVE = "every small edit would make a jack, break a motif or cause another finding"
 NO_FIX = {
     fix_edits.BROKEN_HOLD: "its chart holds more than plain notes, or the edit would cause another finding",
@@ -197,7 +197,7 @@ class FixSession:
         self.unfixed.append(SkippedFinding(state.chart.label, finding, why))
 
     def _fixes(self, state: _State, finding: Finding) -> Iterator[Fix]:
-        if finding.rule in FIXED_BY_MOVES:
+        if all_rules()[finding.rule].fixed_by_moves:
             preset = self.preset_of(state.chart)
             for edit in move_edits(finding, state.findings, state.subject, self.settings, preset):
                 if fix := move_notes(self.song.data, state.chart, finding, edit):
@@ -275,7 +275,7 @@ def _finding_counts(findings: Iterable[Finding]) -> Counter[tuple[str, float | N
     return Counter(
         (one.rule, None if issubclass(all_rules()[one.rule], ReaderRule) else one.beat)
         for one in findings
-        if one.rule != _RANKED
+        if not all_rules()[one.rule].only_worst
     )
 
 

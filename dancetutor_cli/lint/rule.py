@@ -1,4 +1,7 @@
-"""The abstract bases of rules, and all rules by code and name: one small class each, by theme under `rules/`."""
+"""The abstract bases of rules, and all rules by code and name: one small class each, by theme under `rules/`.
+
+A rule's docstring is its documentation.
+"""
 
 from __future__ import annotations
 
@@ -20,8 +23,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject
 
 
-# The abstract bases of rules: a rule is a small class under `rules/`, its docstring is its documentation.
-
 BY_METER = "by-meter"  # what `max_seconds` says where the table of times is to decide
 EPSILON = 1e-6
 Placed = TypeVar("Placed")
@@ -36,6 +37,12 @@ class Rule(ABC):
     `options` is what holds for the chart in hand. `codes` : warnings of the reader that the rule is about.
     `about_feet` : whether a finding is true only if the feet are these; where they are unsure it is no warning
     `about_tags` : whether it is about what .sm and .ssc say of a song; a .ucs says nothing of it
+    `editor_code` : what SMEditor calls such findings in the `ignores` of data.sme; "" if nothing
+    `foot_rank` : of rules that see one wrong foot from several sides (what it does, where the body turns for it, how
+        unsure it is): of several about one row, or about neighbours, the lowest is reported; 0: none of these rules
+    `foot_reach` : how many rows with a step apart these may be; some speak of a step and of the one beside it
+    `fixed_by_moves` : whether a note on another panel may remove a finding; `unwanted_move` : what must be gone then
+    `only_worst` : whether only the worst rows are reported, so that a new finding in place of an old one is no harm
     """
 
     code: ClassVar[str]
@@ -43,6 +50,12 @@ class Rule(ABC):
     former_name: ClassVar[str] = ""  # of an earlier version, which configurations and charts may still hold
     about_feet: ClassVar[bool] = False
     about_tags: ClassVar[bool] = False
+    editor_code: ClassVar[str] = ""
+    foot_rank: ClassVar[int] = 0
+    foot_reach: ClassVar[int] = 0
+    fixed_by_moves: ClassVar[bool] = False
+    unwanted_move: ClassVar[str] = ""
+    only_worst: ClassVar[bool] = False
     codes: ClassVar[frozenset[str]] = frozenset()
 
     def __init__(self, options: Mapping[str, Any]) -> None:

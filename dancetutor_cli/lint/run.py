@@ -1,37 +1,32 @@
-"""A run of `analyze`: which configuration holds for which file, many files in order, and again when they are saved."""
+"""A run of `analyze`: which configuration holds for which file, many files in order, packs, the baseline."""
 
 from __future__ import annotations
 
-import os
-import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
-from dancetutor_cli.chart.pack_files import find_settings_file, pack_folder, places_of_feet, read_pack_ini
+from dancetutor_cli.chart.pack_files import find_settings_file, places_of_feet
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.preset import PresetChoice, choice_of
 from dancetutor_cli.lint.analysis import AnalyzeTask, ResultOptions, analyze_files, failed
-from dancetutor_cli.lint.check import Baseline, Key, load_baseline
+from dancetutor_cli.lint.baseline import Baseline, Key, load_baseline
 from dancetutor_cli.lint.configuration import (
     Configuration,
     load_configuration,
     with_assignments,
     with_selection,
 )
-from dancetutor_cli.lint.findings import Finding, Sync
+from dancetutor_cli.lint.findings import Finding
+from dancetutor_cli.lint.pack_syncs import PackSyncs
 from dancetutor_cli.lint.results import ChartResult, FileResult
-from dancetutor_cli.lint.rule import PackRule, PackSong, all_rules
-from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.run.errors import DancetutorError, plural
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.results import ResultCache
-
-# A run of `analyze`: which configuration holds for which file, the tasks, the baseline.
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,100 +265,3 @@ def _batches(tasks: int, jobs: int) -> Iterator[range]:
 
 def _analyze(_: Callable[[int], None], tasks: Sequence[AnalyzeTask]) -> list[FileResult]:
     return list(analyze_files(tasks))
-
-
-# Wait for files to be saved, on every system alike: by looking at their times.
-
-Stamp = tuple[int, int]
-INTERVAL = 0.3  # seconds between two looks
-_SETTLED = 0.15  # an editor may still be writing; a file counts as saved when it did not change for so long
-
-
-def changes(
-    files: Callable[[], Sequence[Path]],
-    needs: Callable[[Path], Iterable[Path]] = lambda _: (),
-    wait: Callable[[float], None] = time.sleep,
-) -> Iterator[tuple[list[Path], list[Path]]]:
-    """Yield (all files, those that are new or saved) at once, then after every change; ends with KeyboardInterrupt.
-
-    files : finds the files again, so that charts that are added later are seen
-    needs : what else the result for a file depends on, whether it is there or not: a change of these counts as one of
-        the file
-    wait : how to sleep
-    """
-    known: dict[Path, Stamp] = {}
-    before: list[Path] | None = None
-    while True:
-        found = list(files())
-        watched = {path: [path, *needs(path)] for path in found}
-        seen = {path: _stamp(path) for path in {path for group in watched.values() for path in group}}
-        changed = [path for path, group in watched.items() if path not in known or _differ(group, known, seen)]
-        if changed and before is not None:
-            wait(_SETTLED)
-            if any(_stamp(path) != stamp for path, stamp in seen.items()):
-                continue  # still being written
-        known = seen
-        if changed or before is None or set(before) - set(found):
-            before = found
-            yield found, changed
-        wait(INTERVAL)
-
-
-def _differ(paths: Collection[Path], known: Mapping[Path, Stamp], seen: Mapping[Path, Stamp]) -> bool:
-    """Whether one of the paths has another stamp than before; one that was not watched before has not changed."""
-    return any(path in known and known[path] != seen[path] for path in paths)
-
-
-def _stamp(path: Path) -> Stamp:
-    try:
-        status = path.stat()
-    except OSError:
-        return (-1, -1)
-    return status.st_mtime_ns, status.st_size
-
-
-# What is wrong with the syncs of a pack's songs together: rules that need all of its results.
-
-_FEWEST = 2  # songs of a pack
-_STEADY = 6.0  # ms of drift; with more a song is neither null nor ITG
-
-
-class PackSyncs:
-    """Takes results as they come. A song that lies there as .sm and .ssc counts once, as .ssc."""
-
-    def __init__(self) -> None:
-        self._songs: dict[Path, dict[str, tuple[str, Sync]]] = {}
-        self._names: dict[Path, str] = {}  # of the folders, as their files were named
-
-    def add(self, result: FileResult) -> None:
-        """Take note of a file whose sync is sure and steady."""
-        sync = result.sync
-        if sync is None or not sync.is_sure or abs(sync.drift_ms or 0.0) > _STEADY:
-            return
-        path = Path(result.path)
-        folder = pack_folder(path.absolute())
-        self._names.setdefault(folder, os.fspath(folder) if path.is_absolute() else os.path.relpath(folder))
-        songs = self._songs.setdefault(folder, {})
-        key = os.fspath(path.absolute().with_suffix(""))
-        if key not in songs or path.suffix.lower() == ".ssc":
-            songs[key] = path.absolute().parent.name, sync
-
-    @property
-    def folders(self) -> Iterator[Path]:
-        """The folders of packs, those with songs enough to be one."""
-        return (folder for folder in sorted(self._songs) if len(self._songs[folder]) >= _FEWEST)
-
-    def result(self, folder: Path, settings: Settings) -> FileResult | None:
-        """The findings for the pack of a folder, as a result of that folder; None if there are none."""
-        songs = [PackSong(*song) for _, song in sorted(self._songs[folder].items())]
-        ini = read_pack_ini(folder)
-        findings: list[Finding] = []
-        for code, options in settings.for_file(folder).items():
-            kind = all_rules()[code]
-            if issubclass(kind, PackRule):
-                rule = kind(options)
-                if message := rule.check_pack(songs, ini):
-                    findings.append(rule.finding(message, {}))
-        if not findings:
-            return None
-        return FileResult(self._names[folder], folder.name, "", None, (), tuple(findings), ())

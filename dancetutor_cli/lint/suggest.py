@@ -26,21 +26,16 @@ from dancetutor_cli.lint.rule import all_rules
 from dancetutor_cli.lint.rule_settings import Layer, Settings
 from dancetutor_cli.lint.subject import ChartSubject
 
-# What can be fixed by moving notes: doublestep, spin, jump-spin, ambiguous start, triple step.
-FIXED_BY_MOVES = ("DT201", "DT202", "DT203", "DT207", "DT209")
 _FAMILIES = ("DT2", "DT3")  # the edit must bring no new finding of these
 _AROUND = 4  # rows to either side of the finding's in which a note may be moved
 _PHRASE = 12  # notes of a phrase that may be turned, left for right
 _MOST_SOLVED = 24  # edits of a finding that are solved whole
-# What must not happen any more in the row of a finding: that is seen before the rules are asked.
-_MOVES = {"DT201": "doublestep", "DT202": "spin", "DT203": "spin", "DT209": "doublestep"}
 # Move -> what counts as one.
 _HARD = {
     "doublestep": "doublestep", "crossover-half": "crossover", "crossover-full": "crossover", "spin": "spin",
     "footswitch-up": "switch", "footswitch-down": "switch", "footswitch": "switch", "sideswitch-left": "switch",
     "sideswitch-right": "switch", "jump-footswitch": "switch", "holdswitch": "switch", "bracket": "bracket",
 }  # fmt: skip
-_RANKED = frozenset({"DT213"})  # findings that take the place of others are not new
 
 _Place = tuple[str, float | None]  # rule and beat of a finding
 
@@ -70,7 +65,7 @@ def with_suggestions(
     trial = _Trial(subject, _of_families(settings), preset, _places(findings))
     results: list[Finding] = []
     for finding in findings:
-        best = next(trial.good(finding), None) if finding.rule in FIXED_BY_MOVES else None
+        best = next(trial.good(finding), None) if all_rules()[finding.rule].fixed_by_moves else None
         results.append(finding if best is None else replace(finding, suggestion=_in_words(best, subject)))
     return tuple(results)
 
@@ -79,7 +74,7 @@ def move_edits(
     finding: Finding, findings: Sequence[Finding], subject: ChartSubject, settings: Settings, preset: Preset
 ) -> Iterator[Suggestion]:
     """The edits that would remove one finding, the one that is heard least first. findings : all of the chart"""
-    if subject.play is None or subject.pad is None or finding.rule not in FIXED_BY_MOVES:
+    if subject.play is None or subject.pad is None or not all_rules()[finding.rule].fixed_by_moves:
         return
     ticks = subject.play.rows.tick
     trial = _Trial(subject, _of_families(settings), preset, _places(findings))
@@ -90,7 +85,8 @@ def move_edits(
 
 def _of_families(settings: Settings) -> Settings:
     """The settings without the rules that no edit is asked about."""
-    others = _RANKED | {code for code in all_rules() if not code.startswith(_FAMILIES)}
+    rules = all_rules().items()
+    others = frozenset(code for code, rule in rules if rule.only_worst or not code.startswith(_FAMILIES))
     return settings.with_layer(Layer(ignore=others))
 
 
@@ -122,7 +118,8 @@ class _Trial:
                 if solved > _MOST_SOLVED:
                     return
                 self._edited[edit] = _Edited(self._subject_after(edit), self.settings, self.before)
-            if self._edited[edit].is_easier(self.subject, _MOVES.get(finding.rule)) and self._edited[edit].lacks(place):
+            edited = self._edited[edit]
+            if edited.is_easier(self.subject, all_rules()[finding.rule].unwanted_move) and edited.lacks(place):
                 yield edit
 
     def _candidates(self, finding: Finding) -> Iterator[Edit]:
@@ -154,10 +151,11 @@ class _Trial:
 
     def _still_happens(self, move: PanelMove, place: _Place) -> bool:
         rule, beat = place
-        if rule not in _MOVES or beat is None or self.subject.play is None:
+        move_name = all_rules()[rule].unwanted_move
+        if not move_name or beat is None or self.subject.play is None:
             return False
         row = int(self.subject.play.rows.tick.searchsorted(round(beat * TICKS_PER_BEAT)))
-        return bool(self._after_move(move)[1][row] >> EVENTS.index(_MOVES[rule]) & 1)
+        return bool(self._after_move(move)[1][row] >> EVENTS.index(move_name) & 1)
 
     def _subject_after(self, edit: Edit) -> ChartSubject:
         subject = self.subject
@@ -177,16 +175,16 @@ class _Edited:
         self._to_ask = list(self._rules)
         self._found: set[_Place] = set()
 
-    def is_easier(self, before: ChartSubject, move: str | None) -> bool:
+    def is_easier(self, before: ChartSubject, move: str) -> bool:
         """Whether the play costs less than that of the chart as it was, and nothing hard happens more often in it.
 
         Rules are silent about much that an author does not put in the place of something else.
-        move : that has to happen less often, so that it has not only gone to another row
+        move : that has to happen less often, so that it has not only gone to another row; or ""
         """
         play, old = self._subject.play, before.play
         assert play is not None and old is not None
         now, was = _hard_moves(play), _hard_moves(old)
-        return play.total < old.total and not now - was and (move is None or now[move] < was[move])
+        return play.total < old.total and not now - was and (not move or now[move] < was[move])
 
     def lacks(self, place: _Place) -> bool:
         """Whether nothing is found at a place any more, nor anything at places where nothing was found before."""
@@ -202,7 +200,7 @@ def _hard_moves(play: Play) -> Counter[str]:
 
 
 def _places(findings: Sequence[Finding]) -> set[_Place]:
-    ours = (one for one in findings if one.rule.startswith(_FAMILIES) and one.rule not in _RANKED)
+    ours = (one for one in findings if one.rule.startswith(_FAMILIES) and not all_rules()[one.rule].only_worst)
     return {(one.rule, one.beat) for one in ours}
 
 

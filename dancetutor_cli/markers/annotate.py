@@ -15,7 +15,7 @@ from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.preset import preset_for
 from dancetutor_cli.markers import background, edit
 from dancetutor_cli.markers.model import FileChange, Lack, NoteChange
-from dancetutor_cli.markers.styles import BESIDE, OF_EACH_FILE, OF_UCS, file_style
+from dancetutor_cli.markers.styles import IN_FILES, OF_EACH_FILE, OF_UCS, file_style
 from dancetutor_cli.run.errors import FileError, NoChartsError
 from dancetutor_cli.run.files import ChangedError, back_up, make_folder, remove_leftovers, write_atomic
 
@@ -104,7 +104,7 @@ def _annotate(item: Item, request: AnnotateRequest, is_sm_of_pair: bool) -> Anno
     if song.format == "ucs":
         request, beside = _request_for_ucs(item.source, request)
     else:
-        possible = OF_EACH_FILE if is_sm_of_pair else BESIDE
+        possible = OF_EACH_FILE if is_sm_of_pair else IN_FILES
         beside = [style for style in request.styles if style in possible]
     if request.into_file and not request.strip and "edit" in beside:
         beside.remove("edit")

@@ -21,7 +21,7 @@ from dancetutor_cli.markers.styles import note_styles
 
 
 @dataclass(slots=True)
-class SongFeet:
+class SolvedSong:
     """The feet of a song. problems : contradictions in what people said about them; notes : for people, too."""
 
     charts: list[ChartFeet] = field(default_factory=list)
@@ -29,9 +29,9 @@ class SongFeet:
     problems: list[Lack] = field(default_factory=list)
 
 
-def solve_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart], Preset]) -> SongFeet:
+def solve_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart], Preset]) -> SolvedSong:
     """The feet of each chart that has a pad."""
-    found = SongFeet()
+    found = SolvedSong()
     padless = set()
     for chart in charts:
         feet = []

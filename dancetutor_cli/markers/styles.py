@@ -3,7 +3,7 @@
 A style is a module of this package that is called like it, with two functions:
 
     IN_NOTES    write(song, feet of a chart, force) and strip(song, chart, force) -> NoteChange
-    BESIDE      write(song, folder, feet of all charts) and strip(song, charts) -> the FileChange of each file
+    IN_FILES      write(song, folder, feet of all charts) and strip(song, charts) -> the FileChange of each file
 
 A new style is its module and its name in one of these lists.
 """
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from dancetutor_cli.run.errors import FileError
 
 IN_NOTES = ("measure", "rows")
-BESIDE = ("sidecar", "smeditor", "edit", "theme")
-STYLES = (*IN_NOTES, *BESIDE)
+IN_FILES = ("sidecar", "smeditor", "edit", "theme")
+STYLES = (*IN_NOTES, *IN_FILES)
 STRIPPED = (*STYLES, "background")  # and a film that `render --background --into-file` has entered
 OF_EACH_FILE = ("sidecar",)  # of a .sm and a .ssc only the .ssc speaks for the song in the other files
 OF_UCS = {"measure": "feet_text", "rows": "feet_text", "sidecar": "sidecar"}  # nothing is written into a .ucs

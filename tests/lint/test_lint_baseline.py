@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from dancetutor_cli.__main__ import main
-from dancetutor_cli.lint.check import Baseline, load_baseline
+from dancetutor_cli.lint.baseline import Baseline, load_baseline
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.run.errors import FileError
 

@@ -14,8 +14,8 @@ from synthetic import song
 from dancetutor_cli.commands.analyze import command
 from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.findings import sync_of
+from dancetutor_cli.lint.pack_syncs import PackSyncs
 from dancetutor_cli.lint.results import FileResult
-from dancetutor_cli.lint.run import PackSyncs
 
 NULL, ITG, OTHER = 0.5, 9.5, 25.0
 

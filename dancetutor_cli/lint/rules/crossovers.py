@@ -60,6 +60,8 @@ class Crossover(TimedRule):
 
     code = "DT204"
     name = "crossover"
+    foot_rank = 7
+    foot_reach = 1
     times = "crossover"
     slowest = 0.4
 
@@ -148,6 +150,7 @@ class CrossedRun(ChartRule):
 
     code = "DT205"
     name = "crossed-run"
+    foot_rank = 6
     about_feet = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
@@ -193,6 +196,8 @@ class HeldCrossover(TimedRule):
 
     code = "DT215"
     name = "held-crossover"
+    foot_rank = 5
+    foot_reach = 1
     passage_beats = 16
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:

@@ -63,6 +63,11 @@ class Doublestep(MoveRule):
 
     code = "DT201"
     name = "doublestep"
+    editor_code = "DS"
+    foot_rank = 1
+    foot_reach = 1
+    fixed_by_moves = True
+    unwanted_move = "doublestep"
     move = "doublestep"
     times = "doublestep"
     slowest = 0.32
@@ -226,6 +231,11 @@ class TripleStep(TimedRule):
 
     code = "DT209"
     name = "triple-step"
+    editor_code = "DS"
+    foot_rank = 2
+    foot_reach = 1
+    fixed_by_moves = True
+    unwanted_move = "doublestep"
     times = "doublestep"
     slowest = Doublestep.slowest
 

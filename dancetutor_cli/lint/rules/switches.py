@@ -43,6 +43,8 @@ class Footswitch(MoveRule):
 
     code = "DT212"
     name = "footswitch"
+    editor_code = "FS"
+    foot_rank = 8
     move = "footswitch"
     times = "footswitch"
     description = "footswitch: a foot takes over the panel of the other foot"
@@ -113,6 +115,8 @@ class Sideswitch(MoveRule):
 
     code = "DT208"
     name = "sideswitch"
+    editor_code = "FS"
+    foot_rank = 9
     move = "sideswitch"
     description = "sideswitch: a foot takes over a side panel from the other foot"
 
@@ -152,6 +156,8 @@ class Holdswitch(MoveRule):
 
     code = "DT211"
     name = "holdswitch"
+    editor_code = "FS"
+    foot_rank = 10
     move = "holdswitch"
     description = "holdswitch: the other foot takes over a hold"
 
@@ -179,6 +185,8 @@ class JumpFootswitch(MoveRule):
 
     code = "DT206"
     name = "jump-footswitch"
+    editor_code = "FS"
+    foot_rank = 11
     move = "jump-footswitch"
     times = "jump-footswitch"
     description = "jump footswitch: the other foot takes over a panel in this jump"
@@ -210,6 +218,8 @@ class SwitchJack(TimedRule):
 
     code = "DT214"
     name = "switch-jack"
+    foot_rank = 12
+    foot_reach = 2
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Each run, at the first step for which the feet change, with the slowest pause in it."""

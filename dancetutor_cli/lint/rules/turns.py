@@ -60,6 +60,10 @@ class Spin(MoveRule):
 
     code = "DT202"
     name = "spin"
+    foot_rank = 3
+    foot_reach = 1
+    fixed_by_moves = True
+    unwanted_move = "spin"
     move = "spin"
     description = "spin: the pattern turns the dancer past 180 degrees, unless a foot doublesteps"
     times = "spin"
@@ -188,6 +192,9 @@ class JumpSpin(ChartRule):
 
     code = "DT203"
     name = "jump-spin"
+    foot_rank = 4
+    fixed_by_moves = True
+    unwanted_move = "spin"
     about_feet = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
@@ -220,6 +227,8 @@ class HalfTurn(ChartRule):
 
     code = "DT304"
     name = "half-turn"
+    foot_rank = 13
+    foot_reach = 1
     about_feet = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:

@@ -73,6 +73,10 @@ class EitherFoot(ChartRule):
     code = "DT207"
     name = "either-foot"
     former_name = "ambiguous-start"
+    editor_code = "AM"
+    foot_rank = 14
+    foot_reach = 1
+    fixed_by_moves = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each run of rows on which both feet cost the same, at its first."""
@@ -100,6 +104,9 @@ class UnsureFeet(ChartRule):
 
     code = "DT213"
     name = "unsure-feet"
+    foot_rank = 15
+    foot_reach = 2
+    only_worst = True
 
     @classmethod
     def fault(cls, option: str, value: Any) -> str | None:
