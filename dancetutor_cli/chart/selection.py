@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
 
 
-# Which chart files a path means: files as given, folders with all below them, .sm and .ssc of one song.
-
 _RESOURCE_FORK = "._"  # what macOS leaves beside files on foreign disks; the games skip it too
 
 
@@ -140,23 +138,41 @@ class Selection:
         return ", ".join(f"--{name.replace('_', '-')} {value}" for name, value in typed.items() if value is not None)
 
     def charts(self, song: Song) -> tuple[Chart, ...]:
-        """The charts of `song` that match, in file order; may be empty."""
-        return tuple(select(song, _parts(self.steps_type), _parts(self.difficulty), self.index))
+        """The charts of `song` that match, in file order; may be empty.
+
+        Names in any case, old ones too ("Heavy", "Oni"). Raises `UsageError` for a difficulty that no game has.
+        """
+        from dancetutor_cli.chart import names
+
+        types = {names.steps_type(text) for text in _split_at_commas(self.steps_type)}
+        levels = {_difficulty(text) for text in _split_at_commas(self.difficulty)}
+        return tuple(
+            chart
+            for chart in song.charts
+            if (not types or chart.steps_type in types)
+            and (not levels or chart.difficulty in levels)
+            and self.index in (None, chart.index)
+        )
 
     def one(self, song: Song) -> Chart:
         """The one chart of `song` that matches; UsageError lists the charts there are if none or several do.
 
         Of a chart for several the part of the player that is meant, else of the first.
         """
-        chart = select_one(song, _parts(self.steps_type), _parts(self.difficulty), self.index)
-        found = self.parts(chart)
-        if not found:
+        charts = self.charts(song)
+        if not charts:
+            raise UsageError(f"{song.path}: no such chart; choose one with --index N: {_listed(song.charts)}")
+        if len(charts) > 1:
+            raise UsageError(f"{song.path}: several charts match; choose one with --index N: {_listed(charts)}")
+        chart = charts[0]
+        players = self.parts(chart)
+        if not players:
             raise UsageError(
                 f"{song.path}: {chart.label} has no notes for --player {self.player}; choose 1 to {len(chart.players)}"
             )
         if self.player is not None and self.player > 1 and not chart.players:
             raise UsageError(f"{song.path}: {chart.label} is for one player; leave --player out")
-        return found[0]
+        return players[0]
 
     def parts(self, chart: Chart) -> tuple[Chart, ...]:
         """What feet are found for in a chart: itself, or of one for several each player's part that is meant."""
@@ -182,41 +198,8 @@ def note_bytes(path: Path, selection: Selection, data: bytes | None = None) -> i
         return 0
 
 
-def _parts(text: str | None) -> list[str]:
+def _split_at_commas(text: str | None) -> list[str]:
     return [part.strip() for part in text.split(",")] if text else []
-
-
-def select(
-    song: Song, steps_types: Sequence[str] = (), difficulties: Sequence[str] = (), index: int | None = None
-) -> list[Chart]:
-    """The charts of a song that match, in file order; nothing given matches all.
-
-    Names in any case, old ones too ("Heavy", "Oni"); several of a kind mean either. Raises `UsageError` for a
-    difficulty that no game has.
-    """
-    from dancetutor_cli.chart import names
-
-    types = {names.steps_type(text) for text in steps_types}
-    levels = {_difficulty(text) for text in difficulties}
-    return [
-        chart
-        for chart in song.charts
-        if (not types or chart.steps_type in types)
-        and (not levels or chart.difficulty in levels)
-        and (index is None or chart.index == index)
-    ]
-
-
-def select_one(
-    song: Song, steps_types: Sequence[str] = (), difficulties: Sequence[str] = (), index: int | None = None
-) -> Chart:
-    """The one chart that matches. Raises `UsageError` with what the file has when none or several do."""
-    found = select(song, steps_types, difficulties, index)
-    if len(found) == 1:
-        return found[0]
-    if not found:
-        raise UsageError(f"{song.path}: no such chart; choose one with --index N: {_listed(song.charts)}")
-    raise UsageError(f"{song.path}: several charts match; choose one with --index N: {_listed(found)}")
 
 
 def _difficulty(text: str) -> str:

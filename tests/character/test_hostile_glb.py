@@ -167,7 +167,7 @@ def test_json_of_endless_objects(tmp_path: Path) -> None:
 def test_a_missing_file_and_a_folder(tmp_path: Path) -> None:
     (tmp_path / "folder.glb").mkdir()
     for name in ("none.glb", "folder.glb"):
-        with pytest.raises(FileError, match="cannot be read|no such file or folder"):
+        with pytest.raises(FileError, match=r"cannot be read|no such file or folder"):
             load_character(str(tmp_path / name))
 
 

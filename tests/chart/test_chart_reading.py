@@ -211,7 +211,7 @@ def test_notes_outside_notedata_are_named() -> None:
 
 def test_reading_imports_nothing_slow() -> None:
     code = (
-        "import sys; from dancetutor_cli.chart.reader import load; from dancetutor_cli.chart.selection import select; "
+        "import sys; from dancetutor_cli.chart import reader, selection; "
         "print(*sorted(m.split('.')[0] for m in sys.modules))"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

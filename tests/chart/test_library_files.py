@@ -12,7 +12,7 @@ import pytest
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.music import music_file
 from dancetutor_cli.chart.reader import load
-from dancetutor_cli.chart.selection import find_files, select, select_one, twin
+from dancetutor_cli.chart.selection import Selection, find_files, twin
 from dancetutor_cli.run.errors import FileError, UsageError
 
 NOTES = "#NOTES:{}:d:{}:{}:0:\n1000\n;"
@@ -135,22 +135,22 @@ def test_selection(tmp_path: Path) -> None:
         ),
     )
 
-    def picked(*args: object) -> list[int]:
-        return [c.index for c in select(found, *args)]  # type: ignore[arg-type]
+    def picked(*values: str | int | None) -> list[int]:
+        return [chart.index for chart in Selection(*values).charts(found)]  # type: ignore[arg-type]
 
     assert picked() == [0, 1, 2, 3]
-    assert picked(["DANCE-Single"]) == [0, 1, 2]
-    assert picked([], ["hard", "EASY"]) == [0, 1, 2, 3]
-    assert picked(["dance-double"], ["Heavy"]) == [3]
-    assert picked([], [], 2) == [2]
-    assert picked(["pump-single"]) == []
-    assert select_one(found, ["dance-double"]).index == 3
+    assert picked("DANCE-Single") == [0, 1, 2]
+    assert picked(None, "hard, EASY") == [0, 1, 2, 3]
+    assert picked("dance-double", "Heavy") == [3]
+    assert picked(None, None, 2) == [2]
+    assert picked("pump-single") == []
+    assert Selection("dance-double").one(found).index == 3
     with pytest.raises(UsageError, match=r"--index: 1: dance-single Hard 9; 2: dance-single Hard 10"):
-        select_one(found, ["dance-single"], ["hard"])
+        Selection("dance-single", "hard").one(found)
     with pytest.raises(UsageError, match="the file has 0: dance-single Easy 3"):
-        select_one(found, ["pump-single"])
+        Selection("pump-single").one(found)
     with pytest.raises(UsageError, match="Beginner, Easy, Medium, Hard, Challenge, Edit"):
-        select(found, [], ["insane"])
+        Selection(None, "insane").charts(found)
 
 
 def test_a_folder_of_one_song_stands_for_its_file(tmp_path: Path) -> None:
