@@ -11,7 +11,7 @@ from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.settings import USUAL, load_settings
 from dancetutor_cli.feet.preset import PresetChoice, choice_of, mismatch, preset_for
-from dancetutor_cli.lint.passages import check_part, part_of
+from dancetutor_cli.lint.sections import check_part, part_of
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.fingerprint import NAMED
 

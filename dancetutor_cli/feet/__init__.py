@@ -10,4 +10,5 @@ solved.Solved                 a chart, its `play.Play`, its pad and preset
 
 limbs, play_json              names and letters of limbs; plays in the JSON of `analyze`
 move_spans                    crossovers and other moves of a play that last for several rows
+passages                      the hardest passages of a chart
 """

@@ -7,7 +7,8 @@ run.LintRun                   a run of `analyze`: configuration and rule_setting
   |   play_facts, note_facts    the same of one chart; facts about its notes and their place in the file
   |   check, rule, rules        rules are run over them
   |   baseline, pack_syncs      findings that were there before; those of a pack's songs together
-  |   figures, passages         what else is said of a chart: other ways, counts; hardest parts, sections by name
+  |   figures                   what else is said of a chart: other ways, counts
+sections                      the part of a chart that a user names: a span, around a finding, a hard passage
 findings.Finding              what a rule reports
 watch                         files that are saved while `analyze --watch` waits
 

@@ -19,8 +19,8 @@ from dancetutor_cli.film.overlay.text import clean
 
 if TYPE_CHECKING:
     from dancetutor_cli.feet.pads import Pad
+    from dancetutor_cli.feet.passages import Passage
     from dancetutor_cli.feet.preset import Preset
-    from dancetutor_cli.lint.passages import Passage
 
 
 # What a page says of a song and a chart: words, places of notes, seconds of beats.

@@ -19,12 +19,12 @@ from dancetutor_cli.dance.performance import pad_of, perform, play_of_all, playa
 from dancetutor_cli.dance.request import check_request, read_chart
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.feet.pads import load_pad
+from dancetutor_cli.feet.passages import hardest
 from dancetutor_cli.feet.play_json import read_play
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solved import solve_song
 from dancetutor_cli.feet.solver.alternatives import alternatives
 from dancetutor_cli.film.scroll import parse_segments
-from dancetutor_cli.lint.passages import hardest
 from dancetutor_cli.page.document import Blob, IndexEntry, document, index_page
 from dancetutor_cli.run.errors import DancetutorError, FileError, NoChartsError, UsageError
 from dancetutor_cli.run.files import write_atomic

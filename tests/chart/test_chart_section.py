@@ -6,7 +6,8 @@ from fractions import Fraction
 
 import pytest
 
-from dancetutor_cli.chart.timing import Timing, check_section, parse_section
+from dancetutor_cli.chart.timing import Timing
+from dancetutor_cli.lint.sections import check_section, parse_section
 from dancetutor_cli.run.errors import UsageError
 
 TIMING = Timing(((0, Fraction(120)),), stops=((96, Fraction(1)),), offset=Fraction(-1, 2))  # beat 0 at 0.5 s

@@ -15,7 +15,7 @@ from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.timing import FASTEST, SLOWEST
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.film.clock import parse_rates
-from dancetutor_cli.lint.passages import check_part, part_of
+from dancetutor_cli.lint.sections import check_part, part_of
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.reading import charts_path
 

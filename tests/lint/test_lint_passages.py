@@ -10,9 +10,10 @@ import pytest
 
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.reader import load
+from dancetutor_cli.feet.passages import Passage, hardest, passage_settings
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.preset import load_preset
-from dancetutor_cli.lint.passages import Passage, check_part, hardest, part_of, passage_settings
+from dancetutor_cli.lint.sections import check_part, part_of
 from dancetutor_cli.lint.subject import solved_chart
 from dancetutor_cli.page.document import languages
 from dancetutor_cli.page.facts import passage_object, tags, without_repeats
@@ -94,7 +95,7 @@ def test_tags_report_what_the_feet_do() -> None:
 def test_wrong_settings_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "passages.yaml"
     path.write_text("measures: -1\n")
-    monkeypatch.setattr("dancetutor_cli.lint.passages.config_path", lambda name: path)
+    monkeypatch.setattr("dancetutor_cli.feet.passages.config_path", lambda name: path)
     passage_settings.cache_clear()
     try:
         with pytest.raises(Exception, match=r"passages\.yaml:1: measures must be a whole number of 0 or more"):

@@ -1,9 +1,7 @@
-"""Parts of a chart: its hardest passages, read from the solver's play alone, and the sections that users name."""
+"""The hardest passages of a chart, read from the solver's play alone."""
 
 from __future__ import annotations
 
-import re
-from collections import Counter
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
@@ -12,18 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.names import TICKS_PER_MEASURE
-from dancetutor_cli.chart.timing import check_section, parse_section
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind
-from dancetutor_cli.run.errors import UsageError, plural
 from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.schema import Bounds, NotNegative
 from dancetutor_cli.run.yaml_files import load
 
 if TYPE_CHECKING:
-    from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.chart.timing import Timing
-    from dancetutor_cli.feet.preset import Preset
 
 _CROSSED = ("crossover-half", "crossover-full")
 _SWITCHES = ("footswitch-up", "footswitch-down", "footswitch", "sideswitch-left", "sideswitch-right", "jump-footswitch")
@@ -200,65 +194,3 @@ def _counts(
         "stream": count("stream"),
         "unsure": int(_unsure(play, rows, settings.close).sum()),
     }
-
-
-# The part of a chart that a motion or a film shows: the same for `animate` and `render`.
-
-AROUND = 8  # beats before and after a finding
-_FINDING = re.compile(r"\s*(DT\d{3})\s*:\s*(\d+)\s*", re.IGNORECASE)
-_HARDEST = re.compile(r"\s*hardest\s*:\s*(\d+)\s*", re.IGNORECASE)
-
-
-def check_part(text: str) -> None:
-    """UsageError for what is no part of any chart: so that a slip is reported before a chart is read."""
-    if not _FINDING.fullmatch(text) and not _HARDEST.fullmatch(text):
-        check_section(text)
-
-
-def part_of(text: str, song: Song, chart: Chart, preset: Preset, end: float) -> tuple[float, float]:
-    """First and last second of a part.
-
-    Parameters
-    ----------
-    text : START:END in seconds, beats or measures (`chart.timing`); RULE:N, four measures around the N-th finding; or
-        hardest:N, the N-th hardest passage (`hardest`)
-    preset : with which the feet are found that the finding is about
-    end : second at which the chart ends; no part goes on after it, and one that begins after it is a UsageError
-    """
-    if match := _FINDING.fullmatch(text):
-        first, last = _around_finding(song, chart, preset, match[1].upper(), int(match[2]))
-        return max(0.0, first), min(end, last)
-    if match := _HARDEST.fullmatch(text):
-        first, last = _hardest(song, chart, preset, int(match[1]))
-        return first, min(end, last)
-    return parse_section(text, chart.timing, end)
-
-
-def _hardest(song: Song, chart: Chart, preset: Preset, number: int) -> tuple[float, float]:
-    from dancetutor_cli.lint.subject import solved_chart
-
-    play = solved_chart(song, chart, preset).play
-    found = () if play is None else hardest(play, chart.timing)
-    if not 1 <= number <= len(found):
-        many = plural(len(found), "passage")
-        raise UsageError(f"--section hardest:{number}: the chart has only {many} harder than the rest of it")
-    return max(0.0, found[number - 1].start), found[number - 1].end
-
-
-def _around_finding(song: Song, chart: Chart, preset: Preset, rule: str, number: int) -> tuple[float, float]:
-    from dancetutor_cli.lint.check import findings_of
-    from dancetutor_cli.lint.rule import rule_named
-    from dancetutor_cli.lint.subject import solved_chart
-
-    findings = findings_of(solved_chart(song, chart, preset))
-    found = [one.beat for one in findings if one.rule == rule and one.beat is not None]
-    if not 1 <= number <= len(found):
-        rule_named(rule)
-        counts = Counter(one.rule for one in findings if one.beat is not None)
-        has = ", ".join(f"{code}:{count}" for code, count in sorted(counts.items()))
-        many = plural(len(found), "finding") if found else "no finding"
-        there = f"; the last ones of each rule are {has}" if has else ""
-        raise UsageError(f"--section {rule}:{number}: the chart has {many} of {rule}{there}")
-    beat = found[number - 1]
-    ends = chart.timing.seconds_of_beats(np.array([max(0.0, beat - AROUND), beat + AROUND]))
-    return float(ends[0]), float(ends[1])

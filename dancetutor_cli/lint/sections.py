@@ -1,0 +1,134 @@
+"""The part of a chart that a motion or a film shows, as users write it: a span, around a finding, a hard passage."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dancetutor_cli.feet.passages import hardest
+from dancetutor_cli.run.errors import UsageError, plural
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.model import Chart, Song
+    from dancetutor_cli.chart.timing import Timing
+    from dancetutor_cli.feet.preset import Preset
+
+_POINT = re.compile(
+    r"\s*(?:(?P<unit>[bm])\s*(?P<after>[\d.]+)|(?P<number>[\d.]+)\s*(?P<suffix>[bms]?))\s*", re.IGNORECASE
+)
+_SECTION_HELP = "write START:END in seconds (10:25), beats (b16:b48) or measures (m4:m12); either end may be left out"
+AROUND = 8  # beats before and after a finding
+_FINDING = re.compile(r"\s*(DT\d{3})\s*:\s*(\d+)\s*", re.IGNORECASE)
+_HARDEST = re.compile(r"\s*hardest\s*:\s*(\d+)\s*", re.IGNORECASE)
+
+
+def check_part(text: str) -> None:
+    """UsageError for what is no part of any chart: so that a slip is reported before a chart is read."""
+    if not _FINDING.fullmatch(text) and not _HARDEST.fullmatch(text):
+        check_section(text)
+
+
+def part_of(text: str, song: Song, chart: Chart, preset: Preset, end: float) -> tuple[float, float]:
+    """First and last second of a part.
+
+    Parameters
+    ----------
+    text : START:END in seconds, beats or measures (`parse_section`); RULE:N, four measures around the N-th finding; or
+        hardest:N, the N-th hardest passage (`hardest`)
+    preset : with which the feet are found that the finding is about
+    end : second at which the chart ends; no part goes on after it, and one that begins after it is a UsageError
+    """
+    if match := _FINDING.fullmatch(text):
+        first, last = _around_finding(song, chart, preset, match[1].upper(), int(match[2]))
+        return max(0.0, first), min(end, last)
+    if match := _HARDEST.fullmatch(text):
+        first, last = _hardest(song, chart, preset, int(match[1]))
+        return first, min(end, last)
+    return parse_section(text, chart.timing, end)
+
+
+def _hardest(song: Song, chart: Chart, preset: Preset, number: int) -> tuple[float, float]:
+    from dancetutor_cli.lint.subject import solved_chart
+
+    play = solved_chart(song, chart, preset).play
+    found = () if play is None else hardest(play, chart.timing)
+    if not 1 <= number <= len(found):
+        many = plural(len(found), "passage")
+        raise UsageError(f"--section hardest:{number}: the chart has only {many} harder than the rest of it")
+    return max(0.0, found[number - 1].start), found[number - 1].end
+
+
+def _around_finding(song: Song, chart: Chart, preset: Preset, rule: str, number: int) -> tuple[float, float]:
+    from dancetutor_cli.lint.check import findings_of
+    from dancetutor_cli.lint.rule import rule_named
+    from dancetutor_cli.lint.subject import solved_chart
+
+    findings = findings_of(solved_chart(song, chart, preset))
+    found = [one.beat for one in findings if one.rule == rule and one.beat is not None]
+    if not 1 <= number <= len(found):
+        rule_named(rule)
+        counts = Counter(one.rule for one in findings if one.beat is not None)
+        has = ", ".join(f"{code}:{count}" for code, count in sorted(counts.items()))
+        many = plural(len(found), "finding") if found else "no finding"
+        there = f"; the last ones of each rule are {has}" if has else ""
+        raise UsageError(f"--section {rule}:{number}: the chart has {many} of {rule}{there}")
+    beat = found[number - 1]
+    ends = chart.timing.seconds_of_beats(np.array([max(0.0, beat - AROUND), beat + AROUND]))
+    return float(ends[0]), float(ends[1])
+
+
+def check_section(text: str) -> None:
+    """Raise `UsageError` for what is no section, whatever the song, before a chart is read."""
+    _ends(text)
+
+
+def parse_section(text: str, timing: Timing, end_second: float) -> tuple[float, float]:
+    """First and last second of a section.
+
+    Parameters
+    ----------
+    text : `START:END`; a plain number is seconds, `b16` a beat, `m4` a measure of 4 beats; `16b`, `4m`, `10s` will do
+    end_second : where the song ends; an end left out means there, a start left out second 0
+
+    Raises `UsageError` for what is no section, is empty or runs backwards, or lies outside the song.
+    """
+    first, last = _ends(text)
+    start = _second(*first, timing) if first else 0.0
+    end = _second(*last, timing) if last else end_second
+    if start >= end_second:
+        raise UsageError(f"--section {text} starts at {start:.1f} s, after the end of the song at {end_second:.1f} s")
+    if end <= start:
+        raise UsageError(f"--section {text} ends at {end:.1f} s, not after its start at {start:.1f} s")
+    return start, min(end, end_second)
+
+
+def _ends(text: str) -> tuple[tuple[float, str] | None, tuple[float, str] | None]:
+    """Number and unit ("s", "b" or "m") of both ends; None for an end that is left out."""
+    start, colon, end = text.partition(":")
+    if not colon or ":" in end or not (start.strip() or end.strip()):
+        raise UsageError(f"--section {text} cannot be read; {_SECTION_HELP}")
+    return _point(start, text), _point(end, text)
+
+
+def _point(point: str, whole: str) -> tuple[float, str] | None:
+    if not point.strip():
+        return None
+    match = _POINT.fullmatch(point)
+    try:
+        number = float(match["after"] or match["number"]) if match else math.nan
+    except ValueError:
+        number = math.nan
+    if match is None or not math.isfinite(number):
+        raise UsageError(f"--section {whole}: '{point.strip()}' cannot be read; {_SECTION_HELP}")
+    return number, (match["unit"] or match["suffix"] or "s").lower()
+
+
+def _second(number: float, unit: str, timing: Timing) -> float:
+    if unit == "s":
+        return number
+    beat = number * 4 if unit == "m" else number
+    return float(timing.seconds_of_beats(np.array([beat]))[0])
