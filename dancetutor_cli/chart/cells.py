@@ -17,7 +17,7 @@ from dancetutor_cli.chart.model import Kind, ReadWarning
 # are steps, and x, y and z heads of holds, of the first, second and third player of a chart for several; the game shows
 # each player's in a colour of their own. A chart with steps of the first and the second player and none of a third one
 # is read as one for two. What else stands in it (the third one's holds, plain notes) is for anyone who has that half of
-# the pad. One with steps of all three is for them and more, see `parts_of`.
+# the pad. One with steps of all three is for them and more, see `notes_by_player`.
 
 PLAYERS = b"XYZxyz"
 TEXTS = {
@@ -171,7 +171,7 @@ _PLAIN = 4  # the colour of plain notes beside three letters
 _LEAST = 0.5  # times as many as a letter that is there least: so many plain notes are a fourth player's
 
 
-def parts_of(cells: Cells, marks: Mapping[tuple[int, int], int], columns: int, letters: bytes) -> list[Cells]:
+def notes_by_player(cells: Cells, marks: Mapping[tuple[int, int], int], columns: int, letters: bytes) -> list[Cells]:
     """The notes of each player, in the order of their letters, left before right; mines are in all parts.
 
     Each of two players has the notes with their own letter, and the notes without a letter on their half of the pads.

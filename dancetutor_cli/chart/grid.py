@@ -46,7 +46,7 @@ class LineIndex:
 
 
 @dataclass(slots=True)
-class NotePart:
+class NoteSpan:
     """The note data of a chart, or of one of its players, in the text of the file.
 
     start, end : span; begin : offset before which a `,` ends no measure
@@ -80,7 +80,7 @@ class NoteText:
 class Grid:
     """Measures and rows of some parts, in file order; `first` and `last` are the spans of the trimmed rows."""
 
-    def __init__(self, text: NoteText, parts: Sequence[NotePart]) -> None:
+    def __init__(self, text: NoteText, parts: Sequence[NoteSpan]) -> None:
         self._text, self._parts = text, parts
         self._escapes = np.array(sorted(text.escapes), dtype=np.int64)
         self._view = view = np.frombuffer(text.value, dtype=np.uint8)
@@ -152,7 +152,7 @@ class Grid:
         end = np.full(len(cell), -1, dtype=np.int64)
         return Cells(self._of_row[row], self._tick[row], column, kinds.ravel()[cell], self._line[row], end)
 
-    def _escapes_in(self, part: NotePart) -> NDArray[np.int64]:
+    def _escapes_in(self, part: NoteSpan) -> NDArray[np.int64]:
         """Where in a part a backslash stood."""
         first, after = self._escapes.searchsorted((part.start, part.end)).tolist()
         return self._escapes[first:after]

@@ -12,7 +12,7 @@ import numpy as np
 
 from dancetutor_cli.chart import cells as stepf2
 from dancetutor_cli.chart.cells import Cells, notes_of
-from dancetutor_cli.chart.grid import BLANKS, Grid, LineIndex, NotePart, NoteText
+from dancetutor_cli.chart.grid import BLANKS, Grid, LineIndex, NoteSpan, NoteText
 from dancetutor_cli.chart.model import Chart, Kind, MeasureTable, NoteTable, ReadWarning, RowTable
 from dancetutor_cli.chart.msd import blanked
 from dancetutor_cli.chart.names import is_routine
@@ -79,7 +79,7 @@ def read_notes(data: bytes, values: Iterable[Value], lines: LineIndex) -> Iterat
 
 
 def _read(text: NoteText, values: Sequence[Value]) -> Iterator[NoteData]:
-    split = [_parts(text, value) for value in values]
+    split = [_note_spans(text, value) for value in values]
     found = _PartCells(text, [part for of_chart in split for part in of_chart])
     at = 0
     for value, parts in zip(values, split, strict=True):
@@ -93,7 +93,7 @@ def _read(text: NoteText, values: Sequence[Value]) -> Iterator[NoteData]:
 class _PartCells:
     """What stands in some parts."""
 
-    def __init__(self, text: NoteText, parts: Sequence[NotePart]) -> None:
+    def __init__(self, text: NoteText, parts: Sequence[NoteSpan]) -> None:
         self._text, self._parts, self._grid = text, parts, Grid(text, parts)
         cells = notes_of(self._grid.cells(), [part.warnings for part in parts])
         self._cells = cells[np.argsort((cells.part << _PART) + cells.tick, kind="stable")]  # by column already
@@ -119,7 +119,7 @@ class _PartCells:
         warnings = [warning for at in parts for warning in self._parts[at].warnings]
         first = self._parts[parts[0]]
         letters = stepf2.letters_of(self._text.value[start:end], form.columns) if first.of_players else b""
-        shared = stepf2.parts_of(players[0], first.marks, form.columns, letters) if letters else []
+        shared = stepf2.notes_by_player(players[0], first.marks, form.columns, letters) if letters else []
         if len(shared) > 1:
             own = [NoteData(_table([cells], timing), *self._tables(parts[0]), ()) for cells in shared]
             message = stepf2.for_several(len(own), letters)
@@ -133,7 +133,7 @@ class _PartCells:
         return self._grid.row_table(at), self._grid.measure_table(at)
 
 
-def _parts(text: NoteText, value: Value) -> list[NotePart]:
+def _note_spans(text: NoteText, value: Value) -> list[NoteSpan]:
     """The note data of each player of a chart that has such; else one part."""
     (start, end), (columns, routine, trimmed), _ = value
     begin = start
@@ -144,7 +144,7 @@ def _parts(text: NoteText, value: Value) -> list[NotePart]:
         cuts = [start - 1, *(start + at.start() for at in re.finditer(b"&", text.value[start:end])), end]
         spans = [(a + 1, b) for a, b in itertools.pairwise(cuts)]
         _tell_players([text.value[a:b] for a, b in spans], text.lines(start), warnings)
-    parts = [NotePart(a, b, begin, columns) for a, b in spans[:_PLAYERS]]
+    parts = [NoteSpan(a, b, begin, columns) for a, b in spans[:_PLAYERS]]
     parts[0].warnings += warnings
     if len(parts) == 1 and stepf2.letters_of(text.value[start:end], columns):
         parts[0].of_players = True
@@ -187,7 +187,7 @@ OWN_PADS = {"dance-couple": "dance-single", "pump-couple": "pump-single"}
 ONE_PAD = {"dance-routine": "dance-double", "pump-routine": "pump-double", "smx-team": "smx-double10"}
 
 
-def parts(chart: Chart, player: int | None = None) -> tuple[Chart, ...]:
+def player_charts(chart: Chart, player: int | None = None) -> tuple[Chart, ...]:
     """The charts for which feet are found: the chart itself or, for several players, the part of each, or of one
     player.
     """

@@ -176,9 +176,9 @@ class Selection:
 
     def parts(self, chart: Chart) -> tuple[Chart, ...]:
         """What feet are found for in a chart: itself, or of one for several each player's part that is meant."""
-        from dancetutor_cli.chart.note_data import parts
+        from dancetutor_cli.chart.note_data import player_charts
 
-        return parts(chart, self.player)
+        return player_charts(chart, self.player)
 
 
 def note_bytes(path: Path, selection: Selection, data: bytes | None = None) -> int:

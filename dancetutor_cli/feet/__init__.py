@@ -10,5 +10,6 @@ solved.Solved                 a chart, its `play.Play`, its pad and preset
 
 limbs, play_json              names and letters of limbs; plays in the JSON of `analyze`
 move_spans                    crossovers and other moves of a play that last for several rows
+conditions                    which charts an entry of dancetutor.yaml is about
 passages                      the hardest passages of a chart
 """

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from dancetutor_cli.chart.names import COLUMNS
-from dancetutor_cli.chart.pack_files import Condition
+from dancetutor_cli.feet.conditions import Condition
 from dancetutor_cli.feet.solver.vocabulary import MODELS, MOST_MS
 from dancetutor_cli.run.errors import did_you_mean
 from dancetutor_cli.run.reading import config_names, config_path, is_outside, is_regular, named_file, shown_key

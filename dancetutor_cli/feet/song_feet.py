@@ -11,15 +11,9 @@ from typing import Annotated, Any
 from dancetutor_cli.chart.model import Chart, Kind, Song
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.note_data import shares_rows
-from dancetutor_cli.chart.pack_files import (
-    FILE_NAME,
-    Condition,
-    When,
-    check_not_a_link_out,
-    condition_of,
-    find_settings_file,
-)
+from dancetutor_cli.chart.pack_files import SETTINGS_FILE, check_not_a_link_out, find_settings_file
 from dancetutor_cli.feet.annotations import has_pins, pinned
+from dancetutor_cli.feet.conditions import Condition, When, condition_of
 from dancetutor_cli.feet.limbs import LETTERS, MEANING, UNKNOWN, Limb, Part
 from dancetutor_cli.feet.overrides import CellOverride, FeetProblem, Ignores, Overrides, contradictions
 from dancetutor_cli.feet.sme import ChartData, editor_file, read_sme
@@ -112,7 +106,7 @@ def entries_of(source: MarkedYaml) -> tuple[FeetEntry, ...]:
 def _parse_letters(chart: Chart, tick: int, letters: str) -> Iterator[CellOverride | FeetProblem]:
     """Who steps the notes of a row; one problem in place of them if the letters do not fit."""
     here = [n for n in (chart.notes.tick == tick).nonzero()[0].tolist() if chart.notes.kind[n] in _STEPS]
-    beat = f"{FILE_NAME} gives beat {tick / TICKS_PER_BEAT:g}"
+    beat = f"{SETTINGS_FILE} gives beat {tick / TICKS_PER_BEAT:g}"
     if len(here) != len(letters):
         what = f"{len(letters)} letter{'s' if len(letters) > 1 else ''}"
         yield FeetProblem("settings-count", f"{beat} {what}, and {len(here) or 'no'} notes are there; not used")
@@ -122,7 +116,7 @@ def _parse_letters(chart: Chart, tick: int, letters: str) -> Iterator[CellOverri
             limb, part = MEANING[letter]
             if part is Part.WHOLE and _TOES.get(limb, " ") in letters:
                 part = Part.HEEL
-            yield CellOverride(tick, int(chart.notes.column[n]), limb, part, FILE_NAME, int(chart.notes.line[n]), 1)
+            yield CellOverride(tick, int(chart.notes.column[n]), limb, part, SETTINGS_FILE, int(chart.notes.line[n]), 1)
 
 
 # Limbs, and what people said about them: overrides and ignores read from annotations and from data.sme.

@@ -8,13 +8,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from dancetutor_cli.chart.pack_files import (
-    FILE_NAME,
-    Condition,
-    When,
-    check_not_a_link_out,
-    condition_of,
-)
+from dancetutor_cli.chart.pack_files import SETTINGS_FILE, check_not_a_link_out
+from dancetutor_cli.feet.conditions import Condition, When, condition_of
 from dancetutor_cli.feet.preset import preset_names
 from dancetutor_cli.lint.rule import matching, named_singly
 from dancetutor_cli.lint.rule_settings import Layer, RulesKeys, Settings, layer_of, resolve_name
@@ -106,7 +101,7 @@ def with_assignments(configuration: Configuration, assignments: Iterable[str]) -
         rule, dot, option = key.partition(".")
         data = {"rules": {rule: {option: parsed}}} if dot else {key: parsed}
         try:
-            configuration = _apply(configuration, MarkedYaml(Path.cwd() / FILE_NAME, data, {}), confined=False)
+            configuration = _apply(configuration, MarkedYaml(Path.cwd() / SETTINGS_FILE, data, {}), confined=False)
         except FileError as error:
             raise UsageError(f"--set {text}: {error.message}") from None
     return configuration

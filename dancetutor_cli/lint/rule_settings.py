@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeVar
 
-from dancetutor_cli.chart.pack_files import Condition
+from dancetutor_cli.feet.conditions import Condition
 from dancetutor_cli.lint.rule import BY_METER, all_rules, matching, named_singly, rule_named
 from dancetutor_cli.run.errors import DancetutorError, FileError
 from dancetutor_cli.run.reading import config_path

@@ -9,7 +9,7 @@ import numpy as np
 
 from dancetutor_cli.chart.edits import unchanged
 from dancetutor_cli.chart.model import Chart, Song
-from dancetutor_cli.chart.note_data import parts, written_parts
+from dancetutor_cli.chart.note_data import player_charts, written_parts
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.annotations import step_rows
 from dancetutor_cli.feet.preset import Preset, mismatch
@@ -35,7 +35,7 @@ def solve_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart
     padless = set()
     for chart in charts:
         feet = []
-        for part in parts(chart):
+        for part in player_charts(chart):
             overrides, _, wrong = overrides_for(song, part)
             found.problems += (Lack(problem.message, problem.line, problem.column) for problem in wrong)
             play = solve_chart(part, preset_of(part), overrides)

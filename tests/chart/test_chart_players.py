@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 from dancetutor_cli.chart.edits import apply
 from dancetutor_cli.chart.model import Chart
-from dancetutor_cli.chart.note_data import parts, written_parts
+from dancetutor_cli.chart.note_data import player_charts, written_parts
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.commands import cli
 from dancetutor_cli.feet.annotations import step_rows
@@ -52,7 +52,7 @@ def cells(chart: Chart) -> list[tuple[int, int, int]]:
 
 def test_a_couple_has_a_pad_each_and_half_of_the_columns() -> None:
     chart = chart_of("dance-couple", COUPLE)
-    first, second = parts(chart)
+    first, second = player_charts(chart)
     assert [one.steps_type for one in (first, second)] == ["dance-single"] * 2
     assert [one.label for one in (first, second)] == ["dance-couple Hard 9 P1", "dance-couple Hard 9 P2"]
     assert cells(first) + [(t, c + 4, k) for t, c, k in cells(second)] == sorted(
@@ -65,7 +65,7 @@ def test_a_couple_has_a_pad_each_and_half_of_the_columns() -> None:
 def test_the_rows_of_a_player_are_this_players_letters(player: int) -> None:
     """Keysounds stand between the letters, and the last row is too short."""
     data = (HEAD + block("dance-couple", COUPLE)).encode()
-    part = parts(parse(data, Path("x.sm")).charts[0])[player]
+    part = player_charts(parse(data, Path("x.sm")).charts[0])[player]
     texts = [data[a:b] for a, b in zip(part.rows.start.tolist(), part.rows.end.tolist(), strict=True)]
     wanted = [b"1000", b"0100[7]", b"0001", b"2010", b"0000", b"3000", b"0001", b"1000"], [
         b"1000", b"0100", b"M001", b"0210", b"0000", b"0300", b"1000", b"000"]  # fmt: skip
@@ -78,19 +78,19 @@ def test_the_rows_of_a_player_are_this_players_letters(player: int) -> None:
 
 def test_a_routine_has_one_pad_and_rows_for_each() -> None:
     chart = chart_of("dance-routine", FIRST + "&\n" + SECOND)
-    first, second = parts(chart)
+    first, second = player_charts(chart)
     assert [(one.steps_type, one.player, len(one.notes)) for one in (first, second)] == [
         ("dance-double", 1, 8), ("dance-double", 2, 8)]  # fmt: skip
     assert sorted(cells(first) + cells(second)) == cells(chart)
     assert written_parts(chart) == (first, second)
     assert [warning.code for warning in chart.warnings] == ["several-players"]
-    assert parts(chart, 2) == (second,)
+    assert player_charts(chart, 2) == (second,)
     alone = chart_of("dance-single", "1000\n")
-    assert parts(alone) == written_parts(alone) == (alone,)
+    assert player_charts(alone) == written_parts(alone) == (alone,)
 
 
 def test_a_routine_without_a_second_player_is_for_one() -> None:
-    assert [one.player for one in parts(chart_of("dance-routine", FIRST))] == [1]
+    assert [one.player for one in player_charts(chart_of("dance-routine", FIRST))] == [1]
 
 
 @pytest.fixture
@@ -160,7 +160,7 @@ def test_pins_of_each_player_are_kept(both: Path) -> None:
     both.write_text(swapped)
     song = parse(both.read_bytes(), both)
     for chart in song.charts:
-        for part in parts(chart):
+        for part in player_charts(chart):
             overrides, _, problems = overrides_for(song, part)
             assert len(overrides) and problems == ()
             play = solved_chart(song, part, load_preset("itg")).play
@@ -179,8 +179,8 @@ def test_a_note_of_one_player_is_repaired_and_the_other_keeps_all(tmp_path: Path
     status, text = run("analyze", path, "--player", "2", "--preset", "thesis", "--fix", "DT202")
     assert status == 0 and "[dance-couple Hard 9 P2] move the note" in text
     after = parse(path.read_bytes(), path).charts[0]
-    assert cells(parts(after)[0]) == cells(parts(before)[0])
-    assert len(set(cells(parts(after)[1])) ^ set(cells(parts(before)[1]))) == 2
+    assert cells(player_charts(after)[0]) == cells(player_charts(before)[0])
+    assert len(set(cells(player_charts(after)[1])) ^ set(cells(player_charts(before)[1]))) == 2
 
 
 @pytest.fixture
@@ -199,7 +199,7 @@ def test_letters_of_marked_notes_stand_from_left_to_right_whosever_they_are(mark
     text = marked.read_text().replace(f"{{dt1 {sides[0]}}}", "{dt1! (LL)(LR)(RR)(L)}")
     marked.write_text(text)
     song = parse(text.encode(), marked)
-    said = [overrides_for(song, part)[0].cells() for part in parts(song.charts[0])]
+    said = [overrides_for(song, part)[0].cells() for part in player_charts(song.charts[0])]
     left, right = (int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT))
     feet = [{column: int(limb) for (_, column), (limb, _) in sorted(cells.items())} for cells in said]
     assert feet == [{0: left, 5: right, 2: right, 4: left}, {9: left, 3: left, 7: right}]
@@ -258,11 +258,11 @@ def test_a_marked_note_keeps_its_letter_when_it_is_moved(tmp_path: Path) -> None
     chart = parse(path.read_bytes(), path).charts[0]
     edit = Suggestion((MovedNote(0, 9, 6),), "moved")
     finding = Finding("DT202", "spin", "warning", "m", line=int(chart.rows.line[0]))
-    fix = move_notes(path.read_bytes(), parts(chart)[1], finding, edit)
+    fix = move_notes(path.read_bytes(), player_charts(chart)[1], finding, edit)
     assert fix is not None
     after = parse(apply(path.read_bytes(), fix.splices), path).charts[0]
-    assert [cell[1] for cell in cells(parts(after)[1]) if cell[0] == 0] == [6]
-    assert cells(parts(after)[0]) == cells(parts(chart)[0])
+    assert [cell[1] for cell in cells(player_charts(after)[1]) if cell[0] == 0] == [6]
+    assert cells(player_charts(after)[0]) == cells(player_charts(chart)[0])
 
 
 def test_one_player_is_baked(both: Path, tmp_path: Path) -> None:

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.chart.pack_files import Condition, find_settings_file
+from dancetutor_cli.chart.pack_files import find_settings_file
+from dancetutor_cli.feet.conditions import Condition
 from dancetutor_cli.feet.preset import preset_names
 from dancetutor_cli.lint.configuration import (
     Configuration,
