@@ -194,8 +194,6 @@ def _are_frames(data: bytes, at: int) -> bool:
     return True
 
 
-# The samples, as the games hear them.
-
 LONGEST = 900.0  # seconds that are decoded at most
 _NATIVE = (44100, 48000)  # Hz; what has another rate is resampled to the first
 _HALVED = 2  # samples whose mean is one of a `Sound`: onsets need no more than half the rate

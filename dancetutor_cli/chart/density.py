@@ -11,8 +11,6 @@ import numpy as np
 from dancetutor_cli.chart.model import Chart, Kind, Song
 from dancetutor_cli.chart.names import TICKS_PER_MEASURE
 
-# How fast a chart is: its tempos and how long each lasts.
-
 MOST_SHOWN = 9999  # beats a minute: what is more says nothing to a reader
 
 
@@ -54,8 +52,6 @@ def _displayed(text: str) -> list[float]:
         return []
     return found if len(found) <= 2 and all(1 <= bpm <= MOST_SHOWN for bpm in found) else []
 
-
-# How dense a chart is: steps per second and the breakdown of its streams as players write it.
 
 _SHORTEST = 0.12  # seconds: a measure that warps or gimmicks leave less of has no speed anyone could play
 _IS_STEP = np.zeros(256, dtype=bool)

@@ -15,8 +15,6 @@ from dancetutor_cli.chart.msd import decode, encoding_of
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.run.errors import FileError
 
-# Changes to a file's bytes as a list of small replacements; everything between them stays as it is.
-
 
 @dataclass(frozen=True, slots=True, order=True)
 class Splice:
@@ -99,8 +97,6 @@ def _body(pairs: list[tuple[bytes | None, bytes | None]], encoding: str) -> Iter
 def _display_line(line: bytes | None, encoding: str) -> str:
     return decode((line or b"").removesuffix(b"\r"), encoding).replace("\r", " ")
 
-
-# The last check before a file is written: whether every reader still sees the same song in it.
 
 _COMMENT = re.compile(rb"//[^\n]*")
 _BPMS = re.compile(rb"#BPMS:([^;]*)", re.IGNORECASE)

@@ -6,8 +6,6 @@ import re
 import unicodedata
 from dataclasses import dataclass
 
-# Scanner of the games' file format: bytes -> tags with the byte span of every value (`#TAG:value:value;`).
-
 # Each branch begins with a letter of its own, so that the search for the next one skips the rest quickly.
 _TOKEN = re.compile(rb"//[^\n]*|\\.?|##*|:|;", re.DOTALL)
 _MOST_VALUES = 4096  # of one tag; games read the first few; of more only the last is kept

@@ -18,8 +18,6 @@ from dancetutor_cli.chart.msd import blanked
 from dancetutor_cli.chart.names import is_routine
 from dancetutor_cli.chart.timing import Timing
 
-# Note data: bytes -> measures, rows and notes with their positions, of all charts of a file at once.
-
 _PLAYERS = 2
 _AT_ONCE = 200  # charts; a file may hold thousands
 _PART = 40  # bits of a tick: a later part comes after every tick of the one before

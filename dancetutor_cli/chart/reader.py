@@ -20,8 +20,6 @@ from dancetutor_cli.run.errors import ChartError, FileError, NoChartsError
 from dancetutor_cli.run.files import CHART_SUFFIXES, EDIT_SUFFIX, UCS_SUFFIX
 from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
 
-# The common part of both formats: the values of a song's tags, charts from note data, and oddities in a file.
-
 # Tags whose loss somebody sees or hears in a game.
 _TEXT_TAGS = frozenset({
     "TITLE", "SUBTITLE", "ARTIST", "TITLETRANSLIT", "SUBTITLETRANSLIT", "ARTISTTRANSLIT", "GENRE", "CREDIT", "BANNER",
@@ -209,8 +207,6 @@ def suspicious_music(name: str) -> bool:
     plain = name.strip().replace("\\", "/")
     return plain.startswith(("/", "-", "~")) or ":" in plain or "|" in plain or ".." in plain.split("/")
 
-
-# From the bytes of a chart file to a `Song`.
 
 _KINDS = f"{', '.join(CHART_SUFFIXES[:-1])} or {CHART_SUFFIXES[-1]}"
 _ALIASES = {"FREEZES": "STOPS", "NOTES2": "NOTES"}

@@ -109,8 +109,6 @@ def one_song(path: Path) -> Path:
     return songs[0] if len(songs) == 1 else path
 
 
-# Which charts of a file are meant, and how much there is to solve in them; imports no reader of charts.
-
 _LARGE = 200_000  # bytes
 
 

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 
-# Beats and seconds of a chart: BPMs, stops, delays, warps and fakes as StepMania 5 and ITGmania run them.
-#
 # Segments are kept as exact fractions of the decimals in the file; floats are made from them once.
 
 Segments = tuple[tuple[int, Fraction], ...]  # (tick, value), sorted, one per tick

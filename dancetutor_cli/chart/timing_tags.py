@@ -283,8 +283,6 @@ class _Walk:
             self.out.bpms.append((self.warp, self.bpm))
 
 
-# From the timing tags of a song, or of a chart that has its own, to a `Timing`.
-
 TIMING_TAGS = frozenset({
     "BPMS", "STOPS", "DELAYS", "WARPS", "FAKES", "OFFSET", "TIMESIGNATURES", "TICKCOUNTS", "COMBOS", "SPEEDS",
     "SCROLLS", "LABELS",

@@ -293,9 +293,6 @@ class _Clock:
             self.bpms.append((tick, bpm))
 
 
-# From the bytes of a .ucs file to a `Song`.
-
-
 def read_ucs(data: bytes, path: Path) -> Song:
     """Read the bytes of a .ucs file. Raises `ChartError`, with line, for the first thing that is none of the format."""
     text = _Text(path, data)

@@ -15,8 +15,6 @@ from dancetutor_cli.feet.limbs import MARKER, MEANING, Limb, NotationError, Part
 from dancetutor_cli.feet.overrides import CellOverride, FeetProblem
 from dancetutor_cli.run.errors import plural
 
-# Where feet stand in note data: the steps of each row, and the comments on the lines that open measures.
-
 _STEP = np.zeros(256, dtype=bool)
 _STEP[list(b"124Ll")] = True
 _SPECIAL = np.zeros(256, dtype=bool)

@@ -13,8 +13,6 @@ from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.schema import RGB, Share
 from dancetutor_cli.run.yaml_files import load
 
-# The limbs of a dancer, as every package names them.
-
 
 class Limb(IntEnum):
     """Who presses a panel. `NONE`: there is no step in that cell; `UNPLAYED`: no limb is left for the step."""

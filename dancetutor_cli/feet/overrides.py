@@ -14,9 +14,6 @@ from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.pads import load_pad
 
-# Settings of people for the feet of a chart: limbs that they force, findings that they do not want, and mistakes in
-# both.
-
 
 @dataclass(frozen=True, slots=True)
 class Overrides:

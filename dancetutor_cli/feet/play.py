@@ -20,8 +20,6 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.preset import HAND, LEAP, DropReason
 
-# The result of the solver: which limb steps which note, and what it costs. Arrays with one entry per row.
-
 
 class StepKind(IntEnum):
     """What a limb does in a cell of `Rows.steps`."""

@@ -19,8 +19,6 @@ from dancetutor_cli.feet.play import Play, Rows, StepKind
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import read_json, shown_key
 
-# The rows of a play in the JSON of `analyze` (docs/formats.md): as text at once, because there are so many.
-#
 # Most rows are like others: everything besides the time, the line and the margin of a row is written once for all rows
 # of a run that share it.
 

@@ -34,8 +34,6 @@ class DropReason(IntEnum):
     HAND = 2  # a hand that has just been on the floor
 
 
-# Cost presets: which rules of play hold and what each undesired thing costs, from configs/presets/*.yaml.
-
 DEFAULT_PRESET = "itg"
 _DEFAULTS = {"pump": "pump", "smx": "smx"}  # by the first word of the steps type; DEFAULT_PRESET for all others
 MAX_WEIGHT = 1_000_000

@@ -28,9 +28,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
 
-# The report on one chart of `analyze`: findings, and the other things that the user asked for.
-
-
 def chart_result(subject: ChartSubject, task: AnalyzeTask) -> ChartResult:
     """The results for a chart that a task asks for."""
     from dancetutor_cli.chart.hash import chart_hash
@@ -115,8 +112,6 @@ def _ambiguous(subject: ChartSubject) -> Iterator[tuple[float, str]]:
             kind = Ambiguity(int(play.ambiguity[row])).name.lower()
             yield round(int(play.rows.tick[row]) / TICKS_PER_BEAT, 6), kind
 
-
-# The piece of work of `analyze`: one file in, one `FileResult` out; a failure is part of the result.
 
 _ROWS = 16_000  # of charts that are looked at together; some more, so that no chart stands alone
 _CHART = 50  # rows that a chart counts for, however short

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     pass
 
 
-# Reads dancetutor.yaml and configs/lint/*.yaml into `Settings`; what they say wrongly is named with its line.
-
 FAIL_ON = ("error", "warning", "never")
 _MOST_EXTENDED = 16
 

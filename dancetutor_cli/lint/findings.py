@@ -8,8 +8,6 @@ from dataclasses import dataclass, fields
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-# The findings of the linter.
-
 RANKS = {"info": 0, "warning": 1, "error": 2}  # severities, the least first
 
 

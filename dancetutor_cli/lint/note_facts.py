@@ -18,8 +18,6 @@ from dancetutor_cli.chart.selection import twin
 from dancetutor_cli.feet.play import Play, runs
 from dancetutor_cli.run.errors import FileError
 
-# Facts about the notes of a chart: grid, kinds, what the game does not judge.
-
 _KINDS = {"mine": Kind.MINE, "roll": Kind.ROLL, "hold": Kind.HOLD, "lift": Kind.LIFT, "fake": Kind.FAKE,
           "keysound": Kind.KEYSOUND}  # fmt: skip
 _STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)

@@ -16,8 +16,6 @@ from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 
-# Plays on one pad, one after the other: the answers to the rules' questions are computed for all of them at once.
-#
 # Most charts have few rows and most rules find nothing in them, so a question for each chart would take many times as
 # long as its answer. Here a question is an array over the rows of all plays, or one number for each.
 

@@ -35,8 +35,6 @@ from dancetutor_cli.run.trust import results_folder
 if TYPE_CHECKING:
     from dancetutor_cli.lint.analysis import AnalyzeTask
 
-# The result of `analyze` for a file: plain data that pickles and turns into JSON.
-#
 # Imports neither numpy nor numba, so that results can be read back quickly.
 
 

@@ -302,9 +302,6 @@ class MoveRule(TimedRule):
         return self.description
 
 
-# All rules by code and name: the modules under `rules/`.
-
-
 @cache
 def all_rules() -> Mapping[str, type[Rule]]:
     """Code -> class of every rule, sorted by code."""

@@ -16,8 +16,6 @@ from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.schema import Keys, MarkedYaml, NotNegative, Parsed, Text, Texts, check_value
 from dancetutor_cli.run.yaml_files import load, read
 
-# Which rules look at which chart, with which severity and options: layers of configuration, resolved.
-#
 # A layer is what one file says, or one entry of its `overrides`. Later layers win: configs/lint/default.yaml, what
 # `extends` names, dancetutor.yaml, the command line.
 

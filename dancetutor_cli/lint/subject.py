@@ -50,8 +50,6 @@ def share_plays(subjects: Iterable[ChartSubject]) -> None:
             vars(subject)["facts"] = PlayFacts(candidates, number, subject.chart.timing)
 
 
-# What a rule looks at: a file, or one chart with its play.
-
 _LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
 
 

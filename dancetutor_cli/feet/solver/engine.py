@@ -53,8 +53,6 @@ def cost_at(curve: Curve, milliseconds: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.asarray(knots[before, 1] + (knots[after, 1] - knots[before, 1]) * way // width)
 
 
-# Holds the transition tables of one pad and preset, and runs the kernel over rows; tables grow when it asks for it.
-
 _SOLVERS = {"thesis": solve_thesis, "itg": solve_itg}
 _NODES_KEPT = 1 << 16  # room for the nodes of a usual chart, kept between charts
 _NODES_A_ROW = 5  # and one for each column: so many nodes a long chart is first given room for

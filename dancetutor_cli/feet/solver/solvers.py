@@ -257,8 +257,6 @@ def explorer(rules: Any) -> Any:
     return inner_kernel(FunctionType(explore.__code__, {**globals(), "expand": rules}, "explore"))
 
 
-# The solver's kernels, one for each model: each finds the cheapest way through rows, and what it needs for that.
-
 EXPLAIN = -1  # instead of a row to start from
 DOUBLESTEP = 1 << EVENTS.index("doublestep")
 explore: Any = None  # globals of each model's own; see `_way_finder` and `_solver`

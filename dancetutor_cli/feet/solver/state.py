@@ -19,8 +19,6 @@ from dancetutor_cli.feet.solver.tables import (
 )
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 
-# The state of the dancer between rows: ten numbers that pack into one integer. Kernel code.
-
 LEFT_AT, RIGHT_AT = 0, 1  # places of the feet, see `tables.Geometry`
 SIDE = 2  # of a facing of 180 degrees: 1 reached as +180, 2 reached as -180, 0 otherwise
 LAST = 3  # last leg: 0 none, 1 left, 2 right

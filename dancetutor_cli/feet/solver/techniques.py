@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.feet.play import Play
 
 
-# Names for what happens in a play, and from which time and length on it is called so: configs/moves.yaml.
-#
 # What happens is found by the kernels: in a row by the rules, in its neighbours by `state.name_neighbours`.
 
 

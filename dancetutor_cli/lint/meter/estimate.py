@@ -150,9 +150,6 @@ class _Misses:
         return {name: self._by.get(name, 0.0) + (worse if name != tagged else 0.0) for name in one.on}
 
 
-# The estimate.
-
-
 def _interval(scale: Scale, meter: float) -> tuple[float, float]:
     interval = scale.interval
     band = sum(meter > end for end in interval.up_to)
