@@ -36,9 +36,6 @@ class Watch:
         self.seen: list[tuple[float, int]] = []
         self.count = 0
 
-    def begin(self, frames: int, fps: int) -> None:
-        """Not needed here."""
-
     def advance(self, frames: int) -> None:
         """Note the time."""
         self.count += frames
@@ -61,15 +58,17 @@ def _request(kind: str) -> Any:
 def child(output: str, kind: str) -> None:
     """Render a part of the demo song with workers of this process and print what was seen, as JSON."""
     from dancetutor_cli.film.media.encoder import Encoding
-    from dancetutor_cli.film.work.planning import prepare
-    from dancetutor_cli.film.work.render import make_film
-    from dancetutor_cli.film.work.request import look_up
+    from dancetutor_cli.film.work.batch import Batch, film_workers
+    from dancetutor_cli.film.work.jobs import FilmJob
+    from dancetutor_cli.film.work.records import FilmRecords
     from dancetutor_cli.run.pool import default_jobs
 
     request = _request(kind)
     look, watch = request.look, Watch()
-    encoding = Encoding("mp4", look.size, request.fps, look.quality)
-    make_film(lambda: prepare(request, look_up(request)), encoding, Path(output), default_jobs(), watch)
+    job = FilmJob(request, kind, Path(output), Encoding("mp4", look.size, request.fps, look.quality))
+    workers = film_workers(default_jobs(), watch.advance, look.renderer)
+    (outcome,) = Batch([job], workers, records=FilmRecords(None)).run()
+    assert outcome.error is None, outcome.error
     print(json.dumps({"seen": watch.seen, "end": time.time(), "fps": request.fps}))
 
 

@@ -6,6 +6,7 @@ import signal
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,7 +31,7 @@ from dancetutor_cli.film.media.encoder import Encoding, choose
 from dancetutor_cli.film.media.film_formats import FILES, FORMATS, PICTURES, target_of
 from dancetutor_cli.reports.terminal import FilmProgress, safe
 from dancetutor_cli.run.errors import UsageError
-from dancetutor_cli.run.files import check_file, check_folder, make_folder, one_of, plain_name
+from dancetutor_cli.run.files import check_file, check_folder, make_folder, one_of, place_of, plain_name
 
 if TYPE_CHECKING:
     from dancetutor_cli.film.work.request import FilmRequest, FilmSubject
@@ -224,14 +225,10 @@ def _allow_long(subject: FilmSubject, file: Path, yes: bool) -> None:
 
 
 def _make(request: FilmRequest, subject: FilmSubject, target: Path, kind: str, options: RenderOptions) -> None:
-    from dancetutor_cli.film.work import extras
-    from dancetutor_cli.film.work.planning import PreparedFilm, prepare
-    from dancetutor_cli.film.work.render import make_film
+    from dancetutor_cli.film.work.batch import Batch, film_workers
+    from dancetutor_cli.film.work.jobs import FilmJob
+    from dancetutor_cli.film.work.records import FilmRecords
     from dancetutor_cli.run.pool import default_jobs
-
-    def prepared() -> PreparedFilm:
-        film = prepare(request, subject)
-        return replace(film, plan=extras.poses(film.plan, subject.chart.label)) if options.poses else film
 
     say = (lambda _warnings: None) if options.quiet else warn
     say(subject.warnings)
@@ -241,18 +238,19 @@ def _make(request: FilmRequest, subject: FilmSubject, target: Path, kind: str, o
         click.echo(f"note: {what}; choose a part with --section, or write .mp4", err=True)
     if encoding.format.h264:
         encoding = replace(encoding, encoder=choose(options.encoder))
+    poses = options.poses is not None
+    place = target if kind == PICTURES else place_of(target)
+    job = FilmJob(request, subject.chart.label, place, encoding, None, poses, options.poster, options.srt)
     with FilmProgress(target.name, options.quiet) as progress:
-        film = make_film(prepared, encoding, target, options.jobs or default_jobs(), progress, request.look.renderer)
-    say(film.warnings)
-    if options.poses:
-        extras.write_pose_index(target, subject.song, subject.chart, film.plan)
-    if options.poster:
-        extras.write_poster(options.poster, film.plan)
-    if options.srt and (warning := extras.write_subtitles(target.with_suffix(".srt"), film.plan)):
-        say([warning])
+        workers = film_workers(options.jobs or default_jobs(), progress.advance, request.look.renderer)
+        begin = partial(progress.begin, fps=request.fps)
+        (outcome,) = Batch([job], workers, begin, records=FilmRecords(None)).run()
+    if outcome.error is not None:
+        raise outcome.error
+    say(outcome.warnings[len(subject.warnings) :])
     if not options.quiet:
         width, height = request.look.size
-        length = f"{film.plan.clock.frames} pictures" if kind == PICTURES else f"{film.plan.clock.seconds:.1f} s"
+        length = f"{outcome.frames} pictures" if kind == PICTURES else f"{subject.clock.seconds:.1f} s"
         click.echo(f"{target}: {length}, {width}x{height} at {request.fps} fps, {subject.chart.label}")
 
 

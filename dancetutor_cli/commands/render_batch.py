@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.commands.shared_options import DanceOptions
     from dancetutor_cli.film.choices import RendererKind
     from dancetutor_cli.film.work.batch import BatchRequest, UnreadableFile
-    from dancetutor_cli.film.work.segments import FilmOutcome
+    from dancetutor_cli.film.work.jobs import FilmOutcome
     from dancetutor_cli.run.pool import Workers
 
 
@@ -61,7 +61,6 @@ def render_batch(path: Path, selection: Selection, dance: DanceOptions, options:
         workers = _workers(options.scheduler, jobs, progress, batch.request.look.renderer)
         if not options.quiet:
             stack.callback(_warn, warnings, progress)
-        stack.callback(workers.close)
         for outcome in Batch(films, workers, progress.add, records=records).run():
             outcomes.append(outcome)
             _write(results, outcome.as_json())
@@ -97,13 +96,12 @@ def _batch(path: Path, selection: Selection, dance: DanceOptions, options: Rende
 
 
 def _workers(scheduler: str | None, jobs: int, progress: FilmProgress, kind: RendererKind) -> Workers:
-    from dancetutor_cli.film.work.segments import common_to_workers, frames_of
-    from dancetutor_cli.run.pool import open_workers
+    from dancetutor_cli.film.work.batch import film_workers
+    from dancetutor_cli.film.work.segments import frames_of
+    from dancetutor_cli.run.pool import ClusterWorkers
 
     if scheduler is None:
-        common = common_to_workers(kind) if jobs > 1 else ""
-        return open_workers(jobs, lambda _key, count: progress.advance(count), common)
-    from dancetutor_cli.run.pool import ClusterWorkers
+        return film_workers(jobs, progress.advance, kind)
 
     return ClusterWorkers(scheduler, lambda _key, count: progress.advance(count), frames_of)
 
@@ -151,6 +149,6 @@ def _sum_up(outcomes: list[FilmOutcome], unreadable: list[UnreadableFile], witho
         click.echo(", ".join(parts), err=True)
     if failed or unreadable:
         rows = [(str(bad.path), "", bad.error) for bad in unreadable]
-        rows += [(str(one.job.request.path), one.job.label, one.error or "") for one in failed]
+        rows += [(str(one.job.request.path), one.job.label, str(one.error)) for one in failed]
         failures_table(rows)
         sys.exit(2)

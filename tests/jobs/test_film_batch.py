@@ -14,10 +14,11 @@ from dance_requests import film_request
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.media.encoder import Encoding
+from dancetutor_cli.film.work import jobs as film_jobs
 from dancetutor_cli.film.work import segments
 from dancetutor_cli.film.work.batch import Batch, BatchRequest, film_list, parse_meters, parse_shard
+from dancetutor_cli.film.work.jobs import FilmJob, FilmOutcome
 from dancetutor_cli.film.work.records import WORK
-from dancetutor_cli.film.work.segments import FilmJob, FilmOutcome
 from dancetutor_cli.run.errors import FileError, UsageError
 from dancetutor_cli.run.pool import FinishedWork, SerialWorkers
 
@@ -101,7 +102,7 @@ def test_one_bad_chart_does_not_stop_the_rest(pack: Path, tmp_path: Path) -> Non
     assert [b.path.name for b in bad] == ["bad.sm"]
     outcomes = run(jobs)
     assert outcomes["sly-dance-single-hard.mp4"].status == "failed"
-    assert "refused" in (outcomes["sly-dance-single-hard.mp4"].error or "")
+    assert "refused" in str(outcomes["sly-dance-single-hard.mp4"].error)
     assert sum(o.status == "done" for o in outcomes.values()) == 3
 
 
@@ -176,12 +177,12 @@ def test_a_full_disk_is_one_line_and_leaves_nothing(
         path.write_bytes(b"half of a")
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(segments, "write_plan", full)
+    monkeypatch.setattr(film_jobs, "write_plan", full)
     jobs, _, _ = film_list(batch_request((pack,), tmp_path / "videos"))
     outcomes = run(jobs)
     assert {o.status for o in outcomes.values()} == {"failed"}
     for name, outcome in outcomes.items():
-        assert outcome.error == f"{tmp_path / 'videos' / name}: cannot be written: No space left on device"
+        assert str(outcome.error) == f"{tmp_path / 'videos' / name}: cannot be written: No space left on device"
     assert not [p for p in (tmp_path / "videos").rglob("*") if p.is_file()]
 
 
@@ -229,7 +230,7 @@ def test_a_full_disk_leaves_no_frames_behind(tmp_path: Path, monkeypatch: pytest
             path.write_bytes(b"half a segment")
         raise FileError(path, "No space left on device")
 
-    monkeypatch.setattr(segments, "_film", lambda plan: Pictures())
+    monkeypatch.setattr(segments, "film_of", lambda plan: Pictures())
     monkeypatch.setattr("dancetutor_cli.film.work.segments.encode_segment", full)
     for target, name in (("mp4", "segment_00000.mp4"), ("png", "frames")):
         encoding = Encoding(target, (64, 64), 10, "draft", "x264")  # type: ignore[arg-type]

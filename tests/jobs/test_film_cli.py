@@ -14,6 +14,7 @@ import pytest
 from PIL import Image
 
 from dancetutor_cli.__main__ import main
+from dancetutor_cli.film.work.records import WORK
 from dancetutor_cli.run.reading import charts_path
 
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
@@ -123,7 +124,7 @@ def test_ctrl_c_is_one_line_and_leaves_nothing(tmp_path: Path) -> None:
         [*command, *TINY], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, preexec_fn=_hears_ctrl_c
     )
     deadline = time.monotonic() + 60
-    while not list(out.glob(".film*/segment_*")) and time.monotonic() < deadline:
+    while not list(out.glob(f"{WORK}*/segment_*")) and time.monotonic() < deadline:
         time.sleep(0.05)
     process.send_signal(signal.SIGINT)
     _, error = process.communicate(timeout=30)

@@ -11,9 +11,10 @@ from test_film_batch import NOTES, Stopping, batch_request, run, write_song
 
 from dancetutor_cli.film.work import segments as film_segments
 from dancetutor_cli.film.work.batch import film_list
+from dancetutor_cli.film.work.jobs import FilmJob
 from dancetutor_cli.film.work.records import WORK, FilmRecord, find_records
 from dancetutor_cli.film.work.request import film_key, look_up
-from dancetutor_cli.film.work.segments import FilmJob, PlanFile, segments
+from dancetutor_cli.film.work.segments import PlanFile, segments
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.pool import SerialWorkers
 
@@ -143,7 +144,7 @@ def test_a_plan_that_was_exchanged_is_not_loaded(tmp_path: Path) -> None:
     plan = tmp_path / "plan.pickle"
     plan.write_bytes(pickle.dumps(_Payload(tmp_path / "mark")))
     with pytest.raises(FileError, match="was changed by another program"):
-        film_segments._film(PlanFile(plan, "0" * 64))
+        film_segments.film_of(PlanFile(plan, "0" * 64))
     assert not (tmp_path / "mark").exists()
 
 

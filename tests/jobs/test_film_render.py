@@ -8,8 +8,10 @@ import stat
 import subprocess
 import sys
 import wave
+from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,9 +24,12 @@ from dancetutor_cli.film.media import film_formats
 from dancetutor_cli.film.media.encoder import Encoding, join
 from dancetutor_cli.film.media.sound import SoundPlan
 from dancetutor_cli.film.notes import NoteTrack
-from dancetutor_cli.film.work import segments
+from dancetutor_cli.film.work import jobs as film_jobs
+from dancetutor_cli.film.work import planning, segments
+from dancetutor_cli.film.work.batch import Batch, film_workers
+from dancetutor_cli.film.work.jobs import FilmJob
 from dancetutor_cli.film.work.planning import PreparedFilm
-from dancetutor_cli.film.work.render import make_film
+from dancetutor_cli.film.work.records import FilmRecords
 from dancetutor_cli.run import ffmpeg
 from dancetutor_cli.run.errors import DancetutorError
 
@@ -41,11 +46,36 @@ class Silent:
     def __init__(self) -> None:
         self.frames = self.seen = 0
 
-    def begin(self, frames: int, fps: int) -> None:
+    def begin(self, frames: int) -> None:
         self.frames = frames
 
     def advance(self, frames: int) -> None:
         self.seen += frames
+
+
+MakeFilm = Callable[..., None]
+
+
+@pytest.fixture
+def make_film(monkeypatch: pytest.MonkeyPatch) -> MakeFilm:
+    """Make a film that is prepared already, as `render` does: as a batch of one that keeps no records."""
+
+    def make(
+        film: PreparedFilm, encoding: Encoding, output: Path, jobs: int = 1, progress: Silent | None = None
+    ) -> None:
+        clock = film.plan.clock
+        subject = SimpleNamespace(clock=clock, warnings=(), chart_seconds=clock.seconds)
+        monkeypatch.setattr(film_jobs, "look_up", lambda request: subject)
+        monkeypatch.setattr(film_jobs, "film_key", lambda *_: "key")
+        monkeypatch.setattr(planning, "prepare", lambda request, subject: film)
+        progress = progress or Silent()
+        workers = film_workers(jobs, progress.advance, "cpu")
+        job = FilmJob(None, "a film", output, encoding)  # type: ignore[arg-type]
+        (outcome,) = Batch([job], workers, progress.begin, records=FilmRecords(None)).run()
+        if outcome.error is not None:
+            raise outcome.error
+
+    return make
 
 
 def write_clicks(path: Path) -> None:
@@ -82,7 +112,9 @@ def onsets(samples: NDArray[np.float32]) -> NDArray[np.float64]:
 
 
 @pytest.mark.parametrize(("fps", "quality"), [(30, "good"), (60, "draft")])  # draft has another encoder of sound
-def test_the_receptor_lights_in_the_frame_of_the_click(tmp_path: Path, fps: int, quality: Quality) -> None:
+def test_the_receptor_lights_in_the_frame_of_the_click(
+    tmp_path: Path, fps: int, quality: Quality, make_film: MakeFilm
+) -> None:
     size = (240, 240)
     write_clicks(tmp_path / "song.wav")
     clock = Clock((Pass(-0.25, 6.2),), fps)
@@ -92,7 +124,7 @@ def test_the_receptor_lights_in_the_frame_of_the_click(tmp_path: Path, fps: int,
     plan = replace(plan, notes=notes, beats=np.full(clock.frames, -1.0))  # nothing else moves than the receptor's light
     film = tmp_path / "film.mp4"
     prepared = PreparedFilm(plan, SoundPlan(tmp_path / "song.wav"), ())
-    make_film(lambda: prepared, Encoding("mp4", size, fps, quality), film, 1, Silent())
+    make_film(prepared, Encoding("mp4", size, fps, quality), film)
 
     heard = onsets(decode_sound(film))
     assert len(heard) == len(NOTES)
@@ -119,7 +151,7 @@ def digest(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def test_any_number_of_workers_makes_the_same_film(tmp_path: Path) -> None:
+def test_any_number_of_workers_makes_the_same_film(tmp_path: Path, make_film: MakeFilm) -> None:
     plan = film_plan(np.arange(0.5, 9.0, 0.25), size=(96, 96))
     write_clicks(tmp_path / "song.wav")
     prepared = PreparedFilm(plan, SoundPlan(tmp_path / "song.wav"), ())
@@ -127,30 +159,30 @@ def test_any_number_of_workers_makes_the_same_film(tmp_path: Path) -> None:
     for jobs in (1, 2):
         film = tmp_path / f"film{jobs}.mp4"
         progress = Silent()
-        make_film(lambda: prepared, Encoding("mp4", (96, 96), 30), film, jobs, progress)
+        make_film(prepared, Encoding("mp4", (96, 96), 30), film, jobs, progress)
         assert progress.seen == progress.frames == plan.clock.frames
         films.append(digest(film))
     assert films[0] == films[1]
     assert sorted(p.name for p in tmp_path.iterdir()) == ["film1.mp4", "film2.mp4", "song.wav"]
 
 
-def test_the_film_is_marked_as_bt709_and_starts_fast(tmp_path: Path) -> None:
+def test_the_film_is_marked_as_bt709_and_starts_fast(tmp_path: Path, make_film: MakeFilm) -> None:
     plan = film_plan(np.array([0.5]), size=(64, 64))
     film = tmp_path / "film.mp4"
-    make_film(lambda: PreparedFilm(plan, None, ()), Encoding("mp4", (64, 64), 30), film, 1, Silent())
+    make_film(PreparedFilm(plan, None, ()), Encoding("mp4", (64, 64), 30), film)
     said = subprocess.run([ffmpeg.executable(), "-i", str(film)], capture_output=True, text=True, check=False).stderr
     assert "yuv420p(tv, bt709" in said and "unknown" not in said.split("yuv420p")[1].split("\n")[0]
     data = film.read_bytes()
     assert data.index(b"moov") < data.index(b"mdat")
 
 
-def test_pictures_are_the_frames_and_replace_older_ones(tmp_path: Path) -> None:
+def test_pictures_are_the_frames_and_replace_older_ones(tmp_path: Path, make_film: MakeFilm) -> None:
     plan = film_plan(np.array([0.2, 0.4]), size=(64, 48))
     folder = tmp_path / "frames"
     folder.mkdir()
     (folder / "frame_999999.png").write_bytes(b"old")
     (folder / "mine.png").write_bytes(b"the user's")
-    make_film(lambda: PreparedFilm(plan, None, ()), Encoding("png", (64, 48), 30), folder, 1, Silent())
+    make_film(PreparedFilm(plan, None, ()), Encoding("png", (64, 48), 30), folder)
     names = sorted(p.name for p in folder.iterdir())
     assert names == [*(f"frame_{k:06d}.png" for k in range(plan.clock.frames)), "mine.png"]
 
@@ -161,11 +193,11 @@ def test_pictures_are_the_frames_and_replace_older_ones(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", ["gif", "webp"])
-def test_moving_pictures_have_all_frames(tmp_path: Path, kind: str) -> None:
+def test_moving_pictures_have_all_frames(tmp_path: Path, kind: str, make_film: MakeFilm) -> None:
     clock = Clock((Pass(0.0, 1.0),), 20)
     plan = film_plan(np.array([0.2, 0.4]), clock, (64, 64))
     film = tmp_path / f"film.{kind}"
-    make_film(lambda: PreparedFilm(plan, None, ()), Encoding(kind, (64, 64), 20), film, 1, Silent())  # type: ignore[arg-type]
+    make_film(PreparedFilm(plan, None, ()), Encoding(kind, (64, 64), 20), film)  # type: ignore[arg-type]
     with Image.open(film) as image:
         assert image.format == kind.upper() and image.size == (64, 64)
         assert getattr(image, "n_frames", 1) >= 15  # equal neighbours may be merged
@@ -173,7 +205,9 @@ def test_moving_pictures_have_all_frames(tmp_path: Path, kind: str) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a shell script stands in for ffmpeg")
-def test_a_dead_encoder_says_its_own_words_and_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_dead_encoder_says_its_own_words_and_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, make_film: MakeFilm
+) -> None:
     fake = tmp_path / "ffmpeg"
     fake.write_text("#!/bin/sh\nhead -c 5000 >/dev/null\necho 'the codec fell over' >&2\nexit 7\n")
     fake.chmod(fake.stat().st_mode | stat.S_IXUSR)
@@ -182,12 +216,12 @@ def test_a_dead_encoder_says_its_own_words_and_leaves_nothing(tmp_path: Path, mo
     out = tmp_path / "out"
     out.mkdir()
     with pytest.raises(DancetutorError, match="the codec fell over") as caught:
-        make_film(lambda: PreparedFilm(plan, None, ()), Encoding("mp4", (64, 64), 30), out / "film.mp4", 1, Silent())
+        make_film(PreparedFilm(plan, None, ()), Encoding("mp4", (64, 64), 30), out / "film.mp4")
     assert "\n" not in str(caught.value)
     assert list(out.iterdir()) == []
 
 
-def test_an_interrupted_film_leaves_the_old_one(tmp_path: Path) -> None:
+def test_an_interrupted_film_leaves_the_old_one(tmp_path: Path, make_film: MakeFilm) -> None:
     class Stop(Silent):
         def advance(self, frames: int) -> None:
             raise KeyboardInterrupt
@@ -196,7 +230,7 @@ def test_an_interrupted_film_leaves_the_old_one(tmp_path: Path) -> None:
     film.write_bytes(b"the old one")
     plan = film_plan(np.array([0.5]), size=(64, 64))
     with pytest.raises(KeyboardInterrupt):
-        make_film(lambda: PreparedFilm(plan, None, ()), Encoding("mp4", (64, 64), 30), film, 1, Stop())
+        make_film(PreparedFilm(plan, None, ()), Encoding("mp4", (64, 64), 30), film, 1, Stop())
     assert film.read_bytes() == b"the old one"
     assert [p.name for p in tmp_path.iterdir()] == ["film.mp4"]
 

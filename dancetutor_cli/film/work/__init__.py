@@ -1,9 +1,9 @@
 """The work of films: the request, its plan, the segments that other processes draw, batches of films.
 
 request, planning             what is wanted, checked; everything laid on the film's clock
-segments, render              pieces of a film drawn and encoded by any process; one film put in its place
+segments, jobs                pieces of a film that any process draws and encodes; the work before and after them
 extras                        what is made besides a film: a picture for each row, a poster, subtitles
-batch, records                films of folders; which of them are done
+batch, records                one film or those of folders; which of them are done
 motion_film                   a film of a motion without a chart
 worker_imports, worker_imports_gl   what processes that draw load once for all of them
 """

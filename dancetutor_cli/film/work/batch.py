@@ -1,4 +1,4 @@
-"""Many films: which charts of folders, under which names; what is done already, and the list of work."""
+"""Films of folders, or a single one: which charts, under which names; what is done already, and the list of work."""
 
 from __future__ import annotations
 
@@ -15,16 +15,20 @@ from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection, find_files, twin
 from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.media.film_formats import PICTURES
+from dancetutor_cli.film.work import jobs as film_jobs
 from dancetutor_cli.film.work import segments
+from dancetutor_cli.film.work.jobs import ClosedFilm, FilmJob, FilmOutcome, OpenedFilm
 from dancetutor_cli.film.work.records import FilmRecord, FilmRecords, find_records, new_work_name, remove_work
 from dancetutor_cli.film.work.request import FilmRequest
-from dancetutor_cli.film.work.segments import FilmJob, FilmOutcome, OpenedFilm, render_segment
-from dancetutor_cli.run.errors import DancetutorError, NoChartsError, UsageError
+from dancetutor_cli.film.work.segments import render_segment
+from dancetutor_cli.run.errors import DancetutorError, FileError, NoChartsError, UsageError
+from dancetutor_cli.run.ffmpeg import EncoderError
 from dancetutor_cli.run.files import plain_name
-from dancetutor_cli.run.pool import FinishedWork, Task, Workers
+from dancetutor_cli.run.pool import FinishedWork, Task, Workers, attempt, open_workers
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
+    from dancetutor_cli.film.choices import RendererKind
 
 
 # From folders to the films of a batch: which charts, in which order, under which names.
@@ -167,16 +171,25 @@ def file_name(template: str, song: Song, chart: Chart) -> str:
     return plain_name(template.format(**values)) or "film"
 
 
-# Many films: the requests, what is done already, and the work list that any workers can share.
+# The list of work that any workers can share, for one film or many.
 #
 # The film of each chart is prepared, drawn in segments and joined by separate pieces of work, so that all workers stay
-# busy to the end of a pack. Finished segments stay when a run is interrupted. A finished film is known by a hash of
-# everything that it is made of, and is not made again. This process writes these records (`records`).
+# busy to the end of a pack. Finished segments stay when a run is interrupted, if records are kept. A finished film is
+# known by a hash of everything that it is made of, and is not made again. This process writes the records (`records`).
+
+
+def film_workers(jobs: int, advance: Callable[[int], None], kind: RendererKind) -> Workers:
+    """`jobs` workers that get ready to draw with this renderer. advance : is told how many more frames are drawn"""
+    common = segments.common_to_workers(kind) if jobs > 1 else ""
+    workers = open_workers(jobs, lambda _key, frames: advance(frames), common)
+    if jobs > 1 and not common:
+        workers.submit(Task(("warm-up", 0), segments.warm_up))
+    return workers
 
 
 @dataclass
 class _Film:
-    """A film in work. record : what is kept of it; work : name of its folder; waiting : segments not drawn yet."""
+    """A film in work. record : what is kept of it; work : name of its folder; waiting : pieces of work not done yet."""
 
     job: FilmJob
     began: float
@@ -191,6 +204,7 @@ class _Film:
 class Batch:
     """Runs film jobs on workers; yields one outcome per job as they end, whatever happens to single ones.
 
+    records : what is kept of unfinished films for a later run; where none are kept, nothing is left of them
     ahead : pieces of work, for each that is done at a time, below which the next film is opened. A film to be opened
         is one, and so is each of its segments: short films are opened by many workers at once, long ones one by one.
     """
@@ -204,50 +218,68 @@ class Batch:
     _queue: deque[int] = field(default_factory=deque)
 
     def run(self) -> Iterator[FilmOutcome]:
-        """Do it all. The order of outcomes depends on the workers; the films do not."""
+        """Do it all, and end the workers. The order of outcomes depends on the workers; the films do not."""
         self._queue = deque(range(len(self.jobs)))
-        self._fill()
-        for done in self.workers.results():
-            outcome = self._ended(done)
+        try:
+            if len(self.jobs) == 1:  # opened by this process, while the workers get ready
+                outcome = self._ended(attempt(self._open_task(), lambda _units: None))
+                if outcome is not None:
+                    yield outcome
             self._fill()
-            if outcome is not None:
-                yield outcome
+            for done in self.workers.results():
+                outcome = self._ended(done)
+                self._fill()
+                if outcome is not None:
+                    yield outcome
+        finally:
+            self.workers.close()
+            for film in self._films.values():  # there are some if this is interrupted
+                self._remove_useless(film)
 
     def _fill(self) -> None:
         """Open films until there is enough to do."""
         enough = self.ahead * self.workers.at_once()
-        while self._queue and sum(map(self._segments_left, self._films.values())) < enough:
-            number = self._queue.popleft()
-            job, work = self.jobs[number], new_work_name()
-            record = self.records.read(job.output)
-            film = self._films[number] = _Film(job, time.monotonic(), record, work)
-            if record.size is None:  # else it is probably done
-                self._keep(film, replace(record, folders=(*record.folders, work)))
-            self.workers.submit(Task(("open", number), segments.open_film, (job, record, work)))
+        while self._queue and sum(map(self._pieces_left, self._films.values())) < enough:
+            self.workers.submit(self._open_task())
+
+    def _open_task(self) -> Task:
+        """The piece of work that opens the next film."""
+        number = self._queue.popleft()
+        job, work = self.jobs[number], new_work_name()
+        record = self.records.read(job.output)
+        film = self._films[number] = _Film(job, time.monotonic(), record, work)
+        if record.size is None:  # else it is probably done
+            self._keep(film, replace(record, folders=(*record.folders, work)))
+        return Task(("open", number), film_jobs.open_film, (job, record, work))
 
     def _keep(self, film: _Film, record: FilmRecord) -> None:
         film.record = record
         self.records.write(film.job.output, record)
 
     @staticmethod
-    def _segments_left(film: _Film) -> int:
+    def _pieces_left(film: _Film) -> int:
         return 1 if film.opened is None else film.waiting
 
     def _ended(self, done: FinishedWork) -> FilmOutcome | None:
         kind, number = done.key[:2]
+        if kind == "warm-up":
+            return None
         film = self._films[number]
         if done.error is not None:
             film.error = film.error or done.error
         if kind == "open":
             return self._after_open(number, film, done)
-        if kind == "segment":
+        if kind in ("segment", "sound"):
             film.waiting -= 1
-            if done.error is None:
+            if kind == "segment" and done.error is None:
                 digests = {**film.record.digests, done.key[2]: done.result}
                 self._keep(film, replace(film.record, digests=digests))
             return self._after_segments(number, film) if film.waiting == 0 else None
         if done.error is None:
-            self._keep(film, replace(film.record, folders=(), digests={}, size=done.result))
+            closed: ClosedFilm = done.result
+            self._keep(film, replace(film.record, folders=(), digests={}, size=closed.size))
+            assert film.opened is not None
+            film.opened = replace(film.opened, warnings=(*film.opened.warnings, *closed.warnings))
         return self._outcome(number, film)
 
     def _after_open(self, number: int, film: _Film, done: FinishedWork) -> FilmOutcome | None:
@@ -255,26 +287,40 @@ class Batch:
             film.opened = done.result
             return self._outcome(number, film)
         opened: OpenedFilm = done.result
-        film.opened, film.waiting = opened, len(opened.missing)
+        film.opened = opened
         kept = {number: film.record.digests[number] for number in opened.finished}
         self._keep(film, FilmRecord(opened.key, (film.work,), kept))
         self.opened(sum(part.last - part.first for part in opened.missing))
-        for part in opened.missing:
-            arguments = (opened.plan, part, film.job.encoding)
-            self.workers.submit(Task(("segment", number, part.number), render_segment, arguments))
-        return None if opened.missing else self._after_segments(number, film)
+        tasks = [
+            Task(("segment", number, part.number), render_segment, (opened.plan, part, film.job.encoding))
+            for part in opened.missing
+        ]
+        if opened.sound is not None:
+            tasks.append(Task(("sound", number), film_jobs.write_sound, (*opened.sound, opened.sound_file)))
+        film.waiting = len(tasks)
+        for task in tasks:
+            self.workers.submit(task)
+        return None if tasks else self._after_segments(number, film)
 
     def _after_segments(self, number: int, film: _Film) -> FilmOutcome | None:
         if film.error is not None:
             return self._outcome(number, film)
         arguments = (film.job, film.opened, film.record.digests)
-        self.workers.submit(Task(("close", number), segments.close_film, arguments))
+        self.workers.submit(Task(("close", number), film_jobs.close_film, arguments))
         return None
 
     def _outcome(self, number: int, film: _Film) -> FilmOutcome:
         del self._films[number]
-        if film.error is not None and not film.record.digests:  # nothing of it can be used again
-            remove_work(film.job.output.parent / film.work)
-            self._keep(film, replace(film.record, folders=tuple(f for f in film.record.folders if f != film.work)))
+        if film.error is not None:
+            self._remove_useless(film)
+            if isinstance(film.error, EncoderError):
+                film.error = FileError(film.job.output, str(film.error))
         seconds = time.monotonic() - film.began
-        return segments.outcome(film.job, film.opened, film.error, seconds)
+        return film_jobs.outcome(film.job, film.opened, film.error, seconds)
+
+    def _remove_useless(self, film: _Film) -> None:
+        """Remove what there is of an unfinished film, if no later run can use it."""
+        if film.record.digests and self.records.kept:
+            return
+        remove_work(film.job.output.parent / film.work)
+        self._keep(film, replace(film.record, folders=tuple(f for f in film.record.folders if f != film.work)))

@@ -11,19 +11,19 @@ import numpy as np
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.film.clock import Moments
-from dancetutor_cli.film.film import Film
 from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.files import encoded, write_atomic
 from dancetutor_cli.run.pictures import picture_bytes
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
+    from dancetutor_cli.film.film import Film
     from dancetutor_cli.film.plan import FilmPlan
 
 INDEX = "poses.json"
 
 
-def poses(plan: FilmPlan, label: str) -> FilmPlan:
+def pose_plan(plan: FilmPlan, label: str) -> FilmPlan:
     """The film of a plan, with one frame for each row with a step: what an editor shows while its user scrolls."""
     start, end = plan.clock.passes[0].start, plan.clock.passes[0].end
     rows = plan.rows
@@ -57,8 +57,9 @@ def write_pose_index(folder: Path, song: Song, chart: Chart, plan: FilmPlan) -> 
     write_atomic(folder / INDEX, encoded(json.dumps(data, ensure_ascii=False, indent=1) + "\n"))
 
 
-def write_poster(path: Path, plan: FilmPlan) -> None:
+def write_poster(path: Path, film: Film) -> None:
     """A picture for a title page: the first called-out move, or a note a third into the film."""
+    plan = film.plan
     one = plan.clock.passes[-1]
     first = max(one.start, one.sound_from) + 1.0
     calls = [call.second for call in plan.callouts if first <= call.second <= one.end]
@@ -67,17 +68,18 @@ def write_poster(path: Path, plan: FilmPlan) -> None:
     moment = calls[0] if calls else float(steps[np.argmin(np.abs(steps - aim))]) if len(steps) else aim
     before = sum(other.seconds for other in plan.clock.passes[:-1])
     number = round((before + one.film_seconds(moment)) * plan.clock.fps + 0.5)
-    picture = Film(plan).frame(min(number, plan.clock.frames - 1))
-    write_atomic(path, picture_bytes(picture))
+    write_atomic(path, picture_bytes(film.frame(min(number, plan.clock.frames - 1))))
 
 
-def write_subtitles(path: Path, plan: FilmPlan) -> str | None:
+def write_subtitles(path: Path, plan: FilmPlan) -> list[str]:
     """Subtitles that name the moves, beside the film. Returns a warning if there is nothing to name, so no file."""
     from dancetutor_cli.film.media.subtitles import subtitle_style, subtitles
 
     text = subtitles(plan.cues, plan.clock, subtitle_style())
     if not text:
         path.unlink(missing_ok=True)  # one of an earlier film would lie
-        return f"no move of this film has a name, so there is no {path.name}; configs/subtitles.yaml says what is named"
+        return [
+            f"no move of this film has a name, so there is no {path.name}; configs/subtitles.yaml says what is named"
+        ]
     write_atomic(path, text.encode())
-    return None
+    return []

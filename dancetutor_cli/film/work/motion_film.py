@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
+import tempfile
+import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,7 +23,8 @@ from dancetutor_cli.film.overlay.text import font
 from dancetutor_cli.film.scene import renderer
 from dancetutor_cli.film.scene.camera import Camera
 from dancetutor_cli.film.scene.scene import PANEL, FrameState, Scene
-from dancetutor_cli.film.work.render import work_folder
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.ffmpeg import EncoderError
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
@@ -57,6 +62,37 @@ class BareFloor:
     panels: Array
     arrows: Array
     centre: tuple[float, float]
+
+
+@contextmanager
+def work_folder(output: Path) -> Iterator[Path]:
+    """A hidden folder beside the output for what is not finished; gone afterwards, whatever happens.
+
+    Beside it, so that the last step is a rename, and so that a full or read-only disk is noticed at once.
+    """
+    try:
+        folder = Path(tempfile.mkdtemp(prefix=f".{output.name}.", suffix=".part", dir=output.parent))
+    except OSError as error:
+        raise FileError(output, f"cannot be written: {error.strerror}") from error
+    try:
+        yield folder
+    except EncoderError as error:
+        raise FileError(output, str(error)) from error
+    except OSError as error:
+        if error.filename is None:  # from a write to an open file: it is ours
+            raise FileError(output, f"cannot be written: {error.strerror or error}") from error
+        raise
+    finally:
+        _remove(folder)
+
+
+def _remove(folder: Path) -> None:
+    """Remove a folder that a dying encoder may still be writing into."""
+    for _ in range(20):
+        shutil.rmtree(folder, ignore_errors=True)
+        if not folder.exists():
+            return
+        time.sleep(0.1)
 
 
 def film(path: Path, character: Character, motion: Motion, comparison: Comparison | None = None) -> int:

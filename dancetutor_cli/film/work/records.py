@@ -51,6 +51,11 @@ class FilmRecords:
     def __init__(self, folder: Path | None) -> None:
         self._folder = folder
 
+    @property
+    def kept(self) -> bool:
+        """Whether a later run will find what is written here."""
+        return self._folder is not None
+
     def read(self, output: Path) -> FilmRecord:
         """What is kept of the film of that name; an empty record if there is nothing, or nothing that can be used."""
         if self._folder is None:

@@ -1,0 +1,250 @@
+"""The pieces of work of whole films: open one, close it, and what becomes of it; `segments` draws it in between."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from dancetutor_cli.film.media.encoder import Encoding, join
+from dancetutor_cli.film.media.film_formats import PICTURES
+from dancetutor_cli.film.work.extras import pose_plan, write_pose_index, write_poster, write_subtitles
+from dancetutor_cli.film.work.records import FilmRecord, digest_of, move_segment, new_work_name, remove_work
+from dancetutor_cli.film.work.request import FilmRequest, film_key, look_up
+from dancetutor_cli.film.work.segments import PlanFile, Segment, film_of, segments, write_plan
+from dancetutor_cli.run.errors import DancetutorError, FileError
+from dancetutor_cli.run.files import place_of
+
+if TYPE_CHECKING:
+    from dancetutor_cli.film.clock import Clock
+    from dancetutor_cli.film.media.sound import SoundPlan
+    from dancetutor_cli.film.plan import FilmPlan
+    from dancetutor_cli.film.work.request import FilmSubject
+    from dancetutor_cli.run.pool import Report
+
+
+@dataclass(frozen=True, slots=True)
+class FilmJob:
+    """A film to be made. label : the chart's, for people; output : the file (for "png" the folder) it becomes.
+
+    longest : seconds; a longer film is refused; poses : of "png", one picture for each row
+    poster : where a title picture is put; srt : whether subtitles are put beside the film
+    """
+
+    request: FilmRequest
+    label: str
+    output: Path
+    encoding: Encoding
+    longest: float | None = None
+    poses: bool = False
+    poster: Path | None = None
+    srt: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class OpenedFilm:
+    """A film ready to be drawn, in `folder`. finished : numbers of segments of an earlier run; skipped : it is done.
+
+    sound : what is to be written into `sound_file`, and on which clock; None: the film is silent
+    """
+
+    key: str
+    folder: Path
+    plan: PlanFile | None
+    parts: tuple[Segment, ...]
+    finished: tuple[int, ...]
+    sound: tuple[SoundPlan, Clock] | None
+    frames: int
+    warnings: tuple[str, ...]
+    skipped: bool = False
+
+    @property
+    def missing(self) -> list[Segment]:
+        """The segments that are to be drawn."""
+        return [part for part in self.parts if part.number not in self.finished]
+
+    @property
+    def sound_file(self) -> Path:
+        """The sound track, a WAV file."""
+        return self.folder / "sound.wav"
+
+
+@dataclass(frozen=True, slots=True)
+class FilmOutcome:
+    """How a film job ended. status : "done", "skipped" or "failed"."""
+
+    job: FilmJob
+    status: str
+    error: DancetutorError | None
+    warnings: tuple[str, ...]
+    frames: int
+    seconds: float
+
+    def as_json(self) -> dict[str, Any]:
+        """One line of the results."""
+        return {
+            "path": str(self.job.request.path),
+            "chart": self.job.label,
+            "index": self.job.request.dance.selection.index,
+            "output": str(self.job.output),
+            "status": self.status,
+            "error": None if self.error is None else str(self.error),
+            "warnings": list(self.warnings),
+            "frames": self.frames,
+            "seconds": round(self.seconds, 3),
+        }
+
+
+def outcome(job: FilmJob, opened: OpenedFilm | None, error: DancetutorError | None, seconds: float) -> FilmOutcome:
+    """What became of a job."""
+    if error is not None:
+        return FilmOutcome(job, "failed", error, () if opened is None else opened.warnings, 0, seconds)
+    assert opened is not None
+    status = "skipped" if opened.skipped else "done"
+    return FilmOutcome(job, status, None, opened.warnings, opened.frames, seconds)
+
+
+def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> OpenedFilm:
+    """Everything before the first frame. The results of an earlier run of the same film are used.
+
+    earlier : what is kept of that run; work : name of the folder to make beside the output, for what is not finished
+    """
+
+    subject = look_up(job.request)
+    frames = subject.clock.frames
+    if job.longest is not None and max(subject.clock.seconds, subject.chart_seconds) > job.longest:
+        raise FileError(job.request.path, f"{job.label}: too long for a batch; render it alone, or say --yes")
+    key = film_key(job.request, subject, job.encoding)
+    folder = job.output.parent / work
+    if earlier.key == key and earlier.size is not None and earlier.size == size_of(job.output):
+        return OpenedFilm(key, folder, None, (), (), None, frames, subject.warnings, skipped=True)
+    finished: tuple[int, ...] = ()
+    try:
+        left = [job.output.parent / name for name in earlier.folders if name != work]
+        left += _new_folder(folder)  # before the slow work, so that a full or read-only disk is noticed at once
+        plan, sound, warnings = _prepared(job, subject)
+        parts = tuple(segments(plan.clock.frames, job.encoding, folder))
+        if earlier.key == key and job.encoding.target != PICTURES:
+            finished = tuple(
+                part.number for part in parts if _take_over_segment(part, left, earlier.digests.get(part.number))
+            )
+        for old in left:
+            remove_work(old)
+        if job.poses:
+            parts[0].path.mkdir()
+            write_pose_index(parts[0].path, subject.song, subject.chart, plan)
+        file = write_plan(plan, folder / "plan.pickle")
+    except OSError as error:
+        if not finished:  # segments of an earlier run can be used
+            remove_work(folder)
+        raise _not_written(job, error) from error
+    return OpenedFilm(key, folder, file, parts, finished, sound, plan.clock.frames, (*subject.warnings, *warnings))
+
+
+def _prepared(job: FilmJob, subject: FilmSubject) -> tuple[FilmPlan, tuple[SoundPlan, Clock] | None, tuple[str, ...]]:
+    """The plan of a film, its sound, and warnings."""
+    from dancetutor_cli.film.work.planning import prepare
+
+    prepared = prepare(job.request, subject)
+    plan = pose_plan(prepared.plan, job.label) if job.poses else prepared.plan
+    sound = prepared.sound if job.encoding.format.has_sound else None
+    return plan, None if sound is None else (sound, plan.clock), prepared.warnings
+
+
+def _not_written(job: FilmJob, error: OSError) -> FileError:
+    return FileError(job.output, f"cannot be written: {error.strerror or error}")
+
+
+def _new_folder(folder: Path) -> list[Path]:
+    """Make a folder that nobody else can write. One that is there is set aside and returned.
+
+    There is one where a cluster begins this piece of work again, because its worker was lost.
+    """
+    try:
+        folder.mkdir(mode=0o700)
+        return []
+    except FileExistsError:
+        aside = folder.with_name(new_work_name())
+        folder.rename(aside)
+        folder.mkdir(mode=0o700)
+        return [aside]
+
+
+def _take_over_segment(part: Segment, folders: list[Path], digest: str | None) -> bool:
+    """Whether a segment has been finished by an earlier run, in one of those folders; then it is in its place now."""
+    return digest is not None and any(move_segment(old / part.path.name, part.path, digest) for old in folders)
+
+
+def size_of(output: Path) -> int | None:
+    """Bytes of a finished film, or how many pictures; None if there is none."""
+    try:
+        return sum(1 for _ in output.iterdir()) if output.is_dir() else output.stat().st_size
+    except OSError:
+        return None
+
+
+class ClosedFilm(NamedTuple):
+    """A film in its place. size : `size_of` it, None if it is gone again."""
+
+    size: int | None
+    warnings: tuple[str, ...]
+
+
+def close_film(report: Report, job: FilmJob, opened: OpenedFilm, digests: dict[int, str]) -> ClosedFilm:
+    """Join the segments, if they are as they were written, and put the film and what belongs to it in its place."""
+    if job.encoding.target != PICTURES:
+        for part in opened.parts:
+            if digest_of(part.path) != digests[part.number]:
+                raise FileError(part.path, "was changed by another program while the film was made; run it again")
+    warnings = []
+    try:
+        finish(list(opened.parts), job.encoding, opened.sound and opened.sound_file, opened.folder, job.output)
+        if job.poster is not None or job.srt:
+            assert opened.plan is not None
+            film = film_of(opened.plan)
+            if job.poster is not None:
+                write_poster(job.poster, film)
+            if job.srt:
+                warnings += write_subtitles(job.output.with_suffix(".srt"), film.plan)
+    except OSError as error:
+        if error.filename is not None:
+            raise
+        raise _not_written(job, error) from error
+    remove_work(opened.folder)
+    return ClosedFilm(size_of(job.output), tuple(warnings))
+
+
+def write_sound(report: Report, sound: SoundPlan, clock: Clock, path: Path) -> None:
+    """Write the sound track as a WAV file."""
+    from dancetutor_cli.film.media.sound import mix, write_wav
+
+    write_wav(mix(sound, clock), path)
+
+
+def finish(parts: list[Segment], encoding: Encoding, sound: Path | None, folder: Path, output: Path) -> None:
+    """Join the segments and put the result in its place."""
+    if encoding.target == PICTURES:
+        _place_pictures(parts[0].path, output)
+        return
+    output = place_of(output)  # a link stays one, and the film is where it leads
+    film = folder / f"film.{encoding.target}"
+    join([part.path for part in parts], encoding, sound, folder, film)
+    try:
+        film.replace(output)
+    except OSError as error:
+        raise FileError(output, f"cannot be written: {error.strerror}") from error
+
+
+def _place_pictures(source: Path, target: Path) -> None:
+    """Move all pictures into the target folder, then remove those of an earlier, longer film."""
+    try:
+        target.mkdir(exist_ok=True)
+        names = set()
+        for picture in sorted(source.iterdir()):
+            picture.replace(target / picture.name)
+            names.add(picture.name)
+        for old in target.glob("frame_[0-9][0-9][0-9][0-9][0-9][0-9].png"):
+            if old.name not in names:
+                old.unlink()
+    except OSError as error:
+        raise FileError(target, f"cannot be written: {error.strerror}") from error
