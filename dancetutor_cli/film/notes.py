@@ -24,15 +24,17 @@ QUANTISATIONS = (4, 8, 12, 16, 24, 32, 48, 64, 192)  # note values that have a c
 class NoteTrack:
     """The notes of a chart, sorted by time; n notes.
 
+    tick : int64 (n,), of the chart
     second, end_second : float64 (n,), of the music; end_second = second where there is no hold
     beat, end_beat : float64 (n,), as far as they are drawn (scroll segments applied)
     column : int16 (n,); kind : uint8 (n,), `chart.model.Kind`; limb : int8 (n,), `feet.limbs.Limb`
-    quantisation : int64 (n,), index into `QUANTISATIONS`; judged : bool (n,)
+    judged : bool (n,)
     player : int8 (n,), of a chart for two whose it is, 1 or 2; 0: anybody's
     gone_second, gone_beat : float64 (n,), from where on nobody plays it, of a roll maybe later than its head; endless
     where it is played to its end. Of a mine with a foot on it when it passes, which has that foot as its limb
     """
 
+    tick: NDArray[np.int64]
     second: NDArray[np.float64]
     end_second: NDArray[np.float64]
     beat: NDArray[np.float64]
@@ -40,11 +42,15 @@ class NoteTrack:
     column: NDArray[np.int16]
     kind: NDArray[np.uint8]
     limb: NDArray[np.int8]
-    quantisation: NDArray[np.int64]
     judged: NDArray[np.bool_]
     player: NDArray[np.int8]
     gone_second: NDArray[np.float64]
     gone_beat: NDArray[np.float64]
+
+    @property
+    def quantisation(self) -> NDArray[np.int64]:
+        """Index into `QUANTISATIONS` of each note, int64 (n,)."""
+        return quantisation(self.tick)
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +154,7 @@ def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments, on_mine
     is_gone = gone >= 0
     order = np.argsort(second, kind="stable")
     track = NoteTrack(
+        tick=tick,
         second=second,
         end_second=chart.timing.seconds(end),
         beat=scrolls.drawn_beats(tick / TICKS_PER_BEAT),
@@ -155,7 +162,6 @@ def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments, on_mine
         column=table.column[keep],
         kind=table.kind[keep],
         limb=limb[keep],
-        quantisation=quantisation(tick),
         judged=table.judged[keep],
         player=_players(chart)[keep],
         gone_second=np.where(is_gone, chart.timing.seconds(gone), np.inf),

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dancetutor_cli.chart.density import bpm_text
-from dancetutor_cli.chart.model import Chart, Kind, Song
+from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.film.notes import note_track
 from dancetutor_cli.film.overlay.text import clean
+from dancetutor_cli.film.scroll import parse_segments
 
 if TYPE_CHECKING:
     from dancetutor_cli.feet.pads import Pad
@@ -55,10 +57,7 @@ def _cut(text: str) -> str:
 
 def ticks_of(chart: Chart) -> list[int]:
     """Ticks of the notes in the order of `film.notes.note_track`."""
-    keep = chart.notes.kind != Kind.KEYSOUND
-    tick = chart.notes.tick[keep]
-    order = np.argsort(np.asarray(chart.timing.seconds(tick), dtype=np.float64), kind="stable")
-    return [int(t) for t in tick[order]]
+    return [int(tick) for tick in note_track(chart, None, parse_segments("")).tick]
 
 
 def beats_of(chart: Chart) -> list[float]:

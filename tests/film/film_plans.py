@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.layout import FilmLook, load_layout
-from dancetutor_cli.film.notes import BeatLines, NoteTrack, Presses, quantisation
+from dancetutor_cli.film.notes import BeatLines, NoteTrack, Presses
 from dancetutor_cli.film.overlay.captions import SongShape
 from dancetutor_cli.film.overlay.header import Words
 from dancetutor_cli.film.plan import FilmPlan
@@ -35,8 +35,8 @@ def film_plan(
     beat = seconds * BPM / 60
     tick = np.rint(beat * 48).astype(np.int64)
     track = NoteTrack(
-        seconds, end, beat, end * BPM / 60, column.astype(np.int16), kind.astype(np.uint8), limb,
-        quantisation(tick), np.ones(n, dtype=bool), np.zeros(n, dtype=np.int8),
+        tick, seconds, end, beat, end * BPM / 60, column.astype(np.int16), kind.astype(np.uint8), limb,
+        np.ones(n, dtype=bool), np.zeros(n, dtype=np.int8),
         np.full(n, np.inf), np.full(n, np.inf),
     )  # fmt: skip
     step = kind != Kind.MINE

@@ -44,7 +44,6 @@ def test_a_killed_worker_loses_nothing(tmp_path: Path) -> None:
 
         workers = ClusterWorkers(cluster.scheduler_address, report, frames_of)
         outcomes = list(Batch(jobs, workers).run())
-        workers.close()
     assert [o.status for o in outcomes] == ["done", "done"] and not victims
     segments = [key for key, _ in drawn if key[0] == "segment"]
     assert len(segments) == len(set(segments))
