@@ -15,7 +15,7 @@ from dancetutor_cli.dance.motion import Cut, Motion
 from dancetutor_cli.dance.performance import Performance, perform, solve
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.film.layout import FilmLook, load_layout
-from dancetutor_cli.film.work.planning import FilmDance, film_dance
+from dancetutor_cli.film.work.film_dance import FilmDance, film_dance
 from dancetutor_cli.film.work.request import FilmRequest, look_up
 from dancetutor_cli.formats.npz import read_npz
 from dancetutor_cli.run.errors import UsageError

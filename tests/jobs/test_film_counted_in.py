@@ -11,8 +11,9 @@ from dance_requests import film_request
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.film.clock import Practice
 from dancetutor_cli.film.layout import FilmLook, load_layout
+from dancetutor_cli.film.work.film_dance import quiet_times, shown_notes
 from dancetutor_cli.film.work.planning import PreparedFilm, prepare
-from dancetutor_cli.film.work.request import look_up, notes_without, quiet_in
+from dancetutor_cli.film.work.request import look_up
 
 STREAM = "1000\n0100\n0010\n0001\n0100\n1000\n0010\n0001\n"
 
@@ -53,5 +54,5 @@ def test_the_strip_still_shows_the_whole_song(prepared: PreparedFilm) -> None:
 
 def test_without_a_count_in_all_is_danced(prepared: PreparedFilm) -> None:
     plan = prepared.plan
-    assert quiet_in((replace(plan.clock.passes[0], count=0),)) is None
-    assert notes_without(plan.notes, None) is plan.notes
+    passes = (replace(plan.clock.passes[0], count=0, rest=0.0),)
+    assert quiet_times(passes) == [] and shown_notes(plan.notes, passes) is plan.notes

@@ -14,8 +14,9 @@ from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.film.clock import REST, Practice
 from dancetutor_cli.film.film import BACKGROUND, Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
+from dancetutor_cli.film.work.film_dance import quiet_times
 from dancetutor_cli.film.work.planning import PreparedFilm, prepare
-from dancetutor_cli.film.work.request import FilmRequest, look_up, quiet_after
+from dancetutor_cli.film.work.request import FilmRequest, look_up
 
 STREAM = "1000\n0100\n0010\n0001\n0100\n1000\n0010\n0001\n"
 RATES = (0.5, 1.25)
@@ -85,7 +86,7 @@ def test_no_rest_is_added_behind_a_song_nor_where_none_is_asked_for(
     song: Path, section: str | None, rest: float
 ) -> None:
     clock = look_up(asked(song, section, Practice(rest=rest))).clock
-    assert clock.passes[-1].rest == 0.0 and quiet_after(clock.passes) is None
+    assert clock.passes[-1].rest == 0.0 and quiet_times(clock.passes) == []
 
 
 def test_the_picture_goes_dark_at_the_end_of_a_film_and_not_of_poses(song: Path, prepared: PreparedFilm) -> None:

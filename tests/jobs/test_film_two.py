@@ -19,10 +19,11 @@ from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.notes import Callout
 from dancetutor_cli.film.overlay.diagram import step_rows
-from dancetutor_cli.film.scene.renderer import feet_on_floor
+from dancetutor_cli.film.scene.renderer import HEEL_X, STRENGTH, feet_on_floor
 from dancetutor_cli.film.scene.scene import PANEL, FrameState
 from dancetutor_cli.film.work import planning
-from dancetutor_cli.film.work.planning import FilmDance, _dancers, film_dance, prepare
+from dancetutor_cli.film.work.film_dance import FilmDance, film_dance
+from dancetutor_cli.film.work.planning import _dancers, prepare
 from dancetutor_cli.film.work.request import FilmRequest, look_up
 from dancetutor_cli.run.errors import UsageError
 
@@ -134,14 +135,16 @@ def test_two_are_drawn_and_each_has_rings_under_her_feet(tmp_path: Path) -> None
     assert plan.callouts == () and len(plan.directions) == 8
     two = Film(plan)
     both = two.frame(8).copy()
-    assert two._legend is not None and len(two._legend.lines) == 1 + 2 * 4  # a plate; two feet, two players
+    assert (
+        two.placement.legend is not None and len(two.placement.legend.lines) == 1 + 2 * 4
+    )  # a plate; two feet, two players
     joints = two._dancer.joints([Moment(0.8)])[0]
     assert len(joints) == 2 * len(load_dancer().skeleton.names)
     gap = joints[0, 0, 3] - joints[len(joints) // 2, 0, 3]
     assert gap == pytest.approx(3 * PANEL, abs=1.5 * PANEL)  # the first stands to the left of who looks on
     nobody = np.zeros(8)
     marks = feet_on_floor(two._dancer.scene, FrameState(joints, two._dancer.camera, nobody, nobody.astype(np.int64)))
-    places = marks[marks[:, 9] > 0][:, 0]
+    places = marks[marks[:, STRENGTH] > 0][:, HEEL_X]
     assert len(places) >= 3 and places.max() - places.min() > 2 * PANEL
     assert both.std() > 10
     green = (both[..., 1].astype(int) > both[..., 2].astype(int) + 25) & (both[..., 1] > both[..., 0])

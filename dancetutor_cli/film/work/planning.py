@@ -1,8 +1,8 @@
-"""From a request to a film's plan: who dances in it, and everything on the clock of the film."""
+"""From a request to a film's plan: read the chart, find the dance, and lay everything on the clock of the film."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -13,16 +13,12 @@ from dancetutor_cli.character.characters import DANCER, load_character, name_in_
 from dancetutor_cli.character.mesh import with_foot_colours
 from dancetutor_cli.character.onto_skeleton import onto
 from dancetutor_cli.chart.density import fastest_bpm
-from dancetutor_cli.dance.bake import mines_of
-from dancetutor_cli.dance.motion import Motion, shifted
-from dancetutor_cli.dance.performance import as_heard, pad_of, perform, play_of_all, playable, pooled, solve
-from dancetutor_cli.dance.quality.contact import feet_on_mines, mine_messages
-from dancetutor_cli.dance.two import place_on
+from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.film.choices import parse_ahead
 from dancetutor_cli.film.clock import whole_song
 from dancetutor_cli.film.media.sound import SoundPlan, clicks_of
 from dancetutor_cli.film.media.subtitles import cues_of, subtitle_words
-from dancetutor_cli.film.notes import OnMine, beat_lines, note_track, presses_of
+from dancetutor_cli.film.notes import beat_lines, note_track, presses_of
 from dancetutor_cli.film.overlay.callouts import CalloutSubject, CallStyle, callouts_of
 from dancetutor_cli.film.overlay.captions import SongShape
 from dancetutor_cli.film.overlay.diagram import step_rows
@@ -33,120 +29,20 @@ from dancetutor_cli.film.scene.scene import Scene
 from dancetutor_cli.film.scene.visibility import feet_hidden
 from dancetutor_cli.film.scroll import ScrollSegments, SpeedSegments, reading_bpm, segments_of, speeds_of
 from dancetutor_cli.film.words import PanelNames
-from dancetutor_cli.film.work.request import (
-    FilmRequest,
-    FilmSubject,
-    shown_notes,
-    shown_play,
-)
-from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.film.work.film_dance import FilmDance, film_dance, shown_notes
+from dancetutor_cli.film.work.request import FilmRequest, FilmSubject
 from dancetutor_cli.run.languages import load_language
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.chart.model import Chart
-    from dancetutor_cli.dance.performance import Performance
     from dancetutor_cli.feet.pads import Pad
     from dancetutor_cli.feet.play import Play
     from dancetutor_cli.feet.solved import Solved
-    from dancetutor_cli.film.clock import Clock
     from dancetutor_cli.film.layout import FilmLook
     from dancetutor_cli.film.notes import Callout, Cue, NoteTrack
     from dancetutor_cli.lint.findings import Finding
 
-
-# Who dances in a film, and how: the play that it shows, and the motions of all dancers.
-
-
-@dataclass(frozen=True)
-class FilmDance:
-    """A chart as a film shows it.
-
-    solved : each player's part, one for most charts; plays : of each, without the notes that nobody plays at the
-    fastest rate, nor those of which the film shows nothing; play : all of them on the pad under all, `pad`
-    motions : of each dancer at each rate; none where the picture has no dancer
-    on_mines : mines that a foot is on at the fastest rate as they pass
-    """
-
-    solved: tuple[Solved, ...]
-    plays: tuple[Play, ...]
-    play: Play
-    pad: Pad
-    motions: Mapping[float, tuple[Motion, ...]]
-    on_mines: tuple[OnMine, ...] = ()
-
-
-def film_dance(request: FilmRequest, subject: FilmSubject) -> FilmDance:
-    """Find the feet and bake the motions. UsageError for a steps type without a pad."""
-    clock = subject.clock
-    solved = solve(request.dance, subject.choice)
-    rates = sorted({one.rate for one in clock.passes})
-    plays = tuple(shown_play(playable(one, rates), clock.passes) for one in solved)
-    motions: dict[float, tuple[Motion, ...]] = {}
-    if request.look.layout.dancer is not None:
-        dance = replace(request.dance, rates=tuple(rates))
-        for rate in rates:
-            performance = perform(solved, dance, rate)
-            motions[rate] = (
-                _file_motions(request, performance) if request.motions else _cut(request, performance, clock)
-            )
-    results, on_mines = _mines(motions, list(zip(solved, plays, strict=True)), rates[-1])
-    shown = shown_play(play_of_all(solved, plays), clock.passes)  # rows of which nothing is left, too
-    return FilmDance(solved, plays, shown, pad_of(solved), results, on_mines)
-
-
-def _cut(request: FilmRequest, performance: Performance, clock: Clock) -> tuple[Motion, ...]:
-    """The part of a performance that the film shows, with each dancer at her place on the pad under all."""
-    wanted = replace(clock.cut_at(performance.rate), walks_off=request.background)
-    done = performance.motions(wanted, pooled())
-    return tuple(shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True))
-
-
-def _file_motions(request: FilmRequest, performance: Performance) -> tuple[Motion, ...]:
-    """The motions of files in place of the performance's own."""
-    count = len(performance.dancers)
-    if performance.rate != 1.0:
-        raise UsageError("the motion of --dance is for music at normal speed; leave --rate out, or bake it again")
-    if len(request.motions) != count:
-        raise UsageError(f"the chart is for {count} dancers, so give --dance {count} time{'s' if count > 1 else ''}")
-    from dancetutor_cli.formats.npz import read_npz
-
-    return tuple(read_npz(path) for path in request.motions)
-
-
-def _mines(
-    motions: Mapping[float, Sequence[Motion]], plays: Sequence[tuple[Solved, Play]], fastest: float
-) -> tuple[dict[float, tuple[Motion, ...]], tuple[OnMine, ...]]:
-    """The motions, whose notes report mines that a foot is on, and these mines at the fastest rate."""
-    pad = pad_of([one for one, _ in plays])
-    out: dict[float, tuple[Motion, ...]] = {}
-    found: list[OnMine] = []
-    for rate, some in motions.items():
-        results = []
-        for motion, (one, play) in zip(some, plays, strict=True):
-            assert one.pad is not None
-            mines = mines_of(as_heard(play, one.chart.timing.at_rate(rate)), one.pad)
-            if len(plays) > 1:
-                mines += [0.0, *place_on(pad, one.chart, one.pad)]
-            under = feet_on_mines(motion, mines)
-            results.append(replace(motion, notes=(*motion.notes, *mine_messages(mines[under >= 0, 0]))))
-            if rate == fastest:
-                found += _on_mines(one, play, under, len(plays) > 1)
-        out[rate] = tuple(results)
-    return out, tuple(found)
-
-
-def _on_mines(one: Solved, play: Play, under: np.ndarray, by_two: bool) -> list[OnMine]:
-    row, column = (places[under >= 0] for places in np.nonzero(play.rows.mines))
-    at, who = (one.chart.first_column, one.chart.player) if by_two else (0, 0)
-    ticks = play.rows.tick[row].tolist()
-    return [
-        OnMine(tick, c + at, foot, who)
-        for tick, c, foot in zip(ticks, column.tolist(), under[under >= 0].tolist(), strict=True)
-    ]
-
-
-# From a request to a film's plan: read the chart, solve the feet, bake the dancer, and lay everything on the clock.
 
 FADE = 0.6  # seconds in which a film's picture goes dark at its end, and that of a GIF before it goes round
 HIGH = "front-high"  # the camera of configs/picture.yaml for anyone who hides her feet from behind
@@ -264,21 +160,17 @@ def _calls(look: FilmLook) -> CallStyle:
     return CallStyle(callout_words(language), ahead, look.findings, turned(look), language)
 
 
-def _cues(dance: FilmDance, look: FilmLook) -> Iterator[Cue]:
+def _cues(dance: FilmDance, look: FilmLook) -> list[Cue]:
     """The moves for subtitles; for two dancers with the player's number."""
     language = load_language(look.language)
     words, facing = subtitle_words(language), turned(look)
-    if len(dance.solved) == 1:
-        view = PanelNames(dance.pad, facing, language)
-        yield from cues_of(dance.play, dance.solved[0].chart.timing, words, view)
-        return
     cues = [
-        replace(cue, text=f"P{one.chart.player}: {cue.text}")
+        replace(cue, text=f"P{one.chart.player}: {cue.text}") if len(dance.solved) > 1 else cue
         for one, play in zip(dance.solved, dance.plays, strict=True)
         if one.pad is not None
         for cue in cues_of(play, one.chart.timing, words, PanelNames(one.pad, facing, language))
     ]
-    yield from sorted(cues, key=lambda cue: (cue.second, cue.text))
+    return sorted(cues, key=lambda cue: (cue.second, cue.text))
 
 
 def _at_rate(rate: float, notes: tuple[str, ...]) -> list[str]:

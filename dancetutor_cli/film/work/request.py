@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.character.characters import BUILT_IN
 from dancetutor_cli.chart.music import find_music
@@ -17,10 +14,8 @@ from dancetutor_cli.chart.names import TICKS_PER_MEASURE
 from dancetutor_cli.chart.pack_files import feet_fingerprint, find_settings_file
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_request, read_chart, section_of
-from dancetutor_cli.feet.play import Play
-from dancetutor_cli.film.clock import Clock, Pass, Practice, passes_of, whole_song
+from dancetutor_cli.film.clock import Clock, Practice, passes_of, whole_song
 from dancetutor_cli.film.layout import FilmLook
-from dancetutor_cli.film.notes import NoteTrack
 from dancetutor_cli.run.fingerprint import NAMED, file_hash, fingerprint, program_hash
 
 if TYPE_CHECKING:
@@ -117,69 +112,6 @@ def _with_the_music(end: float, music: Path | None) -> tuple[float, float]:
     from dancetutor_cli.film.media.sound import seconds_of
 
     return 0.0, end if music is None else max(end, seconds_of(music))
-
-
-# The parts that are neither danced nor shown: before the step to which a film counts in, and after a passage.
-
-REST_SECONDS = 0.7  # seconds of the film before it begins from which on she makes no step: she stands when it does
-
-
-class Quiet(NamedTuple):
-    """Seconds of the music in which nobody steps: from `since` on, before `until`."""
-
-    since: float
-    until: float
-
-    def has(self, second: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Which of these seconds are among them."""
-        return np.asarray((second >= self.since) & (second < self.until - 1e-6))
-
-
-def quiet_in(passes: Sequence[Pass]) -> Quiet | None:
-    """The count-in of the runs of a film, which all begin at the same second; None without a count-in."""
-    one = passes[0]
-    return Quiet(one.start - REST_SECONDS * max(p.rate for p in passes), one.sound_from) if one.count else None
-
-
-def quiet_after(passes: Sequence[Pass]) -> Quiet | None:
-    """The time after a passage, in which the dancer comes to rest; None if the film ends with the passage."""
-    return Quiet(passes[-1].until, math.inf) if passes[-1].rest else None
-
-
-def play_without(play: Play, quiet: Quiet | None) -> Play:
-    """The play without the rows of that time; where no row is left, as it is."""
-    if quiet is None:
-        return play
-    keep = ~quiet.has(play.rows.second)
-    if keep.all() or not (play.limb[keep] >= 0).any():
-        return play
-    rows = replace(play.rows, **_filter_arrays(play.rows, keep))
-    moves = tuple(names for names, kept in zip(play.moves, keep.tolist(), strict=True) if kept)
-    return replace(play, rows=rows, moves=moves, **_filter_arrays(play, keep))
-
-
-def notes_without(track: NoteTrack, quiet: Quiet | None) -> NoteTrack:
-    """The notes without those of that time."""
-    return track if quiet is None else replace(track, **_filter_arrays(track, ~quiet.has(track.second)))
-
-
-def shown_play(play: Play, passes: Sequence[Pass]) -> Play:
-    """The play without the rows in a count-in and after a passage."""
-    return play_without(play_without(play, quiet_in(passes)), quiet_after(passes))
-
-
-def shown_notes(track: NoteTrack, passes: Sequence[Pass]) -> NoteTrack:
-    """The notes without those in a count-in and after a passage."""
-    return notes_without(notes_without(track, quiet_in(passes)), quiet_after(passes))
-
-
-def _filter_arrays(arrays: Any, keep: NDArray[np.bool_]) -> dict[str, Any]:
-    """Of each array of a dataclass the entries to keep."""
-    found = {field.name: getattr(arrays, field.name) for field in fields(arrays)}
-    return {name: value[keep] for name, value in found.items() if isinstance(value, np.ndarray)}
-
-
-# Everything that a film is made of, as one hash: the same hash, the same film.
 
 
 def film_key(request: FilmRequest, subject: FilmSubject, encoding: Encoding) -> str:
