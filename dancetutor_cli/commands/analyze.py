@@ -31,7 +31,8 @@ from dancetutor_cli.commands.shared_options import (
     selection_options,
 )
 from dancetutor_cli.commands.tab_names import fixes, folder, named, rules
-from dancetutor_cli.reports.formats import FORMATS, Tally, open_brief_report, open_report
+from dancetutor_cli.reports.analyze_formats import FORMATS, Output, open_report
+from dancetutor_cli.reports.tally import Tally
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import check_file
 from dancetutor_cli.run.trust import results_folder
@@ -39,7 +40,6 @@ from dancetutor_cli.run.trust import results_folder
 if TYPE_CHECKING:
     from dancetutor_cli.lint.analysis import AnalyzeTask
     from dancetutor_cli.lint.run import LintRequest, LintRun
-    from dancetutor_cli.reports.formats import Report
 
 
 def _explain(context: click.Context, _: click.Parameter, value: str | None) -> None:
@@ -295,7 +295,8 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
         from dancetutor_cli.run.ffmpeg import executable
 
         executable()  # without one, nothing is heard: say so before the work
-    report = _open_view(view, tasks, output)
+    preset = next(tasks[0].presets.candidates()).name
+    report = open_report(view, Output(output, preset=preset, files=len(tasks)))
     least = "warning" if tally.fail_on == "never" else tally.fail_on
     report.begin()
     is_for_several = False
@@ -354,12 +355,6 @@ def _keep(files: list[Source]) -> None:
         for path, data in files:
             if data is None:
                 store.keep(path)
-
-
-def _open_view(view: str, tasks: Sequence[AnalyzeTask], output: IO[str]) -> Report:
-    if view == "brief":
-        return open_brief_report(output, len(tasks))
-    return open_report(view, next(tasks[0].presets.candidates()).name, output)
 
 
 def _before_work(tasks: Sequence[AnalyzeTask]) -> None:

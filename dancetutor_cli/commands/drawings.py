@@ -49,14 +49,14 @@ def write_sheet(path: Path, tasks: list[AnalyzeTask], language: str | None) -> s
 
 
 def _facts(chart: Drawable, sheet: Sheet) -> list[str]:
+    from dancetutor_cli.reports.moments import clock
     from dancetutor_cli.reports.sheet import facts_of
     from dancetutor_cli.reports.sheet_drawing import unsure_rows
-    from dancetutor_cli.reports.text_report import clock
 
     subject, dense = chart.subject, chart.density
     numbers = [
         sheet.say("rows", count=len(subject.step_rows)),
-        sheet.say("length", time=clock(subject.seconds_played())[:-4]),  # without milliseconds
+        sheet.say("length", time=clock(subject.seconds_played(), milliseconds=False)),
     ]
     numbers.append(sheet.say("density", mean=f"{dense.mean:.1f}", peak=f"{dense.peak:.1f}"))
     if dense.breakdown:

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from dancetutor_cli.commands.analyze_options import AnalyzeOptions
     from dancetutor_cli.lint.analysis import AnalyzeTask
     from dancetutor_cli.lint.results import FileResult
-    from dancetutor_cli.reports.formats import Tally
     from dancetutor_cli.reports.pack import Pack
+    from dancetutor_cli.reports.tally import Tally
 
 
 # Options of `analyze` about how hard charts play, and about a pack as a whole.
@@ -154,7 +154,7 @@ def _changes(options: AnalyzeOptions, most_rows: int | None) -> Iterator[str]:
 def report_tech_counts(tasks: Sequence[AnalyzeTask], options: AnalyzeOptions, output: IO[str]) -> int:
     """`--tech-counts`: print the table, with --full every chart that differs below it; the exit status."""
     from dancetutor_cli.lint.techniques import compare_techniques, read_theirs
-    from dancetutor_cli.reports.pack import chart_lines, table_lines
+    from dancetutor_cli.reports.tech_counts import chart_lines, table_lines
 
     if options.format_name != "text":
         raise UsageError("--tech-counts prints only a Markdown table; leave --format out")

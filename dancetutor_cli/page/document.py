@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.film.scene.gl.available import SHADERS, web_source
+from dancetutor_cli.run.html import page
 from dancetutor_cli.run.languages import Language, load_language
 from dancetutor_cli.run.reading import config_names
 
@@ -146,8 +147,8 @@ def document(doc: Mapping[str, Any], blob: Blob, music: bytes | None = None, kin
 
 def whole(policy: str, title: str, style: str, body: str) -> bytes:
     """An HTML file with this Content-Security-Policy; body : markup, title : text."""
-    parts = {"policy": policy, "title": html.escape(title), "style": style, "body": body}
-    return _fill("shell.html", parts).encode("utf-8")
+    icon = '<link rel="icon" href="data:,">\n'  # else browsers ask for one
+    return page(policy, title, style, body, head=icon).encode("utf-8")
 
 
 def listed(title: str, items: str, style: str) -> bytes:

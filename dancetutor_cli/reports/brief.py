@@ -8,11 +8,11 @@ import shutil
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import IO
 
 from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
-from dancetutor_cli.reports.formats import Tally
+from dancetutor_cli.reports.analyze_formats import Output, Report
+from dancetutor_cli.reports.tally import Tally
 from dancetutor_cli.reports.terminal import safe, safe_path, terminal_of
 from dancetutor_cli.reports.text_report import STYLES
 from dancetutor_cli.run.errors import plural
@@ -43,24 +43,21 @@ class _Entry:
         return -RANKS[self.first.severity], -max(f.margin or 0 for f in self.findings), -len(self.findings)
 
 
-class BriefReport:
-    """Collects files and reports them at the end; files that could not be read go to `errors`.
+class BriefReport(Report):
+    """Collects files and reports them at the end; files that could not be read go to the errors."""
 
-    files : how many there will be
-    """
+    ENCODING = None
 
-    def __init__(self, stream: IO[str], errors: IO[str], files: int) -> None:
-        self._stream, self._errors, self._is_song = stream, errors, files <= _SONG
-        terminal = terminal_of(stream)
+    def __init__(self, output: Output) -> None:
+        super().__init__(output)
+        self._is_song = output.files <= _SONG
+        terminal = terminal_of(output.stream)
         self._paint, self._width = terminal.paint, terminal.width
         self._entries: list[_Entry] = []
         self._charts: list[tuple[FileResult, ChartResult]] = []
         self._unreadable: list[str] = []
         self._found: dict[str, tuple[int, int]] = {}  # by file: errors, warnings
         self._below = ""
-
-    def begin(self) -> None:
-        """Do nothing: the report is printed at the end."""
 
     def add(self, result: FileResult) -> None:
         """Take note of one file."""

@@ -6,7 +6,7 @@ import inspect
 import json
 from collections.abc import Iterable
 from pathlib import PurePath
-from typing import IO, Any
+from typing import Any
 from urllib.parse import quote
 from xml.sax.saxutils import escape, quoteattr
 
@@ -14,8 +14,9 @@ import dancetutor_cli
 from dancetutor_cli.lint.results import FileResult
 from dancetutor_cli.lint.rule import FAMILIES, Rule, all_rules
 from dancetutor_cli.lint.rule_settings import default_rules
+from dancetutor_cli.reports.analyze_formats import Output, Report
 from dancetutor_cli.reports.data_formats import Entry, entries, relative
-from dancetutor_cli.reports.formats import Tally
+from dancetutor_cli.reports.tally import Tally
 from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.foreign_text import json_without_commands, write_command, xml_without_commands
 
@@ -25,17 +26,14 @@ SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 _LEVELS = {"error": "error", "warning": "warning", "info": "note"}
 
 
-class SarifReport:
+class SarifReport(Report):
     """Writes one log with one run; every finding is a result with a region and a logical location."""
 
-    def __init__(self, stream: IO[str]) -> None:
-        self._stream = stream
+    def __init__(self, output: Output) -> None:
+        super().__init__(output)
         self._results: list[dict[str, Any]] = []
         self._unreadable: list[str] = []
         self._places = {code: number for number, code in enumerate(all_rules())}
-
-    def begin(self) -> None:
-        """Nothing is written before the end."""
 
     def add(self, result: FileResult) -> None:
         """Remember the findings of one file."""
@@ -107,14 +105,8 @@ def _rule(rule: type[Rule]) -> dict[str, Any]:
 _COMMANDS = {"error": "error", "warning": "warning", "info": "notice"}
 
 
-class GithubReport:
+class GithubReport(Report):
     """Writes one command for each finding, and the summary as an ordinary line."""
-
-    def __init__(self, stream: IO[str]) -> None:
-        self._stream = stream
-
-    def begin(self) -> None:
-        """Nothing comes before the first finding."""
 
     def add(self, result: FileResult) -> None:
         """Write the findings of one file."""
@@ -144,15 +136,12 @@ def _property(text: str) -> str:
 _SEVERITIES = {"error": "major", "warning": "minor", "info": "info"}
 
 
-class GitlabReport:
+class GitlabReport(Report):
     """Writes one JSON list."""
 
-    def __init__(self, stream: IO[str]) -> None:
-        self._stream = stream
+    def __init__(self, output: Output) -> None:
+        super().__init__(output)
         self._issues: list[dict[str, Any]] = []
-
-    def begin(self) -> None:
-        """Nothing is written before the end."""
 
     def add(self, result: FileResult) -> None:
         """Remember the findings of one file."""
@@ -177,16 +166,13 @@ class GitlabReport:
 # `--format junit`: a suite for each file, a test case for each chart, a failure for each finding that is no info.
 
 
-class JunitReport:
+class JunitReport(Report):
     """Writes the XML that CI servers read."""
 
-    def __init__(self, stream: IO[str]) -> None:
-        self._stream = stream
+    def __init__(self, output: Output) -> None:
+        super().__init__(output)
         self._suites: list[str] = []
-        self._failures = self._tests = self._errors = 0
-
-    def begin(self) -> None:
-        """Nothing is written before the end: the root carries the sums."""
+        self._failures = self._tests = self._unreadable = 0
 
     def add(self, result: FileResult) -> None:
         """Add the suite of one file; the case "file" is about the file itself."""
@@ -201,11 +187,11 @@ class JunitReport:
         self._suites.append(f"<testsuite name={quoteattr(path)} {sums}>\n{''.join(cases)}</testsuite>\n")
         self._tests += len(cases)
         self._failures += failures
-        self._errors += errors
+        self._unreadable += errors
 
     def end(self, tally: Tally) -> None:
         """Write everything."""
-        sums = f'tests="{self._tests}" failures="{self._failures}" errors="{self._errors}"'
+        sums = f'tests="{self._tests}" failures="{self._failures}" errors="{self._unreadable}"'
         self._stream.write('<?xml version="1.0" encoding="UTF-8"?>\n')
         suites = xml_without_commands("".join(self._suites))
         self._stream.write(f'<testsuites name="dancetutor" {sums}>\n{suites}</testsuites>\n')

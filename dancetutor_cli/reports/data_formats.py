@@ -15,7 +15,8 @@ import dancetutor_cli
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.lint.findings import TECH_COUNTS, Cause, Estimate, Finding, ScoreEstimate, Sync
 from dancetutor_cli.lint.results import ChartResult, FileResult
-from dancetutor_cli.reports.formats import Tally
+from dancetutor_cli.reports.analyze_formats import Output, Report
+from dancetutor_cli.reports.tally import Tally
 from dancetutor_cli.reports.terminal import safe, safe_path
 from dancetutor_cli.run.foreign_text import as_text, json_without_commands
 
@@ -81,19 +82,17 @@ def relative(path: str) -> str:
 SCHEMA = 1
 
 
-class JsonReport:
+class JsonReport(Report):
     """Writes one JSON object, UTF-8; every file is a line of its own inside `files`.
 
-    preset : what the head names where the first file has no chart with a preset
+    The head names the preset of the first file's first chart that has one, else that of the run.
     """
 
-    def __init__(self, stream: IO[bytes], preset: str) -> None:
-        self._stream = stream
-        self._preset = preset
+    def __init__(self, output: Output) -> None:
+        super().__init__(output)
+        self._bytes: IO[bytes] = output.stream.buffer  # type: ignore[attr-defined]
+        self._preset = output.preset
         self._files = 0
-
-    def begin(self) -> None:
-        """The head waits for the first file, whose preset it names."""
 
     def add(self, result: FileResult) -> None:
         """Write one file."""
@@ -107,7 +106,7 @@ class JsonReport:
         if not self._files:
             self._head(self._preset)
         self._write("\n]}\n")
-        self._stream.flush()
+        self._bytes.flush()
 
     def _head(self, preset: str) -> None:
         head = {"schema": SCHEMA, "tool": f"dancetutor {dancetutor_cli.__version__}", "preset": preset}
@@ -115,7 +114,7 @@ class JsonReport:
 
     def _write(self, *texts: str) -> None:
         for text in texts:  # not writelines: a stream that copies what is written, as click's for tests, misses that
-            self._stream.write(json_without_commands(text).encode("utf-8", "replace"))
+            self._bytes.write(json_without_commands(text).encode("utf-8", "replace"))
 
 
 def file_texts(result: FileResult) -> Iterator[str]:
@@ -227,14 +226,8 @@ def finding_object(finding: Finding) -> dict[str, Any]:
 # `--format jsonl`: one JSON object a line for each finding.
 
 
-class JsonLinesReport:
+class JsonLinesReport(Report):
     """Writes each finding as a line, with its file and its chart in front."""
-
-    def __init__(self, stream: IO[str]) -> None:
-        self._stream = stream
-
-    def begin(self) -> None:
-        """Nothing comes before the first finding."""
 
     def add(self, result: FileResult) -> None:
         """Write the findings of one file."""
@@ -246,9 +239,6 @@ class JsonLinesReport:
             line = {"path": entry.path, **named, **finding_object(entry.finding), "fingerprint": entry.fingerprint}
             text = json_without_commands(json.dumps(line, ensure_ascii=False))
             self._stream.write(text.encode("utf-8", "replace").decode("utf-8") + "\n")
-
-    def end(self, tally: Tally) -> None:
-        """Nothing comes after the last finding."""
 
 
 # `--format csv`: one line for each chart, tech counts under the names of ITGmania and counted as it does.
@@ -266,15 +256,14 @@ OWN = {
 _COMMAND = ("::", "##[")  # at the start of a line, for the log of a CI job
 
 
-class CsvReport:
-    """Writes a header and one line a chart; files that could not be read go to `errors`.
+class CsvReport(Report):
+    """Writes a header and one line a chart; files that could not be read go to the errors.
 
     Texts of other people that a spreadsheet would take for a formula begin with an apostrophe; numbers stay.
     """
 
-    def __init__(self, stream: IO[str], errors: IO[str]) -> None:
-        self._stream = stream
-        self._errors = errors
+    def __init__(self, output: Output) -> None:
+        super().__init__(output)
         self._names = list(_line("", "", "", None))
 
     def begin(self) -> None:
@@ -288,9 +277,6 @@ class CsvReport:
         file = (relative(result.path), safe(result.title), safe(result.artist)) if result.charts else ("", "", "")
         for chart in result.charts:
             self._stream.write(_csv_line(_line(*file, chart).values()))
-
-    def end(self, tally: Tally) -> None:
-        """Nothing comes after the last chart."""
 
 
 def _csv_line(cells: Iterable[Any]) -> str:

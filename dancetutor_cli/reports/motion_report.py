@@ -10,6 +10,7 @@ import numpy as np
 
 from dancetutor_cli.dance.quality.figures import MotionReport
 from dancetutor_cli.dance.units import Array
+from dancetutor_cli.reports.svg import tag
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import write_atomic
 from dancetutor_cli.run.pictures import picture_bytes
@@ -133,23 +134,20 @@ def _panels(report: MotionReport) -> Iterator[_Panel]:
 
 
 def _svg(report: MotionReport) -> str:
-    height = TOP + len(report.curves) * (PANEL + GAP)
-    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{height}" font-family="sans-serif">']
-    out.append('<rect width="100%" height="100%" fill="white"/>')
+    parts = [tag("rect", width="100%", height="100%", fill="white")]
     for panel in _panels(report):
-        top = panel.top
-        out.append(
-            f'<rect x="{LEFT}" y="{top}" width="{WIDTH - LEFT - 20}" height="{PANEL}" fill="none" stroke="{GRID}"/>'
-        )
-        for x, y, text in _labels(panel):
-            out.append(f'<text x="{x}" y="{y}" font-size="12" fill="{INK}">{text}</text>')
+        size = {"width": WIDTH - LEFT - 20, "height": PANEL}
+        parts.append(tag("rect", x=LEFT, y=f"{panel.top}", **size, fill="none", stroke=GRID))
+        parts += [tag("text", text, x=f"{x}", y=f"{y}", font_size=12, fill=INK) for x, y, text in _labels(panel)]
         for points, colour in zip(panel.lines, panel.colours, strict=True):
             if panel.dots:
-                out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="1.6" fill="{colour}"/>' for x, y in points]
+                parts += [tag("circle", cx=f"{x:.1f}", cy=f"{y:.1f}", r=1.6, fill=colour) for x, y in points]
             else:
                 line = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
-                out.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="0.8"/>')
-    return "\n".join([*out, "</svg>", ""])
+                parts.append(tag("polyline", points=line, fill="none", stroke=colour, stroke_width=0.8))
+    size = {"width": WIDTH, "height": TOP + len(report.curves) * (PANEL + GAP)}
+    inside = "\n".join(["", *parts, ""])
+    return tag("svg", inside, xmlns="http://www.w3.org/2000/svg", **size, font_family="sans-serif") + "\n"
 
 
 def _png(report: MotionReport) -> bytes:

@@ -9,7 +9,9 @@ from html import escape
 
 import dancetutor_cli
 from dancetutor_cli.reports.pack import TECHNIQUES, Pack, PackChart
+from dancetutor_cli.reports.svg import tag
 from dancetutor_cli.reports.terminal import safe, safe_path
+from dancetutor_cli.run import html
 from dancetutor_cli.run.errors import plural
 
 # Pictures of a pack as inline SVG: bars of meters, dots over meters, shares of facing. Hover says which chart.
@@ -33,14 +35,30 @@ class Dot:
     name: str
 
 
-def _begin(title: str, y_name: str) -> list[str]:
-    return [
-        f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{escape(title)}">',
-        f'<text x="{(WIDTH + _LEFT) / 2:.0f}" y="{HEIGHT - 4}" text-anchor="middle">meter</text>',
-        f'<text x="12" y="{HEIGHT / 2:.0f}" transform="rotate(-90 12 {HEIGHT / 2:.0f})" text-anchor="middle">'
-        f"{escape(y_name)}</text>",
-        f'<path class="axis" d="M{_LEFT} {_TOP}V{HEIGHT - _BOTTOM}H{WIDTH - _RIGHT}"/>',
-    ]
+def _svg(title: str, y_name: str, *parts: str) -> str:
+    """A picture with its axes and their names."""
+    middle = f"{HEIGHT / 2:.0f}"
+    axes = (
+        _label(f"{(WIDTH + _LEFT) / 2:.0f}", HEIGHT - 4, "meter"),
+        tag("text", y_name, x=12, y=middle, transform=f"rotate(-90 12 {middle})", text_anchor="middle"),
+        _path("axis", f"M{_LEFT} {_TOP}V{HEIGHT - _BOTTOM}H{WIDTH - _RIGHT}"),
+    )
+    return tag("svg", "".join((*axes, *parts)), viewBox=f"0 0 {WIDTH} {HEIGHT}", role="img", aria_label=title)
+
+
+def _path(class_: str, d: str) -> str:
+    return tag("path", class_=class_, d=d)
+
+
+def _label(x: str, y: int, text: str) -> str:
+    return tag("text", text, x=x, y=y, text_anchor="middle")
+
+
+def _bar(x: float, top: float, bottom: float, width: float, about: tuple[str, str]) -> str:
+    """A part of a bar. about : its colour, what hovering says"""
+    colour, words = about
+    size = {"y": f"{top:.1f}", "width": f"{width:.1f}", "height": f"{bottom - top:.1f}"}
+    return tag("rect", tag("title", words), x=f"{x:.1f}", **size, fill=colour)
 
 
 def _x(value: float, first: float, last: float) -> float:
@@ -57,8 +75,8 @@ def _grid(most: float) -> list[str]:
     out = []
     for n in range(1, int(most / step) + 1):
         y = _y(n * step, most)
-        out.append(f'<path class="grid" d="M{_LEFT} {y:.1f}H{WIDTH - _RIGHT}"/>')
-        out.append(f'<text x="{_LEFT - 4}" y="{y + 4:.1f}" text-anchor="end">{n * step:g}</text>')
+        out.append(_path("grid", f"M{_LEFT} {y:.1f}H{WIDTH - _RIGHT}"))
+        out.append(tag("text", f"{n * step:g}", x=_LEFT - 4, y=f"{y + 4:.1f}", text_anchor="end"))
     return out
 
 
@@ -77,7 +95,7 @@ def bars(counts: Mapping[int, Mapping[str, int]], plays: Mapping[int, int]) -> s
     """Charts by meter, parted by difficulty; a line for how many play like that meter."""
     meters = range(min([*counts, *plays]), max([*counts, *plays]) + 1)
     most = max([sum(of.values()) for of in counts.values()] + list(plays.values()))
-    out = [*_begin("charts by meter", "charts"), *_grid(most)]
+    out = _grid(most)
     wide = (WIDTH - _LEFT - _RIGHT) / len(meters)
     for n, meter in enumerate(meters):
         x, below = _LEFT + n * wide, 0
@@ -85,43 +103,39 @@ def bars(counts: Mapping[int, Mapping[str, int]], plays: Mapping[int, int]) -> s
             count = counts.get(meter, {}).get(difficulty, 0)
             if count:
                 top, bottom = _y(below + count, most), _y(below, most)
-                out.append(
-                    f'<rect x="{x + wide * 0.12:.1f}" y="{top:.1f}" width="{wide * 0.76:.1f}" '
-                    f'height="{bottom - top:.1f}" fill="{colour}"><title>{count} {difficulty} {meter}</title></rect>'
-                )
+                out.append(_bar(x + wide * 0.12, top, bottom, wide * 0.76, (colour, f"{count} {difficulty} {meter}")))
                 below += count
-        out.append(f'<text x="{x + wide / 2:.1f}" y="{HEIGHT - 18}" text-anchor="middle">{meter}</text>')
+        out.append(_label(f"{x + wide / 2:.1f}", HEIGHT - 18, str(meter)))
     line = " ".join(f"{_LEFT + (n + 0.5) * wide:.1f},{_y(plays.get(m, 0), most):.1f}" for n, m in enumerate(meters))
-    out.append(f'<polyline class="plays" points="{line}"/>')
-    return "".join((*out, "</svg>"))
+    out.append(tag("polyline", class_="plays", points=line))
+    return _svg("charts by meter", "charts", *out)
 
 
 def dots(found: Sequence[Dot], title: str, y_name: str, *, diagonal: bool = False) -> str:
     """Charts over their meters; several of one meter stand side by side."""
     last = max([one.x for one in found] + [1.0]) + 1
     most = max([one.y for one in found] + [last if diagonal else 0.0, 0.1]) * 1.05
-    out = [*_begin(title, y_name), *_grid(most)]
+    out = _grid(most)
     step = 1 if last <= 24 else 5
     for meter in range(0, int(last) + 1, step):
-        out.append(f'<text x="{_x(meter, 0, last):.1f}" y="{HEIGHT - 18}" text-anchor="middle">{meter}</text>')
+        out.append(_label(f"{_x(meter, 0, last):.1f}", HEIGHT - 18, str(meter)))
     if diagonal:
-        out.append(f'<path class="axis" d="M{_LEFT} {_y(0, most):.1f}L{_x(last, 0, last):.1f} {_y(last, most):.1f}"/>')
+        out.append(_path("axis", f"M{_LEFT} {_y(0, most):.1f}L{_x(last, 0, last):.1f} {_y(last, most):.1f}"))
     placed: dict[float, int] = {}
     for one in found:
         aside = placed[one.x] = placed.get(one.x, -1) + 1
         x = _x(one.x + ((aside * 0.618) % 1 - 0.5) * 0.6, 0, last)
         colour = COLOURS.get(one.difficulty, COLOURS["Edit"])
         out.append(
-            f'<circle cx="{x:.1f}" cy="{_y(one.y, most):.1f}" r="3" fill="{colour}">'
-            f"<title>{escape(one.name)}</title></circle>"
+            tag("circle", tag("title", escape(one.name)), cx=f"{x:.1f}", cy=f"{_y(one.y, most):.1f}", r=3, fill=colour)
         )
-    return "".join((*out, "</svg>"))
+    return _svg(title, y_name, *out)
 
 
 def facing(shares: Mapping[int, Sequence[int]]) -> str:
     """By meter, how many of the rows face where: the screen at the bottom, back to it at the top."""
     meters = sorted(shares)
-    out = _begin("where the dancer faces", "% of rows") + _grid(100)
+    out = _grid(100)
     wide = (WIDTH - _LEFT - _RIGHT) / max(len(meters), 1)
     for n, meter in enumerate(meters):
         rows, below = shares[meter], 0.0
@@ -130,16 +144,13 @@ def facing(shares: Mapping[int, Sequence[int]]) -> str:
             if share:
                 top, bottom = _y(below + share, 100), _y(below, 100)
                 x = _LEFT + (n + 0.12) * wide
-                out.append(
-                    f'<rect x="{x:.1f}" y="{top:.1f}" width="{wide * 0.76:.1f}" height="{bottom - top:.1f}" '
-                    f'fill="{colour}"><title>meter {meter}: {share:.0f} %</title></rect>'
-                )
+                out.append(_bar(x, top, bottom, wide * 0.76, (colour, f"meter {meter}: {share:.0f} %")))
                 below += share
-        out.append(f'<text x="{_LEFT + (n + 0.5) * wide:.1f}" y="{HEIGHT - 18}" text-anchor="middle">{meter}</text>')
-    return "".join((*out, "</svg>"))
+        out.append(_label(f"{_LEFT + (n + 0.5) * wide:.1f}", HEIGHT - 18, str(meter)))
+    return _svg("where the dancer faces", "% of rows", *out)
 
 
-# A pack as one HTML file with its pictures inside: no script, no network; what people wrote is text.
+# The page around the pictures.
 
 _STYLE = """
 :root{color-scheme:light;font:15px/1.45 system-ui,sans-serif}
@@ -164,9 +175,9 @@ _OFF = 2.0  # meters from label to estimate that a cell is marked for
 def html_page(pack: Pack, changes: Sequence[str] = ()) -> str:
     """The page. changes : lines of what is new against another version of the pack"""
     charts = pack.charts()
-    name = escape(safe_path(pack.folder.rsplit("/", 1)[-1]))
+    name = safe_path(pack.folder.rsplit("/", 1)[-1])
     counts = f"{plural(pack.songs, 'song')}, {plural(len(charts), 'chart')}"
-    body = [f'<h1>{name}</h1><p class="lead">{counts}</p>']
+    body = [f'<h1>{escape(name)}</h1><p class="lead">{counts}</p>']
     body += [_needs(pack), _list("What is missing or wrong", pack.missing())]
     if changes:
         body.append(_list("What has changed", changes))
@@ -177,15 +188,8 @@ def html_page(pack: Pack, changes: Sequence[str] = ()) -> str:
         body.append(f'<div class="plots">{"".join(_figures(of_type))}</div>')
         body.append(_techniques(of_type))
     body.append(_table(charts))
-    made = f"dancetutor {dancetutor_cli.__version__}"
-    policy = "default-src 'none'; style-src 'unsafe-inline'"
-    return (
-        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{name}</title>'
-        f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
-        f'<meta name="generator" content="{escape(made)}"><meta name="viewport" content="width=device-width">'
-        f"<style>{_STYLE}</style></head>"
-        f"<body>{''.join(body)}</body></html>\n"
-    )
+    made = f'<meta name="generator" content="dancetutor {escape(dancetutor_cli.__version__)}">\n'
+    return html.page(html.NO_SCRIPT, name, _STYLE, "".join(body), head=made)
 
 
 def _figures(charts: Sequence[PackChart]) -> Iterable[str]:

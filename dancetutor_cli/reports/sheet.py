@@ -14,10 +14,12 @@ from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.subject import ChartSubject
+from dancetutor_cli.reports.moments import clock, moment
 from dancetutor_cli.reports.sheet_drawing import HOLD_OPACITY, Sheet, badge, definitions, mark, system, unsure_rows
-from dancetutor_cli.reports.sheet_places import SheetStyle, lay_out, sheet_style, tag, text, title
+from dancetutor_cli.reports.sheet_places import SheetStyle, lay_out, sheet_style
+from dancetutor_cli.reports.svg import tag, text, title
 from dancetutor_cli.reports.terminal import safe
-from dancetutor_cli.reports.text_report import clock, moment
+from dancetutor_cli.run import html
 from dancetutor_cli.run.languages import ENGLISH
 
 _LEFT = 12.0
@@ -25,7 +27,6 @@ _FACTS, _FACT = 66.0, 14.0  # the first line of facts, and how far apart they ar
 _GAP = 22.0
 _LIMBS = ("left-foot", "right-foot", "left-hand", "right-hand", "none")  # labels of a language
 _LONG_LIST = 24  # more findings than these are listed in two columns
-_POLICY = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
 _FONT = "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 
 
@@ -61,14 +62,8 @@ def html_page(sheets: Sequence[tuple[Sheet, Sequence[str]]]) -> str:
     song = sheets[0][0].subject.song
     name = safe(song.title) or song.path.name
     body = "\n".join(_article(sheet, facts) for sheet, facts in sheets)
-    return (
-        f'<!DOCTYPE html>\n<html lang="{sheets[0][0].language}">\n<head>\n<meta charset="utf-8">\n'
-        f"<title>{escape(name)}</title>\n"
-        f'<meta name="viewport" content="width=device-width">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">\n'
-        f"<style>\n{_page_css(style)}</style>\n</head>\n"
-        f"<body>\n<main>\n<h1>{escape(name)}</h1>\n{body}\n</main>\n</body>\n</html>\n"
-    )
+    main = f"<main>\n<h1>{escape(name)}</h1>\n{body}\n</main>\n"
+    return html.page(html.NO_SCRIPT, name, f"\n{_page_css(style)}", main, language=sheets[0][0].language)
 
 
 def _article(sheet: Sheet, facts: Sequence[str]) -> str:

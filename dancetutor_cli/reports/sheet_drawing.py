@@ -13,9 +13,10 @@ from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.feet.limbs import Part
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.reports.sheet_places import LETTERS, SheetLayout, SheetStyle, number, tag, text, title
+from dancetutor_cli.reports.moments import clock
+from dancetutor_cli.reports.sheet_places import LETTERS, SheetLayout, SheetStyle
+from dancetutor_cli.reports.svg import number, tag, text, title
 from dancetutor_cli.reports.terminal import safe
-from dancetutor_cli.reports.text_report import clock
 from dancetutor_cli.run.languages import ENGLISH, Language, load_language
 
 HOLD_OPACITY = 0.55
@@ -97,7 +98,7 @@ def _measure(sheet: Sheet, measure: int) -> str:
     parts += [_line(left, y, left + width, y, style.colours["measure_line"], 1.2) for y in ends]
     second = float(sheet.subject.chart.timing.seconds(np.array([measure * TICKS_PER_MEASURE]))[0])
     parts.append(text(str(measure), left - 5, top + 4, "number", text_anchor="end"))
-    parts.append(text(clock(second)[:-4], left - 5, top + 13, "time", text_anchor="end"))
+    parts.append(text(clock(second, milliseconds=False), left - 5, top + 13, "time", text_anchor="end"))
     return "".join(parts)
 
 

@@ -1,4 +1,4 @@
-"""Where measures stand on a chart sheet, its sizes and colours (configs/sheet.yaml), and pieces of SVG."""
+"""Where measures stand on a chart sheet; its sizes and colours: configs/sheet.yaml, with those of notes and feet."""
 
 from __future__ import annotations
 
@@ -9,48 +9,15 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import accumulate
 from typing import Annotated
-from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.feet.limbs import hex_colour, limb_colours
-from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.schema import NOT_IN_FILES, Bounds, HexColour, Positive, convert
 from dancetutor_cli.run.yaml_files import load, read
-
-# Pieces of SVG text: escaped, with short numbers.
-
-
-def number(value: float) -> str:
-    """As short as one decimal allows: "3", "2.5"."""
-    return f"{value:.1f}".rstrip("0").rstrip(".") if value != 0 else "0"
-
-
-def tag(name: str, inside: str = "", /, **attributes: object) -> str:
-    """An element. Attributes: underscores stand for hyphens, floats are shortened, None is left out."""
-    texts = []
-    for key, value in attributes.items():
-        if value is None:
-            continue
-        text = number(value) if isinstance(value, float | int) else str(value)
-        texts.append(f" {key.rstrip('_').replace('_', '-')}={quoteattr(text)}")
-    return f"<{name}{''.join(texts)}>{inside}</{name}>" if inside else f"<{name}{''.join(texts)}/>"
-
-
-def text(content: str, x: float, y: float, class_: str, **attributes: object) -> str:
-    """A line of text of other people: made safe and escaped."""
-    return tag("text", escape(safe(content)), x=x, y=y, class_=class_, **attributes)
-
-
-def title(content: str) -> str:
-    """What is shown when the pointer rests on an element."""
-    return f"<title>{escape(safe(content))}</title>"
-
-
-# Sizes and colours of the chart sheet: configs/sheet.yaml, with the colours of notes and feet.
 
 LETTERS = ("L", "R", "<", ">")  # by limb
 _Grid = Annotated[int, Bounds(1)]

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.lint.findings import ITG, NULL
 from dancetutor_cli.lint.sync import Judgement
-from dancetutor_cli.reports.sheet_places import number, tag, text
-from dancetutor_cli.reports.text_report import clock
+from dancetutor_cli.reports.moments import clock
+from dancetutor_cli.reports.svg import number, tag, text
 from dancetutor_cli.run.pictures import texture_bytes
 
 _WIDTH, _HEIGHT = 900, 420
@@ -73,7 +73,7 @@ def _grid(found: Judgement, low: float, high: float) -> list[str]:
             out.append(text(name, _LEFT - 6, float(y) + 4, "axis", text_anchor="end"))
     for share in np.linspace(0, 1, 5):
         second = found.first + share * (found.last - found.first)
-        label = clock(second).rpartition(".")[0]
+        label = clock(second, milliseconds=False)
         out.append(text(label, float(_x(float(share))), _HEIGHT - 26, "axis", text_anchor="middle"))
     note = "dark: attacks of the music around the notes of a part; dots: best value of each part; line: of the song"
     out.append(text(note, _LEFT, _HEIGHT - 8, "note"))

@@ -6,14 +6,16 @@ import inspect
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
-from typing import IO, NamedTuple
+from typing import NamedTuple
 
 from dancetutor_cli.feet.limbs import hex_colour, limb_colours
 from dancetutor_cli.lint.findings import ExcerptRow, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.lint.rule import BY_METER, FAMILIES, Rule, TimedRule, all_rules
 from dancetutor_cli.lint.rule_settings import default_rules, default_severity, described
-from dancetutor_cli.reports.formats import Tally
+from dancetutor_cli.reports.analyze_formats import Output, Report
+from dancetutor_cli.reports.moments import moment
+from dancetutor_cli.reports.tally import Tally
 from dancetutor_cli.reports.terminal import Terminal, can_encode, safe, safe_path, terminal_of
 
 # The rows around a finding as arrows with L and R, in characters.
@@ -152,18 +154,16 @@ _MOST_LETTERS = 16  # rows of another play that are written out
 _MOST_FORCED = 12  # doublesteps of a chart whose cause is written out
 
 
-class LineReport:
-    """Writes files as they come: findings to `stream`, a line each, files that could not be read to `errors`."""
+class LineReport(Report):
+    """Writes findings, a line each; files that could not be read go to the errors."""
 
-    def __init__(self, stream: IO[str], errors: IO[str]) -> None:
-        self._stream = stream
-        self._errors = errors
-        self._terminal = terminal_of(stream)
+    ENCODING = None
+
+    def __init__(self, output: Output) -> None:
+        super().__init__(output)
+        self._terminal = terminal_of(output.stream)
         self._paint = self._terminal.paint
-        self._plain = not can_encode(stream, "←↙■●│·")
-
-    def begin(self) -> None:
-        """Nothing comes before the first file."""
+        self._plain = not can_encode(output.stream, "←↙■●│·")
 
     def add(self, result: FileResult) -> None:
         """Write one file."""
@@ -281,25 +281,6 @@ class TextReport(LineReport):
 def _cut(letters: str) -> str:
     rows = letters.split(" ")
     return " ".join(rows[:_MOST_LETTERS]) + (f" ... ({len(rows)} rows)" if len(rows) > _MOST_LETTERS else "")
-
-
-def moment(finding: Finding) -> str:
-    """ " measure 4 beat 16 0:07.512", or as much of it as is known."""
-    parts = []
-    if finding.measure is not None:
-        parts.append(f"measure {finding.measure}")
-    if finding.beat is not None:
-        parts.append(f"beat {round(finding.beat, 3):g}")
-    if finding.second is not None:
-        parts.append(clock(finding.second))
-    return "".join(f" {part}" for part in parts)
-
-
-def clock(second: float) -> str:
-    """Seconds as players read them: "1:02.500", negative before the music starts."""
-    milliseconds = round(abs(second) * 1000)
-    minutes, rest = divmod(milliseconds, 60_000)
-    return f"{'-' if second < 0 and milliseconds else ''}{minutes}:{rest // 1000:02}.{rest % 1000:03}"
 
 
 # `--explain`: the documentation of a rule, from its docstring, with its severity and options.

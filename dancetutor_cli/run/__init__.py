@@ -8,5 +8,5 @@ pool                    pieces of work in, results out: in this process, in othe
 process, preload        this process: its streams, Ctrl-C; what worker processes have in common
 fingerprint, trust      keys of kept results; the folders from which they and machine code are taken
 kernels                 functions as machine code, by numba
-ffmpeg, pictures        what writes and reads films, music and pictures
+ffmpeg, pictures, html  what writes and reads films, music and pictures; the frame of every HTML page
 """

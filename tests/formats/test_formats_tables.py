@@ -15,7 +15,7 @@ from dancetutor_cli.commands.render import command as render
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.film.media import film_formats
 from dancetutor_cli.formats import writers
-from dancetutor_cli.reports import formats as reports
+from dancetutor_cli.reports import analyze_formats as reports
 from dancetutor_cli.run.reading import charts_path
 
 DEMO = str(charts_path() / "two_left_feet" / "two_left_feet.ssc")

@@ -25,8 +25,9 @@ from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.figures import tech_counts
 from dancetutor_cli.lint.findings import TECH_COUNTS
 from dancetutor_cli.lint.subject import ChartSubject
+from dancetutor_cli.reports.analyze_formats import Output
 from dancetutor_cli.reports.data_formats import CsvReport
-from dancetutor_cli.reports.formats import Tally
+from dancetutor_cli.reports.tally import Tally
 
 # Columns of a pad: x of its panel, and the way its arrow points.
 PADS = {"dance-single": [(-1, "L"), (0, "D"), (0, "U"), (1, "R")]}
@@ -211,7 +212,7 @@ def test_the_table_has_the_counts(tmp_path: Path) -> None:
         AnalyzeTask(path, PresetChoice(), Selection(), load_configuration(None).settings, want_figures=True)
     )
     stream = io.StringIO()
-    report = CsvReport(stream, io.StringIO())
+    report = CsvReport(Output(stream, io.StringIO()))
     report.begin()
     report.add(result)
     report.end(Tally())
@@ -229,7 +230,7 @@ def test_hands_are_those_of_dt302(tmp_path: Path) -> None:
     result = analyze_file(task)
     assert [finding.rule for finding in result.charts[0].findings].count("DT302") == 1
     stream = io.StringIO()
-    report = CsvReport(stream, io.StringIO())
+    report = CsvReport(Output(stream, io.StringIO()))
     report.begin()
     report.add(result)
     assert next(csv.DictReader(io.StringIO(stream.getvalue())))["Hands"] == "1"

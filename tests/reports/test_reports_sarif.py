@@ -12,8 +12,9 @@ import pytest
 
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
+from dancetutor_cli.reports.analyze_formats import Output
 from dancetutor_cli.reports.code_formats import SarifReport, uri
-from dancetutor_cli.reports.formats import Tally
+from dancetutor_cli.reports.tally import Tally
 
 LEVELS = {"none", "note", "warning", "error"}
 MESSAGE = {"text": str}
@@ -79,7 +80,7 @@ def check(value: Any, schema: Any, path: str = "$") -> None:
 
 def log_of(*results: FileResult) -> dict[str, Any]:
     stream, tally = io.StringIO(), Tally()
-    report = SarifReport(stream)
+    report = SarifReport(Output(stream, stream))
     report.begin()
     for result in results:
         tally.add(result)

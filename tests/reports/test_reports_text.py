@@ -17,9 +17,11 @@ from rich.table import Table
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.reports import text_report
-from dancetutor_cli.reports.formats import Tally
+from dancetutor_cli.reports.analyze_formats import Output
+from dancetutor_cli.reports.moments import clock
+from dancetutor_cli.reports.tally import Tally
 from dancetutor_cli.reports.terminal import Terminal, terminal_of
-from dancetutor_cli.reports.text_report import TextReport, chart_table, clock
+from dancetutor_cli.reports.text_report import TextReport, chart_table
 
 FINDING = Finding("DT201", "doublestep", "warning", "twice", 133, 2, 1, 16.0, 4, 7.512, 12, 0)
 CHART = ChartResult(
@@ -35,7 +37,7 @@ class Screen(io.StringIO):
 
 def printed(*results: FileResult, stream: io.StringIO | None = None) -> tuple[str, str]:
     out, errors = stream or io.StringIO(), io.StringIO()
-    report, tally = TextReport(out, errors), Tally()
+    report, tally = TextReport(Output(out, errors)), Tally()
     report.begin()
     for result in results:
         tally.add(result)

@@ -1,22 +1,17 @@
-"""The formats of `analyze --format` by name, the interface of a report, and the counts of a run."""
+"""The counts of a run of `analyze`, and its exit status."""
 
 from __future__ import annotations
 
-import sys
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from importlib import import_module
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING
 
 from dancetutor_cli.lint.findings import RANKS
 from dancetutor_cli.run.errors import plural
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.results import FileResult
-
-# One object that owns the counts of a run and its exit status.
 
 
 @dataclass
@@ -27,7 +22,7 @@ class Tally:
     exit_zero : findings do not fail the run whatever they are; unreadable files still do
     folders : that gave no file, because none is in them or they cannot be read; they are unreadable, and no files
     suggested, suggested_rule : findings with an edit; the rule of the first of them
-    page : lines about all files together, to stand above the summary
+    page : lines about all files together (a pack, `--statistics`), to stand above the summary
     quiet : nothing is said at the end
     """
 
@@ -95,82 +90,3 @@ class Tally:
         if files := self.unreadable - self.folders:
             text += f"; {plural(files, 'file')} could not be read"
         return text + (f"; no file to read in {plural(self.folders, 'folder')}" if self.folders else "")
-
-
-# What a run prints: one class per format, all with the interface of `Report`.
-
-
-class Report(Protocol):
-    """Writes results as they come."""
-
-    def begin(self) -> None:
-        """Write what comes before the first file."""
-
-    def add(self, result: FileResult) -> None:
-        """Write one file."""
-
-    def end(self, tally: Tally) -> None:
-        """Write what comes after the last file."""
-
-
-# The formats of `analyze --format` by name; the module of a format is imported when it is asked for.
-
-
-class Format(NamedTuple):
-    """module, kind : where the report is, and its class
-
-    inputs : what that is made with, of `_INPUTS`: "text" (the stream in UTF-8), "terminal" (with "?" for what it cannot
-    show), "bytes", "errors" (standard error), "preset" (name of the cost preset)
-    """
-
-    module: str
-    kind: str
-    inputs: tuple[str, ...] = ("text",)
-
-
-FORMATS = {
-    "text": Format("text_report", "LineReport", ("terminal", "errors")),
-    "json": Format("data_formats", "JsonReport", ("bytes", "preset")),
-    "jsonl": Format("data_formats", "JsonLinesReport"),
-    "csv": Format("data_formats", "CsvReport", ("text", "errors")),
-    "sarif": Format("code_formats", "SarifReport"),
-    "github": Format("code_formats", "GithubReport"),
-    "gitlab": Format("code_formats", "GitlabReport"),
-    "junit": Format("code_formats", "JunitReport"),
-}
-# What `text` is in other lengths: with tables and rows, or without any finding.
-VIEWS = {
-    "full": Format("text_report", "TextReport", ("terminal", "errors")),
-    "none": Format("text_report", "SummaryReport", ("terminal", "errors")),
-}
-
-
-def open_brief_report(stream: IO[str], files: int) -> Report:
-    """What a person at a terminal sees; see `brief.BriefReport`."""
-    from dancetutor_cli.reports.brief import BriefReport
-
-    return BriefReport(_utf8_or_replacing(stream, utf8=False), sys.stderr, files)
-
-
-def open_report(name: str, preset: str, stream: IO[str]) -> Report:
-    """A report in this format or view. `preset` is the cost preset's name."""
-    form = {**FORMATS, **VIEWS}[name]
-    kind = getattr(import_module(f"dancetutor_cli.reports.{form.module}"), form.kind)
-    report: Report = kind(*(_INPUTS[what](stream, preset) for what in form.inputs))
-    return report
-
-
-_INPUTS: dict[str, Callable[[Any, str], Any]] = {
-    "text": lambda stream, _: _utf8_or_replacing(stream, utf8=True),
-    "terminal": lambda stream, _: _utf8_or_replacing(stream, utf8=False),
-    "bytes": lambda stream, _: stream.buffer,
-    "errors": lambda _, __: sys.stderr,
-    "preset": lambda _, preset: preset,
-}
-
-
-def _utf8_or_replacing(stream: IO[str], *, utf8: bool) -> IO[str]:
-    """Files for other programs are UTF-8; on a terminal what it cannot show becomes "?"."""
-    if hasattr(stream, "reconfigure"):
-        stream.reconfigure(errors="replace", **({"encoding": "utf-8"} if utf8 else {}))
-    return stream

@@ -1,0 +1,25 @@
+"""Where in a song: measure, beat and time as players read them."""
+
+from __future__ import annotations
+
+from dancetutor_cli.lint.findings import Finding
+
+
+def moment(finding: Finding) -> str:
+    """ " measure 4 beat 16 0:07.512", or as much of it as is known."""
+    parts = []
+    if finding.measure is not None:
+        parts.append(f"measure {finding.measure}")
+    if finding.beat is not None:
+        parts.append(f"beat {round(finding.beat, 3):g}")
+    if finding.second is not None:
+        parts.append(clock(finding.second))
+    return "".join(f" {part}" for part in parts)
+
+
+def clock(second: float, *, milliseconds: bool = True) -> str:
+    """Seconds as players read them: "1:02.500", negative before the music starts; without milliseconds "1:02"."""
+    count = round(abs(second) * 1000)
+    minutes, rest = divmod(count, 60_000)
+    text = f"{'-' if second < 0 and count else ''}{minutes}:{rest // 1000:02}"
+    return f"{text}.{rest % 1000:03}" if milliseconds else text
