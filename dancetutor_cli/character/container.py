@@ -1,4 +1,8 @@
-"""The GLB container: JSON, binary chunk, accessors and images with every size checked, and its tree of nodes."""
+"""The GLB container: JSON, binary chunk, accessors and images with every size checked, and its tree of nodes.
+
+A user's file may be broken or hostile: nothing outside the file is ever opened, and each bound is stated here.
+Source: glTF 2.0 specification, Khronos Group, sections 3.6 (binary data) and 4 (GLB).
+"""
 
 from __future__ import annotations
 
@@ -21,11 +25,6 @@ from dancetutor_cli.run.reading import parse_json, read_bytes
 if TYPE_CHECKING:
     from PIL import Image
 
-
-# The GLB container: its JSON, its binary chunk, accessors and images, with every size checked before it is used.
-#
-# A user's file may be broken or hostile: nothing outside the file is ever opened, and each bound is stated here.
-# Source: glTF 2.0 specification, Khronos Group, sections 3.6 (binary data) and 4 (GLB).
 
 MAX_FILE = 100_000_000  # bytes; a file of this size or more is refused unread
 MAX_JSON = 16_000_000  # bytes

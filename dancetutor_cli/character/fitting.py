@@ -1,4 +1,9 @@
-"""A user's character fitted to the rig: bones, rest pose, size; the body that a ragdoll gets of it."""
+"""A user's character fitted to the rig: bones, rest pose, size; the body that a ragdoll gets of it.
+
+The fitted character keeps its own bone lengths. Each joint's rest rotation is the identity and its rest pose our
+A pose, so the world rotation of a joint of our rig is the world rotation of the same joint of the character; only
+the binding pose, which may be a T pose, differs, and `inverse_bind` carries that.
+"""
 
 from __future__ import annotations
 
@@ -17,13 +22,6 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton, dancer_skeleton
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.errors import FileError
-
-# A user's character fitted to the rig: its bones found, its rest pose brought to ours, its size to a dancer's.
-#
-# The fitted character keeps its own bone lengths. Each joint's rest rotation is the identity and its rest pose our
-# A pose, so the world rotation of a joint of our rig is the world rotation of the same joint of the character; only
-# the binding pose, which may be a T pose, differs, and `inverse_bind` carries that.
-
 
 HEIGHT = 1.70  # metres a user's character is scaled to
 LEAST_LEG = 0.38  # metres; shorter legs do not reach panels 0.28 m from the centre: such a character is made taller

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.feet.limbs import LIMBS, PartnerColours, limb_colours, partner_colours
 
-# A character: triangle meshes skinned to a skeleton, ready for either renderer.
-
 
 @dataclass(frozen=True, slots=True)
 class Material:

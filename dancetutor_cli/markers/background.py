@@ -1,4 +1,8 @@
-"""A film in `#BGCHANGES`, which the games play behind the notes: its entry, and putting it into files."""
+"""A film in `#BGCHANGES`, which the games play behind the notes: its entry, and putting it into files.
+
+An entry is ours if its file's name ends in `.dancetutor.` and a suffix; so nothing else has to say whose it is, and
+an editor that saves the file keeps it.
+"""
 
 from __future__ import annotations
 
@@ -16,11 +20,6 @@ from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.chart.selection import find_files
 from dancetutor_cli.run.errors import FileError, UsageError
 from dancetutor_cli.run.files import UCS_SUFFIX, remove_leftovers, write_atomic
-
-# The entry of a film in `#BGCHANGES`, which the games play behind the notes: put in beside what is there, and out.
-#
-# An entry is ours if its file's name ends in `.dancetutor.` and a suffix; so nothing else has to say whose it is, and
-# an editor that saves the file keeps it.
 
 TAG = "BGCHANGES"
 OURS = ".dancetutor"  # before the suffix of a film that this program has made for a song
@@ -140,9 +139,6 @@ def _beats(value: bytes) -> Iterator[float]:
             yield float(part.split(b"=")[0])
         except ValueError:
             continue
-
-
-# Putting a film into chart files as what the games play behind the notes.
 
 
 def files_of_song(path: Path) -> list[Path]:

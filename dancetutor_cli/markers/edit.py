@@ -20,8 +20,6 @@ from dancetutor_cli.markers.model import ChartFeet, FileChange, old_content, rem
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
 
-# The lane-split chart: a single as a double, the left foot's steps on the left pad, the right foot's on the right.
-
 SOURCE, TARGET = "dance-single", "dance-double"
 _COLUMNS = 4
 _SIDE = {Limb.LEFT_FOOT: 0, Limb.LEFT_HAND: 0, Limb.RIGHT_FOOT: 1, Limb.RIGHT_HAND: 1}
@@ -102,7 +100,7 @@ def _limbs(chart: Chart, play: Play) -> dict[tuple[int, int], int]:
     return {place: every[place] for place in written if place in every}
 
 
-# The style `edit`: the lane-split chart as a `.edit` file for an unmodified game, or added to the chart file.
+# The style: that chart in a file, or added to one.
 
 LIMIT = 60 * 1024  # bytes of a .edit file that the games still read
 MARK = b"//{dt1 edit}"

@@ -126,8 +126,6 @@ def json_lines(entries: Iterable[Any]) -> str:
     return ",\n".join("   " + json.dumps(entry, ensure_ascii=False) for entry in entries)
 
 
-# From a play to who presses each written step, and to the letters of every written row.
-
 _LOW = min(Limb)
 _LETTER = np.array(  # by (limb - _LOW) * len(Part) + part
     [ord(letter(limb, part)) for limb in range(_LOW, max(Limb) + 1) for part in Part], dtype=np.uint8

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 
-# The quality report of a motion: a table for people, plain data for programs.
-
 _NOTHING = 1e-6  # of any unit: shown as 0
 _DISTANCES = ("minimum", "maximum", "mean", "deviation")
 

@@ -136,13 +136,13 @@ class Pack:
         """Files that could not be read, by their paths below the folder of everything that was looked at."""
         paths = [os.path.abspath(path) for path in (*self._unreadable, self.folder)]  # noqa: PTH100
         above = os.path.commonpath([os.path.dirname(path) for path in paths[:-1]] + paths[-1:])  # noqa: PTH120
-        return (safe_path(os.path.relpath(path, above)) for path in paths[:-1])
+        return (_below(path, above) for path in paths[:-1])
 
     def charts(self) -> list[PackChart]:
         """Every chart that is danced, by song."""
         below, out = self.folder, []
         for result in self._results.values():
-            name = safe_path(os.path.relpath(os.path.abspath(result.path), below))  # noqa: PTH100
+            name = _below(result.path, below)
             title = safe(result.title) or safe_path(Path(result.path).stem)
             out += [PackChart(title, name, chart) for chart in result.charts if chart.playable and chart.row_count]
         return out
@@ -195,6 +195,11 @@ class Pack:
                 beside = "above" if meter > one.result.meter else "below"
                 yield f"{one.name}: plays like {scale_name} {meter:.1f}, {how_far:.1f} {beside} its meter"
         yield from (words for _, words in sorted(_much_of(charts), reverse=True))
+
+
+def _below(path: str, folder: str) -> str:
+    """A file's path below a folder, for people; links are not followed."""
+    return safe_path(os.path.relpath(os.path.abspath(path), folder))  # noqa: PTH100
 
 
 def _much_of(charts: list[PackChart]) -> Iterator[tuple[float, str]]:
