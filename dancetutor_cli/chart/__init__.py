@@ -10,5 +10,5 @@ model.Song, model.Chart       what every other package works with
 selection, pack_files         which charts a path means; settings files that lie beside them
 music, audio                  which file is the song's music; its samples
 density, hash, names          streams and tempos; how leaderboards know a chart; words of the games
-edits                         the bytes of a file changed in places
+edits, note_writer            the bytes of a file changed in places; notes as bytes
 """

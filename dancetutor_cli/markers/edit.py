@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import glob
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.edits import Splice
 from dancetutor_cli.chart.model import Chart, Kind, Song
-from dancetutor_cli.chart.names import TICKS_PER_MEASURE
+from dancetutor_cli.chart.note_writer import write_notes
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play
@@ -23,12 +23,6 @@ from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
 SOURCE, TARGET = "dance-single", "dance-double"
 _COLUMNS = 4
 _SIDE = {Limb.LEFT_FOOT: 0, Limb.LEFT_HAND: 0, Limb.RIGHT_FOOT: 1, Limb.RIGHT_HAND: 1}
-_LETTER = {
-    Kind.TAP: b"1", Kind.HOLD: b"2", Kind.ROLL: b"4", Kind.MINE: b"M", Kind.LIFT: b"L", Kind.FAKE: b"F",
-    Kind.KEYSOUND: b"K",
-}  # fmt: skip
-_TAIL = b"3"
-_ROW_COUNTS = (4, 8, 12, 16, 24, 32, 48, 64, 96, 192)  # what the games' editors write
 
 
 def sides(chart: Chart, play: Play) -> NDArray[np.int64]:
@@ -57,36 +51,9 @@ def sides(chart: Chart, play: Play) -> NDArray[np.int64]:
 
 
 def note_data(chart: Chart, play: Play, eol: bytes) -> bytes:
-    """The note data of the lane-split chart: rows and commas, each line with `eol`; no `;` at the end."""
-    notes = chart.notes
-    cells: dict[int, dict[int, bytes]] = {}
-
-    def put(tick: int, column: int, letter: bytes) -> None:
-        cells.setdefault(tick // TICKS_PER_MEASURE, {})[(tick % TICKS_PER_MEASURE) * 2 * _COLUMNS + column] = letter
-
-    table = zip(notes.tick.tolist(), notes.column.tolist(), notes.kind.tolist(), notes.end.tolist(), strict=True)
-    for (tick, column, kind, end), side in zip(table, sides(chart, play).tolist(), strict=True):
-        put(tick, column + _COLUMNS * side, _LETTER[Kind(kind)])
-        if kind in (Kind.HOLD, Kind.ROLL):
-            put(end, column + _COLUMNS * side, _TAIL)
-    measures = (_measure(cells.get(m, {}), eol) for m in range(max(cells, default=0) + 1))
-    return (b"," + eol).join(measures)
-
-
-def _measure(cells: dict[int, bytes], eol: bytes) -> bytes:
-    """The rows of one measure, as few as hold all its notes. cells : {tick in the measure * 8 + column: letter}"""
-    width = 2 * _COLUMNS
-    count = _rows_needed(place // width for place in cells)
-    grid = bytearray(b"0" * (count * width))
-    for place, letter in cells.items():
-        row = (place // width) * count // TICKS_PER_MEASURE
-        grid[row * width + place % width : row * width + place % width + 1] = letter
-    return b"".join(bytes(grid[i : i + width]) + eol for i in range(0, len(grid), width))
-
-
-def _rows_needed(ticks: Iterable[int]) -> int:
-    used = set(ticks)
-    return next(n for n in _ROW_COUNTS if all(tick * n % TICKS_PER_MEASURE == 0 for tick in used))
+    """The note data of the lane-split chart, as `chart.note_writer.write_notes` makes it."""
+    columns = chart.notes.column + _COLUMNS * sides(chart, play)
+    return write_notes(chart.notes, columns, 2 * _COLUMNS, eol)
 
 
 def _limbs(chart: Chart, play: Play) -> dict[tuple[int, int], int]:
