@@ -39,6 +39,67 @@ class _Joint:
     end: tuple[float, float, float] | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class _Tree:
+    """The joints of a file over f frames, parents first.
+
+    rotations : local, (f, j, 4); moved : places relative to the parents in the file's unit, (f, j, 3)
+    """
+
+    joints: list[_Joint]
+    rotations: Array
+    moved: Array
+
+    @staticmethod
+    def of(joints: list[_Joint], values: Array) -> _Tree:
+        rotations = np.empty((len(values), len(joints), 4))
+        moved = np.empty((len(values), len(joints), 3))
+        column = 0
+        for j, joint in enumerate(joints):
+            own = values[:, column : column + len(joint.channels)]
+            column += len(joint.channels)
+            rotations[:, j], moved[:, j] = _turns(joint.channels, own), _places(joint, own)
+        return _Tree(joints, rotations, moved)
+
+    def moves(self, j: int) -> bool:
+        """Whether a joint changes its place relative to its parent."""
+        size = max(1.0, max(float(np.abs(joint.offset).max()) for joint in self.joints))
+        return float(np.ptp(self.moved[:, j], axis=0).max()) > 1e-3 * size
+
+    def below(self, base: int) -> list[int]:
+        """A joint and all that hang on it, parents first."""
+        out = {base}
+        for j in range(base + 1, len(self.joints)):
+            if self.joints[j].parent in out:
+                out.add(j)
+        return sorted(out)
+
+    def moving_base(self) -> int:
+        """The lowest joint that moves from its parent and carries most of the skeleton: hips under a root; else 0."""
+        count = len(self.joints)
+        carries = [j for j in range(count) if 2 * len(self.below(j)) > count]
+        return max((j for j in carries if self.moves(j)), default=0)
+
+    def in_world(self, base: int) -> tuple[Array, Array]:
+        """Place (f, 3) and turn (f, 4) of a joint in the world, through all that it hangs on."""
+        place, turn = self.moved[:, base], self.rotations[:, base]
+        above = self.joints[base].parent
+        while above >= 0:
+            place = self.moved[:, above] + quat.rotate(self.rotations[:, above], place)
+            turn = quat.multiply(self.rotations[:, above], turn)
+            above = self.joints[above].parent
+        return place, turn
+
+    def kept_still(self, below: list[int], scale: float) -> tuple[str, ...]:
+        """A note on joints whose bones change their length or place: they are kept at their median."""
+        names = [self.joints[j].name for j in below if self.moves(j)]
+        if not names:
+            return ()
+        most = 100.0 * scale * max(float(np.ptp(self.moved[:, j], axis=0).max()) for j in below)
+        which = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+        return (f"bones that change their place are kept still: {which}, by up to {most:.1f} cm",)
+
+
 def read_bvh(path: Path, scale: float | None = None, ends: bool = False) -> Motion:
     """The motion in a BVH file.
 
@@ -63,74 +124,21 @@ def read_bvh(path: Path, scale: float | None = None, ends: bool = False) -> Moti
     scale = _scale(joints) if scale is None else scale
     if ends:
         joints += [_Joint(f"{one.name} end", j, one.end) for j, one in enumerate(joints) if one.end is not None]
-    rotations, moved = _channels_of(joints, values)
-    base = _moving_base(joints, moved)
-    root, first = _carried(joints, base, rotations, moved)
-    rotations[:, base] = first
-    below = _below(joints, base)
-    offsets = np.stack([np.median(moved[:, j], axis=0) for j in below]) * scale
+    tree = _Tree.of(joints, values)
+    base = tree.moving_base()
+    below = tree.below(base)
+    root, first = tree.in_world(base)
+    turns = tree.rotations[:, below]
+    turns[:, 0] = first
+    offsets = np.stack([np.median(tree.moved[:, j], axis=0) for j in below]) * scale
     offsets[0] = np.array(joints[base].offset) * scale
     place = {j: k for k, j in enumerate(below)}
     parents = np.array([-1, *(place[joints[j].parent] for j in below[1:])], dtype=np.int32)
     skeleton = Skeleton(tuple(joints[j].name for j in below), parents, offsets)
     times = np.arange(len(values), dtype=np.float64) * frame_time
-    turns = quat.continuous(rotations[:, below])
-    notes = _left_out(joints, below[1:], moved, scale)
-    return Motion(skeleton, 1.0 / frame_time, times, turns, np.asarray(root * scale), (), notes=notes)
-
-
-def _channels_of(joints: list[_Joint], values: Array) -> tuple[Array, Array]:
-    """Local rotations (f, j, 4) and places relative to the parents (f, j, 3)."""
-    rotations = np.empty((len(values), len(joints), 4))
-    moved = np.empty((len(values), len(joints), 3))
-    column = 0
-    for j, joint in enumerate(joints):
-        own = values[:, column : column + len(joint.channels)]
-        column += len(joint.channels)
-        rotations[:, j], moved[:, j] = _turns(joint.channels, own), _places(joint, own)
-    return rotations, moved
-
-
-def _moves(joints: list[_Joint], j: int, moved: Array) -> bool:
-    """Whether a joint changes its place relative to its parent."""
-    size = max(1.0, max(float(np.abs(joint.offset).max()) for joint in joints))
-    return float(np.ptp(moved[:, j], axis=0).max()) > 1e-3 * size
-
-
-def _below(joints: list[_Joint], base: int) -> list[int]:
-    """A joint and all that hang on it, parents first."""
-    out = {base}
-    for j in range(base + 1, len(joints)):
-        if joints[j].parent in out:
-            out.add(j)
-    return sorted(out)
-
-
-def _moving_base(joints: list[_Joint], moved: Array) -> int:
-    """The lowest joint that moves away from its parent and carries most of the skeleton: hips under a root; else 0."""
-    carries = [j for j in range(len(joints)) if 2 * len(_below(joints, j)) > len(joints)]
-    return max((j for j in carries if _moves(joints, j, moved)), default=0)
-
-
-def _carried(joints: list[_Joint], base: int, rotations: Array, moved: Array) -> tuple[Array, Array]:
-    """Place (f, 3) and turn (f, 4) of a joint in the world, through all that it hangs on."""
-    place, turn = moved[:, base], rotations[:, base]
-    above = joints[base].parent
-    while above >= 0:
-        place = moved[:, above] + quat.rotate(rotations[:, above], place)
-        turn = quat.multiply(rotations[:, above], turn)
-        above = joints[above].parent
-    return place, turn
-
-
-def _left_out(joints: list[_Joint], below: list[int], moved: Array, scale: float) -> tuple[str, ...]:
-    """A note on joints whose bones change their length or place: they are kept at their median."""
-    names = [joints[j].name for j in below if _moves(joints, j, moved)]
-    if not names:
-        return ()
-    most = 100.0 * scale * max(float(np.ptp(moved[:, j], axis=0).max()) for j in below)
-    which = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
-    return (f"bones that change their place are kept still: {which}, by up to {most:.1f} cm",)
+    notes = tree.kept_still(below[1:], scale)
+    root = np.asarray(root * scale)
+    return Motion(skeleton, 1.0 / frame_time, times, quat.continuous(turns), root, (), notes=notes)
 
 
 def frame_count(motion: Motion, fps: float) -> int:
