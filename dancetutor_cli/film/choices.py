@@ -8,8 +8,6 @@ from typing import Literal
 
 from dancetutor_cli.run.errors import UsageError
 
-# The choices for a picture, the same for options, layouts and renderers; light, for quick help texts.
-
 LEAST_SIDE = 64  # pixels
 MOST_SIDE = 7680
 

@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
 
 
-# The film's clock: which second of the music each frame shows. The music drives; frames only sample it.
-
-
 @dataclass(frozen=True, slots=True)
 class Pass:
     """One run through a stretch of the music. start, end : seconds of the music; rate : 0.5 is half speed.

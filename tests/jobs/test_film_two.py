@@ -135,9 +135,7 @@ def test_two_are_drawn_and_each_has_rings_under_her_feet(tmp_path: Path) -> None
     assert plan.callouts == () and len(plan.directions) == 8
     two = Film(plan)
     both = two.frame(8).copy()
-    assert (
-        two.placement.legend is not None and len(two.placement.legend.lines) == 1 + 2 * 4
-    )  # a plate; two feet, two players
+    assert two.placement.legend is not None and len(two.placement.legend.lines) == 1 + 2 * 4
     joints = two._dancer.joints([Moment(0.8)])[0]
     assert len(joints) == 2 * len(load_dancer().skeleton.names)
     gap = joints[0, 0, 3] - joints[len(joints) // 2, 0, 3]

@@ -69,8 +69,6 @@ def _has_cuda() -> bool:
     return False
 
 
-# Frames to files: one encoder per segment, joined without loss, music added; MP4, GIF, WebP or PNG pictures.
-
 Encoder = Literal["x264", "nvenc", "vaapi"]
 
 _CRF = {"draft": "26", "good": "20", "best": "16"}

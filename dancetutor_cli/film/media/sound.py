@@ -14,8 +14,6 @@ from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.film.clock import Clock, Pass, Practice
 from dancetutor_cli.run import ffmpeg
 
-# The film's sound: the song's music, cut to the clock and slowed without a change of pitch, with clicks if wanted.
-
 RATE = 48000
 FADE = 0.02  # seconds; against clicks where the music is cut
 # Onsets come out of rubberband early by this many seconds times (1 / rate - 1): measured with clicks, rates 0.4 to 2.

@@ -21,8 +21,6 @@ from dancetutor_cli.film.overlay.text import LONGEST, Typeface, clean, fitted, i
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.run.languages import Language
 
-# The song's words at the top left of the picture: title, artist, difficulty, author of the steps.
-
 SHOULDER_SHARE = (
     0.75  # part of the room that a lower line takes at most beside the dancer, because her shoulders are wider
 )

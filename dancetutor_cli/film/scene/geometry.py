@@ -102,8 +102,6 @@ def _halved(image: Image) -> Image:
     return ((total + 2) // 4).astype(np.uint8)
 
 
-# A character's meshes as flat arrays, as both renderers draw them in one go.
-
 F32 = NDArray[np.float32]
 FEET = tuple(f"{side}_{part}" for side in "lr" for part in ("talocrural", "metatarsal"))  # joints of the feet
 TRUNK = ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4")

@@ -24,8 +24,6 @@ from dancetutor_cli.film.scene.scene import (
 )
 from dancetutor_cli.run.errors import UsageError
 
-# The interface of both renderers, and the choice between them.
-
 MOST_JOINTS = 256  # what the uniform block of gl's shaders holds
 
 

@@ -122,8 +122,6 @@ def _flat(x0: float, z0: float, x1: float, z1: float, y: float) -> list[tuple[fl
     return [(x0, y, z0), (x0, y, z1), (x1, y, z1), (x1, y, z0)]
 
 
-# The scene that stands still, and the state of one frame. Both renderers draw from these.
-
 FAR_AWAY = 1e6  # metres: a dancer who is farther away is a mistake
 _JUMP = 0.10  # metres above her own height that a camera shows: a jump
 SOLE_RADIUS = 0.052  # metres: a sole is drawn on the floor as all points so near to the line from heel to toe

@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.media.encoder import Encoding
 
 
-# The film that the user wants, and whether it can be made: everything that can be refused before the slow work begins.
-
-
 @dataclass(frozen=True, slots=True)
 class FilmRequest:
     """The film that the user wants. Pickles, so that another process can prepare it.

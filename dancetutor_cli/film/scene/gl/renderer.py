@@ -80,7 +80,7 @@ _RING = 0.032  # metres from a sole: no ring of ground.frag is farther out
 _SHADOW_UNIT, _SKIN_UNIT, _FIRST_UNIT = 4, 5, 0
 
 
-class _Her(NamedTuple):
+class _DancerInFrame(NamedTuple):
     """The dancer in one frame. part : what of her is shown; joints : (j, 4, 4); places :
     `film.scene.renderer.places_of`
 
@@ -151,17 +151,17 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         joints = joints_of(self._scene, state)
         cast = place_cast(self._scene, camera, joints, SHADOW_MAP[self._quality])
         skin = skin_matrices(self._scene, joints)
-        her = _Her(dancer_visibility(state), joints, places_of(self._held, skin), cast, light_matrix(cast))
+        dancer = _DancerInFrame(dancer_visibility(state), joints, places_of(self._held, skin), cast, light_matrix(cast))
         matrices = np.zeros((MOST_JOINTS, 3, 4), np.float32)
         matrices[: len(joints)] = skin
         GL.glBindBuffer(GL.GL_UNIFORM_BUFFER, self._joints)
         GL.glBufferSubData(GL.GL_UNIFORM_BUFFER, 0, matrices.nbytes, matrices)
         GL.glBindBufferBase(GL.GL_UNIFORM_BUFFER, 0, self._joints)
         set_state()
-        self._draw_shadow(her)
+        self._draw_shadow(dancer)
         self._picture.copy_from(standing.target, (shift, 0, shift + self._size[0], self._size[1]), (0, 0))
-        self._draw_ground(state, standing, shift, her)
-        self._draw_dancer(camera, her)
+        self._draw_ground(state, standing, shift, dancer)
+        self._draw_dancer(camera, dancer)
         return self._read()
 
     def close(self) -> None:
@@ -183,44 +183,44 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             self._standing = (key, StandingTarget(self._scene, key, self._size, max(2, SAMPLES[self._quality])))
         return self._standing[1]
 
-    def _draw_shadow(self, her: _Her) -> None:
+    def _draw_shadow(self, dancer: _DancerInFrame) -> None:
         self._map.bind()
         GL.glDisable(GL.GL_SCISSOR_TEST)
         GL.glClear(GL.GL_DEPTH_BUFFER_BIT)
-        if her.cast.scale:
-            self._use_skinned("depth.frag", her, to_map=1.0)
+        if dancer.cast.scale:
+            self._use_skinned("depth.frag", dancer, to_map=1.0)
             GL.glCullFace(GL.GL_BACK)
             for primitive, *_ in self._primitives:
-                primitive.draw(her.part)
+                primitive.draw(dancer.part)
 
-    def _use_skinned(self, fragment: str, her: _Her, **more: Any) -> Program:
+    def _use_skinned(self, fragment: str, dancer: _DancerInFrame, **more: Any) -> Program:
         program: Program = self._program_cache.program("skinned.vert", fragment)
-        sun = {"light": her.light, "sun": her.cast.axes[2], "off_surface": np.array(_OFF_SURFACE)}
+        sun = {"light": dancer.light, "sun": dancer.cast.axes[2], "off_surface": np.array(_OFF_SURFACE)}
         program.use(**{**sun, "to_map": 0.0, "outline": 0.0, **more})
         GL.glUniformBlockBinding(program.number, GL.glGetUniformBlockIndex(program.number, "Joints"), 0)
         return program
 
-    def _draw_ground(self, state: FrameState, standing: StandingTarget, shift: int, her: _Her) -> None:
+    def _draw_ground(self, state: FrameState, standing: StandingTarget, shift: int, dancer: _DancerInFrame) -> None:
         look = self._scene.look
         lit, colour = panel_lights(self._scene, state)
         refill(self._lights, np.column_stack([colour / 255.0, lit]).astype(np.float32)[None])
         feet = feet_on_floor(self._scene, state)
-        cast, part = her.cast, within(her.light, her.places)
+        cast, part = dancer.cast, within(dancer.light, dancer.places)
         spread = float(max(1, round(look.light.shadow_soft * cast.scale / 2)) * 1.35 / self._map.size[0])
         under = trodden(standing.tiles, feet, _foot_reach(look.light)) & standing.has_ground
         touched = is_lit(standing.tiles, lit)
         if cast.scale:
-            touched |= shaded(standing.tiles, her.light, part, spread)
+            touched |= shaded(standing.tiles, dancer.light, part, spread)
         program: Program = self._program_cache.program("patches.vert", "ground.frag")
         units = {"standing": standing.colour, "ground": standing.ground, "panels": standing.panels}
         units |= {"lights": self._lights}
         program.use(
             shift=shift,
-            light=her.light,
+            light=dancer.light,
             dark=float(look.light.shadow if cast.scale else 0.0),
             within=part,
             spread=spread,
-            middles=shadow_middles(self._scene, her.joints),
+            middles=shadow_middles(self._scene, dancer.joints),
             fade=np.array([*SHADOW_FADE, look.light.shadow_far]),
             contact=np.array([look.light.contact, look.light.contact_soft, look.stage.glow]),
             radius=SOLE_RADIUS,
@@ -241,10 +241,10 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             program.set_uniform("feet", count)
             self._patches.draw(rectangles(tiles) - [shift, 0, shift, 0], self._size)
 
-    def _draw_dancer(self, camera: Camera, her: _Her) -> None:
+    def _draw_dancer(self, camera: Camera, dancer: _DancerInFrame) -> None:
         look, (width, height) = self._scene.look.toon, self._size
-        wide = look.outline_width * pixels_per_metre(camera, her.joints, self._size)
-        box = pixel_box(camera, her.places, self._size)
+        wide = look.outline_width * pixels_per_metre(camera, dancer.joints, self._size)
+        box = pixel_box(camera, dancer.places, self._size)
         around = math.ceil(wide)  # her outline stands out so far
         box = np.clip(box + np.array([-around, -around, around, around]), 0, [width, height, width, height])
         if box[0] >= box[2] or box[1] >= box[3]:
@@ -262,12 +262,12 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         }
         program = self._use_skinned(
             "dancer.frag",
-            her,
+            dancer,
             bands=np.array([*look.bands, look.soft]),
             levels=np.array(look.levels),
             rim=np.array([look.rim, look.rim_from]),
             shade=np.array(look.shade) / 255.0,
-            has_shadow=1.0 if her.cast.scale else 0.0,
+            has_shadow=1.0 if dancer.cast.scale else 0.0,
             shadow=_SHADOW_UNIT,
             skin=_SKIN_UNIT,
             **view,
@@ -278,12 +278,12 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             bind_texture(_SKIN_UNIT, skin)
             program.set_uniform("tint", tint)
             program.set_uniform("least", least)
-            primitive.draw(her.part)
+            primitive.draw(dancer.part)
         # with a shader of its own: a processor would compute the dancer's light, too, wherever it tries the outline
-        self._use_skinned("outline.frag", her, outline=float(wide), line=np.array(look.outline) / 255.0, **view)
+        self._use_skinned("outline.frag", dancer, outline=float(wide), line=np.array(look.outline) / 255.0, **view)
         GL.glCullFace(GL.GL_FRONT)
         for primitive, *_ in self._primitives:
-            primitive.draw(her.part)
+            primitive.draw(dancer.part)
         self._lay_over(box)
 
     def _lay_over(self, box: NDArray[Any]) -> None:
