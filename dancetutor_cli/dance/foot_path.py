@@ -27,7 +27,7 @@ from dancetutor_cli.dance.clearance import (
 from dancetutor_cli.dance.plan import STRAIGHT, FootTrack, Gallop, Hover, Jump, Move, Pivot, Shake, Step, Swing, Walk
 from dancetutor_cli.dance.rig.body import BALL_AHEAD, dancer_foot
 from dancetutor_cli.dance.settings import MotionSettings
-from dancetutor_cli.dance.settings_feet import StepSettings, WalkSettings
+from dancetutor_cli.dance.settings_feet import WalkSettings
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array
 
@@ -65,7 +65,7 @@ def jump_ways(
     settings : `step.apart` is used; where it is not possible, the largest distance that is
     """
     step, least = settings.step, settings.jump.round
-    e, turned = travelled(SHARES, step), swung(SHARES, step)
+    e, turned = travelled(SHARES, step, settings.jump.even), swung(SHARES, step)
     aim = headings(start_yaws[:, None] + turned * (end_yaws - start_yaws)[:, None])
     straight = starts[:, None] + e[:, None] * (ends - starts)[:, None]
     middles = starts.mean(axis=0), ends.mean(axis=0)
@@ -97,7 +97,7 @@ def _gaps(balls: Array, aim: Array) -> Array:
 HEEL_BACK, BALL_UP = dancer_foot()
 SHAKE_RAMPS = 2.8  # a leg that is shaken out goes back, and comes again, in one part of so many
 FLAPS_LATE = 1.2  # radians that a loose foot's flapping is behind the way of its leg
-LOW = 0.001  # metres over the ground at which a foot that comes down from a jump is on it, and must not slide
+LOW = 0.0015  # metres over the ground at which a foot that comes down from a jump is on it, and must not slide
 SLOW = 0.02  # the last part of a way's time, in which a foot hardly moves
 MOST_LOW = 0.15  # part of the time of a jump in which the feet are hardly off the ground
 NO_JUMP = Jump(0.0, 0.0, (0.0, 0.0), 0.0, (0.0, 0.0, 0.0, 0.0), 0.0, round=0.0)  # a way that goes round nothing
@@ -135,7 +135,7 @@ def foot_path(track: FootTrack, times: Array, settings: MotionSettings) -> FootP
         ball = np.column_stack((np.full_like(times, track.start[0]), still, np.full_like(times, track.start[1])))
         ball[:, 1] = track.start_level
         return FootPath(ball, np.full_like(times, track.start_yaw), still, np.ones(len(times), dtype=bool), still)
-    done, i, swinging, s, even, ground, turned = _over_ground(track, times, step)
+    done, i, swinging, s, even, ground, turned = _over_ground(track, times, settings)
     level = np.array([track.start_level, *(m.level if isinstance(m, Walk) else 0.0 for m in moves)])
     climb = _climb(level[i], level[np.minimum(i + 1, len(level) - 1)], s, settings.walk)
     up = np.where(swinging, _height(track, i, s, risen(s, step, even)) + climb, 0.0)
@@ -155,7 +155,7 @@ def shoe_path(track: FootTrack, times: Array, settings: MotionSettings) -> tuple
     if not moves or any(isinstance(move, Shake) or min(move.pitches) < 0.0 for move in moves):
         path = foot_path(track, times, settings)
         return path.ball[:, [0, 2]], path.yaw
-    over = _over_ground(track, times, settings.step)
+    over = _over_ground(track, times, settings)
     return over.place, over.yaw
 
 
@@ -175,9 +175,9 @@ class _OverGround(NamedTuple):
     yaw: Array
 
 
-def _over_ground(track: FootTrack, times: Array, step: StepSettings) -> _OverGround:
+def _over_ground(track: FootTrack, times: Array, settings: MotionSettings) -> _OverGround:
     """Of a foot that has moves."""
-    moves = track.moves
+    moves, step = track.moves, settings.step
     lift = np.array([m.lift for m in moves])
     land = np.array([m.land for m in moves])
     place = np.array([track.start, *(m.target for m in moves)])
@@ -187,7 +187,8 @@ def _over_ground(track: FootTrack, times: Array, step: StepSettings) -> _OverGro
     swinging = (done > 0) & (times < land[i])
     s = np.where(swinging, (times - lift[i]) / (land[i] - lift[i]), 0.0)
     even = np.where(_are(track, Step, Hover)[i], evenness(land - lift, step)[i], 0.0)
-    gone = travelled(s, step, even, _low(track)[i])
+    even = np.where(_are(track, Jump)[i], settings.jump.even, even)
+    gone = travelled(s, step, even, _low(track, settings.jump.even)[i])
     ground = np.where(swinging[:, None], _ground(track, place, i, gone), place[done])
     turned = yaw[i] + swung(s, step) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
     return _OverGround(done, i, swinging, s, even, ground, np.where(swinging, turned, yaw[done]))
@@ -232,10 +233,13 @@ def _are(track: FootTrack, *kinds: type[Move]) -> NDArray[np.bool_]:
     return np.array([isinstance(move, kinds) for move in track.moves])
 
 
-def _low(track: FootTrack) -> Array:
-    """The last part of each move's time, in which a foot that jumps comes straight down; otherwise it would slide."""
+def _low(track: FootTrack, even: float) -> Array:
+    """The last part of each move's time, in which a foot that jumps comes straight down; otherwise it would slide.
+
+    even : as of `evenness`, of jumps
+    """
     heights = np.array([m.height if isinstance(m, Jump) else np.inf for m in track.moves])
-    return np.asarray(np.clip(LOW / np.maximum(4.0 * heights, 1e-9) - SLOW, 0.0, MOST_LOW))
+    return np.asarray(np.clip(LOW / np.maximum(4.0 * heights, 1e-9) - (1.0 - even) * SLOW, 0.0, MOST_LOW))
 
 
 def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], e: Array) -> Array:

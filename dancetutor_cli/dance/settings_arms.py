@@ -37,11 +37,12 @@ class ArmSettings:
     forward: Metres
     down: Metres
     stream_up: Metres
-    stream_back: Metres
+    stream_ahead: Metres
     stream_out: Metres
     stream_wander: Metres
     stream_pump: Metres
     unlike: Ratio
+    longest: Metres
     loose: Metres
     loose_time: Seconds
     jump: Metres

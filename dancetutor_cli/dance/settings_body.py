@@ -211,7 +211,7 @@ class GrooveSettings:
     shrug: Degrees
     hands: Metres
     deeper: Ratio
-    stream_sink: Metres
+    bob: Metres
     leisure: Ratio
     leisure_from: Seconds
     leisure_full: Seconds

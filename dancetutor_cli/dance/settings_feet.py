@@ -126,6 +126,7 @@ class JumpSettings:
     least: Metres
     lift_pitch: Degrees
     land_pitch: Degrees
+    rest_pitch: Degrees
     yaw_to_normal: Ratio
     gallop: Seconds
     gallop_wait: Seconds
@@ -156,6 +157,7 @@ class JumpSettings:
     crouch_most: Ratio
     arms_full: Seconds
     round: Ratio
+    even: Ratio
     tuck_far: Ratio
     heel_time: Seconds
     heel_most: Degrees

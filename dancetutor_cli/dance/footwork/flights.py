@@ -82,7 +82,7 @@ def hop(
     jump, step = footing.settings.jump, footing.settings.step
     eased = 1.0 - jump.quick_flat * row.hurry
     lift, land = eased * jump.lift_pitch, eased * jump.land_pitch
-    heel = Heel((lift, lift, land), (jump.lift_flat, jump.swing_flat), step.stream_pitch)
+    heel = Heel((lift, lift, land), (jump.lift_flat, jump.swing_flat), jump.rest_pitch)
     pitches = [heel_up(step, row.jump_cut, heel, c) for c in columns]
     flight = Flight(take_off, row.time, turned, _first(row, footing, take_off, goals), _mined(row, footing, take_off))
     return Proposal(flown(footing, flight, goals, pitches), take_off)

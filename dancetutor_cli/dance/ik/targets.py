@@ -53,13 +53,15 @@ FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))
 POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest
 EASE, EASY = 15.0, 40.0  # degrees within its limits at which a joint is at ease; how much turned fingers count
 WAVES = 1.3  # about the size of the sum of both waves
-LEVEL = np.array([1.0, 0.5, 1.0])  # hands wander less up and down, because their height shows effort
+LEVEL = np.array([0.5, 0.5, 1.0])  # hands wander less up and down, for their height shows effort, and less aside
+PUMP_UP = 0.4  # a hand that is pumped ahead rises by this part of it
 # differences of the hands: one is a little lower and farther back
 ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])
 # part of a stretch in which a hand is too quick; from this part on it is held back in the whole stretch
 HELD_BACK = 0.25
 ASIDE_SOFT = 0.02  # metres over which a hand comes to its least distance outward in a lean
 UP_SOFT = 0.06  # metres over which a hand begins to rise as it swings ahead or is raised aside
+BENT_SOFT = 0.006  # metres over which an arm comes to its greatest length
 LOOSE_SOFT = 0.015  # metres over which a forearm that is held up comes to sink
 SUNK = 1.8  # a hand sinks so much farther, because its elbow comes down with it
 # part of their way by which elbows turn to the body for another dancer; the whole way would put them into the body
@@ -100,6 +102,7 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, below: Be
     out[..., 1:] = -arms.elbow_down, -arms.elbow_back
     elbows = quat.rotate(upright[:, None], out)
     wrists += leg_clearance(wrists, torso.shoulders, elbows, below.legs, context.skeleton, arms.legs_room)
+    wrists += _bent(wrists - torso.shoulders, arms.longest)
     inward = _on_her_own_pad(wrists[..., 0], context)
     ahead = quat.rotate(upright, np.array([0.0, 0.0, arms.own_pad_ahead]))
     wrists += np.abs(inward)[..., None] * ahead[:, None]
@@ -126,6 +129,13 @@ def _out_from_a_lean(wrists: Array, torso: Torso, upright: Array, arms: ArmSetti
     far = np.sum((wrists - torso.shoulders) * aside, axis=2)
     missing = np.logaddexp(0.0, (arms.aside_out - far) / ASIDE_SOFT) * ASIDE_SOFT
     return np.asarray((share * missing)[..., None] * aside)
+
+
+def _bent(arm: Array, longest: float) -> Array:
+    """What keeps arms (f, 2, 3) from shoulder to wrist softly shorter than `longest`, (f, 2, 3): for bent elbows."""
+    far = np.linalg.norm(arm, axis=2, keepdims=True)
+    over = np.logaddexp(0.0, (far - longest) / BENT_SOFT) * BENT_SOFT
+    return np.asarray(-over / np.maximum(far, 1e-9) * arm)
 
 
 def _on_her_own_pad(x: Array, context: Context) -> Array:
@@ -156,11 +166,11 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
     hang = np.empty((len(swing), 2, 3))
     hang[..., 0] = np.array([1.0, -1.0]) * (arms.out + arms.stream_out * effort)
     hang[..., 1] = -arms.down + arms.swing_up * _upward(swing) + arms.stream_up * effort * unlike
-    hang[..., 2] = arms.forward + swing - arms.stream_back * effort
-    carried = body.arms[:, 3:]  # aside in one phrase of the music, ahead in another: in an arc about the trunk
+    hang[..., 2] = arms.forward + swing + arms.stream_ahead * effort
+    carried = body.arms[:, 3:]  # ahead and up in one phrase of the music, beside the hips in another
     way = np.zeros_like(hang)
     way[..., :2] = _upward(carried)[..., None] * [arms.carried_out, arms.carried_up] * SIDEWAYS
-    way[..., 2] = -arms.carried_ahead * carried
+    way[..., 2] = arms.carried_ahead * carried
     hang += way
     raised = _upward(np.outer(body.arms[:, 1], (1.0, -1.0)))
     hang[..., 0] += raised * [1.0, -1.0]
@@ -172,7 +182,9 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
     pumped = context.settings.groove.hands * body.sway[:, None]
     hang[..., 1] += 0.2 * np.abs(pumped)
     hang[..., 2] += [-1.0, 1.0] * pumped  # with the shoulder that turns forward
-    hang[..., 1] += arms.stream_pump * effort * body.arms[:, 2:3] * [-1.0, 1.0]  # in streams elbows bend by turns
+    pumped = arms.stream_pump * effort * body.arms[:, 2:3] * [-1.0, 1.0]  # in streams arms pump by turns
+    hang[..., 1] += PUMP_UP * pumped
+    hang[..., 2] += pumped
     hang += (arms.wander + arms.stream_wander * effort)[..., None] * wander * LEVEL + arms.askew * askew
     hang += waiting_at(plan, body.times, context).hands
     share = crossing_share(plan.grips, body.times, settings.across)

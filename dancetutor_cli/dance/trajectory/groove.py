@@ -60,6 +60,10 @@ def dancing(tempo: Array, busy: Array, layers: LayerSettings) -> Array:
 
 SEED = 20020716
 OVERSHOOT = 0.1  # how far a smooth path may go beyond what it is near to: 0.06 has been seen
+MOST_LOST = 6.0  # times what is left of a wish for the height at most that the calm path takes from it
+BEAT = 0.5  # seconds from beat to beat with which she bobs by `groove.bob`; in proportion to them
+BEATS, STEPS = 0.6, 0.07  # how much hands pump with the beat, and seconds over which they go with a step
+NEAR_JUMPS = 0.5  # seconds from a jump within which she does not bob as much
 CALM = 0.4  # part of her sway that she leaves off where she comes to rest
 MOSTLY = 0.6  # part of the way from `groove.mostly` to all the time at which she dances as in jacks
 
@@ -69,14 +73,16 @@ class Groove:
     """How she dances to the beat at n times.
 
     beat : (n,) 0 to 1, how far she has given way to it; sink : (n,) metres that her knees give
+    bob : (n,) metres that her height is wished lower with the beat, so that a calm path leaves `groove.bob` of it
     sway : (n,) about -1 to 1, to which side her shoulders lean and turn, positive left
-    pump : (n,) the same for hands in streams, where her shoulders keep still
+    pump : (n,) the same for hands in streams, where her shoulders keep still: with the beat and with the steps
     grounded : (n,) 0 near jumps, where both arms go up and down together, to 1
-    carried : (n, 2) about -1 to 1, how far aside the left and the right hand are carried in this phrase, else ahead
+    carried : (n, 2) about -1 to 1, how far ahead and up the left and the right hand are carried, else back
     """
 
     beat: Array
     sink: Array
+    bob: Array
     sway: Array
     pump: Array
     grounded: Array
@@ -103,7 +109,7 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     calmer = occupation.tempo * (1.0 - numbers.jack * jacks)
     beat = beat_bounce(context, times, calmer, occupation.busy)
     share = dancing(calmer, occupation.busy, settings.layers) * (1.0 - occupation.waits)
-    grounded = _grounded(plan, times, settings)
+    grounded = _grounded(plan, times, 3.0 * numbers.ease)
     slow = share
     share = share * (numbers.steps + (1.0 - numbers.steps) * jacks) * grounded
     easy = leisure(plan, times, numbers)
@@ -114,14 +120,44 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     late = np.interp(times - settings.layers.beat_late, times, beat)
     deeper = np.maximum(numbers.deeper * jacks, numbers.leisure * np.maximum(easy, occupation.waits))
     sink = (1.0 + deeper) * settings.layers.bounce * late
-    hands_free = np.clip(occupation.busy + occupation.waits, 0.0, 1.0)
-    pulse = beat_bounce(context, times - settings.layers.beat_late, np.zeros(len(times)), hands_free)
-    sink = np.maximum(sink, numbers.stream_sink * (1.0 - slow) * grounded * pulse)
+    among = (1.0 - slow / 2.0) * (1.0 - np.clip(occupation.busy + occupation.waits, 0.0, 1.0))
+    among *= _grounded(plan, times, NEAR_JUMPS)
+    bob = among * _bob(context, times, occupation.tempo)
     to_side = sway(plan, times, context)
     free = np.clip(1.0 - share - occupation.busy - occupation.waits, 0.0, 1.0)
     loose = np.clip(1.0 - occupation.busy - occupation.waits, 0.0, 1.0) * _among_steps(plan, times)
     carried = loose[:, None] * carriage(plan, times, context)
-    return Groove(beat, sink, share * to_side, free * grounded * to_side, grounded, carried)
+    pump = free * grounded * (BEATS * to_side + stepped(plan, times))
+    return Groove(beat, sink, bob, share * to_side, pump, grounded, carried)
+
+
+def _bob(context: Context, times: Array, tempo: Array) -> Array:
+    """How much lower (n,) she is wished with the beat, metres, on average half of what is left of it.
+
+    The calm path of the height leaves 1 / (1 + (2 pi T / beat)^6) of a wish that comes and goes with the beat, T being
+    the time constant of `height.height_path`; so the wish goes so much farther, and knees bend no more for it on
+    average. tempo : (n,) as in `height`
+    """
+    body, late = context.settings.body, context.settings.layers.beat_late
+    at = heard_beats(context.beats, context.settings.layers.beat_shortest)
+    if len(at) < 2:
+        return np.zeros(len(times))
+    k = np.clip(np.searchsorted(at, times - late, side="right") - 1, 0, len(at) - 2)
+    every = at[k + 1] - at[k]
+    constant = body.height_calm + (body.height_smooth - body.height_calm) * tempo
+    lost = np.minimum((2.0 * np.pi * constant / every) ** 6, MOST_LOST)
+    pulse = np.cos(2.0 * np.pi * (times - late - at[k]) / every)
+    return np.asarray(context.settings.groove.bob * every / BEAT / 2.0 * (1.0 + (1.0 + lost) * pulse))
+
+
+def stepped(plan: Plan, times: Array) -> Array:
+    """On which foot (n,) she has stepped last, -1 to 1, positive left, at even times; less where steps are quicker."""
+    steps = sorted((m.land, 1.0 - 2.0 * side) for side, track in enumerate(plan.feet) for m in track.moves if _to(m))
+    if not steps:
+        return np.zeros(len(times))
+    lands, sides = np.array(steps).T
+    last = np.append(0.0, sides)[np.searchsorted(lands, times)]
+    return smooth_path(last[:, None], np.ones(len(times)), 1.0 / float(times[1] - times[0]), STEPS)[:, 0]
 
 
 def leisure(plan: Plan, times: Array, numbers: GrooveSettings) -> Array:
@@ -149,16 +185,16 @@ def stance(plan: Plan, times: Array, context: Context) -> Array:
     bears = np.append(0.0, np.where(long, 0.0, sides))[np.searchsorted(lands, times)]
     rate = 1.0 / float(times[1] - times[0])
     over = smooth_path(bears[:, None], np.ones(len(times)), rate, numbers.stance_time)[:, 0]
-    return numbers.stance * over * leisure(plan, times, numbers) * _grounded(plan, times, context.settings)
+    return numbers.stance * over * leisure(plan, times, numbers) * _grounded(plan, times, 3.0 * numbers.ease)
 
 
 def _to(move: Move) -> bool:
     return isinstance(move, Step | Sidestep)
 
 
-def _grounded(plan: Plan, times: Array, settings: MotionSettings) -> Array:
-    """How far away (n,) jumps are, 0 to 1: the dancer goes straight up from both legs."""
-    out, around = np.ones(len(times)), 3.0 * settings.groove.ease
+def _grounded(plan: Plan, times: Array, around: float) -> Array:
+    """How far away (n,) jumps are, 0 to 1, wholly from `around` seconds on: she goes straight up from both legs."""
+    out = np.ones(len(times))
     for start, end in plan.flights:
         near = slice(*np.searchsorted(times, (start - around, end + around)).tolist())
         away = np.maximum(start - times[near], times[near] - end)
@@ -212,11 +248,10 @@ ARMS = 2  # of the seeds: other draws than those of `sway`
 
 
 def carriage(plan: Plan, times: Array, context: Context) -> Array:
-    """How far aside (n, 2) the left and the right hand are carried, about -1 to 1; different in each phrase.
+    """How far ahead and up (n, 2) the left and the right hand are carried, about -1 to 1; different in each phrase.
 
-    A phrase has as many measures of four beats as last `groove.phrase` at least. A hand is aside and ahead in turn,
-    never twice as far, and mostly the other one is elsewhere: both aside would be wings. In the mirror image of a play
-    the hands are exchanged.
+    A phrase has as many measures of four beats as last `groove.phrase` at least. A hand is ahead and back in turn,
+    never twice as far, and mostly the other one is elsewhere. In the mirror image of a play the hands are exchanged.
     """
     numbers, beats = context.settings.groove, np.array(context.beats)
     at = np.array(heard_beats(tuple(beats[::4].tolist()), numbers.phrase))

@@ -132,11 +132,12 @@ def body_trajectory(
     leg = leg + catch * (settings.jump.catch - leg)
     most = settings.body.soft_reach + push * max(settings.jump.push - settings.body.soft_reach, 0.0)
     most = np.where(feet[0].down | feet[1].down, most, settings.jump.reach)
-    legs = LegWish(leg, most, sink, bent, settings.jump.drive * np.maximum(push, catch), tempo)
+    legs = LegWish(leg, most, sink, groove.bob, bent, settings.jump.drive * np.maximum(push, catch), tempo)
     stretched = feet if known is None or known.push_off is None else raised(feet, known.push_off)
     mass_height = height_path(_wish(stretched, course, context, legs), plan.flights, settings.body)
     chest, head = chest_and_head(plan, course, gaze_ahead(plan, times, settings.walk), settings)
-    loose = (1.0 - held) * (1.0 - reached.max(axis=1)) * (1.0 - own)
+    upright = (1.0 - reached.max(axis=1)) * (1.0 - own)
+    loose = (1.0 - held) * upright
     ahead = np.column_stack((np.sin(chest), np.cos(chest)))  # not to where it turns against each step
     free = loose * _neck_room(head - chest, settings.look)
     answer = counter_motion(feet, course, mass_height.at(times), free, context.skeleton, settings.arms)
@@ -163,7 +164,7 @@ def body_trajectory(
     return Trajectory(
         times, course.mass, mass_height, course.ground, height, course.yaw, chest, head, tilt, reached,
         np.zeros((len(times), 2)), np.zeros((len(times), 2)), groove.beat, groove.sway,
-        loose * _pelvic_list(feet, tempo, course.rate, settings.body), arms,
+        upright * _pelvic_list(feet, tempo, course.rate, settings.body), arms,
         (*softened, *((HEIGHT,) if mass_height.softened else ())),
     )  # fmt: skip
 
@@ -237,12 +238,14 @@ class LegWish:
     """The wanted stance at n times.
 
     length : (n,) hip to ankle; most : (n,) at most; sink : (n,) how far a plant or a beat lets her sink, metres
+    bob : (n,) as in `groove.Groove`: a wish that limits nothing
     bent : (n, 2) as in `facing.bent_down`; firm, tempo : (n,) as in `HeightWish`
     """
 
     length: Array
     most: Array
     sink: Array
+    bob: Array
     bent: Array
     firm: Array
     tempo: Array
@@ -261,7 +264,8 @@ def _wish(feet: Feet, course: Course, context: Context, legs: LegWish) -> Height
         wanted = np.minimum(wanted, np.where(standing, soft, most - 0.004))
     lifted = np.maximum(feet[0].ball[:, 1], feet[1].ball[:, 1]) * (legs.firm == 0.0)
     lifted = np.interp(course.times - settings.body.rise_late, course.times, lifted)
-    wanted = np.minimum(wanted + settings.body.step_rise * np.maximum(lifted, 0.0), highest - 0.002) - legs.sink
+    wanted = np.minimum(wanted + settings.body.step_rise * np.maximum(lifted, 0.0), highest - 0.002)
+    wanted -= legs.sink + legs.bob
     share, depth = legs.bent.T
     wanted = wanted + share * (settings.hands.pelvis - depth - wanted)
     return HeightWish(course.times, wanted + above, highest - legs.sink + above, above, legs.firm, legs.tempo)

@@ -76,14 +76,14 @@ def test_there_is_none_in_streams_with_busy_hands_or_in_waits(other: dict[str, f
 
 def test_in_streams_knees_are_asked_for_the_beat_but_not_near_jumps_or_by_busy_hands() -> None:
     """Every half second, not with each of the steps; a calm path leaves a part of it."""
-    sink = groove(stream(0.125, 40), tempo=1.0).sink
+    bob = groove(stream(0.125, 40), tempo=1.0).bob
     inside = (TIMES > 3.0) & (TIMES < 6.5)
-    lowest = TIMES[1:-1][(sink[1:-1] > sink[:-2]) & (sink[1:-1] >= sink[2:]) & inside[1:-1]]
+    lowest = TIMES[1:-1][(bob[1:-1] > bob[:-2]) & (bob[1:-1] >= bob[2:]) & inside[1:-1]]
     np.testing.assert_allclose(lowest, 3.15 + 0.5 * np.arange(7), atol=0.01)  # `layers.beat_late` after each beat
-    assert 0.02 < np.ptp(sink[inside]) < 0.06
-    jumps = groove([(2.0 + 0.5 * k, {0: L, 3: R}) for k in range(12)], tempo=1.0).sink
-    assert jumps[(TIMES > 3.0) & (TIMES < 7.0)].max() < 0.1 * np.ptp(sink[inside])
-    assert not groove(stream(0.125, 40), tempo=1.0, busy=1.0).sink.any()
+    assert 0.02 < np.ptp(bob[inside]) < 0.06
+    jumps = groove([(2.0 + 0.5 * k, {0: L, 3: R}) for k in range(12)], tempo=1.0).bob
+    assert jumps[(TIMES > 3.0) & (TIMES < 7.0)].max() < 0.1 * np.ptp(bob[inside])
+    assert not groove(stream(0.125, 40), tempo=1.0, busy=1.0).bob.any()
 
 
 def test_the_mirror_image_sways_the_other_way() -> None:
@@ -92,6 +92,7 @@ def test_the_mirror_image_sways_the_other_way() -> None:
     other = groove_of(image, TIMES, Occupation(STILL, STILL, STILL), heard())
     np.testing.assert_allclose(other.sway, -groove(events).sway, atol=1e-12)
     np.testing.assert_allclose(other.sink, groove(events).sink, atol=1e-12)
+    np.testing.assert_allclose(other.bob, groove(events).bob, atol=1e-12)
 
 
 def danced(events: list[Event], groove: bool) -> Motion:
