@@ -53,7 +53,7 @@ FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))
 POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest
 EASE, EASY = 15.0, 40.0  # degrees within its limits at which a joint is at ease; how much turned fingers count
 WAVES = 1.3  # about the size of the sum of both waves
-LEVEL = np.array([0.5, 0.5, 1.0])  # hands wander less up and down, for their height shows effort, and less aside
+LEVEL = np.array([0.6, 0.5, 1.0])  # hands wander less up and down, for their height shows effort, and less aside
 PUMP_UP = 0.4  # a hand that is pumped ahead rises by this part of it
 # differences of the hands: one is a little lower and farther back
 ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])
