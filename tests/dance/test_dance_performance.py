@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -141,11 +140,3 @@ def test_a_push_beside_a_seam_is_reported_once(short: None, tmp_path: Path) -> N
     pushed = of_a_stream(tmp_path, style="neutral", push=(f"{seam - 0.275}:300:left",))
     (part,) = pushed.motions(Cut(seam - 2.0, seam + 2.0))
     assert len(part.motion.notes) == 1, part.motion.notes
-
-
-def test_a_dancer_of_a_page_does_not_walk_on() -> None:
-    request = DanceRequest(charts_path() / "two_left_feet" / "two_left_feet.ssc", Selection(index=1))
-    solved = solve(request)
-    for walks in (True, False):
-        (dancer,) = perform(solved, replace(request, walks=walks)).dancers
-        assert [walk.end < dancer.plan.first for walk in dancer.plan.walks].count(True) == walks
