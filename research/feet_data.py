@@ -22,7 +22,7 @@ from dancetutor_cli.chart.reader import load
 from dancetutor_cli.feet.pads import Pad, load_pad
 from dancetutor_cli.feet.play import Play, Rows, prepare
 from dancetutor_cli.feet.preset import Preset
-from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.solver.solve import solve_rows
 from dancetutor_cli.feet.song_feet import overrides_for
 
 sys.path.append(str(Path(__file__).resolve().parent.parent / "tools"))
@@ -169,7 +169,7 @@ def folds(labels: list[Labelled], count: int, seed: int = 1) -> NDArray[np.int64
 
 def right_rows(label: Labelled, preset: Preset, *, margins: bool = False) -> tuple[NDArray[np.bool_], Play]:
     """For each labelled row, in order, whether all its feet are right; and the play."""
-    found = solve(label.rows, label.pad, preset, margins=margins)
+    found = solve_rows(label.rows, label.pad, preset, margins=margins)
     wrong = np.zeros(len(label.rows), dtype=bool)
     np.logical_or.at(wrong, label.row, found.limb[label.row, label.column] != label.foot)
     return ~wrong[np.unique(label.row)], found

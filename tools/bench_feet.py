@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 from dancetutor_cli.feet.preset import Preset, load_preset
-from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.solver.solve import solve_rows
 
 sys.path.append(str(Path(__file__).resolve().parent.parent / "research"))
 import feet_data
@@ -50,7 +50,7 @@ def measure() -> list[Row]:
 
 def _teleports(label: feet_data.Labelled, preset: Preset) -> tuple[int, int]:
     """Rows in which a foot is on a panel apart from the one it has stepped on within 80 ms; and all rows."""
-    found = solve(label.rows, label.pad, preset, margins=False)
+    found = solve_rows(label.rows, label.pad, preset, margins=False)
     return int((found.cost[:, found.terms.index("teleport")] >= preset.curve("teleport")[0][1]).sum()), len(label.rows)
 
 

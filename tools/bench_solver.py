@@ -22,7 +22,7 @@ from dancetutor_cli.feet.pads import Pad, load_pad
 from dancetutor_cli.feet.play import Rows, prepare
 from dancetutor_cli.feet.preset import Preset, load_preset
 from dancetutor_cli.feet.solver.engine import Engine
-from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.solver.solve import solve_rows
 from dancetutor_cli.run.errors import DancetutorError
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -96,9 +96,9 @@ def long_measures(plays: list[tuple[Rows, Pad]], preset: Preset) -> list[tuple[s
     rows, pad = long_chart(plays, LONG), plays[0][1]
     half = Rows(*(getattr(rows, name)[: LONG // 2] for name in Rows.__slots__))
     whole, part = (min(seconds([(r, pad)], preset.name, False)[0] for _ in range(3)) for r in (rows, half))
-    solve(rows, pad, preset)  # fills the tables
+    solve_rows(rows, pad, preset)  # fills the tables
     tracemalloc.start()
-    solve(rows, pad, preset)
+    solve_rows(rows, pad, preset)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     what = f"{preset.name}, {pad.steps_type}, {LONG:,} rows"

@@ -47,7 +47,7 @@ def solve_song(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart],
         for (chart, preset), rows in zip(some, _rows(some), strict=True):
             overrides, ignores, problems = feet.author_feet(chart)
             pad = load_pad(chart.steps_type)
-            play = None if pad is None or rows is None else solve.solve(rows, pad, preset, overrides)
+            play = None if pad is None or rows is None else solve.solve_rows(rows, pad, preset, overrides)
             yield Solved(song, chart, preset, play, pad, overrides, ignores, problems)
 
 

@@ -16,7 +16,7 @@ from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.solver.engine import engine_for
-from dancetutor_cli.feet.solver.solve import forced_limbs, move_tap, solve
+from dancetutor_cli.feet.solver.solve import forced_limbs, move_tap, solve_rows
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.lint.check import check_rule, rules_of
 from dancetutor_cli.lint.edit_shape import Edit, PanelMove, Shape, free_panels
@@ -163,7 +163,7 @@ class _Trial:
         rows = subject.play.rows
         for row, column, to in edit.moves:
             rows = move_tap(rows, row, column, to)
-        return replace(subject, play=solve(rows, subject.pad, self.preset, subject.overrides, margins=True))
+        return replace(subject, play=solve_rows(rows, subject.pad, self.preset, subject.overrides, margins=True))
 
 
 class _Edited:

@@ -14,7 +14,7 @@ from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.feet.play import Play, StepKind
-from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.solver.solve import solve_rows
 from dancetutor_cli.film.notes import note_track
 from dancetutor_cli.film.overlay.text import clean
 from dancetutor_cli.film.scroll import parse_segments
@@ -100,7 +100,7 @@ def _flip(play: Play, row: int, total: int, given: tuple[Pad, Preset, Overrides]
         if limb in _FEET:
             asked[column] = 1 - limb
             cells[tick, column] = (1 - limb, int(Part.WHOLE))
-    other = solve(play.rows, pad, preset, Overrides.of(cells), margins=False)
+    other = solve_rows(play.rows, pad, preset, Overrides.of(cells), margins=False)
     kept = all(int(other.limb[row, column]) == limb for column, limb in asked.items())
     changed = np.argwhere(other.limb != play.limb)
     return {

@@ -132,7 +132,7 @@ def test_a_bad_character_is_one_line_before_the_work(
     def work(*_: object, **__: object) -> None:
         raise AssertionError("work began")
 
-    monkeypatch.setattr("dancetutor_cli.feet.solver.solve.solve", work)
+    monkeypatch.setattr("dancetutor_cli.feet.solver.solve.solve_rows", work)
     monkeypatch.setattr("dancetutor_cli.dance.performance.planned", work)
     bad = shared_data / "characters" / "raylib_robot.glb"
     before = set(tmp_path.iterdir())

@@ -14,7 +14,7 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.pads import Pad, load_pad
 from dancetutor_cli.feet.play import Play, Rows, StepKind
 from dancetutor_cli.feet.preset import Preset
-from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.solver.solve import solve_rows
 
 KINDS = {".": 0, "1": StepKind.TAP, "L": StepKind.LIFT, "2": StepKind.HOLD, "4": StepKind.ROLL, "r": StepKind.ROLL_TAP}
 OTHER_LIMB = {-2: -2, -1: -1, 0: 1, 1: 0, 2: 3, 3: 2}
@@ -120,7 +120,7 @@ def check_mirror(rows: Rows, pad: Pad, preset: Preset, *, left_right: bool) -> i
     """Rows with a margin have mirrored limbs; returns how many there are."""
     image = pad.mirrored(left_right=left_right)
     assert image is not None
-    found, mirror = solve(rows, pad, preset), solve(mirrored_rows(rows, image), pad, preset)
+    found, mirror = solve_rows(rows, pad, preset), solve_rows(mirrored_rows(rows, image), pad, preset)
     assert found.total == mirror.total
     assert found.margin is not None and mirror.margin is not None
     assert found.margin.tolist() == mirror.margin.tolist()

@@ -14,7 +14,7 @@ from play_rows import pad_of, rows_of
 
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.engine import cost_at
-from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.solver.solve import solve_rows
 
 RESEARCH = Path(__file__).parents[2] / "research"
 ITG = load_preset("itg")
@@ -124,7 +124,7 @@ def test_a_preset_that_loses_rows_of_a_set_is_not_written(
     weights = tools.weights
     words = ("LRRLRLLR", "RLLRLRRL")
     jacks = [replace(x, foot=np.array(["LR".index(f) for f in word])) for x, word in zip(jumper, words, strict=True)]
-    solved = [solve(label.rows, label.pad, ITG).limb[label.row, label.column] for label in jumper]
+    solved = [solve_rows(label.rows, label.pad, ITG).limb[label.row, label.column] for label in jumper]
     others = [replace(label, kind="other", foot=feet) for label, feet in zip(jumper, solved, strict=True)]
     for name in ("itg.yaml", "pump.yaml"):
         (tmp_path / name).write_text((weights.PRESETS / name).read_text(encoding="utf-8"), encoding="utf-8")

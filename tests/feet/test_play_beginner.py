@@ -10,7 +10,7 @@ from play_rows import letters, pad_of, rows_of
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.feet.play import prepare
 from dancetutor_cli.feet.preset import load_preset
-from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.solver.solve import solve_rows
 from dancetutor_cli.run.errors import DancetutorError
 
 ITG, BEGINNER = load_preset("itg"), load_preset("beginner")
@@ -31,7 +31,7 @@ ITG, BEGINNER = load_preset("itg"), load_preset("beginner")
 )
 @pytest.mark.parametrize("bpm", [90.0, 130.0, 150.0])
 def test_she_faces_the_screen(steps_type: str, picture: str, bpm: float) -> None:
-    found = solve(rows_of(picture, 24, bpm), pad_of(steps_type), BEGINNER)
+    found = solve_rows(rows_of(picture, 24, bpm), pad_of(steps_type), BEGINNER)
     moves = {name.split("-")[0] for names in found.moves for name in names}
     assert not moves & {"crossover", "spin", "footswitch", "sideswitch", "bracket"}
     if steps_type == "dance-single":
@@ -42,9 +42,9 @@ def test_she_faces_the_screen(steps_type: str, picture: str, bpm: float) -> None
 def test_what_alternates_stays_alternating() -> None:
     """Only where alternation would cross her feet she gives it up."""
     picture = "1... .1.. ..1. ...1 .1.. ..1. 1... ..1. .1.. ...1"
-    found = solve(rows_of(picture, 24, 130.0), pad_of("dance-single"), BEGINNER)
+    found = solve_rows(rows_of(picture, 24, 130.0), pad_of("dance-single"), BEGINNER)
     assert sum("doublestep" in names for names in found.moves) <= 1
-    stairs = solve(rows_of("1... ...1 .1.. ...1 1... ..1.", 24, 130.0), pad_of("dance-single"), BEGINNER)
+    stairs = solve_rows(rows_of("1... ...1 .1.. ...1 1... ..1.", 24, 130.0), pad_of("dance-single"), BEGINNER)
     assert not any("doublestep" in names for names in stairs.moves)
 
 
@@ -60,7 +60,7 @@ def test_low_charts_for_dance_pads_have_no_turns(corpus: Path) -> None:
             if chart.steps_type != "dance-single" or not 1 <= chart.meter <= 7:
                 continue
             prepared = prepare(chart, pad, BEGINNER.roll_window)
-            usual, found = (solve(prepared, pad, preset, margins=False) for preset in (ITG, BEGINNER))
+            usual, found = (solve_rows(prepared, pad, preset, margins=False) for preset in (ITG, BEGINNER))
             moves = [name for names in found.moves for name in names]
             assert "crossover-full" not in moves and "spin" not in moves and "bracket" not in moves, (path, chart.label)
             assert moves.count("unplayable") <= sum("unplayable" in names for names in usual.moves)

@@ -11,7 +11,7 @@ from play_rows import letters, pad_of, rows_of
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.preset import Preset, load_preset
 from dancetutor_cli.feet.solver.alternatives import Blame, blame
-from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.solver.solve import solve_rows
 
 ITG, THESIS = load_preset("itg"), load_preset("thesis")
 SINGLE = pad_of("dance-single")
@@ -19,7 +19,7 @@ SINGLE = pad_of("dance-single")
 
 def blamed(picture: str, gap: int = 24, preset: Preset = ITG) -> tuple[Play, tuple[Blame, ...]]:
     """The play of a picture at 150 beats a minute, and the causes of its doublesteps."""
-    found = solve(rows_of(picture, gap, 150.0), SINGLE, preset)
+    found = solve_rows(rows_of(picture, gap, 150.0), SINGLE, preset)
     return found, blame(found, SINGLE, preset)
 
 
@@ -63,7 +63,7 @@ def test_a_mine_makes_a_foot_go_again(picture: str, gap: int, row: int, mine: tu
     assert cause == Blame(row, False, "mine", *mine)
     mines = found.rows.mines.copy()
     mines[mine] = False
-    without = solve(replace(found.rows, mines=mines), SINGLE, ITG)
+    without = solve_rows(replace(found.rows, mines=mines), SINGLE, ITG)
     assert "doublestep" not in without.moves[row]
 
 
@@ -123,5 +123,5 @@ def busy_plays() -> list[Play]:
                 word[held] = "2"
             words.append("".join(word))
         words.append("".join("3" if p == held else "." for p in range(4)))
-        out.append(solve(rows_of(" ".join(words), 24, 150.0), SINGLE, ITG))
+        out.append(solve_rows(rows_of(" ".join(words), 24, 150.0), SINGLE, ITG))
     return out

@@ -10,7 +10,7 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.engine import cost_at
-from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.solver.solve import solve_rows
 
 ITG = load_preset("itg")
 # a number of its own for every weight; a curve goes from one number of its own to another between 100 and 300 ms
@@ -31,7 +31,7 @@ def price(picture: str, feet: str, term: str, row: int = -1, gap: int = 24, bpm:
         for column, limb in enumerate(word)
         if limb in "LRlr"
     }
-    found = solve(rows_of(picture, gap, bpm), pad, DISTINCT, Overrides.of(cells))
+    found = solve_rows(rows_of(picture, gap, bpm), pad, DISTINCT, Overrides.of(cells))
     for (tick, column), (limb, _) in cells.items():
         assert found.limb[int(np.searchsorted(found.rows.tick, tick)), column] == limb
     return int(found.cost[row, found.terms.index(term)])
@@ -172,7 +172,7 @@ def test_what_costs_nothing(term: str, picture: str, feet: str) -> None:
 
 def test_no_foot_is_in_two_places_where_a_bracket_would_do() -> None:
     """Down with the right foot, then left and up 56 ms later: the left foot takes both."""
-    found = solve(rows_of("...1 1... .1.. 1.1.", 6, 270.0), pad_of("dance-single"), ITG)
+    found = solve_rows(rows_of("...1 1... .1.. 1.1.", 6, 270.0), pad_of("dance-single"), ITG)
     assert found.limb.tolist()[2:] == [[-1, Limb.RIGHT_FOOT, -1, -1], [Limb.LEFT_FOOT, -1, Limb.LEFT_FOOT, -1]]
 
 
@@ -181,7 +181,7 @@ def test_a_foot_that_has_just_stepped_is_nowhere_else_within_80_ms(name: str) ->
     """Single steps to chance panels, too fast for any foot: the feet can always take turns."""
     rng, pad = np.random.default_rng(6), pad_of("pump-single" if name == "pump" else "dance-single")
     words = ["".join("1" if p == step else "." for p in range(len(pad))) for step in rng.integers(0, len(pad), 300)]
-    found = solve(rows_of(" ".join(words), 6, 210.0), pad, load_preset(name))  # 71 ms a row
+    found = solve_rows(rows_of(" ".join(words), 6, 210.0), pad, load_preset(name))  # 71 ms a row
     assert not found.cost[:, found.terms.index("teleport")].any()
 
 
@@ -204,7 +204,7 @@ def test_what_goes_by_size() -> None:
     assert price("1... .1.. ...1", "L... .R.. ...L", "facing") == 3 * DISTINCT.weight("facing")
     assert price("1... .1.. ...1", "L... .R.. ...L", "facing-aside") == DISTINCT.weight("facing-aside")
     forced = Overrides.of({(0, 0): (0, 0), (24, 5): (1, 0)})
-    wide = solve(rows_of("1....... .....1..", 24, 150.0), pad_of("dance-double"), DISTINCT, forced)
+    wide = solve_rows(rows_of("1....... .....1..", 24, 150.0), pad_of("dance-double"), DISTINCT, forced)
     column = wide.terms.index("stretch")
     assert wide.cost[1, column] == DISTINCT.weight("stretch") * (round(20 * 17**0.5) - 40) // 20  # (-1, 0) to (3, -1)
 
@@ -214,7 +214,7 @@ def test_feet_are_never_twisted_where_there_is_another_way() -> None:
     rng = np.random.default_rng(2)
     for _ in range(40):
         words = ["".join("1" if p in rng.choice(4, rng.integers(1, 4)) else "." for p in range(4)) for _ in range(20)]
-        found = solve(rows_of(" ".join(words), 24, 150.0), pad_of("dance-single"), ITG)
+        found = solve_rows(rows_of(" ".join(words), 24, 150.0), pad_of("dance-single"), ITG)
         assert not found.cost[:, found.terms.index("twisted")].any()
         crossed = [{"crossover-half", "crossover-full"} & set(names) for names in found.moves]
         assert not any(c and "bracket" in names for c, names in zip(crossed, found.moves, strict=True))

@@ -17,7 +17,7 @@ from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.play import Rows, StepKind, prepare
 from dancetutor_cli.feet.preset import load_preset, preset_names
-from dancetutor_cli.feet.solver.solve import solve, solve_chart
+from dancetutor_cli.feet.solver.solve import solve_chart, solve_rows
 from dancetutor_cli.run.errors import DancetutorError
 
 PRESETS = {name: load_preset(name) for name in preset_names()}
@@ -54,7 +54,7 @@ def test_mirroring_up_down_mirrors_the_feet_of_thesis_without_hands(corpus: Path
     for _, chart in sample(corpus, 20):
         pad = pad_of(chart.steps_type)
         rows = prepare(chart, pad)
-        if ((rows.steps > 0).sum(axis=1) <= 2).all() and (solve(rows, pad, PRESETS["thesis"]).limb <= 1).all():
+        if ((rows.steps > 0).sum(axis=1) <= 2).all() and (solve_rows(rows, pad, PRESETS["thesis"]).limb <= 1).all():
             checked += check_mirror(rows, pad, PRESETS["thesis"], left_right=False)
     assert checked > 5_000
 

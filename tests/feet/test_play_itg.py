@@ -14,7 +14,7 @@ from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.preset import Preset, load_preset
-from dancetutor_cli.feet.solver.solve import solve, solve_chart
+from dancetutor_cli.feet.solver.solve import solve_chart, solve_rows
 
 ITG, DDR, STAMINA = (load_preset(name) for name in ("itg", "ddr", "stamina"))
 
@@ -23,7 +23,7 @@ def solved(
     picture: str, gap: int = 24, bpm: float = 150.0, preset: Preset = ITG, overrides: Overrides | None = None
 ) -> Play:
     """The play of a dance-single chart, rows by default 0.2 s apart."""
-    return solve(rows_of(picture, gap, bpm), pad_of("dance-single"), preset, overrides)
+    return solve_rows(rows_of(picture, gap, bpm), pad_of("dance-single"), preset, overrides)
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_hands_come_down_in_front_of_her() -> None:
     """All four corners of a Pump pad: feet go to two beside each other, hands to the two ahead of them."""
     pad = pad_of("pump-single")
     for picture in ("1...1 11.11", ".1.1. 11.11", "11.11"):
-        found = solve(rows_of(picture, 48, 150.0), pad, load_preset("pump"))
+        found = solve_rows(rows_of(picture, 48, 150.0), pad, load_preset("pump"))
         limb, facing = found.limb[-1].tolist(), np.radians(found.facing[-1])
         assert sorted(limb) == [-1, 0, 1, 2, 3]
         feet = pad.panels[[limb.index(0), limb.index(1)]].mean(axis=0)
@@ -234,7 +234,7 @@ def test_one_foot_twice_belongs_into_the_slow_gap() -> None:
         for number in range(60):
             column = int(rng.choice([other for other in range(4) if other != column]))
             words += ["." * column + "1" + "." * (3 - column)] + ["...."] * (2 * (number % 2))
-        found = solve(rows_of(" ".join(words), 12, 15_000 / 65), pad_of("dance-single"), ITG)
+        found = solve_rows(rows_of(" ".join(words), 12, 15_000 / 65), pad_of("dance-single"), ITG)
         foot = found.limb.max(axis=1)
         again = np.flatnonzero(foot[1:] == foot[:-1]) + 1
         quick, slow = quick + int((again % 2 == 1).sum()), slow + int((again % 2 == 0).sum())

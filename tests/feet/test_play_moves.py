@@ -12,7 +12,7 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.feet.play import Ambiguity, Play, Rows
 from dancetutor_cli.feet.preset import Preset, load_preset
-from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.solver.solve import solve_rows
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.yaml_files import read
@@ -28,7 +28,7 @@ def solved(picture: str, gap: int = 24, feet: str = "", steps_type: str = "dance
         for column, foot in enumerate(word)
         if foot != "."
     }
-    return solve(rows_of(picture, gap, 150.0), pad_of(steps_type), ITG, Overrides.of(cells) if cells else None)
+    return solve_rows(rows_of(picture, gap, 150.0), pad_of(steps_type), ITG, Overrides.of(cells) if cells else None)
 
 
 def named(found: Play, move: str) -> list[int]:
@@ -78,12 +78,12 @@ def test_a_crossover_beside_a_crossed_jump_is_neither_in_front_nor_behind() -> N
 
 
 def test_hands_and_what_nobody_can_play() -> None:
-    thesis = solve(rows_of("11.. 1111 1..."), pad_of("dance-single"), THESIS)
+    thesis = solve_rows(rows_of("11.. 1111 1..."), pad_of("dance-single"), THESIS)
     assert named(thesis, "hand") == [1] and named(thesis, "unplayable") == []
     pad = pad_of("dance-single")
     blocked = rows_of("22.. ..22 1111 3333")
     blocked = Rows(*(getattr(blocked, name)[:3] for name in Rows.__slots__))
-    found = solve(blocked, pad, THESIS)
+    found = solve_rows(blocked, pad, THESIS)
     assert named(found, "unplayable") == [2] and (found.limb[2] == Limb.UNPLAYED).all()
 
 
@@ -150,12 +150,12 @@ def test_thresholds_are_those_of_the_configuration() -> None:
 @pytest.mark.parametrize("preset", [ITG, THESIS], ids=["itg", "thesis"])
 def test_two_kinds_of_ties(preset: Preset) -> None:
     """Up alone may come with either foot, and what follows does not care, or does."""
-    either = solve(rows_of("..1. .... .... 1..1", 48), pad_of("dance-single"), preset)
+    either = solve_rows(rows_of("..1. .... .... 1..1", 48), pad_of("dance-single"), preset)
     assert either.ambiguity is not None and either.margin is not None
     assert either.margin[0] == 0 and either.ambiguity[0] == Ambiguity.RESOLVED
-    depends = solve(rows_of("..1. .1.. ..1. .1..", 48), pad_of("dance-single"), preset)
+    depends = solve_rows(rows_of("..1. .1.. ..1. .1..", 48), pad_of("dance-single"), preset)
     assert depends.ambiguity is not None and depends.margin is not None
     assert depends.margin.tolist() == [0, 0, 0, 0]
     assert depends.ambiguity.tolist() == [Ambiguity.OPEN] * 3 + [Ambiguity.RESOLVED]  # nothing comes after
-    sure = solve(rows_of("1... ...1", 48), pad_of("dance-single"), preset)
+    sure = solve_rows(rows_of("1... ...1", 48), pad_of("dance-single"), preset)
     assert sure.margin is not None and (sure.margin > 0).all() and not np.any(sure.ambiguity)

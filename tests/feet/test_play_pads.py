@@ -13,7 +13,7 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.pads import load_pad, load_pads
 from dancetutor_cli.feet.play import Rows
 from dancetutor_cli.feet.preset import load_preset, preset_names
-from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.solver.solve import solve_rows
 from dancetutor_cli.run.reading import config_path
 
 PRESETS = {name: load_preset(name) for name in preset_names()}
@@ -57,7 +57,7 @@ def busy(columns: int, seed: int) -> Rows:
 def test_every_pad_in_every_preset(steps_type: str, name: str) -> None:
     rows, pad, preset = busy(COLUMNS[steps_type], 3), pad_of(steps_type), PRESETS[name]
     assert check_mirror(rows, pad, preset, left_right=True) > 0
-    found = solve(rows, pad, PRESETS[name])
+    found = solve_rows(rows, pad, PRESETS[name])
     assert ((found.limb != Limb.NONE) == (rows.steps > 0)).all()
     assert found.cost.sum() == found.total and found.feet.max() < len(pad)
 
@@ -73,18 +73,18 @@ def test_a_new_pad_is_an_entry(cross_path: Path) -> None:
     pad = load_pad("my-cross", cross_path)
     assert pad is not None
     stream = rows_of("...1. ....1 1.... ..1.. ...1. .1... 1....", 24, 150.0)  # west, south, east, north, west, middle
-    found = solve(rows_of("...1. 1.... ...1. .1... ...1. 1....", 24, 150.0), pad, PRESETS["itg"])
+    found = solve_rows(rows_of("...1. 1.... ...1. .1... ...1. 1....", 24, 150.0), pad, PRESETS["itg"])
     assert letters(found) == "...L. R.... ...L. .R... ...L. R...."
-    assert solve(stream, pad, PRESETS["thesis"]).total == reference_of(pad).solve(plain(stream))
-    both = solve(rows_of("...2. 1...1 ...3.", 24, 150.0), pad, PRESETS["itg"])
+    assert solve_rows(stream, pad, PRESETS["thesis"]).total == reference_of(pad).solve(plain(stream))
+    both = solve_rows(rows_of("...2. 1...1 ...3.", 24, 150.0), pad, PRESETS["itg"])
     assert "hand" in both.moves[1]  # east and south are too far apart for one foot
-    near = solve(rows_of("...2. 11... ...3.", 24, 150.0), pad, PRESETS["itg"])
+    near = solve_rows(rows_of("...2. 11... ...3.", 24, 150.0), pad, PRESETS["itg"])
     assert "bracket" in near.moves[1] and "hand" not in near.moves[1]
 
 
 def test_rows_nobody_can_play_are_solved_around() -> None:
     rows = rows_of("1....... ...1.... 11111111 ....1... .......1", 24, 150.0)
-    found = solve(rows, pad_of("dance-double"), PRESETS["itg"])
+    found = solve_rows(rows, pad_of("dance-double"), PRESETS["itg"])
     assert "unplayable" in found.moves[2] and (found.limb[2] == Limb.UNPLAYED).sum() == 2  # two brackets and two hands
     assert [i for i, names in enumerate(found.moves) if "unplayable" in names] == [2]
     assert letters(found).split()[:2] == ["L.......", "...R...."] and "?" not in letters(found).split()[4]

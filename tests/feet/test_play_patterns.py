@@ -9,7 +9,7 @@ import pytest
 from play_rows import letters, mirrored_rows, pad_of, rows_of
 
 from dancetutor_cli.feet.preset import load_preset
-from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.solver.solve import solve_rows
 
 ITG = load_preset("itg")
 SINGLE = {
@@ -125,14 +125,14 @@ def test_feet_of_a_pattern(steps_type: str, name: str, picture: str, feet: str, 
         feet = " ".join(
             word if word == "?" else "".join(word[p] for p in image).translate(SWAP) for word in feet.split()
         )
-    found = letters(solve(rows, pad, ITG))
+    found = letters(solve_rows(rows, pad, ITG))
     assert wrong(found, feet) == [], f"{name}: {found}"
 
 
 def test_nothing_is_switched_before_the_first_step() -> None:
     """In doubles she stands on the middle panels; a first jump on two panels of the left pad is no jump footswitch."""
     pad = pad_of("dance-double")
-    solved = solve(rows_of("1..1.... 1....... ...1....", 48, 150.0), pad, ITG)
+    solved = solve_rows(rows_of("1..1.... 1....... ...1....", 48, 150.0), pad, ITG)
     assert solved.moves[0] == ("jump",)
 
 
@@ -140,7 +140,7 @@ def test_a_bracket_that_takes_over_two_panels_costs_the_same_in_the_mirror() -> 
     """The foot takes over a side panel and a middle one: both ways a sideswitch."""
     pad = pad_of("dance-single")
     margins = [
-        solve(rows_of(picture, 12, 150.0), pad, ITG, margins=True).margin.tolist()
+        solve_rows(rows_of(picture, 12, 150.0), pad, ITG, margins=True).margin.tolist()
         for picture in ("1111 11MM 1..1", "1111 M1M1 1..1")
     ]
     assert margins[0] == margins[1]

@@ -13,7 +13,7 @@ from dancetutor_cli.feet.play import roll_gap
 from dancetutor_cli.feet.preset import DEFAULT_PRESET, default_preset, load_preset, preset_names
 from dancetutor_cli.feet.solver import itg_costs, thesis_moves
 from dancetutor_cli.feet.solver.engine import cost_at
-from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.solver.solve import solve_rows
 from dancetutor_cli.feet.solver.vocabulary import MODELS
 from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.run.reading import config_path
@@ -174,7 +174,7 @@ def test_confidence_follows_the_margin() -> None:
     """Between 0 and 1 by the preset's curve; sure where there is no other way, unknown where nothing is stepped."""
     rows = rows_of("1... ..1. .M.. ...1 .1.1 ..1. 1111", 24, 150.0)
     pad, preset = pad_of("dance-single"), load_preset("itg").with_values()
-    found = solve(rows, pad, preset)
+    found = solve_rows(rows, pad, preset)
     assert found.confidence is not None and found.margin is not None
     known = {margin: tenths / 1000 for margin, tenths in preset.confidence}
     stepped = rows.steps.any(axis=1)
@@ -183,8 +183,8 @@ def test_confidence_follows_the_margin() -> None:
         below = max((knot for knot in known if knot <= margin), default=0)
         above = min((knot for knot in known if knot >= margin), default=max(known))
         assert margin < 0 or known[below] - 0.001 <= sure <= known[above]
-    assert solve(rows, pad, preset, margins=False).confidence is None
-    assert solve(rows, pad, load_preset("thesis")).confidence is None
+    assert solve_rows(rows, pad, preset, margins=False).confidence is None
+    assert solve_rows(rows, pad, load_preset("thesis")).confidence is None
 
 
 def test_kernels_name_costs_in_the_order_of_the_vocabulary() -> None:

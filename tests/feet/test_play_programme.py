@@ -16,7 +16,7 @@ from dancetutor_cli.feet.play import Ambiguity, Rows
 from dancetutor_cli.feet.preset import Preset, load_preset, preset_names
 from dancetutor_cli.feet.solver.alternatives import alternatives
 from dancetutor_cli.feet.solver.engine import Engine, _arrays, _nodes, engine_for
-from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.solver.solve import solve_rows
 from dancetutor_cli.feet.solver.store import COST, FACTS, FIRST, LIMB_CODES, MOVES, NEXT, TIMES, WIDE_ACTION
 from dancetutor_cli.feet.solver.tables import moves
 
@@ -78,7 +78,7 @@ def test_against_every_way(steps_type: str, name: str) -> None:
 def check_rows(rows: Rows, pad: Pad, preset: Preset) -> None:
     ways = every_way(rows, pad, preset)
     least = min(ways.values())
-    found = solve(rows, pad, preset)
+    found = solve_rows(rows, pad, preset)
     assert found.total == least
     assert found.margin is not None and found.ambiguity is not None
     wanted = found.limb.tolist()
@@ -125,15 +125,15 @@ def test_alternatives_say_what_decides() -> None:
 def test_cost_terms_add_up_to_the_cost(corpus_rows: list[tuple[str, Rows]]) -> None:
     for steps_type, rows in corpus_rows:
         for preset in PRESETS.values():
-            found = solve(rows, pad_of(steps_type), preset)
+            found = solve_rows(rows, pad_of(steps_type), preset)
             assert found.total == alternatives(rows, pad_of(steps_type), preset, 1)[0].play.total
             assert len(found.terms) == found.cost.shape[1] and (found.cost >= 0).all()
 
 
 def test_of_ways_as_cheap_the_left_foot_begins_and_stands_left() -> None:
     pad, preset = pad_of("dance-single"), PRESETS["itg"]
-    assert letters(solve(rows_of("..1."), pad, preset)) == "..L."
-    assert solve(rows_of(".11."), pad, preset).limb.tolist() == [[-1, 0, 1, -1]]
+    assert letters(solve_rows(rows_of("..1."), pad, preset)) == "..L."
+    assert solve_rows(rows_of(".11."), pad, preset).limb.tolist() == [[-1, 0, 1, -1]]
 
 
 def test_what_was_solved_before_changes_nothing(corpus_rows: list[tuple[str, Rows]]) -> None:

@@ -21,7 +21,7 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.feet.play import Play, prepare
 from dancetutor_cli.feet.preset import Preset, load_preset
-from dancetutor_cli.feet.solver.solve import solve, solve_chart
+from dancetutor_cli.feet.solver.solve import solve_chart, solve_rows
 from dancetutor_cli.run.errors import DancetutorError
 
 LETTERS = {Kind.TAP: "1", Kind.HOLD: "2", Kind.ROLL: "4", Kind.MINE: "M", Kind.LIFT: "L"}
@@ -141,7 +141,7 @@ def test_doublesteps_forbidden(text: str) -> None:
     preset = no_doublesteps()
     pad = load_pad(chart.steps_type)
     assert pad is not None
-    play = solve(prepare(chart, pad, 0.35), pad, preset)
+    play = solve_rows(prepare(chart, pad, 0.35), pad, preset)
     assert play.total == Reference("dance-single", allow_doublestep=False).solve(reference_rows(chart))
 
 

@@ -18,7 +18,7 @@ from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.feet.annotations import step_rows
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.preset import default_preset, load_preset
-from dancetutor_cli.feet.solver.solve import solve, solve_chart
+from dancetutor_cli.feet.solver.solve import solve_chart, solve_rows
 
 SMX, ITG = load_preset("smx"), load_preset("itg")
 _OF_DANCE = [0, 1, 3, 4]  # the columns of smx-single that dance-single has
@@ -53,17 +53,17 @@ def test_without_its_middle_panel_the_feet_are_those_of_dance(drawn: list[tuple[
         word = "".join(row).replace("2", "1")
         dance.append(word)
         middle.append(f"{word[:2]}.{word[2:]}")
-    one = solve(rows_of(" ".join(dance), gap), pad_of("dance-single"), ITG)
-    five = solve(rows_of(" ".join(middle), gap), pad_of("smx-single"), SMX)
+    one = solve_rows(rows_of(" ".join(dance), gap), pad_of("dance-single"), ITG)
+    five = solve_rows(rows_of(" ".join(middle), gap), pad_of("smx-single"), SMX)
     assert five.total == one.total and one.limb.tolist() == five.limb[:, _OF_DANCE].tolist()
     assert (five.limb[:, 2] == Limb.NONE).all()
 
 
 def test_either_foot_takes_the_middle_panel() -> None:
     pad = pad_of("smx-single")
-    stream = letters(solve(rows_of("1.... ....1 ..1.. ....1 1.... ..1.. 1...."), pad, SMX))
+    stream = letters(solve_rows(rows_of("1.... ....1 ..1.. ....1 1.... ..1.. 1...."), pad, SMX))
     assert stream == "L.... ....R ..L.. ....R L.... ..R.. L...."
-    both = solve(rows_of("2.... ..1.1 3...."), pad, SMX)
+    both = solve_rows(rows_of("2.... ..1.1 3...."), pad, SMX)
     assert "bracket" in both.moves[1]  # the middle panel and a side one, heel and toe
 
 
@@ -99,7 +99,7 @@ def test_a_team_of_two_stands_on_both_pads() -> None:
 
 def test_every_panel_is_pressed_when_the_chart_says() -> None:
     rows = "1.... ....1 ..1.. .1... ...1. ..1.. 1...1 ..1.. 2.... ..1.. ....1 3.... ..1.. .1.1. ..1.. 1...."
-    play = solve(rows_of(rows, 48), pad_of("smx-single"), SMX)
+    play = solve_rows(rows_of(rows, 48), pad_of("smx-single"), SMX)
     motion = bake(Timing(((0, 140),)), play, pad_of("smx-single"))
     errors = report(motion).contact_errors
     assert len(errors) == (play.limb >= 0).sum() and np.abs(errors).max() < 1.0

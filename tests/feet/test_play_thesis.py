@@ -14,7 +14,7 @@ from play_rows import first, letters, pad_of, plain, plain_play, reference_of, r
 from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.play import Play, Rows, StepKind
 from dancetutor_cli.feet.preset import load_preset
-from dancetutor_cli.feet.solver.solve import solve
+from dancetutor_cli.feet.solver.solve import solve_rows
 
 THESIS = load_preset("thesis")
 OTHER_PADS = ["dance-solo", "dance-threepanel", "pump-single", "pump-halfdouble", "pump-double"]
@@ -22,7 +22,7 @@ OTHER_PADS = ["dance-solo", "dance-threepanel", "pump-single", "pump-halfdouble"
 
 def checked(rows: Rows, pad: Pad) -> Play:
     """The play of rows, after checking its total and the cost of each of its rows with the plain solver."""
-    found = solve(rows, pad, THESIS)
+    found = solve_rows(rows, pad, THESIS)
     reference = reference_of(pad)
     assert found.total == reference.solve(plain(rows))
     assert found.cost.sum(axis=1).tolist() == reference.cost_of(plain(rows), plain_play(found))
@@ -93,7 +93,7 @@ def test_unplayable_steps_cost_1000_each_and_are_named() -> None:
     steps = np.array([[3, 3, 0, 0], [0, 0, 3, 3], [1, 1, 1, 1]], dtype=np.uint8)
     ends = np.where(steps == 3, 480, -1)
     blocked = timed(ticks, steps, ends, np.zeros((3, 4), dtype=bool))
-    found = solve(blocked, pad_of("dance-single"), THESIS)
+    found = solve_rows(blocked, pad_of("dance-single"), THESIS)
     assert letters(found).split()[2] == "????"
     assert found.cost[2, list(found.terms).index("unplayable")] == 4000
     assert found.moves[2] == ("unplayable",)
@@ -106,10 +106,10 @@ def test_the_same_play_whatever_was_solved_before() -> None:
     steps[steps.sum(axis=1) == 0, 0] = 1
     rows = timed(np.arange(400) * 12, steps, np.full((400, 8), -1), np.zeros((400, 8), dtype=bool))
     pad = pad_of("dance-double")
-    found = solve(rows, pad, THESIS)
-    solve(first(rows, 100), pad, THESIS)
+    found = solve_rows(rows, pad, THESIS)
+    solve_rows(first(rows, 100), pad, THESIS)
     for preset in (pickle.loads(pickle.dumps(THESIS)), replace(THESIS, name="tables of its own")):
-        other = solve(rows, pad, preset)
+        other = solve_rows(rows, pad, preset)
         assert np.array_equal(found.limb, other.limb) and np.array_equal(found.cost, other.cost)
         assert found.moves == other.moves and np.array_equal(found.facing, other.facing)
 
@@ -121,13 +121,13 @@ def test_mines_send_feet_home_and_cost_nothing() -> None:
 
 
 def test_no_rows_at_all() -> None:
-    found = solve(first(rows_of("1..."), 0), pad_of("dance-single"), THESIS)
+    found = solve_rows(first(rows_of("1..."), 0), pad_of("dance-single"), THESIS)
     assert found.total == 0 and found.limb.shape == (0, 4) and found.moves == () and found.margin is not None
 
 
 def test_rows_that_do_not_fit_the_pad() -> None:
     with pytest.raises(ValueError, match="4 columns"):
-        solve(rows_of("1..."), pad_of("dance-double"), THESIS)
+        solve_rows(rows_of("1..."), pad_of("dance-double"), THESIS)
 
 
 def test_more_states_and_moves_than_the_tables_first_hold() -> None:
@@ -139,5 +139,5 @@ def test_more_states_and_moves_than_the_tables_first_hold() -> None:
         row[rng.choice(10, rng.integers(2, 5), replace=False)] = 1
     rows = timed(np.arange(n) * 24, steps, np.full((n, 10), -1), np.zeros((n, 10), dtype=bool))
     preset = replace(THESIS, name="small")
-    whole = solve(rows, pad, preset)
+    whole = solve_rows(rows, pad, preset)
     assert whole.total == reference_of(pad).solve(plain(rows))

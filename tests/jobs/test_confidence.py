@@ -32,12 +32,12 @@ def song(tmp_path: Path) -> Path:
 
 def knows(monkeypatch: pytest.MonkeyPatch, sure: NDArray[np.float64] | None) -> None:
     """What the solver would say of the rows."""
-    solve: Callable[..., Play] = solver.solve
+    solve: Callable[..., Play] = solver.solve_rows
 
     def told(*words: Any, **named: Any) -> Play:
         return replace(solve(*words, **named), confidence=sure)
 
-    monkeypatch.setattr(solver, "solve", told)
+    monkeypatch.setattr(solver, "solve_rows", told)
 
 
 def run(*words: object) -> str:

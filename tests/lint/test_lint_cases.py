@@ -65,7 +65,7 @@ def test_case(code: str, case: dict[str, Any], tmp_path: Path, monkeypatch: pyte
     assert set(case) <= KNOWN
     if "confidence" in case:
         sure = np.array([float(one) for one in case["confidence"]]) / 100
-        monkeypatch.setattr(solve, "solve", _with(solve.solve, sure))
+        monkeypatch.setattr(solve, "solve_rows", _with(solve.solve_rows, sure))
     folder = tmp_path / case.get("folder", ".")
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in case.get("files", {}).items():

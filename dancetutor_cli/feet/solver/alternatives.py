@@ -45,7 +45,7 @@ def alternatives(
 ) -> tuple[Alternative, ...]:
     """The `count` cheapest plays that differ from each other in who steps what, the cheapest first.
 
-    Fewer, if there are no more. The first one is what `solve` finds: it differs from nothing.
+    Fewer, if there are no more. The first one is what `solve_rows` finds: it differs from nothing.
     """
     if not len(rows) or count < 1:
         return ()

@@ -18,7 +18,9 @@ from dancetutor_cli.feet.solver.store import SolverPath
 from dancetutor_cli.feet.solver.techniques import EventNames
 
 
-def solve(rows: Rows, pad: Pad, preset: Preset, overrides: Overrides | None = None, *, margins: bool = True) -> Play:
+def solve_rows(
+    rows: Rows, pad: Pad, preset: Preset, overrides: Overrides | None = None, *, margins: bool = True
+) -> Play:
     """The cheapest way to play rows: the true minimum of the preset's costs; of several, always the same one.
 
     Parameters
@@ -43,7 +45,7 @@ def solve_chart(
     pad = load_pad(chart.steps_type)
     if pad is None:
         return None
-    return solve(prepare(chart, pad, preset.roll_window), pad, preset, overrides, margins=margins)
+    return solve_rows(prepare(chart, pad, preset.roll_window), pad, preset, overrides, margins=margins)
 
 
 def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] | None:
