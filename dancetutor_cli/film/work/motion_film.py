@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import shutil
-import tempfile
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -71,28 +69,20 @@ def work_folder(output: Path) -> Iterator[Path]:
     Beside it, so that the last step is a rename, and so that a full or read-only disk is noticed at once.
     """
     try:
-        folder = Path(tempfile.mkdtemp(prefix=f".{output.name}.", suffix=".part", dir=output.parent))
+        folder = TemporaryDirectory(
+            prefix=f".{output.name}.", suffix=".part", dir=output.parent, ignore_cleanup_errors=True
+        )
     except OSError as error:
         raise FileError(output, f"cannot be written: {error.strerror}") from error
     try:
-        yield folder
+        with folder as name:
+            yield Path(name)
     except EncoderError as error:
         raise FileError(output, str(error)) from error
     except OSError as error:
         if error.filename is None:  # from a write to an open file: it is ours
             raise FileError(output, f"cannot be written: {error.strerror or error}") from error
         raise
-    finally:
-        _remove(folder)
-
-
-def _remove(folder: Path) -> None:
-    """Remove a folder that a dying encoder may still be writing into."""
-    for _ in range(20):
-        shutil.rmtree(folder, ignore_errors=True)
-        if not folder.exists():
-            return
-        time.sleep(0.1)
 
 
 def film(path: Path, character: Character, motion: Motion, comparison: Comparison | None = None) -> int:
