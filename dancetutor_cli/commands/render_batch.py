@@ -102,7 +102,6 @@ def _workers(scheduler: str | None, jobs: int, progress: FilmProgress, kind: Ren
 
     if scheduler is None:
         return film_workers(jobs, progress.advance, kind)
-
     return ClusterWorkers(scheduler, lambda _key, count: progress.advance(count), frames_of)
 
 
