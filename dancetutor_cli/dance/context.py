@@ -168,7 +168,8 @@ def holding(settings: MotionSettings) -> MotionSettings:
     body = replace(body, stream_crouch=bar.stream_crouch, height_calm=bar.calm)
     jump = replace(jump, crouch=jump.crouch / 2, follow=jump.follow / 2)
     look, groove = replace(look, torso_weight=bar.square), replace(settings.groove, hands=bar.free_hand)
-    return replace(settings, body=body, jump=jump, look=look, groove=groove)
+    arms = replace(settings.arms, carried_ahead=settings.arms.carried_ahead / 3)  # not far from the rail
+    return replace(settings, body=body, jump=jump, look=look, groove=groove, arms=arms)
 
 
 def on_rail(x: Array, bar: Bar, from_end: float) -> Array:
