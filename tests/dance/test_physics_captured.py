@@ -18,7 +18,7 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import local_rotations, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton, dancer_skeleton
 from dancetutor_cli.formats.bvh import read_bvh, write_bvh
-from dancetutor_cli.formats.captured import of_motion
+from dancetutor_cli.formats.captured import captured_from_motion
 from dancetutor_cli.run.errors import FileError
 
 NAMES = {  # trunk; arm; leg; how a side's word and a joint's are joined
@@ -65,7 +65,7 @@ def recorded(naming: str = "mixamo", times: float = 1.0) -> CapturedMotion:
     parents = np.array([place.get(int(ours.parents[k]), -1) for k in keep], dtype=np.int32)
     skeleton = Skeleton(tuple(words[ours.names[k]] for k in keep), parents, times * ours.offsets[keep])
     motion = replace(given, skeleton=skeleton, rotations=given.rotations[:, keep], root=times * given.root)
-    return of_motion(Path("phrase.bvh"), in_t_pose(motion, {words[f"{s}_shoulder"]: s for s in "lr"}))
+    return captured_from_motion(Path("phrase.bvh"), in_t_pose(motion, {words[f"{s}_shoulder"]: s for s in "lr"}))
 
 
 def in_t_pose(motion: Motion, shoulders: dict[str, str]) -> Motion:
@@ -133,7 +133,7 @@ def test_a_file_that_lacks_joints_is_refused_with_what_is_missing() -> None:
 def test_a_bvh_file_gives_back_what_was_written(tmp_path: Path) -> None:
     given = phrase(1.0)
     write_bvh(tmp_path / "a.bvh", given)
-    made = on_dancer(of_motion(tmp_path / "a.bvh", read_bvh(tmp_path / "a.bvh")))
+    made = on_dancer(captured_from_motion(tmp_path / "a.bvh", read_bvh(tmp_path / "a.bvh")))
     shoulder = given.skeleton.index("l_elbow")
     assert np.degrees(quat.angle_between(given.rotations[:, shoulder], made.rotations[:, shoulder])).max() < 0.2
 
@@ -141,7 +141,7 @@ def test_a_bvh_file_gives_back_what_was_written(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["cmu_01_01_jumps", "pymo_8walk"])
 def test_the_ragdoll_follows_captured_people_as_closely_as_the_dancer(shared_data: Path, name: str) -> None:
     path = shared_data / "bvh" / f"{name}.bvh"
-    made = on_dancer(of_motion(path, read_bvh(path)))
+    made = on_dancer(captured_from_motion(path, read_bvh(path)))
     part = slice(0, 900)
     motion = replace(made, times=made.times[part], rotations=made.rotations[part], root=made.root[part])
     mean, deviation, largest = through_ragdoll(motion, Blend.of(load_style("neutral"))).distances.worst
