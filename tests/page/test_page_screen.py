@@ -43,7 +43,7 @@ def test_a_phone_shows_all_of_it_without_scrolling(browser: Browser, page_file: 
     assert browser.run(f"{buttons}.filter(b => b.getBoundingClientRect().height < 44).map(b => b.textContent)") == []
     browser.click(".card")  # loops a passage, where the picture is in sight
     higher = boxes(browser, ".picture")[0]  # the panel is folded away: who plays looks at the picture
-    assert higher[3] > stage[3] + 140 and said(browser).startswith("loop measure")  # but for a row of pills
+    assert higher[3] > stage[3] + 150 and said(browser).startswith("loop measure")
     browser.key("p", "KeyP")
     ((left, top, right, bottom),) = boxes(browser, ".said")  # above the picture, whole, and clear of her
     lane = browser.run("document.querySelector('.lanes').clientWidth") - 22  # the numbers of measures are left of them
@@ -62,7 +62,7 @@ def test_a_phone_shows_all_of_it_without_scrolling(browser: Browser, page_file: 
     browser.click(".more")
     browser.click("#tab-findings")  # the open tab folds its panel away, and the lanes become wider for fingers
     folded, lanes = boxes(browser, ".picture", ".lanes")
-    assert folded[3] > stage[3] + 140 and (lanes[2] - lanes[0] - 22) / 4 >= 44
+    assert folded[3] > stage[3] + 150 and (lanes[2] - lanes[0] - 22) / 4 >= 44
     browser.key("?", "Slash", 8)
     assert text(browser, "dialog.sheet h3 + p").startswith("Tap ▶")
     assert browser.problems == []
