@@ -120,7 +120,7 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     late = np.interp(times - settings.layers.beat_late, times, beat)
     deeper = np.maximum(numbers.deeper * jacks, numbers.leisure * np.maximum(easy, occupation.waits))
     sink = (1.0 + deeper) * settings.layers.bounce * late
-    among = (1.0 - slow / 2.0) * (1.0 - np.clip(occupation.busy + occupation.waits, 0.0, 1.0))
+    among = (1.0 - slow / 4.0) * (1.0 - np.clip(occupation.busy + occupation.waits, 0.0, 1.0))
     among *= _grounded(plan, times, NEAR_JUMPS)
     bob = among * _bob(context, times, occupation.tempo)
     to_side = sway(plan, times, context)
@@ -147,7 +147,7 @@ def _bob(context: Context, times: Array, tempo: Array) -> Array:
     constant = body.height_calm + (body.height_smooth - body.height_calm) * tempo
     lost = np.minimum((2.0 * np.pi * constant / every) ** 6, MOST_LOST)
     pulse = np.cos(2.0 * np.pi * (times - late - at[k]) / every)
-    return np.asarray(context.settings.groove.bob * every / BEAT / 2.0 * (1.0 + (1.0 + lost) * pulse))
+    return np.asarray(context.settings.groove.bob * (every / BEAT) ** 1.5 / 2.0 * (1.0 + (1.0 + lost) * pulse))
 
 
 def stepped(plan: Plan, times: Array) -> Array:

@@ -126,13 +126,14 @@ def body_trajectory(
     leg = settings.body.leg - settings.body.stream_crouch * tempo - crouch
     bent = bent_down(plan.presses, None if known is None else known.deeper, times, settings.hands)
     give = landing_give(plan, times, settings.body)
-    sink = np.maximum(groove.sink, give) + (0.0 if gait is None else gait.sink)
+    narrow = 1.0 - _straddled(feet, settings)
+    sink = np.maximum(narrow * groove.sink, give) + (0.0 if gait is None else gait.sink)
     push, catch = (share * (1.0 - reached.max(axis=1)) for share in jump_drive(plan, times, settings.jump))
     leg = leg + push * (settings.jump.push - leg)
     leg = leg + catch * (settings.jump.catch - leg)
     most = settings.body.soft_reach + push * max(settings.jump.push - settings.body.soft_reach, 0.0)
     most = np.where(feet[0].down | feet[1].down, most, settings.jump.reach)
-    legs = LegWish(leg, most, sink, groove.bob, bent, settings.jump.drive * np.maximum(push, catch), tempo)
+    legs = LegWish(leg, most, sink, narrow * groove.bob, bent, settings.jump.drive * np.maximum(push, catch), tempo)
     stretched = feet if known is None or known.push_off is None else raised(feet, known.push_off)
     mass_height = height_path(_wish(stretched, course, context, legs), plan.flights, settings.body)
     chest, head = chest_and_head(plan, course, gaze_ahead(plan, times, settings.walk), settings)
@@ -178,6 +179,12 @@ def _pelvic_list(feet: Feet, tempo: Array, rate: float, body: BodySettings) -> A
     over = smooth_path(bears[:, None], np.ones(len(bears)), rate, body.list_time)[:, 0]
     early = np.clip(np.arange(len(over)) + round(body.list_early * rate), 0, len(over) - 1)
     return np.asarray(np.radians(body.list + body.list_stream * tempo) * over[early])
+
+
+def _straddled(feet: Feet, settings: MotionSettings) -> Array:
+    """How wide (n,) the feet are apart, 0 to 1: from `step.wide` to `step.wide_most`, where hips have no room left."""
+    apart = np.linalg.norm((feet[0].ball - feet[1].ball)[:, ::2], axis=1)
+    return smooth((apart - settings.step.wide) / max(settings.step.wide_most - settings.step.wide, 1e-6))
 
 
 def _neck_room(turned: Array, look: LookSettings) -> Array:
