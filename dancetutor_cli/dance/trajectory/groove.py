@@ -61,8 +61,9 @@ def dancing(tempo: Array, busy: Array, layers: LayerSettings) -> Array:
 SEED = 20020716
 OVERSHOOT = 0.1  # how far a smooth path may go beyond what it is near to: 0.06 has been seen
 MOST_LOST = 6.0  # times what is left of a wish for the height at most that the calm path takes from it
-BEAT = 0.5  # seconds from beat to beat with which she bobs by `groove.bob`; in proportion to them
+BEAT = 0.5  # seconds from beat to beat with which she bobs by `groove.bob`; farther if slower
 BEATS, STEPS = 0.6, 0.07  # how much hands pump with the beat, and seconds over which they go with a step
+SLOWEST = 0.72  # seconds from beat to beat from which on she bobs no farther
 NEAR_JUMPS = 0.5  # seconds from a jump within which she does not bob as much
 CALM = 0.4  # part of her sway that she leaves off where she comes to rest
 MOSTLY = 0.6  # part of the way from `groove.mostly` to all the time at which she dances as in jacks
@@ -147,7 +148,8 @@ def _bob(context: Context, times: Array, tempo: Array) -> Array:
     constant = body.height_calm + (body.height_smooth - body.height_calm) * tempo
     lost = np.minimum((2.0 * np.pi * constant / every) ** 6, MOST_LOST)
     pulse = np.cos(2.0 * np.pi * (times - late - at[k]) / every)
-    return np.asarray(context.settings.groove.bob * (every / BEAT) ** 1.5 / 2.0 * (1.0 + (1.0 + lost) * pulse))
+    far = context.settings.groove.bob * (np.minimum(every, SLOWEST) / BEAT) ** 1.5
+    return np.asarray(far / 2.0 * (1.0 + (1.0 + lost) * pulse))
 
 
 def stepped(plan: Plan, times: Array) -> Array:

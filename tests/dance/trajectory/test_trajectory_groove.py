@@ -15,7 +15,7 @@ from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.quality.figures import Body, body_of
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-from dancetutor_cli.dance.trajectory.groove import Groove, Occupation, groove_of, repeated
+from dancetutor_cli.dance.trajectory.groove import Groove, Occupation, _bob, groove_of, repeated
 
 BEATS = tuple(np.arange(0.0, 20.0, 0.5))
 TIMES = np.arange(0.0, 12.0, 1.0 / 240.0)
@@ -84,6 +84,12 @@ def test_in_streams_knees_are_asked_for_the_beat_but_not_near_jumps_or_by_busy_h
     jumps = groove([(2.0 + 0.5 * k, {0: L, 3: R}) for k in range(12)], tempo=1.0).bob
     assert jumps[(TIMES > 3.0) & (TIMES < 7.0)].max() < 0.1 * np.ptp(bob[inside])
     assert not groove(stream(0.125, 40), tempo=1.0, busy=1.0).bob.any()
+
+
+def test_beats_far_apart_bob_no_farther_than_slow_ones() -> None:
+    """At a stop, or where a chart plays with its tempo, a beat lasts seconds; she would bob into the pad."""
+    far = replace(heard(), beats=tuple(np.arange(0.0, 40.0, 4.0)))
+    assert 0.02 < np.ptp(_bob(far, TIMES, STILL)) < 0.06
 
 
 def test_the_mirror_image_sways_the_other_way() -> None:
