@@ -35,8 +35,8 @@ _ALIGNED = tuple(
 def fit_character(path: Path) -> Character:
     """Read a .glb or .vrm file and fit it to the rig.
 
-    The joints that were found carry H-Anim names, joint 0 is HumanoidRoot; others keep their own names. She stands
-    on y = 0, looks to +Z and is scaled to `HEIGHT`. What she holds stays behind: a dancer needs her hands.
+    The joints that were found carry H-Anim names, joint 0 is HumanoidRoot; others keep their own names. The character
+    stands on y = 0, looks to +Z and is scaled to `HEIGHT`. Things in the hands are left out: a dancer needs free hands.
 
     Raises FileError, one line, for a file that cannot be used; it lists bones that are missing or in the wrong place.
     """

@@ -18,7 +18,7 @@ from dancetutor_cli.run.foreign_text import json_without_commands
 # The checks of `doctor`: each looks at one thing that rendering needs, and never raises.
 
 GIGABYTE = 1e9
-_NOTHING = "nothing compiled yet; the first film takes about 40 s longer"
+_NOTHING = "nothing compiled yet; the first film takes about 30 s longer"
 _ROOM = 2 * GIGABYTE  # a long song at best quality takes less
 
 

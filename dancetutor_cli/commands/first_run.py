@@ -31,7 +31,7 @@ def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = No
 
     size : gives the bytes of the note data to be solved; little is solved without compiling. None: compile in any case
 
-    That they cannot be kept in the usual place is said everywhere: each run may take 40 s longer for it.
+    That they cannot be kept in the usual place is said everywhere: each run may take 30 s longer for it.
     """
     from dancetutor_cli.feet.solver.compiled import interpret, is_compiled
     from dancetutor_cli.run.kernels.store import VARIABLE, kernel_folder
@@ -78,7 +78,7 @@ def first_steps(folder: Path) -> str:
         f"  dancetutor annotate {name} --diff",
         "      what L and R in the file would look like; without --diff they are written, --strip removes them",
         f"  dancetutor render {name} --index 0 --section m1:m8 -o dance.mp4",
-        "      a film of the first measures; the first film on a machine takes about 40 s longer",
+        "      a film of the first measures; the first film on a machine takes about 30 s longer",
         "",
         "  dancetutor analyze Songs/MyPack    a pack of your own",
         "  dancetutor doctor                  what works on this machine, and how to repair the rest",

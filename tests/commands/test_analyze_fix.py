@@ -99,7 +99,7 @@ def test_safe_makes_only_inaudible_edits(tmp_path: Path) -> None:
 
 
 def test_what_went_with_another_edit_is_gone_and_no_failure(capsys: pytest.CaptureFixture[str]) -> None:
-    finding = Finding("DT207", "ambiguous-start", "warning", "m", line=4)
+    finding = Finding("DT207", "either-foot", "warning", "m", line=4)
     gone, kept = (
         SkippedFinding("dance-single Hard 9", finding, ALREADY_REMOVED),
         SkippedFinding("dance-single Hard 9", finding, NO_MOVE),

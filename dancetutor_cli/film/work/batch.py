@@ -179,7 +179,10 @@ def file_name(template: str, song: Song, chart: Chart) -> str:
 
 
 def film_workers(jobs: int, advance: Callable[[int], None], kind: RendererKind) -> Workers:
-    """`jobs` workers that get ready to draw with this renderer. advance : is told how many more frames are drawn"""
+    """`jobs` workers that get ready to draw with this renderer.
+
+    advance : gets the number of frames drawn since its last call
+    """
     common = segments.common_to_workers(kind) if jobs > 1 else ""
     workers = open_workers(jobs, lambda _key, frames: advance(frames), common)
     if jobs > 1 and not common:
