@@ -1,4 +1,4 @@
-"""The choices for a picture, as options name them; a light module, for quick help texts."""
+"""The choices for a picture, as the options name them. The module imports little, so that help texts are quick."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ RendererKind = Literal["auto", "cpu", "gl"]
 RENDERERS: tuple[RendererKind, ...] = ("auto", "cpu", "gl")
 
 
-# How long before a move its call comes, as the user writes it: "0.9" seconds, or "b2" beats.
+# The time between a call and its move, as the user writes it: "0.9" seconds, or "b2" beats.
 
 MOST_AHEAD = 30.0  # seconds, or beats
 
 
 @dataclass(frozen=True, slots=True)
 class Ahead:
-    """How long before a move its call comes: seconds of the music, or beats."""
+    """The time between a call and its move, in seconds of the music or in beats."""
 
     length: float
     in_beats: bool = False
 
 
 def parse_ahead(text: str) -> Ahead:
-    """ "0.9" seconds, or "b2" beats; UsageError says how it is written."""
+    """Parse the time before a move, such as "0.9" (seconds) or "b2" (beats); UsageError shows both forms."""
     match = re.fullmatch(r"(b?)(\d{1,4}(?:\.\d{1,6})?)", text.strip().lower())
     if match is None or not 0 < float(match[2]) <= MOST_AHEAD:
         raise UsageError(f"'{text}': write the time before a move as 0.9 (seconds) or b2 (beats)")

@@ -1,4 +1,4 @@
-"""The film's clock: which second of the music each frame shows, in which runs; joints of a block of frames."""
+"""The film's clock: the runs of a film, the second of the music that each frame shows, and blocks of joints."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ class Pass:
     """One run through a stretch of the music. start, end : seconds of the music; rate : 0.5 is half speed.
 
     sound_from : the music is silent before this second, while `count` beats are counted in
-    rest : seconds of the music at its end in which nobody steps and the music fades: the dancer comes to rest
+    rest : seconds of the music at the end of the run, in which nobody steps, the music fades and the dancer comes to
+        rest
     """
 
     start: float
@@ -37,35 +38,35 @@ class Pass:
 
     @property
     def until(self) -> float:
-        """The second of the music up to which its notes are danced."""
+        """The second of the music up to which the notes of this run are danced."""
         return self.end - self.rest
 
     @property
     def seconds(self) -> float:
-        """How long it lasts in the film."""
+        """The length of this run in the film, seconds."""
         return self.film_seconds(self.end)
 
     def film_seconds(self, second: float) -> float:
-        """Seconds of the film from the pass's beginning to a second of the music."""
+        """Return the seconds of the film from the beginning of this run to a second of the music."""
         return heard(second - self.start, self.rate)
 
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """What a frame shows: a second of the music, and the rate at which it is played there."""
+    """The second of the music that a frame shows, and the rate at which the music is played there."""
 
     second: float
     rate: float = 1.0
 
     @property
     def heard(self) -> float:
-        """The second in the music as it is heard: at half speed everything comes at twice its second."""
+        """The second in the music as it is heard: at half speed each event comes at twice its second."""
         return heard(self.second, self.rate)
 
 
 @dataclass(frozen=True, slots=True)
 class Clock:
-    """Maps film seconds to music seconds over one or more passes. fps : frames per second of the film."""
+    """A map from film seconds to music seconds over one or more passes. fps : frames per second of the film."""
 
     passes: tuple[Pass, ...]
     fps: int
@@ -76,16 +77,16 @@ class Clock:
 
     @property
     def seconds(self) -> float:
-        """Length of the film."""
+        """The length of the film, seconds."""
         return sum(p.seconds for p in self.passes)
 
     @property
     def frames(self) -> int:
-        """Number of frames: enough to cover the film."""
+        """The smallest number of frames that covers the film."""
         return max(1, math.ceil(self.seconds * self.fps - 1e-6))
 
     def at(self, frame: int) -> tuple[float, int]:
-        """The second of the music that a frame shows, and the pass that it belongs to.
+        """Return the second of the music that a frame shows, and the index of the frame's pass.
 
         Frame k is on the screen from k / fps on. An event at second T shows in the first frame that is not before T.
         """
@@ -97,10 +98,9 @@ class Clock:
         return self.passes[-1].end, len(self.passes) - 1
 
     def cut_at(self, rate: float) -> Cut:
-        """The part that is danced at a rate, from the first pass to the last, in seconds of the music as it is heard
-        then.
+        """Return the part that is danced at `rate`, from the first pass to the last, in seconds of the music as heard.
 
-        Nobody steps before the step to which passes count in, nor while the music fades.
+        Nobody steps during the count-in or while the music fades.
         """
         first, last = self.passes[0], self.passes[-1]
         seconds = (first.start, last.end, first.sound_from if first.count else -math.inf, last.until)
@@ -108,7 +108,7 @@ class Clock:
         return Cut(start, end, steps_from, steps_until if last.rest else math.inf)
 
     def moment(self, frame: int) -> Moment:
-        """The second of the music that a frame shows, with the rate of its pass."""
+        """Return the second of the music that a frame shows, with the rate of its pass."""
         second, number = self.at(frame)
         return Moment(second, self.passes[number].rate)
 
@@ -121,19 +121,19 @@ class Moments(Clock):
 
     @property
     def frames(self) -> int:
-        """Number of pictures."""
+        """The number of pictures."""
         return len(self.times)
 
     def at(self, frame: int) -> tuple[float, int]:
-        """Second of the music that a picture shows; there is only one pass."""
+        """Return the second of the music that a picture shows, and 0, the index of the only pass."""
         return self.times[frame], 0
 
 
-# The runs of a film: which stretch of the music, how often and how fast, with count-in, claps and metronome.
+# The runs of a film: their stretch of the music, number and speed, with count-in, claps and metronome.
 
 LEAD_IN, LEAD_OUT = 2.0, 3.0  # seconds before the first and after the last note
-REST = 2.2  # seconds of film after a passage: time for the dancer to step home, stand and smile
-# seconds as heard between the numbers of a count-in, at least and at most; some gimmick songs have 19 BPM
+REST = 2.2  # seconds of film after a passage, in which the dancer can step home, stand and smile
+# Minimum and maximum seconds, as heard, between the numbers of a count-in. Some gimmick songs have 19 BPM.
 COUNTABLE = (0.3, 1.6)
 
 
@@ -141,7 +141,8 @@ COUNTABLE = (0.3, 1.6)
 class Practice:
     """Aids for practice. loop : number of runs (0: one for each rate)
 
-    count_in : beats counted before each run; rest : seconds of film after the last one, in which she comes to rest
+    count_in : beats counted before each run
+    rest : seconds of film after the last run, in which the dancer comes to rest
     claps : a clap on each step; metronome : a tick on each beat
     """
 
@@ -153,7 +154,7 @@ class Practice:
 
 
 def parse_rates(text: str) -> tuple[float, ...]:
-    """ "0.5,0.75,1.0" to numbers; UsageError outside `SLOWEST` to `FASTEST`."""
+    """Parse a list of rates such as "0.5,0.75,1.0"; UsageError for a rate outside `SLOWEST` to `FASTEST`."""
     try:
         rates = tuple(float(part) for part in text.split(","))
     except ValueError:
@@ -166,10 +167,10 @@ def parse_rates(text: str) -> tuple[float, ...]:
 
 
 def passes_of(chart: Chart, practice: Practice, rates: tuple[float, ...], start: float, end: float) -> tuple[Pass, ...]:
-    """The runs through a section, at each of the rates in turn, each with its count-in.
+    """Return the runs through a section, at each of the rates in turn, each with its count-in.
 
-    A count-in leads to steps: measures without steps at the beginning of the section are left out. It counts beats, or
-    halves or doubles of them if beats are too slow or too fast to count.
+    With a count-in, the measures without steps at the beginning of the section are left out. A count-in counts beats,
+    or half or double beats if beats are too slow or too fast to count.
     """
     lead = 0.0
     if practice.count_in:
@@ -186,7 +187,10 @@ def passes_of(chart: Chart, practice: Practice, rates: tuple[float, ...], start:
 
 
 def _count_in_interval(beat: float, rate: float) -> float:
-    """Seconds of the music from one number to the next: a beat, halved or doubled until it can be counted at `rate`."""
+    """Return the seconds of the music between two numbers of a count-in.
+
+    This is one beat, halved or doubled until it can be counted at `rate`.
+    """
     least, most = (second * rate for second in COUNTABLE)
     while beat > most:
         beat /= 2
@@ -196,7 +200,10 @@ def _count_in_interval(beat: float, rate: float) -> float:
 
 
 def _first_measure(chart: Chart, start: float, end: float) -> float:
-    """Where the measure with the first step of a section begins, not before `start`; `start` if there is no step."""
+    """Return the second at which the measure with a section's first step begins, but not before `start`.
+
+    A section without steps has `start`.
+    """
     notes = chart.notes
     stepped = notes.tick[~np.isin(notes.kind, (Kind.MINE, Kind.FAKE))]
     seconds = chart.timing.seconds(stepped)
@@ -208,7 +215,10 @@ def _first_measure(chart: Chart, start: float, end: float) -> float:
 
 
 def whole_song(chart: Chart) -> tuple[float, float]:
-    """Start and end of the film of a whole chart, seconds of the music: from its beginning to after the last note."""
+    """Return the start and end of the film of a whole chart, in seconds of the music.
+
+    The film lasts from the beginning of the music to a few seconds after the last note.
+    """
     notes = chart.notes
     if len(notes) == 0:
         raise DancetutorError(f"{chart.label}: the chart has no notes, so there is nothing to render")
@@ -217,15 +227,17 @@ def whole_song(chart: Chart) -> tuple[float, float]:
     return min(0.0, float(first) - LEAD_IN), float(last) + LEAD_OUT
 
 
-# The dancer's joints in the frames of a film, a block of frames at once, which is quick.
+# The dancer's joints in the frames of a film, computed for a block of frames at once, which is fast.
 
-BLOCK = 64  # frames whose joints are made at once
+BLOCK = 64  # frames in a block
 
 
 class JointBlocks:
-    """They are always the same blocks, so that no bit of a frame depends on which frames were drawn before it.
+    """The dancer's joints, computed in fixed blocks of frames.
 
-    made : gives the world matrices (f, j, 4, 4) of the joints at f moments
+    The blocks are always the same, so that no bit of a frame depends on the frames that were drawn before it.
+
+    made : returns the world matrices (f, j, 4, 4) of the joints at f moments
     """
 
     def __init__(self, made: Callable[[Sequence[Moment]], NDArray[np.float64]], clock: Clock) -> None:
@@ -233,7 +245,7 @@ class JointBlocks:
         self._block, self._joints = -1, np.zeros((0, 0, 4, 4))
 
     def at(self, number: int) -> NDArray[np.float64]:
-        """World matrices (j, 4, 4) of the joints in frame `number`."""
+        """Return the world matrices (j, 4, 4) of the joints in frame `number`."""
         block = number // BLOCK
         if block != self._block:
             frames = range(block * BLOCK, min((block + 1) * BLOCK, self._clock.frames))

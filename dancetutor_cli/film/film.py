@@ -1,4 +1,4 @@
-"""A film: the drawing of any frame of its plan."""
+"""A film, which draws any frame of its plan."""
 
 from __future__ import annotations
 
@@ -38,12 +38,15 @@ if TYPE_CHECKING:
     MakesWay = Lines | Legend | Runs | FeetDiagram
 
 BACKGROUND = (12, 14, 26)
-LANES, WIDE_LANES = 0.74, 0.78  # part of the highway's width that lanes may take, and lanes of wide pads
-ALL_LANES = 0.87  # the same if there are no words, only numbers of measures
+LANES, WIDE_LANES = 0.74, 0.78  # the greatest share of the highway's width for the lanes, of usual and of wide pads
+ALL_LANES = 0.87  # the same share for a highway with measure numbers but without words
 
 
 class Film:
-    """Draws frames of a plan, in any order; the same frame always has the same bytes with the "cpu" renderer."""
+    """A film that draws the frames of a plan in any order.
+
+    With the "cpu" renderer, the same frame always has the same bytes.
+    """
 
     def __init__(self, plan: FilmPlan) -> None:
         self.plan = plan
@@ -58,7 +61,7 @@ class Film:
         self.lights = PanelLights(lighting(plan.notes, plan.presses), self.columns, self.style.panel_seconds)
         self.base = np.zeros((self.size[1], self.size[0], 3), dtype=np.uint8)
         self.base[...] = BACKGROUND
-        if (strip := self.layout.progress) is not None:  # up to the picture's edge, if the graph of it ends before that
+        if (strip := self.layout.progress) is not None:  # the ground reaches the picture's edge, the graph may not
             left, top, _, bottom = self.boxes.box("progress")
             captions.strip_ground(self.base[top:bottom, left:], self.scale * strip.text)
         self.highway = self._highway() if self.layout.highway else None
@@ -102,7 +105,7 @@ class Film:
 
     @cached_property
     def placement(self) -> Placement:
-        """Where the words stand, for all frames."""
+        """The places of the words, for all frames."""
         dancer = self._dancer.heads_and_feet if self.layout.dancer and self.plan.motions else None
         lettering = WordStyle(self.face, self.style, self.language)
         return placement(self.plan, self.boxes, lettering, dancer, self.turned)
@@ -117,7 +120,7 @@ class Film:
 
     @cached_property
     def _dancer(self) -> Dancer:
-        """The renderer of the dancer's box; made in the process that draws."""
+        """The renderer of the dancer's box, which is created in the process that draws."""
         from dancetutor_cli.film.scene import dancer
 
         plan, look = self.plan, self.plan.look
@@ -157,7 +160,7 @@ class Film:
         return large, small
 
     def frame(self, number: int) -> Frame:
-        """Frame `number` of the film, uint8 (h, w, 3)."""
+        """Draw frame `number` of the film, uint8 (h, w, 3)."""
         second, run = self.plan.clock.at(number)
         beat = float(self.plan.beats[number])
         picture = self.base.copy()
@@ -183,7 +186,7 @@ class Film:
         return darkened(picture, BACKGROUND, self.plan.light(number))
 
     def _stay(self, words: MakesWay, run: int) -> Stay:
-        """When these words are in the picture: not while the dancer walks through them."""
+        """Return the time in which these words are in the picture: they are hidden while the dancer walks past them."""
         if (words, run) not in self._stays:
             self._stays[words, run] = self._stay_of_run(words.boxes, run)
         return self._stays[words, run]
@@ -207,7 +210,7 @@ class Film:
         return JointBlocks(self._dancer.joints, self.plan.clock)
 
     def _room(self, number: int, beat: float) -> Frame:
-        """The dancer in her room, with the screen if the layout has one."""
+        """Draw the dancer in her room, with the screen if the layout has one."""
         screen, moment = self._screen, self.plan.clock.moment(number)
         frame, second = self._dancer.frame(moment, self._joints.at(number)), moment.second
         if screen is not None and self.highway is not None:
@@ -217,6 +220,6 @@ class Film:
         return frame
 
     def frames(self, first: int, last: int) -> Iterator[Frame]:
-        """Frames first..last - 1."""
+        """Draw the frames from `first` to `last` - 1."""
         for number in range(first, last):
             yield self.frame(number)

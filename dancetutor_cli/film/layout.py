@@ -13,10 +13,10 @@ from dancetutor_cli.run.reading import named_file
 from dancetutor_cli.run.schema import Bounds, Box, Entries, Share
 from dancetutor_cli.run.yaml_files import load
 
-# Layouts: where dancer, notes and words stand in the picture; read from configs/layouts/*.yaml.
+# Layouts: the places of the dancer, the notes and the words in the picture, read from configs/layouts/*.yaml.
 
 PixelBox = tuple[int, int, int, int]
-WIDE_PAD = 5  # more columns than this take the layout's `wide` boxes
+WIDE_PAD = 5  # a pad with more columns than this uses the layout's `wide` boxes
 _Side = Annotated[int, Bounds(LEAST_SIDE, MOST_SIDE, "pixels")]
 _Room = Annotated[float, Bounds(-100, 100, "metres")]
 _ScreenSide = Annotated[float, Bounds(0.05, 100, "metres")]
@@ -26,7 +26,10 @@ _Rate = Annotated[float, Bounds(0.25, 2)]
 
 @dataclass(frozen=True, slots=True)
 class DancerPart:
-    """box : share of the picture; camera : name of a camera; region : share of the box that she fills."""
+    """The dancer's place. box : share of the picture; camera : name of a camera
+
+    region : share of the box that the dancer fills
+    """
 
     box: Box
     camera: str = "back"
@@ -35,9 +38,10 @@ class DancerPart:
 
 @dataclass(frozen=True, slots=True)
 class HighwayPart:
-    """box : share of the picture; lane : pixels at the default size; receptor : share of the box; scroll : "C600"
+    """The highway's place. box : share of the picture; lane : width of a lane, pixels at the default size
 
-    tags : moves are named beside their rows, too
+    receptor : height of the receptors, share of the box; scroll : such as "C600"
+    tags : whether moves are named beside their rows
     """
 
     box: Box
@@ -50,7 +54,7 @@ class HighwayPart:
 
 @dataclass(frozen=True, slots=True)
 class TextBox:
-    """A place for words. box : share of the picture; text : how much larger than usual they are."""
+    """A place for words. box : share of the picture; text : size of the words, as a factor of the usual size."""
 
     box: Box
     text: _Larger = 1.0
@@ -58,7 +62,7 @@ class TextBox:
 
 @dataclass(frozen=True, slots=True)
 class FeetPart:
-    """The feet from above. box : share of the picture; wide : on pads of several squares, too."""
+    """The place of the feet seen from above. box : share of the picture; wide : show them also on wide pads."""
 
     box: Box
     wide: bool = True
@@ -66,7 +70,10 @@ class FeetPart:
 
 @dataclass(frozen=True, slots=True)
 class HeaderPart:
-    """The song's words. room : share of the box's width that they may take, beside her head."""
+    """The place of the song's words. room : share of the box's width that the words may take, beside the dancer's head.
+
+    box, text : as in `TextBox`
+    """
 
     box: Box
     text: _Larger = 1.0
@@ -75,7 +82,10 @@ class HeaderPart:
 
 @dataclass(frozen=True, slots=True)
 class ScreenPart:
-    """A screen in the room, which shows the highway. centre : world, metres; size : metres; pixels : its picture."""
+    """A screen in the room, which shows the highway. centre : in the world, metres; size : metres
+
+    pixels : size of the screen's picture
+    """
 
     centre: tuple[_Room, _Room, _Room]
     size: tuple[_ScreenSide, _ScreenSide]
@@ -84,7 +94,7 @@ class ScreenPart:
 
 @dataclass(frozen=True, slots=True)
 class NextPart:
-    """Small pads with the next rows. box : share of the picture; count : how many."""
+    """The place of the small pads that show the next rows. box : share of the picture; count : number of pads."""
 
     box: Box
     count: Annotated[int, Bounds(1, 12)] = 3
@@ -92,7 +102,7 @@ class NextPart:
 
 @dataclass(frozen=True, slots=True)
 class PracticePart:
-    """How a layout runs if the user asks for nothing else. rates : speeds in turn; count_in : beats."""
+    """The runs of a layout if the user sets no others. rates : the speeds in turn; count_in : beats."""
 
     rates: Annotated[tuple[_Rate, ...], Entries(1)] = (1.0,)
     count_in: Annotated[int, Bounds(0, 16, "beats")] = 0
@@ -100,11 +110,11 @@ class PracticePart:
 
 @dataclass(frozen=True, slots=True)
 class WideBoxes:
-    """Other boxes for pads of more than five panels; None if the part stays where it is. region : the dancer's.
+    """Other boxes for pads of more than five panels; None for a part that keeps its place.
 
-    screen : another place of it
-
-    lanes : share of the highway's width that they take at most
+    region : share of the box that the dancer fills
+    screen : another place of the screen
+    lanes : greatest share of the highway's width that the lanes take
     """
 
     dancer: Box | None = None
@@ -123,10 +133,11 @@ class WideBoxes:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """One file of configs/layouts. size : (width, height) in pixels, the default and what pixel sizes are meant for.
+    """One file of configs/layouts. size : the default (width, height) in pixels, to which all pixel sizes refer.
 
-    calls : where moves are called out, by default in the dancer's box; runs : the label of the run, by default below
-    the header; count : the numbers of the count-in, by default in the middle of the picture
+    calls : the place in which moves are called out, by default in the dancer's box
+    runs : the place of the run's label, by default below the header
+    count : the place of the count-in's numbers, by default the middle of the picture
     """
 
     size: tuple[_Side, _Side]
@@ -145,43 +156,45 @@ class Layout:
     wide: WideBoxes | None = None
 
     def scale(self, size: tuple[int, int]) -> float:
-        """How many pixels one pixel of the default size has become."""
+        """Return the number of pixels that one pixel of the default size becomes in a picture of this size."""
         return min(size[0] / self.size[0], size[1] / self.size[1])
 
     def box(self, name: str, size: tuple[int, int], columns: int) -> PixelBox:
-        """The box of a part ("dancer", "highway" ...) in pixels: of the picture, or, for the highway, of the screen
-        that it is shown on."""
+        """Return the box of a part ("dancer", "highway" ...) in pixels of the picture.
+
+        The box of a highway that is shown on a screen is in pixels of the screen.
+        """
         if name == "highway" and (screen := self.screen_for(columns)) is not None:
             size = screen.pixels
         return pixels(self._other(name, columns) or getattr(self, name).box, size)
 
     def screen_for(self, columns: int) -> ScreenPart | None:
-        """The screen in the room, if there is one."""
+        """Return the screen in the room, None if the layout has no screen."""
         wide = None if self.wide is None or columns <= WIDE_PAD else self.wide.screen
         return self.screen and (wide or self.screen)
 
     def region(self, columns: int) -> Box:
-        """The share of her box that the dancer fills, if there is one."""
+        """Return the share of the dancer's box that she fills; the whole box in a layout without a dancer."""
         usual = (0.0, 0.0, 1.0, 1.0) if self.dancer is None else self.dancer.region
         return self._other("region", columns) or usual
 
     def lanes(self, columns: int) -> float | None:
-        """The share of the highway's width that its lanes take at most, if the layout says it."""
+        """Return the greatest share of the highway's width that its lanes take, None if the layout does not set it."""
         return None if self.wide is None or columns <= WIDE_PAD else self.wide.lanes
 
     def _other(self, name: str, columns: int) -> Box | None:
-        """The box that replaces it on a wide pad."""
+        """Return the box that replaces the box of the part on a wide pad, None if the part keeps its own."""
         return getattr(self.wide, name, None) if self.wide is not None and columns > WIDE_PAD else None
 
 
 def pixels(box: Box, size: tuple[int, int]) -> PixelBox:
-    """A box in shares of the picture as (left, top, right, bottom) in pixels."""
+    """Convert a box in shares of the picture to (left, top, right, bottom) in pixels."""
     left, top, right, bottom = box
     return round(left * size[0]), round(top * size[1]), round(right * size[0]), round(bottom * size[1])
 
 
 def lowered(box: PixelBox, top: float) -> PixelBox:
-    """A box of the same size that begins at `top`."""
+    """Return a box of the same size that begins at `top`."""
     down = round(top) - box[1]
     return box[0], box[1] + down, box[2], box[3] + down
 
@@ -192,7 +205,7 @@ def overlap(a: PixelBox, b: PixelBox) -> bool:
 
 
 def load_layout(name: str) -> Layout:
-    """A layout by name, or from a YAML file of the user's. UsageError lists the names there are."""
+    """Load a layout by name, or from a YAML file of the user's. UsageError lists the names of the layouts."""
     path = named_file("layouts", name)
     layout = load(path, Layout)
     if layout.dancer is None and layout.highway is None:
@@ -206,16 +219,18 @@ def load_layout(name: str) -> Layout:
     return layout
 
 
-# The look of a film as the user asked for it on the command line; light, so that wrong options are refused at once.
+# The look of a film as the user asked for it on the command line.
 
 
 @dataclass(frozen=True, slots=True)
 class FilmLook:
     """The look, which does not change during a film. size : (width, height), even.
 
-    camera, scroll : None for the layout's; down : notes fall; font : a font file, None for the built-in one
-    ahead : how long before a move it is called out, None as configured; findings : call out the linter's, too
-    language : of the words in it, a name of configs/languages
+    camera, scroll : None for the layout's own; down : whether notes fall
+    font : a font file, None for the built-in font
+    ahead : the time between a call and its move, None for the configured time
+    findings : whether the linter's findings are called out
+    language : the language of the words, a name in configs/languages
     """
 
     layout: Layout

@@ -1,4 +1,4 @@
-"""What a picture shows of a chart and its play, on the clock of the music: notes, presses, beats, lights."""
+"""The parts of a chart and its play that a picture shows, timed by the music: notes, presses, beats, lights."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.film.scroll import ScrollSegments
 
-# The contents of the highway, as plain arrays: notes, presses, beat lines; made from a chart and a play.
+# The contents of the highway as plain arrays, made from a chart and a play: notes, presses, beat lines.
 
 QUANTISATIONS = (4, 8, 12, 16, 24, 32, 48, 64, 192)  # note values that have a colour of their own
 
@@ -24,14 +24,15 @@ QUANTISATIONS = (4, 8, 12, 16, 24, 32, 48, 64, 192)  # note values that have a c
 class NoteTrack:
     """The notes of a chart, sorted by time; n notes.
 
-    tick : int64 (n,), of the chart
-    second, end_second : float64 (n,), of the music; end_second = second where there is no hold
-    beat, end_beat : float64 (n,), as far as they are drawn (scroll segments applied)
-    column : int16 (n,); kind : uint8 (n,), `chart.model.Kind`; limb : int8 (n,), `feet.limbs.Limb`
+    tick : int64 (n,), ticks of the chart
+    second, end_second : float64 (n,), seconds of the music; end_second = second for a note without a hold
+    beat, end_beat : float64 (n,), beats as drawn (scroll segments applied)
+    column : int16 (n,); kind : uint8 (n,), `chart.model.Kind`
+    limb : int8 (n,), `feet.limbs.Limb`; for a mine, the foot that is on it as it passes
     judged : bool (n,)
-    player : int8 (n,), of a chart for two whose it is, 1 or 2; 0: anybody's
-    gone_second, gone_beat : float64 (n,), from where on nobody plays it, of a roll maybe later than its head; endless
-    where it is played to its end. Of a mine with a foot on it when it passes, which has that foot as its limb
+    player : int8 (n,), the player whose note it is in a chart for two, 1 or 2; 0 for a note of nobody in particular
+    gone_second, gone_beat : float64 (n,), the time from which on nobody plays the note; infinite for a note that is
+        played to its end. It may be later than the head of a roll. For a mine with a foot on it, it is the mine's time
     """
 
     tick: NDArray[np.int64]
@@ -49,13 +50,13 @@ class NoteTrack:
 
     @property
     def quantisation(self) -> NDArray[np.int64]:
-        """Index into `QUANTISATIONS` of each note, int64 (n,)."""
+        """The index into `QUANTISATIONS` of each note, int64 (n,)."""
         return quantisation(self.tick)
 
 
 @dataclass(frozen=True, slots=True)
 class Presses:
-    """Which limb presses which panel when; p presses sorted by start. Taps end where they start.
+    """The presses of panels by limbs; p presses, sorted by start. A tap ends when it starts.
 
     start, end : float64 (p,), seconds of the music; column : int16 (p,); limb : int8 (p,)
     """
@@ -71,12 +72,13 @@ class Presses:
 
 @dataclass(frozen=True, slots=True)
 class Callout:
-    """Words for a passage. second : of the music, where it begins; beat : the same as drawn
+    """Words for a passage. second : second of the music at which the passage begins; beat : the same as drawn
 
-    severity : "move", "info", "warning" or "error"; begin : second from which it is called out; end : where it is over
+    severity : "move", "info", "warning" or "error"
+    begin : second from which the passage is called out; end : second at which it is over
     tag : fewer words, for the place beside the notes
-    further : where the passage's other moves begin, second and beat, and the tag of each
-    why : its reason, where there is room for it
+    further : second, beat and tag of the passage's other moves
+    why : the reason, which is shown if there is room for it
     """
 
     second: float
@@ -92,9 +94,9 @@ class Callout:
 
 @dataclass(frozen=True, slots=True)
 class Cue:
-    """A move to name in subtitles. second, end : of the music, when it comes and is over; who : "left foot", ...
+    """A move to name in subtitles. second, end : seconds of the music at which the move begins and ends
 
-    move : its name
+    who : the limbs that make the move, "left foot", ...; move : the name of the move
     """
 
     second: float
@@ -106,27 +108,30 @@ class Cue:
 
 @dataclass(frozen=True, slots=True)
 class BeatLines:
-    """One entry per beat from 0 on. second, beat (as drawn) : float64 (b,); index = the beat's number."""
+    """The lines of the beats, one entry for each beat from 0 on.
+
+    second, beat (as drawn) : float64 (b,); the index is the number of the beat
+    """
 
     second: NDArray[np.float64]
     beat: NDArray[np.float64]
 
 
 def quantisation(tick: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Index into `QUANTISATIONS` of each tick (1/48 beat): the coarsest note value on whose grid it lies."""
+    """Return the index into `QUANTISATIONS` of each tick (1/48 beat): the coarsest note value whose grid has the tick."""
     out = np.full(len(tick), len(QUANTISATIONS) - 1)
     for i in reversed(range(len(QUANTISATIONS) - 1)):
         out[tick % (192 // QUANTISATIONS[i]) == 0] = i
     return out
 
 
-# From a chart and its play to the contents of a picture: notes, presses and beats, on the clock of the music.
+# The way from a chart and its play to the contents of a picture: notes, presses and beats, timed by the music.
 
 
 class OnMine(NamedTuple):
-    """A mine that a foot is on as it passes. tick, column : of the chart; foot : 0 left, 1 right
+    """A mine that passes while a foot is on its panel. tick, column : place in the chart; foot : 0 left, 1 right
 
-    player : the dancer of a chart for two whose foot it is, 1 or 2; 0 if there is one dancer
+    player : the player of a chart for two whose foot it is, 1 or 2; 0 if there is one dancer
     """
 
     tick: int
@@ -136,7 +141,7 @@ class OnMine(NamedTuple):
 
 
 def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments, on_mines: Sequence[OnMine] = ()) -> NoteTrack:
-    """The notes as the highway draws them; keysounds are not notes to see."""
+    """Return the notes as the highway draws them, without keysounds, which nobody sees."""
     table = chart.notes
     keep = table.kind != Kind.KEYSOUND
     tick, end = table.tick[keep], np.where(table.end[keep] >= 0, table.end[keep], table.tick[keep])
@@ -171,8 +176,11 @@ def note_track(chart: Chart, play: Play | None, scrolls: ScrollSegments, on_mine
 
 
 def _gone(chart: Chart, play: Play | None, limb: NDArray[np.int8]) -> NDArray[np.int64]:
-    """The tick from which on nobody plays a note, -1 if it is played; limb : of each. A roll ends at its first tap that
-    nobody plays, because from there on nobody can keep it.
+    """Return the tick from which on nobody plays each note, -1 for a note that is played.
+
+    A roll ends at its first tap that nobody plays, because from there on nobody can keep it.
+
+    limb : the limb of each note
     """
     table = chart.notes
     out = np.where((limb == Limb.UNPLAYED) | ((table.kind == Kind.MINE) & (limb >= 0)), table.tick, -1)
@@ -189,7 +197,7 @@ def _gone(chart: Chart, play: Play | None, limb: NDArray[np.int8]) -> NDArray[np
 
 
 def _players(chart: Chart) -> NDArray[np.int8]:
-    """The player of each note of a chart, int8 (n,): 1 or 2 in a chart for two, 0 for all, as mines are."""
+    """Return the player of each note, int8 (n,): 1 or 2 in a chart for two, 0 for mines and for other charts."""
     owner: dict[tuple[int, int], int] = {}
     for part in chart.players:
         steps = part.notes.kind != Kind.MINE
@@ -203,8 +211,9 @@ def _players(chart: Chart) -> NDArray[np.int8]:
 
 
 def presses_of(track: NoteTrack) -> Presses:
-    """Every press of a panel: taps, lifts, and holds and rolls from head to tail, or to where nobody plays them any
-    more.
+    """Return every press of a panel: taps, lifts, holds and rolls.
+
+    A hold or roll lasts from its head to its tail, or to the moment from which on nobody plays it.
     """
     step = track.judged & np.isin(track.kind, (Kind.TAP, Kind.LIFT, Kind.HOLD, Kind.ROLL))
     end = np.maximum(np.minimum(track.end_second, track.gone_second), track.second)
@@ -212,7 +221,7 @@ def presses_of(track: NoteTrack) -> Presses:
 
 
 def beat_lines(chart: Chart, scrolls: ScrollSegments, end: float) -> BeatLines:
-    """One line per beat, from beat 0 to the end of the film."""
+    """Return one line for each beat, from beat 0 to a minute after the end of the film."""
     last = max(int(chart.notes.tick.max(initial=0)), int(chart.notes.end.max(initial=0)))
     beats = np.arange(min(last // TICKS_PER_BEAT + 64, 2_000_000), dtype=np.int64)
     second = chart.timing.seconds(beats * TICKS_PER_BEAT)
@@ -220,16 +229,16 @@ def beat_lines(chart: Chart, scrolls: ScrollSegments, end: float) -> BeatLines:
     return BeatLines(second[keep], scrolls.drawn_beats(beats.astype(np.float64))[keep])
 
 
-# How brightly a panel or receptor is lit: at once at its note, fading after a tap, steady while it is held.
+# The light of a panel or receptor: it flashes at a note, fades after a tap, and stays steady during a hold.
 #
-# A note that nobody plays lights nothing.
+# A note that nobody plays gives no light.
 
-HOLD_BRIGHTNESS = 0.62  # brightness while held, after the flash at the start
-EPSILON = 1e-6  # seconds; a frame that falls on a note shows it
+HOLD_BRIGHTNESS = 0.62  # brightness during a hold, after the flash at the start
+EPSILON = 1e-6  # seconds; a frame exactly at a note already shows its light
 
 
 def lighting(track: NoteTrack, presses: Presses) -> Presses:
-    """What lights panels: the presses, and the mines that a foot is on as they pass."""
+    """Return everything that lights panels: the presses, and the mines that pass under a foot."""
     mines = (track.kind == Kind.MINE) & (track.limb >= 0)
     if not mines.any():
         return presses
@@ -240,7 +249,7 @@ def lighting(track: NoteTrack, presses: Presses) -> Presses:
 
 
 class PanelLights:
-    """Light of each column over time; fade : seconds from full light to none."""
+    """The light of each column over time; fade : seconds from full light to none."""
 
     def __init__(self, presses: Presses, columns: int, fade: float) -> None:
         self.presses, self.fade = presses, fade
@@ -249,7 +258,7 @@ class PanelLights:
         self._starts = [presses.start[mine] for mine in self._columns]
 
     def at(self, column: int, second: float) -> tuple[float, int]:
-        """Brightness 0..1 at `second` of the music, and the limb of the last press (-1: none or unknown)."""
+        """Return the brightness 0..1 at `second` of the music, and the limb of the last press (-1: none or unknown)."""
         last = int(np.searchsorted(self._starts[column], second + EPSILON, side="right")) - 1
         if last < 0:
             return 0.0, -1
@@ -264,5 +273,5 @@ class PanelLights:
 
 
 def _fade(share: float) -> float:
-    """What is left of a light after so much of its time: it stays bright and then goes out quickly."""
+    """Return the brightness of a light after this share of its time: it stays bright and then goes out quickly."""
     return max(0.0, 1.0 - share * share)

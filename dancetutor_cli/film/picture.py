@@ -1,4 +1,4 @@
-"""What the parts of a picture share: the frame on which they draw, the pad, and a foot seen from above."""
+"""The types that the parts of a picture share: the frame on which they draw, the pad, and a foot seen from above."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ class PadLike(Protocol):
 
     @property
     def panels(self) -> NDArray[np.float64]:
-        """Centre of each panel, (c, 2), in column order."""
+        """The centre of each panel, (c, 2), in column order."""
 
     @property
     def arrows(self) -> NDArray[np.float64]:
-        """Where the arrow on each panel points, (c, 2); (0, 0): it has none."""
+        """The direction of the arrow on each panel, (c, 2); (0, 0) for a panel without an arrow."""
 
     @property
     def centre(self) -> tuple[float, float]:
-        """Where the dancer stands at the start."""
+        """The point at which the dancer stands at the start."""
 
 
 @dataclass(frozen=True, slots=True)
 class FootFromAbove:
-    """A foot from above. heel, toe : (x, y) in panel widths, x to the right, y to the screen; height : metres."""
+    """A foot seen from above. heel, toe : (x, y) in panel widths, x to the right, y to the screen; height : metres."""
 
     heel: tuple[float, float]
     toe: tuple[float, float]
@@ -37,7 +37,7 @@ class FootFromAbove:
 
 
 def darkened(frame: Frame, dark: tuple[int, int, int], light: float) -> Frame:
-    """The part `light` of a picture, 0 to 1, over a dark colour."""
+    """Blend a picture over a dark colour; light : the share of the picture, 0 to 1."""
     if light >= 1.0:
         return frame
     keep = round(256 * light)
