@@ -118,7 +118,7 @@ class BeatLines:
 
 
 def quantisation(tick: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the index into `QUANTISATIONS` of each tick (1/48 beat): the coarsest note value whose grid has the tick."""
+    """Return the index into `QUANTISATIONS` of each tick (1/48 beat): the coarsest note value on whose grid it lies."""
     out = np.full(len(tick), len(QUANTISATIONS) - 1)
     for i in reversed(range(len(QUANTISATIONS) - 1)):
         out[tick % (192 // QUANTISATIONS[i]) == 0] = i

@@ -1,7 +1,7 @@
-"""Where the words of a picture stand, each once for all frames, and when: they make way for the dancer.
+"""The places of a picture's words, found once for all frames, and the times at which the words make way for the dancer.
 
-The song's words are at the top left, beside her head; below them what they reach into: the pad from above, and below
-that the legend. Calls keep clear of the title, and of her head and feet; the name of a run stands below the header.
+The song's words are at the top left, beside her head. The pad from above and the legend move down if these words reach
+into them. Calls keep clear of the title, and of her head and feet; the name of a run stands below the header.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.plan import FilmPlan
     from dancetutor_cli.run.languages import Language
 
-SQUARE = 2.5  # panel widths between the outer columns of a pad of one square, at most
+SQUARE = 2.5  # maximum panel widths between the outer columns of a pad of one square
 LEGEND_OFF = 14.0  # pixels between the song's words and a legend below them
-RUNS_TOP, RUNS_BOTTOM = 0.84, 0.93  # share of the picture's height, for the name of a run without a box or a header
+RUNS_TOP, RUNS_BOTTOM = 0.84, 0.93  # shares of the picture's height: the name of a run without a box or a header
 RUNS_OFF = 9.0  # pixels between the header and the name of a run
 SeenAt = Callable[[Sequence[Moment]], NDArray[np.float64]]
 
 
 @dataclass(frozen=True, slots=True)
 class PartBoxes:
-    """Where the parts of a layout are in a picture, pixels. breadth : the number of columns by which boxes are chosen
+    """The boxes of a layout's parts in a picture, pixels. breadth : the number of columns by which boxes are chosen
 
     A pad of one square has the usual boxes, also with six panels.
     """
@@ -49,23 +49,23 @@ class PartBoxes:
 
     @classmethod
     def of(cls, plan: FilmPlan) -> PartBoxes:
-        """The boxes of a film."""
+        """Return the boxes of a film."""
         columns = len(plan.directions)
         square = plan.pad is not None and float(np.ptp(np.asarray(plan.pad.panels)[:, 0])) < SQUARE
         return cls(plan.look.layout, plan.look.size, min(columns, WIDE_PAD) if square else columns)
 
     @property
     def scale(self) -> float:
-        """How many pixels one pixel of the layout's default size has become."""
+        """The number of pixels that one pixel of the layout's default size becomes in this picture."""
         return self.layout.scale(self.size)
 
     def box(self, name: str) -> PixelBox:
-        """Of a part of the layout: "dancer", "highway" ..."""
+        """Return the box of a part of the layout: "dancer", "highway" ..."""
         return self.layout.box(name, self.size, self.breadth)
 
 
 class WordStyle(NamedTuple):
-    """In which letters, colours and language the words of a film are."""
+    """The typeface, colours and language of a film's words."""
 
     face: Typeface
     highway: HighwayStyle
@@ -74,7 +74,10 @@ class WordStyle(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """The words of a film, each in its place; None: the film has none. feet : the box of the pad from above"""
+    """The words of a film in their places; None for words that the film does not have.
+
+    feet : the box of the pad from above
+    """
 
     header: Header | None
     legend: Legend | None
@@ -86,12 +89,13 @@ class Placement:
 def placement(plan: FilmPlan, boxes: PartBoxes, style: WordStyle, seen: SeenAt | None, turned: bool) -> Placement:
     """Find the places of all words of a film.
 
-    seen : where the heads and feet of the dancers are in the dancer's box at these moments, (n, 4); None without them
+    seen : returns the boxes of the dancers' heads and feet in the dancer's box at these moments, (n, 4); None without
+        dancers
     turned : whether the dancer faces the viewer
     """
 
     def taken(moments_of: Callable[[], list[Moment]]) -> NDArray[np.float64]:
-        """The same in the picture, with an edge around them."""
+        """Return the boxes of heads and feet in the picture, with an edge around them."""
         if seen is None:
             return np.zeros((0, 4))
         left, top, _, _ = boxes.box("dancer")
@@ -114,12 +118,12 @@ def placement(plan: FilmPlan, boxes: PartBoxes, style: WordStyle, seen: SeenAt |
 
 
 def _below(box: PixelBox, header: Header | None, off: float) -> PixelBox:
-    """A box that keeps clear of the song's words, which may be many."""
+    """Return a box, moved down so that it keeps clear of the song's words, which may be many."""
     return box if header is None else header.clear(box, off)
 
 
 def _feet_box(plan: FilmPlan, boxes: PartBoxes, header: Header | None) -> PixelBox | None:
-    """Where the feet from above are; two dancers leave no room for them beside the dancers' own picture."""
+    """Return the box of the feet from above; None if there is no room for them beside the picture of two dancers."""
     if (part := boxes.layout.feet) is None or not (part.wide or boxes.breadth <= WIDE_PAD):
         return None
     box = boxes.box("feet")
@@ -131,7 +135,7 @@ def _feet_box(plan: FilmPlan, boxes: PartBoxes, header: Header | None) -> PixelB
 def _legend(
     plan: FilmPlan, boxes: PartBoxes, style: WordStyle, header: Header | None, feet: PixelBox | None, turned: bool
 ) -> Legend | None:
-    """The legend, below the song's words and the box of the feet where it would overlap them."""
+    """Return the legend, moved below the song's words and the box of the feet if it would overlap them."""
     if (part := boxes.layout.legend) is None:
         return None
     scale = boxes.scale * part.text
@@ -152,7 +156,7 @@ def _legend(
 
 
 def _runs(plan: FilmPlan, boxes: PartBoxes, style: WordStyle, header: Header | None) -> Runs:
-    """The label stands in its box, otherwise below the header, otherwise at the bottom of the picture."""
+    """Return the labels of the runs, in their own box, below the header, or at the bottom of the picture."""
     layout, (width, height), scale = boxes.layout, boxes.size, boxes.scale
     box: tuple[float, ...] = 0, RUNS_TOP * height, width, RUNS_BOTTOM * height
     if layout.runs is not None:
@@ -166,20 +170,20 @@ def _runs(plan: FilmPlan, boxes: PartBoxes, style: WordStyle, header: Header | N
 
 # Room for words beside the dancer: the part of a box into which neither her head nor her feet come.
 
-CALLS_FROM, CALLS_HIGH = 0.5, 150.0  # where calls begin at the leftmost, share of her box; pixels of their box
-CALLS_WIDE, CALLS_OFF = 140.0, 8.0  # pixels that they need at least, and to her head and feet
-MOMENT_STEP, MOST_MOMENTS = 0.1, 400  # seconds between the moments that are looked at, and how many at most
+CALLS_FROM, CALLS_HIGH = 0.5, 150.0  # leftmost start of calls, share of the dancer's box; height of their box, pixels
+CALLS_WIDE, CALLS_OFF = 140.0, 8.0  # minimum width of calls, and their distance to her head and feet, pixels
+MOMENT_STEP, MOST_MOMENTS = 0.1, 400  # seconds between the moments that are checked, and their maximum number
 
 
 class CallsRoom(NamedTuple):
-    """Where calls may stand, pixels, and how large they are."""
+    """The box in which calls may stand, pixels, and the scale of their letters."""
 
     box: PixelBox
     scale: float
 
 
 def calls_room(boxes: PartBoxes, title_end: tuple[float, float] | None) -> CallsRoom:
-    """The box of the calls: the layout's, otherwise at the top right of the dancer's; below a long title.
+    """Return the box of the calls: the layout's own, or the top right of the dancer's box; below a long title.
 
     title_end : right and bottom of the song's title
     """
@@ -199,7 +203,7 @@ def calls_room(boxes: PartBoxes, title_end: tuple[float, float] | None) -> Calls
 
 
 def moments(callouts: Sequence[Callout], passes: Sequence[Pass]) -> list[Moment]:
-    """Moments at which passages are called out, of one pass of each rate; at most `MOST_MOMENTS` of each."""
+    """Return moments at which passages are called out, at most `MOST_MOMENTS` of one pass for each rate."""
     found: list[Moment] = []
     for rate, one in {one.rate: one for one in passes}.items():
         spans = [(max(call.begin, one.start), min(max(call.end, call.second), one.end)) for call in callouts]
@@ -212,7 +216,10 @@ def moments(callouts: Sequence[Callout], passes: Sequence[Pass]) -> list[Moment]
 
 
 def dancing(presses: Presses, passes: Sequence[Pass]) -> list[Moment]:
-    """Moments from the first to the last step of a pass, for one pass of each rate; all of a pass without steps."""
+    """Return moments from the first to the last step of one pass for each rate.
+
+    A pass without steps has moments from its start to its end.
+    """
     first, last = float(presses.start.min(initial=math.inf)), float(presses.end.max(initial=-math.inf))
     found: list[Moment] = []
     for rate, one in {one.rate: one for one in passes}.items():
@@ -225,10 +232,10 @@ def dancing(presses: Presses, passes: Sequence[Pass]) -> list[Moment]:
 
 
 def clear(box: PixelBox, taken: NDArray[np.float64], least: float) -> PixelBox:
-    """The part of a box to the right of the taken places, at least `least` pixels wide.
+    """Return the part of a box to the right of the taken places, at least `least` pixels wide.
 
-    If there is no such room beside the dancer, the box stands lower, beside her trunk; otherwise on her left; otherwise
-    as it is.
+    If there is no such room beside the dancer's head, the box moves down beside her trunk, or to her left. If no place
+    has enough room, the box is unchanged.
 
     taken : float64 (n, 4), left, top, right and bottom of heads and feet, pixels
     """
@@ -244,7 +251,10 @@ def clear(box: PixelBox, taken: NDArray[np.float64], least: float) -> PixelBox:
 
 
 def _heights(box: PixelBox, taken: NDArray[np.float64], edge: float) -> list[int]:
-    """How far down a box may stand: not at all, or below what reaches over `edge` there, but above the feet."""
+    """Return the pixels by which a box may move down.
+
+    They are 0, and the distance to below the places that reach over `edge`, if the box then stays above the feet.
+    """
     high = taken[(taken[:, 2] > edge) & (taken[:, 1] < box[3])]
     down = max(0, int(np.ceil(high[:, 3].max(initial=box[1]))) - box[1])
     return [0, down] if box[3] + down <= taken[:, 3].max(initial=0) else [0]
@@ -253,29 +263,32 @@ def _heights(box: PixelBox, taken: NDArray[np.float64], edge: float) -> list[int
 # Words that the dancer walks through on her way onto the pad or off it are hidden until she has passed.
 
 FADE = 0.3  # seconds of the film in which words come and go
-PASSING_STEP = 1 / 15  # seconds of the film between the moments that are looked at
-MOST_PASSING = 3000  # number of these moments
+PASSING_STEP = 1 / 15  # seconds of the film between the moments that are checked
+MOST_PASSING = 3000  # maximum number of these moments
 Covered = Callable[[NDArray[np.float64], float], NDArray[np.bool_]]
 
 
 @dataclass(frozen=True, slots=True)
 class Stay:
-    """From when to when words stand in the picture, seconds of the music; rate : of the pass."""
+    """The time in which words stand in the picture, seconds of the music; rate : the speed of the pass."""
 
     since: float = -math.inf
     until: float = math.inf
     rate: float = 1.0
 
     def opacity(self, second: float) -> float:
-        """How visible the words are, 0 to 1."""
+        """Return the opacity of the words, 0 to 1."""
         return min(1.0, max(0.0, min(second - self.since, self.until - second) / (FADE * self.rate)))
 
 
 def stay(one: Pass, presses: Presses, covered: Covered) -> Stay:
-    """When words stand in a pass: from when the dancer has walked past them before the first step, to when she leaves.
+    """Return the time in which words stand in the picture during a pass.
 
-    covered : for seconds of the music (n,) and the step that she walks to or from, whether she walks behind them then;
-    made from the whole pass, so that a frame does not depend on which process draws it
+    They appear when the dancer has walked past them before the first step, and disappear before she walks past them
+    after the last step. The time is found for the whole pass, so that a frame does not depend on the process that draws
+    it.
+
+    covered : for seconds of the music (n,) and the step that she walks to or from, whether she walks behind the words
     """
     if not len(presses):
         return Stay()

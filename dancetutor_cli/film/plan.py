@@ -26,17 +26,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class FilmPlan:
-    """Everything about a film before the first frame; worker processes get it pickled.
+    """All data of a film that exist before its first frame. Worker processes get the plan pickled.
 
-    beats : float64 (clock.frames,), the beat each frame shows, as drawn
-    directions : per column, degrees clockwise from up, None for a middle panel
-    character : who dances, the motions are for its skeleton; None for the project's own dancer
-    scroll_bpm : the tempo of which M mods make their speed
-    speeds : float64 (clock.frames,), how far apart notes are drawn in each frame; None: always 1
-    motions : each dancer's at each rate of the clock's passes, in seconds of the music as it is heard there; none where
-        the layout has no dancer; rows : the play's, for the next rows' pads
+    beats : float64 (clock.frames,), the beat that each frame shows, as drawn
+    directions : for each column, degrees clockwise from up, None for a middle panel
+    character : the character who dances, whose skeleton the motions are for; None for the project's own dancer
+    scroll_bpm : the tempo from which M mods make their speed
+    speeds : float64 (clock.frames,), the factor of the distances between notes in each frame; None: always 1
+    motions : the motion of each dancer at each rate of the clock's passes, in seconds of the music as it is heard at
+        that rate; empty for a layout without a dancer
+    rows : the rows of the play, for the pads of the next rows
     callouts : words in the picture; cues : moves for the subtitles
-    fade : seconds of the film at its end in which the picture goes dark
+    fade : seconds at the end of the film in which the picture goes dark
     """
 
     look: FilmLook
@@ -64,7 +65,7 @@ class FilmPlan:
         return max((len(some) for some in self.motions.values()), default=0)
 
     def light(self, frame: int) -> float:
-        """How bright a frame's picture is, 0 to 1: less and less towards the end, 0 in the last frame."""
+        """Return the brightness of a frame, 0 to 1: it falls towards the end of the film, to 0 in the last frame."""
         left = (self.clock.frames - 1 - frame) / self.clock.fps
         return left / self.fade if left < self.fade else 1.0
 

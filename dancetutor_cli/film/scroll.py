@@ -1,4 +1,4 @@
-"""How fast notes scroll: the games' C, X and M modifiers, and the scroll and speed segments of a chart."""
+"""The scroll speed of notes: the games' C, X and M modifiers, and the scroll and speed segments of a chart."""
 
 from __future__ import annotations
 
@@ -22,32 +22,34 @@ Beats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Scroll:
-    """Speed of the notes. `mode` "C": `value` beats a minute whatever the song does; "X": times the song's own beats;
-    "M": like X, so that the fastest part of the chart that matters (`reading_bpm`) scrolls like C at `value`. One beat
-    is one arrow's spacing at 1.
+    """The speed of the notes. At a value of 1, one beat is the spacing of one arrow.
+
+    mode : "C": `value` beats a minute at any tempo; "X": `value` times the song's own beats; "M": like X, with the
+        tempo of `reading_bpm` scrolling like C at `value`
     """
 
     mode: str
     value: float
 
     def factor(self, scroll_bpm: float) -> float:
-        """Arrow spacings per second (C) or per beat (X and M); scroll_bpm : for M."""
+        """Return the arrow spacings per second (C) or per beat (X and M); scroll_bpm : the tempo for M."""
         if self.mode == "C":
             return self.value / 60
         return self.value if self.mode == "X" else self.value / max(scroll_bpm, 1.0)
 
 
-READ = 0.9  # part of the time with notes that is at most as fast as what an M mod takes for the fastest part
-REST = 1.0  # seconds until the next note that count at most
+READ = 0.9  # share of the time with notes that is no faster than the tempo of an M mod
+REST = 1.0  # maximum weight of the time until the next note, seconds
 
 
 def reading_bpm(seconds: Seconds, beats: Beats, speeds: NDArray[np.float64]) -> float | None:
-    """The beats a minute, as drawn, of a chart's notes without the fastest tenth; None if there is no tempo.
+    """Return the highest tempo of a chart without the fastest tenth of its time, in beats a minute as drawn.
 
-    The games take the song's displayed or highest tempo. With a gimmick burst, which may be sixteen times as fast, or
-    with tempos written at an eighth and #SCROLLS of 8, the notes would overlap or fly past.
+    None if there is no tempo. The games take the song's displayed or highest tempo. With a gimmick burst, which may be
+    sixteen times as fast, or with tempos written at an eighth and #SCROLLS of 8, the notes would overlap or fly past.
 
-    seconds, beats : of the rows, float64 (r,), ascending, beats as drawn; speeds : factor of the speed segments there
+    seconds, beats : the time of the rows, float64 (r,), ascending, beats as drawn
+    speeds : the factor of the speed segments at each row
     """
     length = np.diff(seconds)
     here = length > 1e-4
@@ -63,7 +65,7 @@ def reading_bpm(seconds: Seconds, beats: Beats, speeds: NDArray[np.float64]) -> 
 
 
 def parse_scroll(text: str) -> Scroll:
-    """ "C600", "X2", "2x" or "M600"; UsageError says what is allowed."""
+    """Parse a scroll speed such as "C600", "X2", "2x" or "M600"; UsageError shows the allowed values."""
     match = re.fullmatch(r"([CXM])(\d+(?:\.\d+)?)|(\d+(?:\.\d+)?)([XCM])", text.strip().upper())
     if match:
         mode, value = (match[1], match[2]) if match[1] else (match[4], match[3])
@@ -76,13 +78,13 @@ def parse_scroll(text: str) -> Scroll:
 
 @dataclass(frozen=True, slots=True)
 class ScrollSegments:
-    """#SCROLLS of a chart: from each beat on, notes move `ratio` times as far per beat. Beats ascend."""
+    """#SCROLLS of a chart: from each of `beats`, notes move `ratios` times as far per beat. The beats ascend."""
 
     beats: Beats
     ratios: NDArray[np.float64]
 
     def drawn_beats(self, beat: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The beats as they are drawn: the integral of the ratios."""
+        """Return the beats as they are drawn: the integral of the ratios."""
         if len(self.beats) == 0:
             return beat
         starts = np.concatenate([[0.0], np.cumsum(np.diff(self.beats) * self.ratios[:-1])])
@@ -92,7 +94,7 @@ class ScrollSegments:
 
 
 def parse_segments(text: str) -> ScrollSegments:
-    """Read a #SCROLLS value, "beat=ratio,..."; entries that make no sense are left out, as the games do."""
+    """Read a #SCROLLS value, "beat=ratio,..."; invalid entries are left out, as in the games."""
     found: dict[float, float] = {}
     for entry in text.split(","):
         left, equals, right = entry.partition("=")
@@ -110,10 +112,12 @@ def parse_segments(text: str) -> ScrollSegments:
 
 @dataclass(frozen=True, slots=True)
 class SpeedSegments:
-    """#SPEEDS of a chart: how far apart all notes are drawn, as a factor that changes while the song runs; s segments.
+    """#SPEEDS of a chart: a factor of the distances between all notes, which changes during the song; s segments.
 
-    start, end : float64 (s,), seconds of the music, ascending: from start to end the factor goes evenly from that of
-    the segment before (1 before the first) to ratio : float64 (s,), and stays there. With C mods games leave it out.
+    From start to end of a segment, the factor changes evenly from the ratio of the segment before (1 before the first)
+    to this segment's ratio, and stays there. The games ignore the factor with C mods.
+
+    start, end : float64 (s,), seconds of the music, ascending; ratio : float64 (s,)
     """
 
     start: Seconds
@@ -121,7 +125,7 @@ class SpeedSegments:
     ratio: NDArray[np.float64]
 
     def at(self, seconds: Seconds) -> NDArray[np.float64]:
-        """The factor at each second."""
+        """Return the factor at each second."""
         if len(self.start) == 0:
             return np.ones(len(seconds))
         index = np.searchsorted(self.start, seconds, side="right") - 1
@@ -130,7 +134,7 @@ class SpeedSegments:
         length = self.end[here] - self.start[here]
         passed = np.divide(seconds - self.start[here], length, out=np.ones(len(seconds)), where=length > 0)
         factor = before + (self.ratio[here] - before) * np.minimum(passed, 1.0)
-        # Before the first segment a sudden one holds already, and one that takes time has not begun.
+        # Before the first segment: the ratio of a sudden segment already applies, a gradual one has not begun.
         early = 1.0 if self.end[0] > self.start[0] else float(self.ratio[0])
         return np.asarray(np.where(index < 0, early, factor))
 
@@ -138,7 +142,9 @@ class SpeedSegments:
 def parse_speeds(text: str, seconds_of: Callable[[Beats], Seconds]) -> SpeedSegments:
     """Read a #SPEEDS value, "beat=ratio=length=unit,..." with a length in beats (unit 0) or seconds (unit 1).
 
-    seconds_of : second of the music of each beat. Entries that make no sense are left out, as the games do.
+    Invalid entries are left out, as in the games.
+
+    seconds_of : returns the second of the music of each beat
     """
     found: dict[float, tuple[float, float, bool]] = {}
     for entry in text.split(","):
@@ -158,15 +164,15 @@ def parse_speeds(text: str, seconds_of: Callable[[Beats], Seconds]) -> SpeedSegm
 
 
 def segments_of(song: Song, chart: Chart) -> ScrollSegments:
-    """The chart's #SCROLLS."""
+    """Return the chart's #SCROLLS."""
     return parse_segments(_timing_tag(song, chart, "SCROLLS"))
 
 
 def speeds_of(song: Song, chart: Chart) -> SpeedSegments:
-    """The chart's #SPEEDS."""
+    """Return the chart's #SPEEDS."""
     return parse_speeds(_timing_tag(song, chart, "SPEEDS"), chart.timing.seconds_of_beats)
 
 
 def _timing_tag(song: Song, chart: Chart, name: str) -> str:
-    """A timing tag as it holds for the chart: its own if it has split timing, else the song's."""
+    """Return a timing tag: the chart's own if the chart has split timing, else the song's."""
     return (song.tags if chart.timing is song.timing else chart.tags).get(name, "")

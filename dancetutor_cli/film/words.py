@@ -1,4 +1,4 @@
-"""The names of moves in films: one table of a dancer's words in each language, for callouts and for subtitles."""
+"""The names of moves in films: a table of words for each language, which callouts and subtitles share."""
 
 from __future__ import annotations
 
@@ -17,14 +17,17 @@ if TYPE_CHECKING:
     from dancetutor_cli.run.languages import Language
 
 
-HOLD, MINE = "hold", "mine"  # a note held, a mine that a foot is on: not in `EVENTS`; neither are half turns
+HOLD, MINE = "hold", "mine"  # a hold, and a mine under a foot; `EVENTS` does not have them, nor half turns
 LIMBS = ("left-foot", "right-foot", "left-hand", "right-hand")  # labels of a language, by `feet.limbs.Limb`
-IMPLIED_BY_BRACKET = {"doublestep", "forced-doublestep"}  # the words of a bracket already say which foot it is
+IMPLIED_BY_BRACKET = {"doublestep", "forced-doublestep"}  # not named, because a bracket's words already name the foot
 _OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up"}
 
 
 def move_words(names: Iterable[str], path: Path, language: Language) -> dict[str, str]:
-    """The words of these moves, in their order; `path` : where they are named, for a FileError about one without."""
+    """Return the words of these moves, in their order; FileError for a move without words.
+
+    path : the file that names the moves, for the error
+    """
     table, names = language.moves, tuple(names)
     if unknown := set(names) - set(table):
         raise FileError(path, f"there is no move '{min(unknown)}'; choose {', '.join(sorted(table))}")
@@ -32,8 +35,7 @@ def move_words(names: Iterable[str], path: Path, language: Language) -> dict[str
 
 
 def filled(words: str, name: str, at: tuple[Play, int], view: PanelNames) -> list[str]:
-    """A move's words with the limb and the place: "right foot: heel on right, toe on up"; for several limbs, those of
-    each.
+    """Return a move's words with limb and place, "right foot: heel on right, toe on up"; one text for each limb.
 
     at : the play and the row
     """
@@ -53,8 +55,9 @@ def filled(words: str, name: str, at: tuple[Play, int], view: PanelNames) -> lis
 
 
 def _doers(name: str, limbs: list[int]) -> list[int]:
-    """The limbs of a move: for a bracket each foot on two panels, for a hand the hands, otherwise the first foot that
-    steps.
+    """Return the limbs of a move.
+
+    They are each foot on two panels for a bracket, the hands for a hand, otherwise the first foot that steps.
     """
     feet = [limb for limb in range(2) if limb in limbs][:1]
     if name == "bracket":
@@ -65,20 +68,23 @@ def _doers(name: str, limbs: list[int]) -> list[int]:
 
 
 def short_words(text: str) -> str:
-    """The words of a move without its limb and its reason, for the narrow place beside the notes: "toe on up"."""
+    """Return a move's words without its limb and its reason, for the narrow place beside the notes: "toe on up"."""
     return (text.partition(": ")[2] or text).partition(" (")[0]
 
 
 @dataclass(frozen=True, slots=True)
 class PanelNames:
-    """What the panels of a pad are called. turned : the dancer faces the viewer, and panels are named as seen then"""
+    """The names of a pad's panels. turned : the dancer faces the viewer, from whose side the panels are named"""
 
     pad: Pad
     turned: bool
     language: Language
 
     def name(self, column: int) -> str:
-        """Of a column, whichever pad of a double it is on: "up-left"; the pad's own name where no language has one."""
+        """Return the name of a column's panel, "up-left"; it is the same on both pads of a double.
+
+        A panel without a name in the language has the pad's own name.
+        """
         plain = re.sub(r"-\d+$", "", self.pad.names[column])
         seen = "-".join(_OPPOSITE.get(word, word) for word in plain.split("-")) if self.turned else plain
         return self.language.panels.get(seen, seen)

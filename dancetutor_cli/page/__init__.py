@@ -1,10 +1,10 @@
-"""The practice page: one HTML file in which the dancer plays a chart and waits for anyone who learns it.
+"""The practice page: one HTML file in which the dancer plays a chart and waits for the learner.
 
-    work                          a request in, a page out; a folder of them
-    content, facts                chart, feet and dancer as data; what is said of them in words
-    capture                       a capture beside what `retarget` made of it
-    document                      data, style and modules in one file that loads nothing
+    work                          makes a page from a request, or a folder of pages
+    content, facts                chart, feet and dancer as data; the words and facts about them
+    capture                       a capture beside the result of `retarget`
+    document                      one file of data, style and modules, which loads nothing
 
-The page itself is `js/`, `page.css`, `capture.css` and `index.css`, its words `configs/languages`;
-docs/page.schema.json says what the data are.
+The page itself is `js/`, `page.css`, `capture.css` and `index.css`. Its words are in `configs/languages`, and
+docs/page.schema.json describes its data.
 """

@@ -1,4 +1,4 @@
-"""The page of a capture: its own skeleton beside the dancer that follows it, and how far each point is away."""
+"""The page of a capture: its own skeleton beside the dancer who follows it, with the distance of each point."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 RATE = 60.0  # keys a second of points and skeleton
-STEP = 1e-3  # metres of a step of their places
+STEP = 1e-3  # step of the rounded coordinates of points and skeleton, metres
 
 
 @dataclass(frozen=True, slots=True)
 class CaptureContent:
-    """What the page is made of, at the keys (f,) of the output.
+    """The content of the page, at the keys (f,) of the output.
 
-    title : the capture's name; motion : the output, of `character`'s joints
-    names, before, after : (p,) of the points; (f, p, 3) where they are on input and output, metres
-    parents, skeleton : (j,), -1 for none, and (f, j, 3) of the capture's own joints, metres
+    title : the capture's name; motion : the output, for `character`'s joints
+    names : (p,), names of the points; before, after : (f, p, 3), their places on input and output, metres
+    parents, skeleton : (j,), -1 for none, and (f, j, 3), the places of the capture's own joints, metres
     """
 
     title: str
@@ -43,7 +43,7 @@ class CaptureContent:
 
 
 def capture_page(content: CaptureContent) -> bytes:
-    """The HTML file."""
+    """Return the page as an HTML file."""
     motion, character = content.motion, content.character
     blob = Blob()
     floor, times = floor_under(motion.root), motion.times

@@ -1,4 +1,4 @@
-"""What a page holds, as plain data: chart, feet, findings and passages, the dancer in few bytes."""
+"""The content of a page as plain data: chart, feet, findings and passages, and the dancer in few bytes."""
 
 from __future__ import annotations
 
@@ -35,23 +35,25 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.findings import Finding
 
 
-# The dancer for the page: her mesh as in a .glb, her motion on even clocks, in few bytes.
+# The dancer for the page, in few bytes: her mesh as in a .glb, her motion on even clocks.
 
 FAST, MEDIUM, SLOW = 120, 60, 30  # keys a second of legs and root, of arms, and of head and hair
-FINEST, COARSEST, HAIR, GRIPPING = 0.001, 0.002, 0.005, 0.0003  # metres of a joint's step: legs, others, hair, hands
-ROOT = 1e-4  # metres of a step of the root's place
-LEAST_W = 0.3  # of a rotation whose w follows from x, y and z
-SHORTEST = 0.05  # metres that every joint carries at least
-QUALITY = 86  # of the texture as WebP
-STILL = -2  # "parent" of a joint that no bone carries: the bar's
-_HEEL, _TOE = (0.0, -0.022), (0.0, 0.022)  # beyond ankle and ball, as in `film.scene.scene`
+FINEST, COARSEST, HAIR, GRIPPING = 0.001, 0.002, 0.005, 0.0003  # error of a joint: legs, others, hair, hands, metres
+ROOT = 1e-4  # step of the root's rounded coordinates, metres
+LEAST_W = 0.3  # smallest w of a rotation that is stored without w, which follows from x, y and z
+SHORTEST = 0.05  # smallest reach of a joint that is assumed, metres
+QUALITY = 86  # quality of the texture as WebP
+STILL = -2  # "parent" of the bar's joint, which no bone carries
+_HEEL, _TOE = (0.0, -0.022), (0.0, 0.022)  # (x, z) beyond ankle and ball, as in `film.scene.scene`
 
 
 def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float, pair: bool = False) -> dict[str, Any]:
-    """Add a character's mesh to the blob; returns what the page must know about it.
+    """Add a character's mesh to the blob and return its description for the page.
 
-    pair : the skins of the second of two are added, too, behind the first one's
-    bar : stands beside her, down to the height `floor`. Places have 1/65535 of the mesh's extent, normals 1/127.
+    Positions are rounded to 1/65535 of the mesh's extent, normals to 1/127.
+
+    bar : the bar beside the dancer, down to the height `floor`, metres
+    pair : whether the skins of a second dancer are added after the first dancer's
     """
     whole = with_bar(character, bar, floor)
     mesh = pack(whole)
@@ -91,7 +93,7 @@ def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float, p
                 "feet": first < mesh.feet,
                 "side": int(side[first]),
                 "limb": bool(mesh.skins.limb[material[first]]),
-                # of the dancer, and of a second one
+                # Skins of the dancer and of a second dancer.
                 "skin": [int(one.of_mesh[material[first]]) + k * len(skins[0].pyramids) for k, one in enumerate(skins)],
                 "tint": [one.tint[material[first]].tolist() for one in skins],
             }
@@ -106,7 +108,10 @@ def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float, p
 
 
 def marks(skeleton: Skeleton) -> list[dict[str, Any] | None]:
-    """The lines on the ground of left foot, right foot, left palm, right palm: two joints and places beside them."""
+    """Return the lines on the ground of left foot, right foot, left palm and right palm.
+
+    Each line has two joints, and its ends in their axes.
+    """
     rest, out = skeleton.rest, list[dict[str, Any] | None]()
     for side in "lr":
         if f"{side}_talocrural" not in skeleton.names or f"{side}_metatarsal" not in skeleton.names:
@@ -123,10 +128,11 @@ def marks(skeleton: Skeleton) -> list[dict[str, Any] | None]:
 
 
 def pack_motion(blob: Blob, motion: Motion, name: str) -> dict[str, Any]:
-    """Add a motion, on an even clock for each group of joints: fast where feet stand, slower for hair and head.
+    """Add a motion to the blob and return its description for the page.
 
-    Rotations are whole numbers of a step by which what hangs on the joint moves less than FINEST or COARSEST; where a
-    joint never turns far, w is left out, for it follows from the rest.
+    Each group of joints has an even clock: fast for legs and root, slow for hair and head. Rotations are whole numbers
+    of a step. One step moves the bones behind the joint by less than the error of its group, such as FINEST. For a
+    joint that never turns far, w is left out, because it follows from x, y and z.
     """
     groups, every = [], joint_groups(motion.skeleton)
     touching = bool(motion.grips) or any(contact.limb >= Limb.LEFT_HAND for contact in motion.contacts)
@@ -151,14 +157,14 @@ def pack_motion(blob: Blob, motion: Motion, name: str) -> dict[str, Any]:
 
 
 def _at(times: NDArray[np.float64], values: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Values (f, n) with keys `times`, at other times, straight between keys."""
+    """Interpolate values (f, n) with keys `times` linearly at other times."""
     after = np.clip(np.searchsorted(times, at, side="right"), 1, len(times) - 1)
     share = np.clip((at - times[after - 1]) / (times[after] - times[after - 1]), 0.0, 1.0)[:, None]
     return (1.0 - share) * values[after - 1] + share * values[after]
 
 
 def _bytes_that_sum(weights: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """Weights (v, 4) as bytes whose rows sum to 255: the largest takes what rounding leaves."""
+    """Return weights (v, 4) as bytes whose rows sum to 255; the largest weight absorbs the error of the rounding."""
     out = np.rint(weights * 255).astype(np.int64)
     rows = np.arange(len(out))
     out[rows, out.argmax(axis=1)] += 255 - out.sum(axis=1)
@@ -166,7 +172,7 @@ def _bytes_that_sum(weights: NDArray[np.float32]) -> NDArray[np.uint8]:
 
 
 def _by_side(mesh: PackedMeshes, skeleton: Skeleton) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
-    """Triangles (t, 3), the feet's first, of these the left one's; and 0 left, 1 right, 2 no foot."""
+    """Return triangles (t, 3) sorted by side, and the side of each: 0 left foot, 1 right foot, 2 no foot."""
     right = np.array([name.startswith("r_") for name in skeleton.names])
     mostly = (mesh.weights * right[mesh.joints]).sum(axis=1) > 0.5
     side = np.where(np.arange(len(mesh.triangles)) < mesh.feet, mostly[mesh.triangles[:, 0]], 2)
@@ -175,7 +181,7 @@ def _by_side(mesh: PackedMeshes, skeleton: Skeleton) -> tuple[NDArray[np.int32],
 
 
 def _runs(material: NDArray[np.int32], side: NDArray[np.int64]) -> list[tuple[int, int]]:
-    """First triangle and how many of each run of triangles of one material and one side."""
+    """Return the first triangle and the length of each run of triangles of one material and one side."""
     changes = np.flatnonzero((np.diff(material) != 0) | (np.diff(side) != 0)) + 1
     cuts = [0, *changes.tolist(), len(material)]
     return list(zip(cuts[:-1], np.diff(cuts).tolist(), strict=True))
@@ -187,23 +193,23 @@ def _webp(shape: tuple[int, ...], pixels: bytes) -> bytes:
     return texture_bytes(image, ".webp", quality=QUALITY, method=6)
 
 
-# What a page holds: chart, feet, findings and passages, the dancer and the look of the films, as plain data.
+# The content of a page as plain data: chart, feet, findings and passages, the dancer and the look of the films.
 
-SCHEMA = 2  # of the page's data; grows when an old page's script could not read it
+SCHEMA = 2  # version of the page's data, raised when an old page's script could not read them
 
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """Everything that one page is made of.
+    """The content of one page.
 
-    words : title, artist, badge, detail, credit, file, label, preset (all text of people, never markup)
-    notes : as the films draw them; ticks : int64 (n,), 1/48 beats, of the notes
+    words : title, artist, badge, detail, credit, file, label, preset (text written by people, never markup)
+    notes : the notes as the films draw them; ticks : int64 (n,), 1/48 beats, ticks of the notes
     beats : seconds of beats 0, 1, 2, ...
-    motions : the dancer's, and that of who dances beside her if there is one, both of `character`'s joints
-    second_name : what she plays; second_rows : the rows that she steps with other limbs
-    pair : the two are the players of a chart for two, in one picture, the second one in other colours
-    language : in which the page begins, "" for the browser's
-    passages : the hardest parts, ready for the page; flips : what other feet in a row would change, by row
+    motions : the motions of the dancer and of a second dancer if there is one, both for `character`'s joints
+    second_name : the name of the second dancer's play; second_rows : the rows that she steps with other limbs
+    pair : whether the dancers are the players of a chart for two, in one picture, the second in other colours
+    language : the language in which the page begins, "" for the browser's
+    passages : the hardest parts, ready for the page; flips : the changes by other feet in a row, for each row
     """
 
     words: Mapping[str, str]
@@ -222,11 +228,11 @@ class Content:
     flips: Sequence[Mapping[str, Any]] = ()
     pair: bool = False
     language: str = ""
-    music: tuple[str, bytes] | None = field(default=None, repr=False)  # its type ("audio/ogg"), and its file
+    music: tuple[str, bytes] | None = field(default=None, repr=False)  # media type ("audio/ogg") and bytes of the file
 
 
 def pack_content(content: Content) -> tuple[dict[str, Any], Blob]:
-    """The page's data: what is read as JSON, and the arrays it names."""
+    """Return the page's data: an object for JSON, and the arrays that it names."""
     blob = Blob()
     scene = Scene(content.character, content.pad)
     bar = content.motions[0].bar if content.motions else None
@@ -263,7 +269,7 @@ def pack_content(content: Content) -> tuple[dict[str, Any], Blob]:
 
 
 def pack_stage(scene: Scene) -> dict[str, Any]:
-    """The faces of a scene's stage, and the box that is always in the picture."""
+    """Return the faces of a scene's stage, and the box that is always in the picture."""
     low, high = scene.extent
     tiles = scene.stage.tiles
     return {
@@ -292,14 +298,14 @@ def _style() -> dict[str, Any]:
         "quantisation": [hex_colour(colour) for colour in style.quantisation.values()],
         "difficulty": {name: hex_colour(colour) for name, colour in style.difficulty.items()},
         "callout": {name: hex_colour(colour) for name, colour in style.callout.items()},
-        # beside the notes, whose markers say which foot it is: the move's name where a film says who does it
+        # Words beside the notes, whose markers show the foot: the move's name if a film's words name the limb.
         "callouts": {
             name: name.replace("-", " ") if "{" in words else words
             for name, words in callout_words(load_language()).items()
         },
         "limbs": [hex_colour(colour) for colour in limb_colours().by_limb],
         "limbs_rgb": [list(colour) for colour in limb_colours().by_limb],
-        # on an arrow's tail, in sizes of an arrow: how far from its middle, straight and diagonal, and how large
+        # The mark on an arrow's tail, in sizes of an arrow: distance from its middle, straight and diagonal, and size.
         "mark": {"aside": [round(far / style.arrow, 4) for far in style.mark_aside], "size": style.mark_tail / 2},
         "flash": style.flash_seconds,
         "panel": style.panel_seconds,

@@ -1,4 +1,4 @@
-"""One HTML file out of template, style, ES modules and data; nothing in it is loaded from elsewhere. And an index."""
+"""One HTML file of template, style, ES modules and data, which loads nothing from elsewhere; and an index of pages."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from dancetutor_cli.run.html import page
 from dancetutor_cli.run.languages import Language, load_language
 from dancetutor_cli.run.reading import config_names
 
-# Numbers for the page: arrays in one compressed block, in a form that compresses well and is quick to read back.
+# The numbers of a page: arrays in one compressed block, in a form that compresses well and is fast to read.
 
 _DTYPES = {"u1": np.uint8, "i1": np.int8, "u2": np.uint16, "i2": np.int16, "u4": np.uint32, "i4": np.int32,
            "f4": np.float32, "f8": np.float64}  # fmt: skip
 
 
 class Blob:
-    """Collects arrays under names; `js/blob.js` reads them."""
+    """A block of named arrays, which `js/blob.js` reads."""
 
     def __init__(self) -> None:
         self._parts: list[bytes] = []
@@ -42,15 +42,17 @@ class Blob:
     def add(self, name: str, values: NDArray[Any], kind: str, differences: int = 0) -> None:
         """Add an array as little-endian numbers of a kind ("i2", "f4", ...).
 
-        differences : 0, 1 or 2: how often each row (the last axis) of whole numbers is replaced by its differences;
-        these are stored with the sign as the lowest bit, so that small ones have empty high bytes.
-        Numbers of more than a byte are stored byte by byte: first all low ones, which vary, then those that repeat.
+        Numbers of more than a byte are stored byte by byte: first all low bytes, which vary, then the bytes that
+        repeat.
+
+        differences : 0, 1 or 2, the number of times that each row (the last axis) of whole numbers is replaced by its
+            differences. Differences have the sign as their lowest bit, so that small numbers have empty high bytes
         """
         array = np.ascontiguousarray(values, dtype=np.dtype(_DTYPES[kind]).newbyteorder("<"))
         row = array.shape[-1] if array.ndim else 1
         for _ in range(differences):
             first = np.zeros((*array.shape[:-1], 1), dtype=array.dtype)
-            array = np.diff(array, axis=-1, prepend=first)  # wraps round, and so does adding up
+            array = np.diff(array, axis=-1, prepend=first)  # an overflow wraps round, and so does the sum
         if differences:
             signed = array.view(np.dtype(f"<i{array.dtype.itemsize}"))
             array = (signed << 1) ^ (signed >> (8 * array.dtype.itemsize - 1))
@@ -61,22 +63,22 @@ class Blob:
         self._size += len(data)
 
     def add_bytes(self, name: str, data: bytes) -> None:
-        """Add bytes as they are, for example an image."""
+        """Add bytes without a change, for example an image."""
         self.add(name, np.frombuffer(data, dtype=np.uint8), "u1")
 
     def sizes(self) -> dict[str, int]:
-        """Compressed bytes of each array alone, for reports."""
+        """Return the number of compressed bytes of each array alone, for reports."""
         return {name: len(zlib.compress(data, 1)) for name, data in zip(self.index, self._parts, strict=True)}
 
     def whole(self) -> bytes:
-        """All of it, not compressed yet."""
+        """Return the whole block, uncompressed."""
         return b"".join(self._parts)
 
 
-# ES modules put together into one script, without Node: each becomes a function that gives what it exports.
+# A bundle of ES modules in one script, without Node: each module becomes a function that returns its exports.
 #
-# What modules here may do: `import { a, b as c } from "./x.js";` at the start of a line, and `export` before a
-# function, class or const. No default exports, no circles.
+# Modules of this package may use `import { a, b as c } from "./x.js";` at the start of a line, and `export` before a
+# function, class or const. Default exports and circles are not allowed.
 
 _IMPORT = re.compile(r'^import\s*\{([^}]*)\}\s*from\s*"\./([\w-]+)\.js";\n?', re.MULTILINE)
 _EXPORT = re.compile(r"^export\s+((?:async\s+)?(?:function\*?|class|const)\s+(\w+))", re.MULTILINE)
@@ -84,9 +86,9 @@ _LEFT = re.compile(r"^\s*(?:import\s+[^(\s]|export\s+\S)", re.MULTILINE)
 
 
 def bundle(folder: Path, main: str) -> str:
-    """The script of module `main` and all that it imports, each module once, before anyone who needs it.
+    """Return the script of module `main` and all modules that it imports, each once and before its users.
 
-    Raises ValueError for a form of import or export that is none of those above, and for a circle.
+    Raises ValueError for another form of import or export than the forms above, and for a circle.
     """
     done: list[str] = []
     out: list[str] = []
@@ -122,17 +124,17 @@ def _variable(name: str) -> str:
     return "$" + name.replace("-", "_")
 
 
-# One HTML file out of the template, the style, the ES modules and the data; nothing in it is loaded from elsewhere.
+# The HTML file of the template, the style, the ES modules and the data.
 
 HERE = Path(__file__).resolve().parent
 _PLACE = re.compile(r"\{\{(\w+)\}\}")
 
 
 def document(doc: Mapping[str, Any], blob: Blob, music: bytes | None = None, kind: str = "page") -> bytes:
-    """The whole page.
+    """Return the whole page.
 
-    doc : see `content.pack_content` and `capture.capture_page`; music : the song's file, to be put into the page
-    kind : "page" of a chart, or "capture": which module begins it, and its style
+    doc : see `content.pack_content` and `capture.capture_page`; music : the song's file for the page
+    kind : "page" for a chart, or "capture", which selects the main module and the style
     """
     full = {**doc, "languages": languages(), "shaders": shaders()}
     head = json.dumps(full, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode("utf-8")
@@ -146,24 +148,24 @@ def document(doc: Mapping[str, Any], blob: Blob, music: bytes | None = None, kin
 
 
 def whole(policy: str, title: str, style: str, body: str) -> bytes:
-    """An HTML file with this Content-Security-Policy; body : markup, title : text."""
-    icon = '<link rel="icon" href="data:,">\n'  # else browsers ask for one
+    """Return an HTML file with this Content-Security-Policy; body : markup; title : text."""
+    icon = '<link rel="icon" href="data:,">\n'  # prevents a request of the browser for an icon
     return page(policy, title, style, body, head=icon).encode("utf-8")
 
 
 def listed(title: str, items: str, style: str) -> bytes:
-    """A page without script: a heading and markup below it."""
+    """Return a page without script: a heading and markup below it."""
     rules = f"default-src 'none'; style-src '{hash_of(style)}'; img-src data:; base-uri 'none'; form-action 'none'"
     return whole(rules, title, style, _fill("index.html", {"title": html.escape(title), "songs": items}))
 
 
 def _fill(template: str, values: Mapping[str, str]) -> str:
-    """A template of this package with each {{name}} replaced, once: what is filled in is not looked at again."""
+    """Return a template of this package with each {{name}} replaced once; a value is not searched for names again."""
     return _PLACE.sub(lambda found: values[found[1]], (HERE / template).read_text("utf-8"))
 
 
 def policy(script: str, style: str) -> str:
-    """Content-Security-Policy: this script and this style, pictures and sound made in the page, and no network."""
+    """Return a Content-Security-Policy: only this script and style, pictures and sound of the page, and no network."""
     return (
         f"default-src 'none'; script-src '{hash_of(script)}'; style-src '{hash_of(style)}'; "
         "img-src blob: data:; media-src blob:; base-uri 'none'; form-action 'none'"
@@ -171,13 +173,13 @@ def policy(script: str, style: str) -> str:
 
 
 def hash_of(text: str) -> str:
-    """How a policy names a script or a style that stands in the page."""
+    """Return the hash by which a policy names a script or a style in the page."""
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode("utf-8")).digest()).decode("ascii")
 
 
 @cache
 def languages() -> dict[str, dict[str, str]]:
-    """The page's labels, by language and name."""
+    """Return the page's labels, by language and name."""
     return {name: _labels(load_language(name)) for name in config_names("languages")}
 
 
@@ -189,7 +191,7 @@ def _labels(words: Language) -> dict[str, str]:
 
 @cache
 def shaders() -> dict[str, str]:
-    """The dancer's shaders of the films as WebGL reads them, and the page's own for the stage."""
+    """Return the films' shaders for the dancer in the form for WebGL, and the page's own shaders for the stage."""
     films = {name: web_source((SHADERS / name).read_text("utf-8")) for name in ("skinned.vert", "dancer.frag")}
     own = {path.name: path.read_text("utf-8") for path in sorted((HERE / "shaders").iterdir())}
     return {**films, **own}
@@ -200,7 +202,7 @@ def shaders() -> dict[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class IndexEntry:
-    """One page. file : its name in the folder; title, artist : of the song; label : of the chart"""
+    """A page in an index. file : its name in the folder; title, artist : words of the song; label : the chart's label"""
 
     file: str
     title: str
@@ -209,7 +211,7 @@ class IndexEntry:
 
 
 def index_page(entries: Sequence[IndexEntry], title: str) -> bytes:
-    """The page that leads to the others; songs in the order given, names never as markup."""
+    """Return the page that links to the others; songs keep their order, and names are never markup."""
     style = (HERE / "index.css").read_text("utf-8")
     songs = []
     for (name, artist), group in groupby(entries, key=lambda one: (one.title, one.artist)):

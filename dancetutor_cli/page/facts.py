@@ -1,4 +1,4 @@
-"""What a page says of a song and a chart: words, places of notes, what the other foot would cost, tags."""
+"""The facts of a page about a song and a chart: words, places of notes, the cost of the other foot, tags."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ if TYPE_CHECKING:
     from dancetutor_cli.feet.preset import Preset
 
 
-# What a page says of a song and a chart: words, places of notes, seconds of beats.
+# The words of a song and a chart, the places of notes, and the seconds of beats.
 
-BEATS_AFTER = 16  # that the page knows after the last note
+BEATS_AFTER = 16  # number of beats in the page after the last note
 
 
-_LONGEST = 300  # letters of a title, an artist, a credit
+_LONGEST = 300  # maximum letters of a title, an artist, a credit
 
 
 def words_of(song: Song, chart: Chart, preset: str) -> dict[str, str]:
-    """Everything of people's that the page shows, as plain text; preset : its name."""
+    """Return all words written by people that the page shows, as plain text; preset : the preset's name."""
     return {
         "title": _cut(clean(" ".join(part for part in (song.title or song.path.stem, song.subtitle) if part))),
         "artist": _cut(clean(song.artist)),
@@ -56,29 +56,29 @@ def _cut(text: str) -> str:
 
 
 def ticks_of(chart: Chart) -> list[int]:
-    """Ticks of the notes in the order of `film.notes.note_track`."""
+    """Return the ticks of the notes in the order of `film.notes.note_track`."""
     return [int(tick) for tick in note_track(chart, None, parse_segments("")).tick]
 
 
 def beats_of(chart: Chart) -> list[float]:
-    """Second of each beat from 0 on, some beyond the last note."""
+    """Return the second of each beat from 0 to `BEATS_AFTER` beats after the last note."""
     last = max(int(chart.notes.tick.max(initial=0)), int(chart.notes.end.max(initial=0))) // TICKS_PER_BEAT
     ticks = np.arange(last + BEATS_AFTER, dtype=np.int64) * TICKS_PER_BEAT
     return [float(second) for second in chart.timing.seconds(ticks)]
 
 
-# What the other foot would cost: each row with its feet exchanged, and everything the solver steps otherwise then.
+# The cost of the other foot: each row with its feet exchanged, and all steps that the solver then changes.
 
-MOST_WORK = 4_000_000  # rows times rows: each flip solves the whole chart; 2000 rows are about half a minute
+MOST_WORK = 4_000_000  # rows times rows: each flip solves the whole chart; 2000 rows take about half a minute
 _FEET = (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)
 
 
 def flips_of(play: Play, pad: Pad, preset: Preset, overrides: Overrides) -> list[dict[str, Any]]:
-    """For each row that feet step: its number, what exchanging its feet costs more, and the cells that change.
+    """Return for each row with feet its number, the extra cost of exchanged feet, and the changed cells.
 
-    `extra` is exact: the cheapest play of the whole chart with these feet, less the cheapest of all; -1: nobody can
-    step it so. Of charts so long that it would take minutes only the first rows are reported. Rows that are laid down
-    by a person (`overrides`) keep what the rest says.
+    `extra` is exact: the least cost of a play of the whole chart with these feet, minus the least cost of any play. It
+    is -1 if nobody can step the row with these feet. For a very long chart, which would take minutes, only the first
+    rows are returned. All other feet that the author has set (`overrides`) stay.
     """
     most, total = MOST_WORK // max(len(play.rows), 1), play.total
     return [_flip(play, row, total, (pad, preset, overrides)) for row in islice(_rows(play), most)]
@@ -110,13 +110,13 @@ def _flip(play: Play, row: int, total: int, given: tuple[Pad, Preset, Overrides]
     }
 
 
-# What the feet do in a passage: tags, which the page words in its reader's language.
+# Tags for the moves of a passage, for which the page has words in its reader's language.
 
-_TURNED = 90.0  # degrees that are worth reporting
+_TURNED = 90.0  # smallest turn that is reported, degrees
 
 
 def tags(passage: Passage) -> list[tuple[str, int]]:
-    """Names of what the feet do, with their counts (degrees of `turn`), the steps first, then the most important."""
+    """Return the names of the moves with their counts (degrees for `turn`): first the steps, then by importance."""
     counted = (
         ("spin", passage.spins),
         ("crossover", sum(passage.crossovers)),
@@ -134,7 +134,7 @@ def tags(passage: Passage) -> list[tuple[str, int]]:
 
 
 def passage_object(passage: Passage, player: int = 0) -> dict[str, Any]:
-    """A passage as the page has it; player : whose it is where there are two, from 1."""
+    """Return the object of a passage for the page; player : its player in a chart for two, from 1."""
     return {
         "from": passage.first,
         "to": passage.last,
@@ -147,14 +147,14 @@ def passage_object(passage: Passage, player: int = 0) -> dict[str, Any]:
     }
 
 
-_PLAIN = 3.0  # steps a second below which steps alone make no passage
+_PLAIN = 3.0  # steps a second below which a passage of mere steps is not listed
 
 
 def without_repeats(passages: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Passages as the page lists them, the hardest first.
+    """Return the passages that the page lists, the hardest first.
 
-    `number` is the place among the hardest, as in `render --section hardest:3`. Those with the same tags are one, with
-    the measures of the rest in `again`; a few slow steps and nothing else are none.
+    `number` is the place among the hardest, as in `render --section hardest:3`. Passages with the same tags are one
+    entry, with the measures of the others in `again`. A passage of a few slow steps is left out.
     """
     out: dict[str, dict[str, Any]] = {}
     for number, one in enumerate(passages, 1):

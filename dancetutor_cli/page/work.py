@@ -1,4 +1,4 @@
-"""The piece of work of `page`: one chart in, its practice page out; and a folder of them with an index."""
+"""The work of `page`: the practice page of one chart, or a folder of pages with an index."""
 
 from __future__ import annotations
 
@@ -41,23 +41,25 @@ if TYPE_CHECKING:
     from dancetutor_cli.page.content import Content
 
 
-# The piece of work of `page`: one chart in, its practice page out.
+# The practice page of one chart.
 
 MUSIC_TYPES = {".ogg": "audio/ogg", ".oga": "audio/ogg", ".mp3": "audio/mpeg", ".wav": "audio/wav",
                ".flac": "audio/flac", ".opus": "audio/ogg"}  # fmt: skip
-MOST_MUSIC = 64_000_000  # bytes that are put into a page
+MOST_MUSIC = 64_000_000  # greatest size of the music in a page, bytes
 NEXT = "next"
 MOTION = ".npz"
 
 
 @dataclass(frozen=True, slots=True)
 class PageRequest:
-    """What page is wanted. Pickles, so that another process can make it.
+    """A request for a page. It can be pickled, so that another process can make the page.
 
-    dance : which chart, and how it is danced; character : who; music : the song's file goes into the page
-    beside : what a second dancer plays: NEXT, the next best play, the name or file of a preset, or a play as JSON; or
-        the .npz file of the motion that she has
-    jobs : processes for the pieces of a long song; language : in which the page begins, "" for the browser's
+    dance : the chart and the way of dancing it; character : the character who dances
+    music : whether the song's file goes into the page
+    beside : the play of a second dancer: NEXT for the next best play, the name or file of a preset, or a play as JSON;
+        or the .npz file of her motion
+    jobs : number of processes for the pieces of a long song
+    language : the language in which the page begins, "" for the browser's
     """
 
     dance: DanceRequest
@@ -70,7 +72,7 @@ class PageRequest:
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """A page that is made. blob, music : the arrays in it, and bytes of the song's file."""
+    """A finished page. blob : the arrays in it; music : size of the song's file in it, bytes"""
 
     html: bytes
     title: str
@@ -81,7 +83,7 @@ class Page:
 
     @property
     def sizes(self) -> dict[str, int]:
-        """Compressed bytes by part, for anyone who wants to know what weighs."""
+        """The number of compressed bytes of each part."""
         out = {"music": self.music} if self.music else {}
         for name, size in self.blob.sizes().items():
             part = name.partition(".")[0]
@@ -91,10 +93,10 @@ class Page:
 
 @dataclass(frozen=True, slots=True)
 class PageSubject:
-    """What a page is about: its chart is read and solved.
+    """The subject of a page: a chart that is read and solved.
 
-    solved : each player's part, one for most charts; warnings : lines for people, of presets for other pads
-    second : the motion of a file that a second dancer has
+    solved : the parts of the players, one for most charts; warnings : lines for people about presets for other pads
+    second : the motion of a second dancer, from a file
     """
 
     request: PageRequest
@@ -105,33 +107,33 @@ class PageSubject:
 
     @property
     def song(self) -> Song:
-        """The song."""
+        """The song of the chart."""
         return self.solved[0].song
 
     @property
     def chart(self) -> Chart:
-        """The chart that the page shows: of one for two as it is written."""
+        """The chart that the page shows; a chart for two as it is written, with both parts."""
         first = self.solved[0].chart
         return first if len(self.solved) == 1 else self.song.charts[first.index]
 
     @property
     def title(self) -> str:
-        """Of the song; that of its file where it has none."""
+        """The title of the song, or the name of its file if it has no title."""
         return self.song.title or self.song.path.stem
 
     @property
     def label(self) -> str:
-        """Of the chart, for people."""
+        """The label of the chart, for people."""
         return self.chart.label
 
 
 def make_page(request: PageRequest) -> Page:
-    """Read, solve, bake and pack. Raises a DancetutorError of one line for all that is wrong with the request."""
+    """Read, solve, bake and pack a chart. Raises a DancetutorError of one line for any error in the request."""
     return pack_page(look_up_page(request))
 
 
 def look_up_page(request: PageRequest) -> PageSubject:
-    """The quick part of `make_page`: read and solve."""
+    """Read and solve a chart, which is the fast part of `make_page`."""
     character = with_foot_colours(load_character(name_in_gait(request.character, request.dance.gait)))
     check_request(request.dance)
     choice = read_chart(request.dance)
@@ -144,7 +146,7 @@ def look_up_page(request: PageRequest) -> PageSubject:
 
 
 def pack_page(page: PageSubject) -> Page:
-    """The rest of it: bake and pack."""
+    """Bake the motions and pack the page, which is the slow part of `make_page`."""
     from dancetutor_cli.character.onto_skeleton import onto
     from dancetutor_cli.page.content import pack_content
 
@@ -161,7 +163,7 @@ def pack_page(page: PageSubject) -> Page:
 
 
 def _motions(request: PageRequest, solved: tuple[Solved, ...]) -> list[Motion]:
-    """Of each who dances, where she stands on the pad under all: nobody is seen to walk on or off."""
+    """Return the motion of each dancer at her place on the common pad, without walks onto the pad or off it."""
     performance = perform(solved, request.dance)
     whole = Cut(*performance.span, walks_on=False, walks_off=False)
     done = performance.motions(whole, run=pooled(request.jobs))
@@ -169,7 +171,7 @@ def _motions(request: PageRequest, solved: tuple[Solved, ...]) -> list[Motion]:
 
 
 def _second_play(page: PageSubject) -> tuple[Solved, ...]:
-    """The other play that a second dancer dances: the next best, another preset's, or a file's; empty if none is."""
+    """Return the play of a second dancer: the next best, another preset's, or a file's; empty without this dancer."""
     wanted, path, one = page.request.beside, page.request.dance.path, page.solved[0]
     if wanted is None or wanted.lower().endswith(MOTION):
         return ()
@@ -186,7 +188,7 @@ def _second_play(page: PageSubject) -> tuple[Solved, ...]:
 
 
 def _second_motion(request: PageRequest) -> Motion | None:
-    """The motion of a file, if a second dancer has that: of `animate`, or of a capture from `retarget`."""
+    """Return the motion of a second dancer from a file of `animate` or `retarget`, None if there is no such file."""
     from dancetutor_cli.formats.npz import read_npz
 
     if request.beside is None or not request.beside.lower().endswith(MOTION):
@@ -210,7 +212,7 @@ def _content(
     shown = play_of_all(solved, [playable(one, page.request.dance.rates) for one in solved])
     play = first.play if len(solved) == 1 else shown
     assert play is not None
-    # only of the solver's own play for one can it say what else would cost
+    # The costs of other feet are known only for the solver's own play for one player.
     alone = page.request.dance.play is None and len(solved) == 1
     return Content(
         words=words_of(page.song, chart, first.preset.name),
@@ -238,21 +240,21 @@ def _content(
 
 
 def _differing(other: Play | None, play: Play) -> list[int]:
-    """Rows that two plays step with other limbs."""
+    """Return the rows that two plays step with different limbs."""
     assert other is not None
     rows: list[int] = np.flatnonzero((other.limb != play.limb).any(axis=1)).tolist()
     return rows
 
 
 def _otherwise(motions: Sequence[Motion], play: Play) -> list[int]:
-    """Rows of a play that some motions' contacts, which know their rows, step with other limbs."""
+    """Return the rows of a play that the contacts of some motions step with other limbs."""
     limbs = play.limb
     touches = [c for motion in motions for c in motion.contacts if c.row < len(limbs) and c.column < limbs.shape[1]]
     return sorted({c.row for c in touches if limbs[c.row, c.column] != c.limb})
 
 
 def _findings(solved: tuple[Solved, ...]) -> Iterator[Finding]:
-    """What the linter finds; of two parts with whose it is."""
+    """Return the findings of the linter; in a chart for two, each with its player."""
     from dancetutor_cli.lint.check import findings_of
     from dancetutor_cli.lint.subject import subject_of
 
@@ -266,7 +268,7 @@ def _findings(solved: tuple[Solved, ...]) -> Iterator[Finding]:
 
 
 def _passages(solved: tuple[Solved, ...]) -> list[dict[str, Any]]:
-    """The hardest passages, the hardest first; of two parts with whose they are."""
+    """Return the hardest passages, the hardest first; in a chart for two, each with its player."""
     from dancetutor_cli.page.facts import passage_object, without_repeats
 
     pairs = [(found, one.chart) for one in solved if one.play for found in hardest(one.play, one.chart.timing)]
@@ -289,14 +291,14 @@ def _music(song: Song, chart: Chart) -> tuple[tuple[str, bytes] | None, tuple[st
         raise FileError(path, f"cannot be read: {error.strerror}") from error
 
 
-# A folder of charts: a practice page for each, and an index that leads to them.
+# The practice pages of a folder of charts, and an index with links to them.
 
 INDEX = "index.html"
 
 
 @dataclass(frozen=True, slots=True)
 class PageJob:
-    """One page of a batch: what to make, as which file, and how the index names it."""
+    """A page of a batch: its request, its file, and its entry in the index."""
 
     request: PageRequest
     target: Path
@@ -305,7 +307,7 @@ class PageJob:
 
 @dataclass(frozen=True, slots=True)
 class PageOutcome:
-    """A page that is written, or the error in its place."""
+    """The outcome of a page: it is written, or `error` says why not."""
 
     job: PageJob
     size: int = 0
@@ -316,9 +318,9 @@ class PageOutcome:
 def page_jobs(
     request: PageRequest, folder: Path, exclude: Sequence[str] = ()
 ) -> tuple[list[PageJob], list[tuple[Path, str]]]:
-    """The pages to make of all charts below `request.dance.path` that match, and the files that cannot be read.
+    """Return the pages of all matching charts below `request.dance.path`, and the files that cannot be read.
 
-    Charts without a pad, and those without notes, are left out. Files get names as films do.
+    Charts without a pad or without notes are left out. Files are named like the films of a batch.
     """
     from dancetutor_cli.film.overlay.text import clean
     from dancetutor_cli.film.work.batch import DEFAULT_NAME, chart_files, file_name
@@ -329,7 +331,7 @@ def page_jobs(
     for path in chart_files((request.dance.path,), exclude):
         try:
             song = load(path)
-        except NoChartsError:  # the music of a menu: nobody meant it to be danced
+        except NoChartsError:  # the music of a menu, which is not for dancing
             continue
         except (DancetutorError, OSError) as error:
             bad.append((path, str(error)))
@@ -351,7 +353,7 @@ def page_jobs(
 
 
 def make_all(jobs: list[PageJob], processes: int) -> Iterator[PageOutcome]:
-    """Make pages, in several processes; outcomes come as they are done."""
+    """Make pages in several processes, and yield each outcome when its page is done."""
     workers = open_workers(min(processes, max(len(jobs), 1)), lambda key, n: None)
     try:
         for k, job in enumerate(jobs):
@@ -364,7 +366,7 @@ def make_all(jobs: list[PageJob], processes: int) -> Iterator[PageOutcome]:
 
 
 def write_index(folder: Path, outcomes: list[PageOutcome], title: str) -> None:
-    """The index of what was made, in the order of the charts."""
+    """Write the index of the pages that were made, in the order of the charts."""
     write_atomic(folder / INDEX, index_page([one.job.entry for one in outcomes if one.error is None], title))
 
 

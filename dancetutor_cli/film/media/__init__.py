@@ -1,1 +1,1 @@
-"""What a film is besides its pictures: encoded files, sound, subtitles; all calls of ffmpeg."""
+"""The parts of a film besides its pictures: encoded files, sound, subtitles, and all calls of ffmpeg."""

@@ -1,4 +1,4 @@
-"""Frames to files: which encoders work here, one for each segment, joined without loss, music added."""
+"""The way from frames to files: choose an encoder, encode the segments, join them without loss and add the music."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.picture import Frame
 
 
-# Which encoders work here: each is tried with one frame, because a driver may be listed and still be missing.
+# The encoders that work here. Each is tried with one frame, because an encoder may be listed without its driver.
 
-# Options before the input that an encoder needs to find its device.
+# Options before the input with which an encoder finds its device.
 DEVICE: dict[str, tuple[str, ...]] = {
     "h264_vaapi": ("-vaapi_device", "/dev/dri/renderD128"),
 }
@@ -30,7 +30,7 @@ _SOUND = ("aac",)
 
 
 def works(encoder: str) -> str | None:
-    """None if ffmpeg encodes a frame (or a moment of sound) with it, otherwise one line that says why not."""
+    """Return None if ffmpeg encodes a frame (or a moment of sound) with this encoder, otherwise the reason."""
     source = "anullsrc=d=0.1" if encoder in _SOUND else "color=size=256x144:duration=0.04:rate=25"
     arguments = ("-f", "lavfi", "-i", source, *_BEFORE_ENCODER.get(encoder, ()))
     option = "-c:a" if encoder in _SOUND else "-c:v"
@@ -42,8 +42,9 @@ def works(encoder: str) -> str | None:
 
 
 def choose(wanted: str) -> Encoder:
-    """The encoder to use: "auto" takes NVENC if it works, otherwise x264. UnavailableError if the wanted one does not
-    work.
+    """Choose the encoder: "auto" takes NVENC if it works, otherwise x264.
+
+    UnavailableError if the wanted encoder does not work.
     """
     if wanted == "x264":
         return "x264"
@@ -57,7 +58,7 @@ def choose(wanted: str) -> Encoder:
 
 
 def _has_cuda() -> bool:
-    """Whether NVIDIA's driver is there at all, because asking ffmpeg costs a tenth of a second."""
+    """Whether NVIDIA's driver is there; this check avoids a call of ffmpeg, which takes a tenth of a second."""
     import ctypes
 
     for library in ("libcuda.so.1", "nvcuda.dll"):
@@ -73,16 +74,16 @@ Encoder = Literal["x264", "nvenc", "vaapi"]
 
 _CRF = {"draft": "26", "good": "20", "best": "16"}
 _PRESET = {"draft": "ultrafast", "good": "veryfast", "best": "medium"}
-# Beyond the preset: flat, sharp pictures gain nothing from the longer search and the larger transform.
+# Changes to the preset: flat, sharp pictures gain nothing from the longer search and the larger transform.
 _TUNED = {"good": ":subme=1:me=dia:8x8dct=0:b-adapt=0"}
-# MP4s get frames as `yuv.yuv420` makes them, and are tagged so: players guess by size otherwise, and reds are wrong.
+# The tags of the colours of `yuv.yuv420`. Without tags, players guess by size, and reds are wrong.
 _BT709 = ("-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv")
 _TAGGED = "setparams=range=tv:color_primaries=bt709:color_trc=bt709:colorspace=bt709"
 
 
 @dataclass(frozen=True, slots=True)
 class Encoding:
-    """How a film is written. target : of `film_formats.FORMATS`; size : (width, height), even for H.264."""
+    """The settings of the encoder. target : a key of `film_formats.FORMATS`; size : (width, height), even for H.264."""
 
     target: str
     size: tuple[int, int]
@@ -92,7 +93,7 @@ class Encoding:
 
     @property
     def format(self) -> FilmFormat:
-        """What is known of the target."""
+        """The format of the target."""
         return FORMATS[self.target]
 
     def _codec(self) -> Sequence[str]:
@@ -103,7 +104,7 @@ class Encoding:
 
 
 def _h264(encoder: Encoder, quality: Quality, group: int) -> Sequence[str]:
-    """Filters and options of an H.264 encoder; `group` is the greatest distance of key frames."""
+    """Return the filters and options of an H.264 encoder; group : the greatest distance of key frames, in frames."""
     if encoder == "nvenc":
         rate = ("-rc", "vbr", "-cq", _CRF[quality], "-b:v", "0", "-bf", "2", "-g", str(group))
         return ("-vf", _TAGGED, "-c:v", "h264_nvenc", "-preset", "p4", *rate)
@@ -115,16 +116,16 @@ def _h264(encoder: Encoder, quality: Quality, group: int) -> Sequence[str]:
 
 
 def even_size(size: tuple[int, int]) -> tuple[int, int]:
-    """Size rounded up to even numbers, which H.264 needs."""
+    """Round a size up to even numbers, which H.264 needs."""
     return size[0] + size[0] % 2, size[1] + size[1] % 2
 
 
 def encode_segment(frames: Iterable[Frame], encoding: Encoding, path: Path, first: int = 0) -> None:
-    """Write frames, uint8 (h, w, 3), to one segment; pictures into the folder `path`, numbered from `first`.
+    """Write frames, uint8 (h, w, 3), to one segment; or as pictures into the folder `path`, numbered from `first`.
 
-    numba is imported only here; an encoding that is only described must not import it.
+    numba is imported only in this function, so that a mere description of an encoding does not import it.
 
-    Raises EncoderError with ffmpeg's own words if it dies, FileError if a picture cannot be written.
+    Raises EncoderError with ffmpeg's own words if ffmpeg fails, FileError if a picture cannot be written.
     """
     if encoding.target == PICTURES:
         path.mkdir(exist_ok=True)
@@ -156,7 +157,7 @@ def save_picture(frame: Frame, path: Path) -> None:
 
 
 def join(segments: Sequence[Path], encoding: Encoding, sound: Path | None, work: Path, output: Path) -> None:
-    """Make the film of its segments and the sound, a WAV file or None; `work`: a folder for what that needs."""
+    """Make a film of its segments and its sound, a WAV file or None; work : a folder for temporary files."""
     listing = work / "segments.txt"
     lines = (f"file '{_quoted(segment)}'" for segment in segments)
     listing.write_text("\n".join(["ffconcat version 1.0", *lines]) + "\n", encoding="utf-8")
@@ -167,5 +168,5 @@ def join(segments: Sequence[Path], encoding: Encoding, sound: Path | None, work:
 
 
 def _quoted(path: Path) -> str:
-    """A path inside single quotes as ffmpeg's lists want it."""
+    """Quote a path for ffmpeg's lists, for use inside single quotes."""
     return path.resolve().as_posix().replace("'", "'\\''")

@@ -1,4 +1,4 @@
-"""From the suffix of a film's file to how its pictures are encoded and joined by ffmpeg."""
+"""The formats of films: for each suffix of a file, the encoding of the segments and the function that joins them."""
 
 from __future__ import annotations
 
@@ -16,15 +16,16 @@ from dancetutor_cli.run.ffmpeg import INPUT_GUARD, Process, local, run
 from dancetutor_cli.run.files import one_of
 from dancetutor_cli.run.pictures import read_palette, write_gif, write_webp
 
-# The formats of `render`: from the suffix of a file to how its pictures are encoded and joined.
+# The formats of `render`.
 #
-# A new format is an entry of `FORMATS` with a function that joins segments; options and defaults follow.
+# To add a format, add an entry to `FORMATS` with a function that joins segments; options and defaults follow from it.
 
 
 class JoinJob(NamedTuple):
     """The parts from which a film is joined. listing : a list of segments for ffmpeg; sound : a WAV file or None
 
-    work : folder for what that needs; output : the film, of `size` (width, height) and so many frames a second
+    work : folder for temporary files; output : the film's file
+    size : (width, height); fps : frames a second
     quick : faster sound encoding, with a little noise, in a third of the time
     """
 
@@ -38,7 +39,7 @@ class JoinJob(NamedTuple):
 
     @property
     def source(self) -> tuple[str, ...]:
-        """ffmpeg's options for the pictures."""
+        """The options of ffmpeg for the pictures."""
         return (*INPUT_GUARD, "-f", "concat", "-safe", "0", "-i", local(self.listing))
 
 
@@ -46,11 +47,11 @@ class JoinJob(NamedTuple):
 class FilmFormat:
     """A kind of film.
 
-    join : makes the film of its segments; None: there is nothing to join, pictures lie in a folder
+    join : makes the film of its segments; None for pictures in a folder, which are not joined
     segment : suffix of a segment's file
-    h264 : segments are H.264 with colours as players want them, sizes even; else without loss, RGB, until joined
-    fps : frames a second unless something else is asked for; side : so long is the longer side then at most, pixels
-    largest : seconds of film after which the file is said to be very large
+    h264 : whether segments are H.264, with even sizes and the colours that players expect; otherwise RGB without loss
+    fps : default number of frames a second; side : greatest default length of the longer side, pixels
+    largest : seconds of film from which a warning says that the file is very large
     """
 
     join: Callable[[JoinJob], None] | None
@@ -71,7 +72,7 @@ def _mp4(parts: JoinJob) -> None:
 
 
 def _gif(parts: JoinJob) -> None:
-    """ffmpeg chooses the colours and dithers, `pictures` writes."""
+    """Write a GIF: ffmpeg chooses the colours and dithers, `pictures` writes the file."""
     palette = parts.work / "palette.png"
     run(("-y", *parts.source, "-vf", "palettegen=stats_mode=diff", local(palette)), "choosing colours")
     mix = "[0:v][1:v]paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle"
@@ -81,7 +82,7 @@ def _gif(parts: JoinJob) -> None:
 
 
 def _webp(parts: JoinJob) -> None:
-    listed = ("-map", "0:v", "-c", "copy", "-f", "framecrc", "pipe:1")  # a line for each frame, below lines with a #
+    listed = ("-map", "0:v", "-c", "copy", "-f", "framecrc", "pipe:1")  # one line for each frame, below lines with a #
     with Process((*parts.source, *listed), "counting frames", read=True) as process:
         count = sum(not line.startswith(b"#") for line in process.read().splitlines())
         process.finish()
@@ -89,7 +90,7 @@ def _webp(parts: JoinJob) -> None:
 
 
 def _frames(parts: JoinJob, images: tuple[str, ...], pixels: str) -> Iterator[NDArray[np.uint8]]:
-    """What ffmpeg makes of the segments, frame by frame."""
+    """Read the segments through ffmpeg, frame by frame."""
     width, height = parts.size
     shape = (height, width) if pixels == "pal8" else (height, width, 3)
     raw = ("-fps_mode", "passthrough", "-f", "rawvideo", "-pix_fmt", pixels, "pipe:1")
@@ -100,7 +101,7 @@ def _frames(parts: JoinJob, images: tuple[str, ...], pixels: str) -> Iterator[ND
         process.finish()
 
 
-PICTURES = "png"  # not a file but a folder of them
+PICTURES = "png"  # not a single file but a folder of pictures
 FORMATS: Mapping[str, FilmFormat] = {
     "mp4": FilmFormat(_mp4, ".mp4", h264=True, has_sound=True),
     "gif": FilmFormat(_gif, ".mkv", fps=25, side=720, largest=20.0),
@@ -111,7 +112,7 @@ FILES = tuple(f".{name}" for name, form in FORMATS.items() if form.join is not N
 
 
 def target_of(path: Path) -> str:
-    """The format that the ending of an output name stands for; UsageError lists the formats."""
+    """Return the format of an output name by its ending; UsageError lists the formats."""
     if path.suffix.lower() not in FILES:
         raise UsageError(f"{path}: cannot write '{path.suffix or path.name}'; give a name that ends in {one_of(FILES)}")
     return path.suffix.lower().removeprefix(".")

@@ -15,8 +15,8 @@ from dancetutor_cli.film.clock import Clock, Pass, Practice
 from dancetutor_cli.run import ffmpeg
 
 RATE = 48000
-FADE = 0.02  # seconds; against clicks where the music is cut
-# Onsets come out of rubberband early by this many seconds times (1 / rate - 1): measured with clicks, rates 0.4 to 2.
+FADE = 0.02  # seconds; prevents clicks at the cuts of the music
+# rubberband moves onsets forward by this many seconds times (1 / rate - 1): measured with clicks, rates 0.4 to 2.
 STRETCH_LEAD = 0.0155
 
 Samples = NDArray[np.float32]  # (n, 2)
@@ -33,8 +33,9 @@ class Click:
 
 @dataclass(frozen=True, slots=True)
 class SoundPlan:
-    """The parts of the sound. music : the song's file or None; shift : seconds that the music plays late against the
-    notes.
+    """The parts of the sound. music : the song's file or None
+
+    shift : seconds by which the music is later than the notes
     """
 
     music: Path | None
@@ -44,10 +45,10 @@ class SoundPlan:
 
 
 def decode(music: Path, start: float, end: float) -> Samples:
-    """Samples of a music file from `start` to `end` (seconds), silent where the file has none; float32 (n, 2).
+    """Return the samples of a music file from `start` to `end` (seconds), float32 (n, 2); silence outside of the file.
 
-    The file is opened as a local file whatever its name; ffmpeg takes the encoder delay of MP3 off. EncoderError if it
-    is no music.
+    The file is opened as a local file whatever its name; ffmpeg removes the encoder delay of MP3. EncoderError if the
+    file is not music.
     """
     count = round((end - start) * RATE)
     out = np.zeros((count, 2), dtype=np.float32)
@@ -68,7 +69,7 @@ def decode(music: Path, start: float, end: float) -> Samples:
 
 
 def seconds_of(music: Path) -> float:
-    """How long a music file plays; EncoderError if it is no music."""
+    """Return the duration of a music file, seconds; EncoderError if the file is not music."""
     rate = 1000
     arguments = (*ffmpeg.music_input(music), "-vn", "-sn", "-dn", "-map", "0:a:0")
     raw = ("-ac", "1", "-ar", str(rate), "-f", "u8", "-c:a", "pcm_u8", "pipe:1")
@@ -79,11 +80,11 @@ def seconds_of(music: Path) -> float:
 
 
 def stretch(samples: Samples, rate: float) -> Samples:
-    """Play slower or faster at the same pitch; onsets end up within a few milliseconds of where they belong."""
+    """Change the speed of samples, but not the pitch; the error of onsets is at most a few milliseconds."""
     count = round(len(samples) / rate)
     lead = STRETCH_LEAD * (1 / rate - 1)
     lag = round(max(0.0, lead) * RATE)
-    # Mixed: attacks stay sharp and in time as with "crisp", which lets held tones drift by up to 3 %.
+    # "mixed" keeps attacks as sharp and as well timed as "crisp", which lets held tones drift by up to 3 %.
     tempo = f"rubberband=tempo={rate:.6f}:transients=mixed:window=short"
     pad = np.zeros((RATE // 2, 2), dtype=np.float32)
     source = ("-f", "f32le", "-ar", str(RATE), "-ac", "2", "-i", "pipe:0", "-af", tempo, "-f", "f32le", "pipe:1")
@@ -98,7 +99,7 @@ def stretch(samples: Samples, rate: float) -> Samples:
 
 
 def _through(arguments: tuple[str, ...], data: bytes) -> bytes:
-    """Give ffmpeg `data` and return what it makes of it; a thread writes, so that neither pipe can block the other."""
+    """Pass `data` through ffmpeg and return the output; a thread writes, so that neither pipe can block the other."""
     from concurrent.futures import ThreadPoolExecutor
 
     with ffmpeg.Process(arguments, "changing the speed of the music", write=True, read=True) as process:
@@ -116,14 +117,14 @@ def _through(arguments: tuple[str, ...], data: bytes) -> bytes:
 
 
 def click_sound(pitch: float) -> NDArray[np.float32]:
-    """A short dry click, its onset at once."""
+    """Return a short dry click that starts at its onset."""
     t = np.arange(int(0.05 * RATE)) / RATE
     body = np.sin(2 * np.pi * pitch * t + 0.8) * np.exp(-t * 110)
     return body.astype(np.float32)
 
 
 def mix(plan: SoundPlan, clock: Clock) -> Samples:
-    """The whole sound track, as long as the frames of the film last; float32 (n, 2) within -1..1."""
+    """Return the whole sound track, as long as the frames of the film last; float32 (n, 2) within -1..1."""
     parts = [_pass(plan, one) for one in clock.passes]
     track = np.concatenate(parts) if len(parts) > 1 else parts[0]
     total = round(clock.frames / clock.fps * RATE)
@@ -165,7 +166,7 @@ def _add(track: Samples, sound: NDArray[np.float32], second: float) -> None:
 
 
 def write_wav(samples: Samples, path: Path) -> None:
-    """Write 16 bit stereo at `RATE`."""
+    """Write samples as 16 bit stereo at `RATE`."""
     with wave.open(str(path), "wb") as out:
         out.setnchannels(2)
         out.setsampwidth(2)
@@ -179,9 +180,10 @@ CLAP, TICK, ACCENT = 1150.0, 1600.0, 2200.0  # Hz
 
 
 def clicks_of(practice: Practice, one: Pass, timing: Timing, steps: NDArray[np.float64]) -> tuple[Click, ...]:
-    """The sounds in addition to the music.
+    """Return the sounds in addition to the music.
 
-    practice : what is wanted; one : the first run; steps : float64 (s,), seconds at which panels are pressed
+    practice : the aids that the user asked for; one : the first run
+    steps : float64 (s,), seconds at which panels are pressed
     """
     out: list[Click] = []
     if practice.claps:

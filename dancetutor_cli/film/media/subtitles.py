@@ -1,4 +1,4 @@
-"""Subtitles that name the moves and the foot that does them, as an .srt file beside the film."""
+"""Subtitles that name the moves and the feet that make them, as an .srt file beside the film."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ if TYPE_CHECKING:
     from dancetutor_cli.feet.play import Play
 
 
-# What the subtitles of a film name: the moves of a play with the foot that makes them, from begin to end.
+# The moves of a play that subtitles name, each from its beginning to its end, with the foot that makes it.
 
-_WAYS = ("crossover-front", "crossover-back")  # these say more than crossover-half, which comes with them
+_WAYS = ("crossover-front", "crossover-back")  # more precise than crossover-half, which comes with them
 _RUNS = ("stream", "drill")
 
 
 def cues_of(play: Play, timing: Timing, words: Mapping[str, str], view: PanelNames) -> tuple[Cue, ...]:
-    """Every move that has a word, sorted by time.
+    """Return every move that has a word, sorted by time.
 
-    words : name of a move (`feet.solver.vocabulary.EVENTS`), or "hold" -> what it is called; moves that are not in it
-    are not.
-    view : names of panels and limbs.
-    Crossed feet are reported once, at their first row, until they are uncrossed, unless a half turn there is reported;
-    a stream or drill is reported once, at its first row.
+    Crossed feet are reported once, from their first row until they are uncrossed, but not if a half turn is reported at
+    that row. A stream or drill is reported once, at its first row.
+
+    words : name of a move (`feet.solver.vocabulary.EVENTS`), or "hold" -> its words; other moves are left out
+    view : names of panels and limbs
     """
     found = [
         *_crossovers(play, words, view.language),
@@ -55,7 +55,10 @@ def cues_of(play: Play, timing: Timing, words: Mapping[str, str], view: PanelNam
 
 
 def _crossovers(play: Play, words: Mapping[str, str], language: Language) -> Iterator[Cue]:
-    """Until the row in which the feet are uncrossed; one that turns full on its way is reported again."""
+    """Return the crossovers, each until the row in which the feet are uncrossed.
+
+    A crossover that becomes full is reported again at that row.
+    """
     second, turns = play.rows.second, moves_and_turns(play)
     for span in crossover_spans(play):
         for row, kind in span.begins:
@@ -66,7 +69,7 @@ def _crossovers(play: Play, words: Mapping[str, str], language: Language) -> Ite
 
 
 def _moments(play: Play, words: Mapping[str, str], view: PanelNames) -> Iterator[Cue]:
-    """Moves of one row, each time they come."""
+    """Return the moves of single rows, each time that they occur."""
     named = set(words) - {*CROSSED, *_WAYS, *_RUNS, HOLD}
     for row, names in enumerate(moves_and_turns(play)):
         for name in named.intersection(names) - (IMPLIED_BY_BRACKET if "bracket" in names else set()):
@@ -88,7 +91,7 @@ def _holds(play: Play, timing: Timing, words: Mapping[str, str], language: Langu
 
 
 def _limb_names(play: Play, row: int, language: Language) -> tuple[str, ...]:
-    """The limbs that make a move of a row: all that step in it; a move of both feet has no name of a foot."""
+    """Return the names of the limbs that step in a row; none for a move of both feet."""
     limbs = {limb for limb in play.limb[row].tolist() if 0 <= limb < len(LIMBS)}
     return (
         ()
@@ -97,16 +100,16 @@ def _limb_names(play: Play, row: int, language: Language) -> tuple[str, ...]:
     )
 
 
-# Subtitles that name the moves, as an .srt file beside the film.
+# The text of the subtitles.
 
-_GAP = 0.1  # seconds; if the same words come again so soon, they stay without a flicker
+_GAP = 0.1  # seconds; if the same words come again within this time, they stay without a flicker
 
 
 @dataclass(frozen=True, slots=True)
 class SubtitleStyle:
-    """configs/subtitles.yaml. before, stays, shortest : seconds of the film; most : moves named together
+    """The settings of configs/subtitles.yaml. before, stays, shortest : seconds of the film
 
-    moves : names of moves, the most important first
+    most : maximum number of moves that are named together; moves : names of moves, the most important first
     """
 
     before: float
@@ -118,10 +121,11 @@ class SubtitleStyle:
 
 @dataclass
 class _Line:
-    """Moves that are named together. first, latest : when the first and the latest come; last : when all are over.
+    """Moves that are named together. All times are seconds of the film.
 
-    start, end : on the screen; all of these are seconds of the film
-    moves : word -> who, both in the order in which they come; names : word -> the move's name
+    first, latest : the beginning of the first and of the latest move; last : the end of all moves
+    start, end : the time on the screen
+    moves : word -> limbs, both in the order in which they occur; names : word -> the move's name
     """
 
     first: float
@@ -139,14 +143,14 @@ class _Line:
         who += (one for one in cue.who if one not in who)
 
     def text(self, style: SubtitleStyle) -> str:
-        """A line for each move; if there are too many, the most important."""
+        """Return one line for each move, for the most important moves if there are too many."""
         kept = sorted(self.moves, key=lambda word: style.moves.index(self.names[word]))[: style.most]
         return "\n".join(", ".join([word, *who]) for word, who in self.moves.items() if word in kept)
 
 
 @cache
 def subtitle_style() -> SubtitleStyle:
-    """The style as configured; FileError says what is wrong with it."""
+    """Load the style from the configuration; FileError describes a mistake in it."""
     path = config_path("subtitles.yaml")
     style = load(path, SubtitleStyle)
     if not 0 <= style.stays < style.shortest <= style.before or style.most < 1:
@@ -156,15 +160,17 @@ def subtitle_style() -> SubtitleStyle:
 
 
 def subtitle_words(language: Language) -> dict[str, str]:
-    """The moves that subtitles name, and their words."""
+    """Return the moves that subtitles name, and their words."""
     return move_words(subtitle_style().moves, config_path("subtitles.yaml"), language)
 
 
 def subtitles(cues: Sequence[Cue], clock: Clock, style: SubtitleStyle) -> str:
-    """The text of an .srt file; "" if no move is named.
+    """Return the text of an .srt file; "" if no move is named.
 
-    cues : by time. Words stand before their move and until it is over, but give way to the next words. Moves that come
-    faster than people can read are named together.
+    Words stand from before their move until it is over, or until the next words come. Moves that come faster than
+    people can read are named together.
+
+    cues : the moves, sorted by time
     """
     shown: list[tuple[float, float, str]] = []
     begin = 0.0
@@ -181,13 +187,16 @@ def subtitles(cues: Sequence[Cue], clock: Clock, style: SubtitleStyle) -> str:
 
 
 def _merge_close_moves(cues: Sequence[Cue], one: Pass, begin: float, style: SubtitleStyle) -> list[_Line]:
-    """The moves of a run, which begins at `begin`; moves that are too close to be read one by one are in one line."""
+    """Return the lines of a run, with moves that are too close to be read one by one in the same line.
+
+    begin : the beginning of the run, seconds of the film
+    """
     lines: list[_Line] = []
     for cue in cues:
         if not max(one.start, one.sound_from) <= cue.second < one.end:
             continue
         first, last = (begin + one.film_seconds(min(s, one.end)) for s in (cue.second, cue.end))
-        first = max(begin, min(first, begin + one.seconds - style.stays))  # so that the last words can be read, too
+        first = max(begin, min(first, begin + one.seconds - style.stays))  # the last words can be read, too
         if not lines or first >= lines[-1].first + style.shortest:
             lines.append(_Line(first, first, last))
         lines[-1].add(cue, first, last)
@@ -195,7 +204,7 @@ def _merge_close_moves(cues: Sequence[Cue], one: Pass, begin: float, style: Subt
 
 
 def _timed(lines: list[_Line], begin: float, over: float, style: SubtitleStyle) -> list[_Line]:
-    """Give the lines of a run their times on the screen; none stands with another, or beyond the run."""
+    """Set the times at which the lines of a run are on the screen: one line at a time, and none after the run."""
     least = style.shortest - style.stays  # seconds that words stand before their move, even in a hurry
     before: _Line | None = None
     for line in lines:

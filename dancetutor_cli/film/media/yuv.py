@@ -1,6 +1,6 @@
-"""Frames as the encoder wants them: from RGB to YUV 4:2:0 with BT.709, in whole numbers, the same on every machine.
+"""The conversion of frames from RGB to YUV 4:2:0 with BT.709, in whole numbers, the same on every machine.
 
-ffmpeg can do this too, but takes nine times as long for it and twice as many bytes through the pipe.
+ffmpeg can convert frames too, but takes nine times as long and needs twice as many bytes through the pipe.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _C_BIAS = (128 << 18) + (1 << 17)  # chroma is a sum over four pixels
 
 @inner_kernel
 def _luma(flat: Any, out: Any) -> None:  # pragma: no cover
-    """Kept apart and simple so that the compiler makes vector code of it."""
+    """Convert pixels to luma. The function is separate and simple so that the compiler makes vector code of it."""
     for i in range(out.shape[0]):
         r, g, b = uint32(flat[3 * i]), uint32(flat[3 * i + 1]), uint32(flat[3 * i + 2])
         out[i] = (uint32(_Y0) * r + uint32(_Y1) * g + uint32(_Y2) * b + uint32(_Y_BIAS)) >> uint32(16)
@@ -37,7 +37,7 @@ def _luma(flat: Any, out: Any) -> None:  # pragma: no cover
 
 @inner_kernel
 def _chroma(upper: Any, lower: Any, us: Any, vs: Any) -> None:  # pragma: no cover
-    """A row of chroma from two rows of pixels."""
+    """Convert two rows of pixels to a row of chroma."""
     for i in range(us.shape[0]):
         k = 6 * i
         r = int32(upper[k]) + int32(upper[k + 3]) + int32(lower[k]) + int32(lower[k + 3])
@@ -61,7 +61,7 @@ def _planes(flat: Any, width: int, height: int, out: Any) -> None:  # pragma: no
 
 
 def yuv420(frame: NDArray[np.uint8], out: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """The planes Y, U and V one after the other.
+    """Convert a frame to the planes Y, U and V, one after the other.
 
     frame : uint8 (h, w, 3), sRGB, h and w even; out : uint8 (h * w * 3 / 2,), filled and returned
     """

@@ -21,18 +21,18 @@ from dancetutor_cli.film.words import LIMBS
 from dancetutor_cli.run.languages import Language
 from dancetutor_cli.run.schema import RGB
 
-CALL_LEAST = 0.75  # letters of a call have at least this size, before words are left out
-CALL_SMALL = 0.5  # and before it takes more than two lines
+CALL_LEAST = 0.75  # smallest size of a call's letters before words are left out
+CALL_SMALL = 0.5  # smallest size of the letters before a call takes more than two lines
 SHARES = np.arange(1.0, CALL_LEAST - 0.01, -0.05)  # sizes of letters that are tried
-# seconds that a call stays after its note; seconds in which it fades, without a ghost
+# Seconds that a call stays after its note; seconds in which it fades, short enough to leave no ghost.
 CALL_STAYS, CALL_FADES = 0.2, 0.06
 
 
 class Runs:
-    """Which run of a practice film this is and how fast; and the count-in.
+    """The labels of the runs of a practice film, with number and speed, and the numbers of the count-in.
 
-    box : what the label stands in, in its middle; or only its top left corner, (left, top)
-    count : what the numbers of the count-in stand in
+    box : the box in whose middle the label stands, or the top left corner of the label, (left, top)
+    count : the box of the count-in's numbers
     """
 
     def __init__(
@@ -61,11 +61,11 @@ class Runs:
 
     @property
     def boxes(self) -> list[Box]:
-        """Where the labels stand: left, top, right, bottom."""
+        """The boxes of the labels: left, top, right, bottom."""
         return [box_of(label, *self._corner(label)) for label in self.labels]
 
     def draw(self, frame: Frame, second: float, run: int, opacity: float = 1.0) -> None:
-        """Draw at `second` of the music in pass `run`; opacity : of the label."""
+        """Draw the label and the count-in at `second` of the music in pass `run`; opacity : opacity of the label."""
         if self.labels:
             label = self.labels[run]
             x, y = self._corner(label)
@@ -88,10 +88,12 @@ def _middle(sprite: Sprite, box: tuple[float, ...]) -> tuple[float, float]:
 def _phrases(
     text: str, size: float, room: tuple[float, float], face: Typeface, language: Language, short: str = ""
 ) -> tuple[list[str], float]:
-    """The words of a call in one or two lines, or in more if their letters would be too small. Nothing is cut off.
+    """Return the lines of a call and the size of their letters, without cutting words off.
 
-    room : width and height of the words, pixels; short : the text without the limb, for places where even "right: "
-    does not fit in two lines
+    There are one or two lines, or more if the letters would be too small.
+
+    room : greatest width and height of the words, pixels
+    short : the text without the limb, for a place in which even "right: " does not fit in two lines
     """
     width, height = room
     named = text
@@ -114,7 +116,10 @@ def _phrases(
 
 
 def _two_lines(text: str, size: float, width: float, face: Typeface) -> tuple[list[str], float]:
-    """One line, or a break at a comma, then at a colon, then anywhere, in letters as small as necessary."""
+    """Return a text in at most two lines, and the size of the letters that fits.
+
+    A line ends at a comma if possible, otherwise at a colon, otherwise anywhere.
+    """
     for ends in (",", ",:"):
         for share in SHARES:
             lines = wrapped(_parts(text, ends), share * size, width, face)
@@ -128,13 +133,13 @@ def _parts(text: str, ends: str) -> list[str]:
 
 
 def _foot_colour(text: str, language: Language) -> RGB | None:
-    """The colour of the one foot that a call names; None of both and of none."""
+    """Return the colour of the foot that a call names; None if it names both feet or no foot."""
     named = [foot for foot in range(2) if language.limbs[LIMBS[foot]] in text]
     return limb_colours().by_limb[named[0]] if len(named) == 1 else None
 
 
 def _remaining_share(call: Callout, second: float) -> float:
-    """The part of the time to the next move of a passage that is left, 1 to 0; 0 from the last move on."""
+    """Return the remaining share of the time to the next move of a passage, 1 to 0; 0 from the last move on."""
     begin = call.begin
     for move in (call.second, *(move for move, *_ in call.further)):
         if second < move:
@@ -144,12 +149,12 @@ def _remaining_share(call: Callout, second: float) -> float:
 
 
 class Calls:
-    """Passages called out before they come, at the top right of `box`, with the time left as a bar.
+    """The calls of passages before they begin, at the top right of `box`, with a bar for the remaining time.
 
-    The words stand until the passage is over. If it goes on, its count stands beside it all the time.
+    The words stand until the passage is over. The count of its moves stands beside them all the time.
     """
 
-    MAX_LINES = 2  # at a time, the nearest on top
+    MAX_LINES = 2  # calls at a time, the nearest on top
 
     def __init__(
         self,
@@ -167,7 +172,7 @@ class Calls:
         self._sprite = lru_cache(maxsize=32)(self._plate)
 
     def _plate(self, text: str, severity: str, tag: str = "", why: str = "") -> Sprite:
-        """why : the reason, which stands there if it has room in two lines of letters that are large enough"""
+        """Draw the plate of a call. why : the reason, shown if two lines of large enough letters have room for it"""
         size = 24 * self.scale
         width, height = self.box[2] - self.box[0] - (FLAG_EDGE + 0.1) * size, self.box[3] - self.box[1]
         lines, fits = _two_lines(f"{text}: {why}", size, width, self.face) if why else ([], 0.0)
@@ -181,12 +186,12 @@ class Calls:
         return [self.callouts[k] for k in shown[: self.MAX_LINES]]
 
     def draw(self, frame: Frame, second: float) -> None:
-        """Draw the present passage at `second`, and the next one."""
+        """Draw the calls of the present passage at `second` and of the next passage."""
         y = float(self.box[1])
         for one in self._current_calls(second):
             label = self._sprite(one.text, one.severity, one.tag, one.why)
             if y > self.box[1] and y + label.shape[0] > self.box[3]:
-                break  # the call would cover what stands below it; the tag beside the notes says the same
+                break  # the call would cover the words below the box; the tag beside the notes has the same words
             x = self.box[2] - label.shape[1]
             over = max(one.end, one.second) + CALL_STAYS
             fade = min(1.0, (second - one.begin) / 0.12, (over - second) / CALL_FADES)

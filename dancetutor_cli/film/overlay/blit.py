@@ -1,4 +1,4 @@
-"""Drawing on a frame: premultiplied sprites at sub-pixel places, and shapes as signed distances."""
+"""The drawing of premultiplied sprites at sub-pixel places on a frame, and of shapes as signed distances."""
 
 from __future__ import annotations
 
@@ -11,21 +11,24 @@ from numpy.typing import NDArray
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.run.kernels.compiling import int64, njit, uint64
 
-# Shapes as signed distances in pixels, negative inside: clean edges, outlines and glows at any size.
+# Shapes as signed distances in pixels, negative inside, which give clean edges, outlines and glows at any size.
 
 Field = NDArray[np.float64]
-SAMPLES = 2  # supersampling per axis: distances are exact, but corners and thin outlines want it
+SAMPLES = 2  # samples per pixel and axis: distances are exact, but corners and thin outlines need more samples
 
 
 def grid(height: int, width: int) -> tuple[Field, Field]:
-    """Sample places (x, y) from the centre of a picture, (height * SAMPLES, width * SAMPLES), in pixels."""
+    """Return the places (x, y) of the samples from the centre of a picture, in pixels.
+
+    Each array is (height * SAMPLES, width * SAMPLES).
+    """
     y = (np.arange(height * SAMPLES) + 0.5) / SAMPLES - height / 2
     x = (np.arange(width * SAMPLES) + 0.5) / SAMPLES - width / 2
     return np.meshgrid(x, y)
 
 
 def polygon(x: Field, y: Field, points: NDArray[np.float64]) -> Field:
-    """Distance to a closed polygon with corners `points` (n, 2)."""
+    """Return the distance to a closed polygon with corners `points` (n, 2)."""
     nearest = np.full(x.shape, np.inf)
     inside = np.zeros(x.shape, dtype=bool)
     for (ax, ay), (bx, by) in zip(points, np.roll(points, -1, axis=0), strict=True):
@@ -38,28 +41,28 @@ def polygon(x: Field, y: Field, points: NDArray[np.float64]) -> Field:
 
 
 def disc(x: Field, y: Field, radius: float) -> Field:
-    """Distance to a disc around the centre."""
+    """Return the distance to a disc around the centre."""
     return np.asarray(np.hypot(x, y) - radius)
 
 
 def rounded_box(x: Field, y: Field, half_width: float, half_height: float, radius: float) -> Field:
-    """Distance to a rectangle around the centre with round corners."""
+    """Return the distance to a rectangle with round corners around the centre."""
     qx, qy = np.abs(x) - half_width + radius, np.abs(y) - half_height + radius
     outside = np.hypot(np.maximum(qx, 0), np.maximum(qy, 0))
     return np.asarray(outside + np.minimum(np.maximum(qx, qy), 0) - radius)
 
 
 def cover(distance: Field, width: float = 1.0) -> Field:
-    """Share of each sample inside the shape, its edge `width` samples soft."""
+    """Return the share of each sample that is inside the shape, whose edge is `width` samples soft."""
     return np.asarray(np.clip(0.5 - distance * SAMPLES / width, 0, 1))
 
 
 class Painter:
-    """Lays colours over each other on a premultiplied picture, then averages the samples."""
+    """A premultiplied picture on which colours are laid over each other before the samples are averaged."""
 
     def __init__(self, height: int, width: int) -> None:
         self.x, self.y = grid(height, width)
-        self.planes = np.zeros((4, *self.x.shape), dtype=np.float32)  # one after the other: they add up quicker
+        self.planes = np.zeros((4, *self.x.shape), dtype=np.float32)  # separate planes are faster to add
 
     def paint(self, share: Field, colour: NDArray[np.float64] | tuple[float, ...], opacity: float = 1.0) -> None:
         """Lay `colour`, 0..255 (3,) or per sample (h, w, 3), over the picture where `share` is more than 0."""
@@ -71,7 +74,7 @@ class Painter:
         self.planes[3] += alpha
 
     def sprite(self) -> NDArray[np.uint8]:
-        """The picture as a premultiplied uint8 sprite (h, w, 4)."""
+        """Return the picture as a premultiplied uint8 sprite (h, w, 4)."""
         h, w = (n // SAMPLES for n in self.x.shape)
         mean = self.planes.reshape(4, h, SAMPLES, w, SAMPLES).mean(axis=(2, 4))
         return np.ascontiguousarray(np.rint(mean * 255).astype(np.uint8).transpose(1, 2, 0))
@@ -79,22 +82,22 @@ class Painter:
 
 # Drawing on a frame: premultiplied sprites at sub-pixel places, tiled strips and filled rectangles.
 #
-# A frame is uint8 (h, w, 3) sRGB. A sprite is uint8 (h, w, 4), its colours multiplied by its alpha. Blending happens on
-# the sRGB values, as image editors do; everything is integer arithmetic, so that frames are the same on every machine.
+# A frame is uint8 (h, w, 3) sRGB. A sprite is uint8 (h, w, 4), its colours multiplied by its alpha. The sRGB values are
+# blended, as in image editors. All arithmetic uses integers, so that frames are the same on every machine.
 
 Sprite = NDArray[np.uint8]
 Box = tuple[float, float, float, float]  # left, top, right, bottom
 
 
 class Ink(NamedTuple):
-    """How a sprite is drawn. opacity : 0..1; gain : brightens, 1 leaves colours as they are"""
+    """The opacity and brightness of a drawn sprite. opacity : 0..1; gain : factor of the colours, 1 for no change"""
 
     opacity: float = 1.0
     gain: float = 1.0
 
 
 class Run(NamedTuple):
-    """Where a tile is repeated downwards: from `top` to `bottom`, a first row of it at `phase`; pixels."""
+    """The range from `top` to `bottom` in which a tile is repeated downwards, with a first row at `phase`; pixels."""
 
     top: float
     bottom: float
@@ -103,10 +106,10 @@ class Run(NamedTuple):
 
 @njit(cache=True)
 def _blit(frame: Any, sprite: Any, at: Any, shown: Any, ink: Any) -> None:  # pragma: no cover
-    """Draw a sprite, all in whole numbers.
+    """Draw a sprite with integer arithmetic.
 
-    at : x, y and `fraction`: sprite row i covers frame rows y + i and, by `fraction` of 256, y + i + 1
-    shown : the frame's rows low..high only; ink : opacity and gain, of 256
+    at : x, y and `fraction`: sprite row i covers frame row y + i and, by `fraction` of 256, y + i + 1
+    shown : low and high, the rows of the frame that are drawn; ink : opacity and gain, of 256
     """
     x, y, fraction = at
     low, high = shown
@@ -119,13 +122,13 @@ def _blit(frame: Any, sprite: Any, at: Any, shown: Any, ink: Any) -> None:  # pr
         r = fy - y
         here, above = min(r, rows - 1), max(r - 1, 0)
         of_here, of_above = 256 - fraction if r < rows else 0, fraction if r > 0 else 0
-        lower, upper, row = uint64(here), uint64(above), uint64(fy)  # places that are not negative take less time
+        lower, upper, row = uint64(here), uint64(above), uint64(fy)  # unsigned indices are faster
         for c in range(first, last):
             i, j = uint64(c), uint64(x + c)
             alpha = sprite[lower, i, 3] * of_here + sprite[upper, i, 3] * of_above  # 0..255 * 256
             if alpha == 0:
                 continue
-            if plain and alpha == 255 * 256:  # value of the last line where nothing shows through
+            if plain and alpha == 255 * 256:  # the same value as in the last line, for an opaque pixel
                 for k in range(3):
                     frame[row, j, k] = (sprite[lower, i, k] * of_here + sprite[upper, i, k] * of_above + 128) >> 8
                 continue
@@ -133,12 +136,15 @@ def _blit(frame: Any, sprite: Any, at: Any, shown: Any, ink: Any) -> None:  # pr
             for k in range(3):
                 colour = (sprite[lower, i, k] * of_here + sprite[upper, i, k] * of_above) * opacity
                 value = uint64(frame[row, j, k] * keep + (colour * gain >> 8) * 255 + 255 * 32768)
-                frame[row, j, k] = min(255, int64(value // uint64(255 * 65536)))  # signed division takes longer
+                frame[row, j, k] = min(255, int64(value // uint64(255 * 65536)))  # signed division is slower
 
 
 @njit(cache=True)
 def _strip(frame: Any, tile: Any, x: int, run: Any, shown: Any, opacity: int) -> None:  # pragma: no cover
-    """Repeat `tile` downwards; run : top, bottom and phase in 1/256 pixels. End rows are covered by their share."""
+    """Repeat `tile` downwards. The rows at both ends are covered by their share.
+
+    run : top, bottom and phase in 1/256 pixels
+    """
     top, bottom, phase = run
     low, high = shown
     height, width = frame.shape[0], frame.shape[1]
@@ -170,7 +176,7 @@ def _strip(frame: Any, tile: Any, x: int, run: Any, shown: Any, opacity: int) ->
 
 @njit(cache=True)
 def _rectangle(frame: Any, box: Any, colour: Any, opacity: int) -> None:  # pragma: no cover
-    """Edges in 1/256 pixels; border pixels are covered by their share."""
+    """Fill a rectangle with edges in 1/256 pixels; border pixels are covered by their share."""
     left, top, right, bottom = box
     height, width = frame.shape[0], frame.shape[1]
     for y in range(max(0, top >> 8), min(height, (bottom + 255) >> 8)):
@@ -190,9 +196,9 @@ def blit(
     ink: Ink | float = 1.0,
     rows: tuple[int, int] | None = None,
 ) -> None:
-    """Draw `sprite` with its top left at (x, y), y with sub-pixel accuracy, x rounded.
+    """Draw `sprite` with its top left at (x, y), with x rounded and y with sub-pixel accuracy.
 
-    ink : how, or only its opacity; rows : draw only on these frame rows [low, high)
+    ink : opacity and gain, or only the opacity; rows : draw only on these frame rows [low, high)
     """
     opacity, gain = ink if isinstance(ink, Ink) else Ink(ink)
     level = round(256 * min(1.0, opacity))
@@ -212,19 +218,19 @@ def strip(
     opacity: float = 1.0,
     rows: tuple[int, int] | None = None,
 ) -> None:
-    """Fill [top, bottom) with `tile` repeated downwards, its first row at `phase`; all with sub-pixel accuracy."""
+    """Fill [top, bottom) of `run` with `tile`, repeated downwards from `phase`, all with sub-pixel accuracy."""
     top, bottom, phase = run
     low, high = rows if rows is not None else (0, frame.shape[0])
     if bottom <= low or top >= high:
         return
-    top, bottom = max(top, low - 1.0), min(bottom, high + 1.0)  # also keeps absurdly long holds inside integers
+    top, bottom = max(top, low - 1.0), min(bottom, high + 1.0)  # also prevents an integer overflow by very long holds
     phase = math.fmod(phase, tile.shape[0])
     edges = (round(256 * top), round(256 * bottom), round(256 * phase))
     _strip(frame, tile, round(x), edges, (low, high), round(256 * min(1.0, opacity)))
 
 
 def rectangle(frame: Frame, box: Box, colour: tuple[int, int, int], opacity: float = 1.0) -> None:
-    """Fill a rectangle, edges with sub-pixel accuracy."""
+    """Fill a rectangle whose edges have sub-pixel accuracy."""
     left, top, right, bottom = box
     height, width = frame.shape[:2]
     left, right = max(left, 0.0), min(right, float(width))

@@ -1,4 +1,4 @@
-"""The calls of a picture: the moves that a learner has to know, a passage at a time.
+"""The calls of a picture, which name the moves that a learner has to know, a passage at a time.
 
 Findings of the linter are for authors, so they are called out only if the user asks for them.
 """
@@ -32,21 +32,26 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.scroll import ScrollSegments
     from dancetutor_cli.lint.findings import Finding
 
-JOIN = 2 * TICKS_PER_BEAT, 0.8  # moves that follow within so many ticks, or seconds, are called out together,
-REST = 1.2  # if there is not so long a rest before them, seconds, and no jump with uncrossed feet;
-LONGEST = 16 * TICKS_PER_BEAT, 7.5  # but nothing is called out for longer than four measures, or so many seconds
-MIN_GAP = 0.4  # seconds between moves of one passage that have each its tag and its countdown
-KINDS, LETTERS = 2, 42  # different moves in one call at most, and letters of these: more cannot be read in time
+JOIN = 2 * TICKS_PER_BEAT, 0.8  # ticks, or seconds, within which a move joins the passage before it
+REST = 1.2  # seconds between two moves that end a passage; a jump with uncrossed feet between them ends it, too
+LONGEST = 16 * TICKS_PER_BEAT, 7.5  # longest passage: four measures, or this many seconds
+MIN_GAP = 0.4  # minimum seconds between moves of one passage that have their own tag and countdown
+KINDS, LETTERS = 2, 42  # maximum of different moves in one call, and of their letters, that can be read in time
 _ORDER = ("move", "info", "warning", "error")
-_OF_PASSAGES, _PASSAGE = ("DT305", "DT301"), 8 * TICKS_PER_BEAT  # one finding for so long (lint/rules)
-_OF_MINES = "DT303"  # the rule about such a mine
+_OF_PASSAGES, _PASSAGE = ("DT305", "DT301"), 8 * TICKS_PER_BEAT  # rules with one finding for so long (lint/rules)
+_OF_MINES = "DT303"  # the rule about a mine under a foot
 
 
 @dataclass(frozen=True, slots=True)
 class CallStyle:
-    """What is called out, and when. words : name of a move -> what is said, with {who} and {places} to be filled in;
-    moves that are not in it are not. findings : the linter's, too; turned : she faces who looks on, and panels are
-    named as they are seen then; language : of words and findings"""
+    """The content and the time of the calls.
+
+    words : name of a move -> its words, with {who} and {places} to be filled in; other moves are not called out
+    ahead : the time between a call and its move
+    findings : whether the linter's findings are called out, too
+    turned : the dancer faces the viewer, and panels are named as the viewer sees them
+    language : the language of words and findings
+    """
 
     words: Mapping[str, str]
     ahead: Ahead
@@ -56,7 +61,7 @@ class CallStyle:
 
 
 class _Notice(NamedTuple):
-    """A finding of the linter. tick : of its row; rule : its code; weight : index into `_ORDER`"""
+    """A finding of the linter. tick : tick of the row; rule : code of the rule; weight : index into `_ORDER`"""
 
     tick: int
     text: str
@@ -65,7 +70,7 @@ class _Notice(NamedTuple):
 
 
 class _Move(NamedTuple):
-    """first, last : ticks; weight : index into `_ORDER`"""
+    """A move to call out. first, last : ticks; weight : index into `_ORDER`"""
 
     first: int
     last: int
@@ -75,7 +80,7 @@ class _Move(NamedTuple):
 
 @dataclass
 class _Passage:
-    """Moves that follow each other closely. kinds : name of a move -> its phrases, in order"""
+    """A passage of moves that follow each other closely. kinds : name of a move -> its phrases, in order"""
 
     first: int
     last: int
@@ -84,7 +89,7 @@ class _Passage:
     moves: list[_Move] = field(default_factory=list)
 
     def takes(self, move: _Move, table: _TickTable) -> bool:
-        """Whether a move is part of it."""
+        """Whether a move belongs to this passage."""
         second, tick, name = table.second, move.first, move.phrase.move
 
         def within(since: int, most: tuple[int, float]) -> bool:
@@ -96,7 +101,7 @@ class _Passage:
         return near and move.weight == self.weight and (name in self.kinds or short)
 
     def add(self, move: _Move) -> None:
-        """Add a move."""
+        """Add a move to this passage."""
         self.last = max(self.last, move.last)
         self.kinds.setdefault(move.phrase.move, []).append(move.phrase)
         self.moves.append(move)
@@ -106,21 +111,21 @@ class _Passage:
         return ", ".join(some[0].counted(len(some), len({one.text for one in some}) == 1) for some in several)
 
     def why(self) -> str:
-        """The reason, if all of its moves have the same one."""
+        """Return the reason of the moves if they all have the same name and reason, else ""."""
         found = {move.phrase.why for move in self.moves}
         return found.pop() if len(found) == 1 and len(self.kinds) == 1 else ""
 
     def tag(self, further: int) -> str:
-        """The first move, for the narrow place beside the notes, whose markers show which foot it is.
+        """Return the tag of the first move, for the narrow place beside the notes, whose markers show the foot.
 
-        further : how many of its other moves have tags of their own; if all have, this tag has no count
+        further : the number of other moves with tags of their own; if all have tags, this tag has no count
         """
         some = next(iter(self.kinds.values()))
         counted = len(some) > 1 and further + 1 < len(self.moves)
         return f"{some[0].tag} ×{len(some)}" if counted else some[0].tag
 
     def further(self, second: Mapping[int, float]) -> list[tuple[int, str]]:
-        """Tick and tag of each other move that is well apart from the one before it."""
+        """Return the tick and the tag of each later move that is at least `MIN_GAP` after the tag before it."""
         found, before = [], self.first
         for move in self.moves:
             if second[move.first] - second[before] >= MIN_GAP:
@@ -130,7 +135,10 @@ class _Passage:
 
 
 class _TickTable(NamedTuple):
-    """second : of every tick that is asked for; jumps : ticks of jumps with uncrossed feet, ascending"""
+    """The times of moves and jumps. second : tick of a move -> second
+
+    jumps : ticks of jumps with uncrossed feet, ascending
+    """
 
     second: Mapping[int, float]
     jumps: Sequence[int]
@@ -155,13 +163,12 @@ def callouts_of(
     scrolls: ScrollSegments,
     on_mines: Iterable[OnMine] = (),
 ) -> tuple[Callout, ...]:
-    """All calls, a passage at a time, in order of time.
+    """Return all calls, one for each passage, in order of time.
 
-    Moves in a row, such as one crossover after the other, are one passage with a count.
+    Moves in a row, such as one crossover after the other, are one passage with a count. The finding of the linter is
+    always called out for a row with a note that nobody plays, or with a mine under a foot.
 
-    about : the chart; play : the part of it that the picture shows. The finding of the linter is always called out for
-    a row with a note that nobody plays, or with a mine under a foot.
-    on_mines : those mines
+    about : the chart; play : the play of the part that the picture shows; on_mines : the mines under a foot
     """
     ticks = () if play is None else play.rows.tick[(play.limb == Limb.UNPLAYED).any(axis=1)].tolist()
     mined = sorted({one.tick for one in on_mines}) if MINE in style.words else []
@@ -213,8 +220,9 @@ def callouts_of(
 
 
 def _reasons(ticks: Iterable[int], notices: Iterable[_Notice]) -> Iterator[tuple[int, str]]:
-    """The findings of the linter for some rows, by tick: the finding of the row, or that of the passage, which lasts as
-    long as there are such rows.
+    """Return the findings of the linter for the rows at `ticks`.
+
+    A row has its own finding, or the finding of its passage, which lasts as long as such rows follow each other.
     """
     notices = sorted(notices)
     last, passage = -_PASSAGE, ""
@@ -230,7 +238,7 @@ def _reasons(ticks: Iterable[int], notices: Iterable[_Notice]) -> Iterator[tuple
 
 
 def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[int, str]) -> Iterator[_Move]:
-    """The words for each move; why : what is added, by tick."""
+    """Return the moves of a play with their words; why : a reason that is added to the words, by tick."""
     words = style.words
     if play is None or pad is None:
         return

@@ -1,4 +1,4 @@
-"""The fixed words of the picture except the song's: the legend; the strip with density, position and time."""
+"""The fixed words of the picture except the song's: the legend, and the strip with density, position and time."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ INK = (12, 13, 22)
 
 
 def box_of(sprite: Sprite, x: float, y: float) -> Box:
-    """Left, top, right and bottom of a sprite whose top left corner is at (x, y)."""
+    """Return left, top, right and bottom of a sprite whose top left corner is at (x, y)."""
     return x, y, x + sprite.shape[1], y + sprite.shape[0]
 
 
 def plate(lines: Sequence[str], size: float, colour: tuple[int, int, int], face: Typeface) -> Sprite:
-    """Lines of dark words on a coloured plate with round ends."""
+    """Draw lines of dark words on a coloured plate with round ends."""
     words = [face.sprite(line, size, INK, weight=size / 62) for line in lines]
     one, step = max(8, round(1.55 * size)), round(1.2 * size)
     height = one + step * (len(lines) - 1)
@@ -41,7 +41,7 @@ def plate(lines: Sequence[str], size: float, colour: tuple[int, int, int], face:
 
 
 def lozenge(height: int, width: int, radius: float, colour: tuple[int, int, int], opacity: float = 1) -> Sprite:
-    """A box with round corners."""
+    """Draw a box with round corners."""
     painter = shapes.Painter(height, width)
     d = shapes.rounded_box(painter.x, painter.y, width / 2 - 1, height / 2 - 1, radius)
     painter.paint(shapes.cover(d), colour, opacity)
@@ -49,12 +49,13 @@ def lozenge(height: int, width: int, radius: float, colour: tuple[int, int, int]
 
 
 class Legend:
-    """The meaning of the markers, one below the other at the bottom of the box; hands only if they are needed.
+    """The legend, which explains the markers, one below the other, at the bottom of its box.
 
-    A dark plate keeps them readable over a panel of the pad. limbs : number -> its name; note : words below the last
-    one; players : name and colour of the notes of each of two.
+    A dark plate keeps the words readable over a panel of the pad. Lines for which the box has no room stand below it,
+    because the song's words are above it.
 
-    Lines for which the box has no room stand out below it, because the song's words are above.
+    limbs : number of a limb -> its name, for the limbs in the picture; note : words below the last limb or player
+    players : name and note colour of each of two players
     """
 
     def __init__(
@@ -89,20 +90,20 @@ class Legend:
 
     @property
     def boxes(self) -> list[Box]:
-        """Where its plate stands: left, top, right, bottom."""
+        """The box of the plate: left, top, right, bottom."""
         return [box_of(*self.lines[0])]
 
     def draw(self, frame: Frame, opacity: float = 1.0) -> None:
-        """Lay the legend over the picture."""
+        """Draw the legend over the picture."""
         for sprite, x, y in self.lines:
             blit(frame, sprite, x, round(y), opacity)
 
 
 @dataclass(frozen=True, slots=True)
 class SongShape:
-    """The whole song for the strip. steps : float64 (n,), seconds of its steps, sorted; start, end : shown range;
+    """The whole song for the strip. steps : float64 (n,), seconds of the steps, sorted
 
-    section : the rendered part, (start, end) seconds
+    start, end : the range of the strip, seconds; section : the rendered part, (start, end) seconds
     """
 
     steps: NDArray[np.float64]
@@ -112,7 +113,7 @@ class SongShape:
 
 
 def strip_ground(picture: Frame, scale: float) -> None:
-    """The background of the strip, with a line above it."""
+    """Draw the background of the strip, with a line at its top."""
     picture[...] = (9, 10, 19)
     picture[: max(1, round(1.2 * scale))] = (44, 48, 70)
 
@@ -173,7 +174,10 @@ class ProgressStrip:
 
 
 def density(song: SongShape, bins: int, smooth: float) -> NDArray[np.float64]:
-    """Steps per second along the song, `bins` values, the highest 1."""
+    """Return the density of steps along the song, `bins` values relative to the highest.
+
+    smooth : minimum width of the smoothing, bins
+    """
     counts, _ = np.histogram(song.steps, bins=bins, range=(song.start, max(song.end, song.start + 1e-6)))
     width = max(1, round(max(smooth, bins * 1.2 / max(song.end - song.start, 1.0))))
     kernel = np.hanning(width + 2)[1:-1]
@@ -184,7 +188,7 @@ def density(song: SongShape, bins: int, smooth: float) -> NDArray[np.float64]:
 
 
 def clock_text(second: float) -> str:
-    """ "1:05", with hours where there are any; before the music it stands at 0:00."""
+    """Format a second as "1:05", with hours from one hour on; a second before the music is "0:00"."""
     whole = int(max(0.0, second))
     hours, rest = divmod(whole, 3600)
     return f"{hours}:{rest // 60:02d}:{rest % 60:02d}" if hours else f"{rest // 60}:{rest % 60:02d}"

@@ -1,4 +1,4 @@
-"""The pad seen from above: where both feet stand now, and small pads with the next rows."""
+"""The pad seen from above: a large pad with both feet as they are now, and small pads with the next rows."""
 
 from __future__ import annotations
 
@@ -27,19 +27,20 @@ if TYPE_CHECKING:
 
 NAMES = (170, 177, 203)  # colour of a small pad's name
 PANEL, PANEL_EDGE = (46, 51, 74), (88, 95, 130)
-NEXT_LEAST = 90.0  # pixels of the shorter side of a pad with a next row, at the layout's default size
-NEXT_TEXT = 16.0  # of their names' letters
-# labels of the rows; and of a row that is equal to the one before it
+NEXT_LEAST = 90.0  # minimum pixels of the shorter side of a small pad, at the layout's default size
+NEXT_TEXT = 16.0  # size of the letters of pads' names, pixels
+# Labels of the next rows, and of a row that is equal to the row before it.
 IN_TURN, AGAIN = ("next", "then", "and-then"), "again"
-STEPPED, RESTING = 0.94, 0.6  # size of the marks on those pads, in panels: of a foot that steps, and of one that stands
+STEPPED, RESTING = 0.94, 0.6  # size of the marks on small pads, in panels: of a stepping and of a standing foot
 
 
 @dataclass(frozen=True, slots=True)
 class DiagramRows:
     """The rows with steps of a play; r rows, c columns.
 
-    second : float64 (r,), of the music; limb : int8 (r, c), `feet.limbs.Limb`, NONE where nothing is stepped
-    feet : int16 (r, 2 p), column that each foot of p dancers stands on after the row, left and right in turn, or -1
+    second : float64 (r,), seconds of the music; limb : int8 (r, c), `feet.limbs.Limb`, NONE for a panel without a step
+    feet : int16 (r, 2 p), the column on which each foot of p dancers stands after the row, left and right in turn, or
+        -1
     """
 
     second: NDArray[np.float64]
@@ -48,7 +49,7 @@ class DiagramRows:
 
 
 def step_rows(play: Play, dancers: Sequence[tuple[Play, int]] = ()) -> DiagramRows:
-    """The rows with steps that people see, without the virtual taps of rolls.
+    """Return the rows with visible steps, without the virtual taps of rolls.
 
     dancers : for several dancers, the play of each and the first of its columns in `play`
     """
@@ -61,22 +62,25 @@ def step_rows(play: Play, dancers: Sequence[tuple[Play, int]] = ()) -> DiagramRo
 
 
 def _stood(play: Play) -> NDArray[np.int16]:
-    """`play.feet`, but -1 until a foot has stepped: before that, its place is only an assumption of the play."""
+    """Return `play.feet`, with -1 until a foot has stepped: before that, its place is only an assumption."""
     stepped = np.column_stack([(play.limb == side).any(axis=1) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)])
     return np.where(np.logical_or.accumulate(stepped, axis=0), play.feet, -1).astype(np.int16)
 
 
 def _feet_at(ticks: NDArray[np.int64], own: Play, first: int) -> NDArray[np.int16]:
-    """Where the feet of one of several stand after the rows at `ticks`, int16 (r, 2)."""
+    """Return the columns of one dancer's feet after the rows at `ticks`, int16 (r, 2).
+
+    first : the first column of this dancer in the common play
+    """
     row = np.searchsorted(own.rows.tick, ticks, side="right") - 1
     feet = np.where(row[:, None] >= 0, _stood(own)[np.maximum(row, 0)], -1)
     return np.where(feet >= 0, feet + first, -1).astype(np.int16)
 
 
 class PadView(NamedTuple):
-    """A pad in the picture. directions : per column, degrees clockwise from up, None for a middle panel
+    """A pad in the picture. directions : for each column, degrees clockwise from up, None for a middle panel
 
-    turned : it is seen from the screen, as the dancer is; `directions` are those in the picture
+    turned : pad and dancer are seen from the screen; `directions` are the directions in the picture
     """
 
     pad: PadLike
@@ -85,7 +89,7 @@ class PadView(NamedTuple):
 
 
 class PadMap:
-    """A pad from above in a box: maps panel widths to pixels and draws its panels."""
+    """A pad seen from above in a box, which maps panel widths to pixels and draws its panels."""
 
     def __init__(self, view: PadView, box: PixelBox) -> None:
         self.turned, self._way = view.turned, -1.0 if view.turned else 1.0
@@ -98,29 +102,29 @@ class PadMap:
         self.origin = ((box[0] + box[2]) / 2 - middle[0] * self.unit, (box[1] + box[3]) / 2 + middle[1] * self.unit)
 
     def place(self, x: float, y: float) -> tuple[float, float]:
-        """Pixels of a place in panel widths."""
+        """Convert a place in panel widths to pixels."""
         return self.origin[0] + self._way * x * self.unit, self.origin[1] - self._way * y * self.unit
 
     @property
     def edges(self) -> tuple[float, float, float, float]:
-        """Left, top, right and bottom of the pad, pixels."""
+        """The left, top, right and bottom edges of the pad, pixels."""
         places = np.array([self.place(x, y) for x, y in self.panels])
         (left, top), (right, bottom) = places.min(0) - self.unit / 2, places.max(0) + self.unit / 2
         return float(left), float(top), float(right), float(bottom)
 
     @property
     def smaller(self) -> float:
-        """Pixels of the pad's shorter side."""
+        """The length of the pad's shorter side, pixels."""
         return float((np.ptp(self.panels, axis=0) + 1.0).min() * self.unit)
 
     def nearness(self, x: float, y: float) -> float:
-        """1 for a place on the pad, 0 for one more than half a panel beside it."""
+        """Return 1 for a place on the pad, falling to 0 for a place half a panel or more beside the pad."""
         low, high = self.panels.min(0) - 0.5, self.panels.max(0) + 0.5
         beside = max(low[0] - x, x - high[0], low[1] - y, y - high[1], 0.0)
         return float(max(0.0, 1.0 - 2.0 * beside))
 
     def draw(self, frame: Frame, lit: list[tuple[float, int]], opacity: float = 1.0) -> None:
-        """Draw the panels; `lit` gives brightness and limb of each."""
+        """Draw the panels; lit : the brightness and the limb of each panel."""
         size = max(4, round(0.95 * self.unit))
         for (x, y), direction, (level, limb) in zip(self.panels, self.directions, lit, strict=True):
             px, py = self.place(x, y)
@@ -132,7 +136,7 @@ class PadMap:
 
 @lru_cache(maxsize=128)
 def panel_sprite(size: int, direction: float | None, limb: int | None) -> Sprite:
-    """A panel with its arrow; lit in the colour of `limb`."""
+    """Draw a panel with its arrow, lit in the colour of `limb` unless that is None."""
     p = shapes.Painter(size, size)
     d = shapes.rounded_box(p.x, p.y, size / 2 - 1, size / 2 - 1, 0.09 * size)
     colour = None if limb is None else np.array(limb_colours().by_limb[limb], dtype=np.float64)
@@ -147,7 +151,7 @@ def panel_sprite(size: int, direction: float | None, limb: int | None) -> Sprite
 def shoe_sprite(
     size: int, degrees: int, limb: int, face: Typeface, ghost: bool, rim: tuple[int, int, int] = (255, 255, 255)
 ) -> Sprite:
-    """A sole from above, its toe turned `degrees` clockwise from the screen, with its letter."""
+    """Draw a sole from above with its letter, its toe turned `degrees` clockwise from the screen."""
     p = shapes.Painter(size, size)
     a = np.radians(degrees)
     x, y = p.x * np.cos(a) + p.y * np.sin(a), -p.x * np.sin(a) + p.y * np.cos(a)
@@ -168,14 +172,14 @@ def shoe_sprite(
 
 @lru_cache(maxsize=32)
 def _marker(size: int, limb: int, face: Typeface) -> Sprite:
-    """The notes' own mark, painted once: each frame of practice needs several."""
+    """Return the mark of the notes from a cache, because each frame of a practice film needs several marks."""
     return sprites.marker(size, limb, face)
 
 
 class FeetDiagram:
     """The large pad with all feet on it, at any second.
 
-    rims : of each dancer's feet the colour around them; name : what stands above the pad
+    rims : the colour around each dancer's feet; name : the words above the pad
     """
 
     def __init__(
@@ -190,11 +194,14 @@ class FeetDiagram:
 
     @property
     def boxes(self) -> list[Box]:
-        """Where the pad is: left, top, right, bottom."""
+        """The box of the pad: left, top, right, bottom."""
         return [self.pads.edges]
 
     def draw(self, frame: Frame, second: float, feet: Sequence[FootFromAbove | None], opacity: float = 1.0) -> None:
-        """Draw pad and feet, left and right in turn; a lifted foot is larger and lighter."""
+        """Draw the pad and the feet; a lifted foot is larger and lighter.
+
+        feet : the feet of the dancers, left and right in turn
+        """
         self.pads.draw(frame, [self.lights.at(column, second) for column in range(len(self.pads.panels))], opacity)
         if self.name is not None:
             blit(frame, self.name, *above(self.pads, self.name), opacity)
@@ -208,29 +215,29 @@ class FeetDiagram:
             shoe = shoe_sprite(size, degrees, limb, self.face, foot.height > 0.035, rim)
             middle = (foot.heel[0] + foot.toe[0]) / 2, (foot.heel[1] + foot.toe[1]) / 2
             x, y = self.pads.place(*middle)
-            if (seen := self.pads.nearness(*middle)) > 0.0:  # she may walk beside the pad, where there is no diagram
+            if (seen := self.pads.nearness(*middle)) > 0.0:  # the dancer may walk beside the pad
                 blit(frame, shoe, round(x - size / 2), y - size / 2, seen * opacity)
 
 
 def name_sprite(name: str, face: Typeface, scale: float) -> Sprite:
-    """A pad's name. scale : pixels of one at the layout's default size"""
+    """Draw a pad's name. scale : pixels for one pixel at the layout's default size"""
     text = NEXT_TEXT * scale
     return face.sprite(name, text, NAMES, weight=text / 90)
 
 
 def below(box: PixelBox, name: Sprite | None) -> PixelBox:
-    """The part of a pad's box that is below its name."""
+    """Return the part of a pad's box that is below the pad's name."""
     return box if name is None else (box[0], box[1] + name.shape[0], box[2], box[3])
 
 
 def above(pads: PadMap, name: Sprite) -> tuple[float, float]:
-    """Where a name stands in the middle above its pad: left and top, pixels."""
+    """Return left and top of a name that stands in the middle above its pad, pixels."""
     left, top, right, _ = pads.edges
     return (left + right - name.shape[1]) / 2, int(top) - name.shape[0]
 
 
 def cut(box: PixelBox, count: int, axis: int) -> list[PixelBox]:
-    """A box in `count` equal parts with gaps: beside each other for axis 0, below each other for axis 1."""
+    """Cut a box into `count` equal parts with gaps: beside each other for axis 0, below each other for axis 1."""
     low, high = box[axis], box[axis + 2]
     gap = round((0.04 if axis == 0 else 0.06) * (high - low))
     length = (high - low - (count - 1) * gap) // count
@@ -244,7 +251,7 @@ def cut(box: PixelBox, count: int, axis: int) -> list[PixelBox]:
 
 
 class Lettering(NamedTuple):
-    """How names are written. scale : pixels of one at the layout's default size; words : by label"""
+    """The lettering of names. scale : pixels for one pixel at the layout's default size; words : label -> words"""
 
     face: Typeface
     scale: float
@@ -252,12 +259,10 @@ class Lettering(NamedTuple):
 
 
 class NextRows:
-    """Small pads with the next rows: which panels come, with which limb, and where the feet then stand.
+    """Small pads with the next rows: their panels, the limbs that step them, and the places of both feet after the row.
 
-    They are beside or below each other, whichever makes them larger. Each has its name: "next", "then", "and then", or
-    "again" for a row that is equal to the one before it.
-
-    If the pads of so many rows would be too small, there are fewer.
+    The pads are beside or below each other, whichever makes them larger. If they would be too small, there are fewer
+    pads. Each pad has a name: "next", "then", "and then", or "again" for a row that is equal to the row before it.
     """
 
     def __init__(
@@ -284,7 +289,7 @@ class NextRows:
             count -= 1
 
     def draw(self, frame: Frame, second: float) -> None:
-        """Draw the rows that come after `second`."""
+        """Draw the rows after `second`."""
         first = int(np.searchsorted(self.rows.second, second + EPSILON, side="right"))
         for place, pads in enumerate(self.pads):
             row = first + place
@@ -301,19 +306,19 @@ class NextRows:
             blit(frame, name, *self._corner(pads, name))
 
     def name(self, place: int, row: int) -> Sprite:
-        """The name of the pad at `place` with this row."""
+        """Return the name of the pad at `place`, which shows this row."""
         same = place > 0 and bool((self.rows.limb[row] == self.rows.limb[row - 1]).all())
         return self.names[AGAIN if same else IN_TURN[min(place, len(IN_TURN) - 1)]]
 
     def _corner(self, pads: PadMap, name: Sprite) -> tuple[float, float]:
-        """Where the name of a pad stands: in the middle above it, or on its left."""
+        """Return the top left corner of a pad's name, which stands in the middle above the pad or on its left."""
         left, top, _, bottom = pads.edges
         if self._above:
             return above(pads, name)
         return left - name.shape[1] - 2, round((top + bottom - name.shape[0]) / 2)
 
     def _mark(self, frame: Frame, pads: PadMap, column: int, limb: int, share: float) -> None:
-        """The notes' own mark on a panel; a foot that only stands there is small and faded."""
+        """Draw the mark of a limb on a panel; the mark of a foot that only stands there is small and faded."""
         mark = _marker(max(8, round(share * pads.unit)), limb, self.face)
         x, y = pads.place(*pads.panels[column])
         at = (round(x - mark.shape[1] / 2), round(y - mark.shape[0] / 2))

@@ -21,26 +21,24 @@ from dancetutor_cli.film.overlay.text import LONGEST, Typeface, clean, fitted, i
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.run.languages import Language
 
-SHOULDER_SHARE = (
-    0.75  # part of the room that a lower line takes at most beside the dancer, because her shoulders are wider
-)
+SHOULDER_SHARE = 0.75  # greatest share of the room for a lower line: the dancer's shoulders are wider than her head
 LINE = 1.25  # height of a line, in sizes of its letters
-# part of the room that lines have at least, wherever the dancer is; or of their box, if that is less
+# Minimum width of lines, wherever the dancer is: a share of the room, or a share of the box if that is less.
 NARROWEST, LEAST = 0.45, 0.2
 SUBTITLE = 0.68  # size of a subtitle below its title, in sizes of the title
-TIGHT = 0.2  # part of a line's height by which the next line of a title is nearer than in the font
+TIGHT = 0.2  # reduction of the distance between the lines of a title, in sizes of the letters
 _BRACKETED = re.compile(r"(.*?\S)(?:\s+(?=[(\[~～〜])|\s*(?=[（【「]))(.*[)\]~～〜）】」])")
-# least size and number of lines of a title; the first pair that fits is used
+# Smallest size and greatest number of lines of a title; the first pair that fits is used.
 TITLE_FITS = ((0.8, 1), (0.7, 2), (0.7, 3), (0.55, 4))
-SUBTITLE_FITS = ((0.78, 1), (0.75, 2))  # the same for a subtitle
+SUBTITLE_FITS = ((0.78, 1), (0.75, 2))
 ARTIST_FITS = ((0.85, 1), (0.675, 2))
 
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """What is written. `badge` is the difficulty and meter; `detail` what stands beside it.
+    """The words of the header. badge : difficulty and meter; detail : the words beside the badge
 
-    subtitle : stands behind the title if both fit in a line, else below it, smaller
+    subtitle : stands behind the title if both fit in a line, else below the title in smaller letters
     """
 
     title: str
@@ -53,10 +51,10 @@ class Words:
 
 
 class WordsRoom(NamedTuple):
-    """The part of a header's box that its words may take. share : of the width, beside the dancer's head
+    """The part of a header's box that its words may take. share : share of the width, beside the dancer's head
 
-    taken : float64 (n, 4), the places of heads during the dance, left, top, right and bottom in pixels: lines end
-    before them
+    taken : float64 (n, 4), the boxes of heads during the dance, before which lines end: left, top, right and bottom,
+        pixels
     """
 
     share: float = 1.0
@@ -68,26 +66,27 @@ ALL = WordsRoom()
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Lines:
-    """Words that come and go together. lines : each with its left top corner, pixels
+    """Words that appear and disappear together. lines : sprites with their left top corners, pixels
 
-    boxes : where those stand that make way for her: left, top, right, bottom
+    boxes : the boxes of the lines that make way for the dancer: left, top, right, bottom
     """
 
     lines: list[tuple[Sprite, float, float]]
     boxes: list[Box]
 
     def draw(self, frame: Frame, opacity: float = 1.0) -> None:
-        """Lay them over the picture."""
+        """Draw the words over the picture."""
         for sprite, x, y in self.lines:
             blit(frame, sprite, x, round(y), opacity)
 
 
 class Header:
-    """Title, artist and badge at the top left of its box, drawn once. bottom : y below the last line.
+    """Title, artist and badge at the top left of a box, drawn once.
 
-    The title is written smaller and in up to four lines, the artist in two, then they end at a word, with an ellipsis;
-    the credit needs room above the box's end
-    title_end : right and bottom of the title, pixels
+    A long title has smaller letters and up to four lines, a long artist two lines. Words that still do not fit end with
+    an ellipsis. The credit is left out if it has no room in the box.
+
+    bottom : y below the last line; title_end : right and bottom of the title, pixels
     """
 
     def __init__(
@@ -126,8 +125,10 @@ class Header:
         self.bottom += gap + sprite.shape[0]
 
     def _width(self, height: float) -> float:
-        """The width, pixels, of lines that take so many pixels below the last line (negative: its own); less beside
+        """Return the greatest width, pixels, of lines in the next `height` pixels below the last line; less beside
         heads.
+
+        A negative height means the pixels above the last line's end.
         """
         low, high = sorted((self.bottom, self.bottom + height))
         here = self._taken[(self._taken[:, 1] < high) & (self._taken[:, 3] > low)]
@@ -135,7 +136,7 @@ class Header:
         return float(max(self._least, min(room, here[:, 0].min(initial=np.inf) - self._left)))
 
     def _title(self, words: Words, size: float) -> None:
-        """All in one line; or the title and, below it and smaller, the subtitle or the words in brackets."""
+        """Add title and subtitle in one line, or the title and below it, smaller, the subtitle or words in brackets."""
         face, name, rest, width = self._face, words.title, words.subtitle, 0.97 * self._width(LINE * size)
         lines, fits = _fits(f"{name} {rest}".strip(), size, width, face, TITLE_FITS)
         if len(lines) > 1 and (found := _BRACKETED.fullmatch(name[:LONGEST])) and not rest:
@@ -145,7 +146,7 @@ class Header:
         else:
             rest = ""
         lower = 0.97 * self._width(len(lines) * LINE * fits)
-        if len(lines) > 1 and lower < width:  # these stand beside her head
+        if len(lines) > 1 and lower < width:  # the lower lines are beside the dancer's head
             lines, fits = _fits(name, size, lower, face, TITLE_FITS)
         for number, line in enumerate(lines):
             ink = face.sprite(line, fits, WHITE, weight=fits / 60, shadow=2 * self._scale)
@@ -158,13 +159,13 @@ class Header:
                 self._add(ink, self._left, -TIGHT * fits)
 
     def _artist(self, text: str, size: float) -> None:
-        """In one line, a little smaller, or in two."""
+        """Add the artist in one line, a little smaller if necessary, or in two lines."""
         lines, size = _fits(text, size, self._width(LINE * size), self._face, ARTIST_FITS)
         for number, line in enumerate(lines):
             self._line(line, size, -0.1 * size if number else self._scale, weight=0.25)
 
     def _detail(self, text: str, size: float) -> None:
-        """In one line, or divided at a point if the dancer leaves no more room."""
+        """Add the detail in one line, or divided at a "·" if the dancer leaves too little room."""
         width, gap = self._width(2 * LINE * size), 3 * self._scale
         parts = text.split(" · ") if 0.8 * self._face.width(text[:LONGEST], size) > width else [text]
         for number, part in enumerate(parts):
@@ -177,22 +178,22 @@ class Header:
 
     @property
     def top(self) -> float:
-        """y above the title."""
+        """The y coordinate of the title's top edge."""
         return self.lines[0][2]
 
     @property
     def right(self) -> float:
-        """x behind the longest line."""
+        """The x coordinate of the longest line's right end."""
         return float(max(x + ink.shape[1] for ink, x, _ in self.lines))
 
     def clear(self, box: PixelBox, off: float) -> PixelBox:
-        """The box, moved to begin `off` pixels below these words if they reach into it."""
+        """Return a box, moved to begin `off` pixels below these words if they reach into it."""
         reached = box[0] < self.right and self.bottom + off > box[1] > self.top
         return lowered(box, self.bottom + off) if reached else box
 
     @cached_property
     def parts(self) -> tuple[Lines, Lines]:
-        """The title, and what stands below it. A title of one line is above her head, even as she walks on."""
+        """The title, and the lines below it. A title of one line is above the dancer's head, even as she walks on."""
         title, below = self.lines[: self._titled], self.lines[self._titled :]
         return Lines(title, [box_of(*line) for line in title[len(title) == 1 :]]), Lines(
             below, [box_of(*x) for x in below]
@@ -202,11 +203,11 @@ class Header:
 def _fits(
     text: str, size: float, width: float, face: Typeface, ways: tuple[tuple[float, int], ...]
 ) -> tuple[list[str], float]:
-    """Words in one line or several, of a size that can be read from afar; only what is still too long is cut off."""
+    """Return the lines of a text and their size, which can be read from afar; a text that is too long is cut off."""
     text = text[:LONGEST]
     whole = face.width(text, size)
     for least, most in ways:
-        if least * whole > most * width:  # it cannot fit, and trying would take long with 1000 letters
+        if least * whole > most * width:  # the text cannot fit, and a try with 1000 letters would be slow
             continue
         lines, fits = fitted(text, size, width, face, most)
         if fits >= least * size:
@@ -215,11 +216,11 @@ def _fits(
     return in_lines(text, least * size, width, face, most), least * size
 
 
-# The words of the picture, from a song and a chart: in letters that the font has.
+# The words of the picture, made from a song and a chart with the letters that the font has.
 
 
 def words_of(song: Song, chart: Chart, font: Path | None, language: Language) -> Words:
-    """The words of the picture, with the transliterated title where the font lacks the original's letters."""
+    """Return the words of the picture; a title is transliterated if the font lacks letters of the original."""
     face = Typeface(font)
     title = _readable(face, song, song.title or song.path.stem, "TITLETRANSLIT")
     subtitle = _readable(face, song, song.subtitle, "SUBTITLETRANSLIT")
@@ -244,7 +245,7 @@ def _readable(face: Typeface, song: Song, text: str, tag: str) -> str:
 
 
 def title_warnings(song: Song, words: Words, font: Path | None) -> tuple[str, ...]:
-    """Warnings for letters of title or artist that cannot be drawn."""
+    """Return the warnings about letters of title or artist that cannot be drawn."""
     missing = Typeface(font).missing(clean(song.title + song.artist))
     lost = "?" in words.title.replace("?", "", song.title.count("?")) or "?" in words.artist
     if not missing or not lost:

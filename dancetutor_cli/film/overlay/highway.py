@@ -1,4 +1,4 @@
-"""The highway: notes scrolling to their receptors, with L/R markers, holds, mines, beat lines and flashes."""
+"""The highway: notes that scroll to their receptors, with L/R markers, holds, mines, beat lines and flashes."""
 
 from __future__ import annotations
 
@@ -22,16 +22,19 @@ from dancetutor_cli.film.scroll import Scroll
 from dancetutor_cli.run.schema import RGB
 
 BEATS_PER_MEASURE = 4
-NUMBER_SHARE = 0.019  # part of the box's height that the number of a measure has at least
-LET_GO = 0.25  # opacity of holds and rolls after nobody plays them any more
+NUMBER_SHARE = 0.019  # minimum height of a measure's number, as a share of the box's height
+LET_GO = 0.25  # opacity of the part of a hold or roll that nobody plays
 TAGS_APART = 2.0  # pixels between two tags
-# letters of a label: pixels, because smaller ones cannot be read; share of that height
+# Minimum size of a label's letters: pixels, because smaller letters cannot be read; share of the box's height.
 FLAG_LEAST, FLAG_SHARE = 10.0, 0.026
 
 
 @dataclass(frozen=True, slots=True)
 class _Now:
-    """A moment. second : of the music; beat : as drawn; spacing : pixels per beat, or per second with C mods."""
+    """A moment. second : second of the music; beat : beat as drawn
+
+    spacing : pixels per beat, or per second with C mods
+    """
 
     second: float
     beat: float
@@ -48,7 +51,7 @@ class Score(NamedTuple):
 
 
 class Highway:
-    """Draws the highway of one chart. Nothing in it changes between frames: any frame may be drawn at any time."""
+    """The highway of one chart. It has no state that changes between frames: any frame may be drawn at any time."""
 
     def __init__(
         self,
@@ -59,7 +62,7 @@ class Highway:
         face: Typeface,
         facing: str = "",
     ) -> None:
-        """facing : words above the lanes where the dancer faces the viewer, and all arrows are turned with her."""
+        """facing : words above the lanes if the dancer faces the viewer and all arrows are turned with her"""
         self._facing = facing
         self.notes, self.presses, self.lines, self.callouts = score
         self.geometry, self.face = geometry, face
@@ -70,7 +73,7 @@ class Highway:
         self.spacing = scroll.factor(scroll_bpm) * geometry.lane * (-1 if geometry.down else 1)
         self.style = sprites.highway_style()
         self.size = sprites.arrow_size(geometry.lane, self.style)
-        # The colour of a note: that of its quantisation or, in a chart for two, of its player.
+        # The colour of a note shows its quantisation or, in a chart for two, its player.
         self.colours = (*(self.style.quantisation[q] for q in QUANTISATIONS), *self.style.players)
         whose = len(QUANTISATIONS) + self.notes.player.astype(np.int64) - 1
         self.colour = np.where(self.notes.player > 0, whose, self.notes.quantisation)
@@ -99,19 +102,19 @@ class Highway:
         self.marks = Marks(self.notes, self.geometry, style, self.face, self.by_time)
 
     def _arrows(self, which: NDArray[np.bool_], hollow: bool) -> dict[tuple[float | None, int], Sprite]:
-        """Sprites of the notes `which`, by direction and place of the colour; only what the chart has."""
+        """Draw the sprites of the notes `which`, by direction and index of the colour, as far as the chart has them."""
         pairs = {(int(c), int(q)) for c, q in zip(self.notes.column[which], self.colour[which], strict=True)}
         wanted = {(self.geometry.directions[c], q) for c, q in pairs}
         return {(d, q): sprites.arrow(self.size, d, self.colours[q], hollow) for d, q in wanted}
 
     def _hold_colours(self) -> Iterator[tuple[tuple[Kind, int], RGB]]:
-        """The colours of holds and rolls, by player."""
+        """Return the colours of holds and rolls, by player."""
         for player in range(int(self.notes.player.max(initial=0)) + 1):
             for kind, colour in ((Kind.HOLD, self.style.hold), (Kind.ROLL, self.style.roll)):
                 yield (kind, player), self.style.players[player - 1] if player else colour
 
     def background(self, frame: Frame) -> None:
-        """The still part, drawn once: panel and lanes."""
+        """Draw the still part, panel and lanes, which is needed only once."""
         _, top, _, bottom = self.geometry.box
         rectangle(frame, self.geometry.box, self.style.background, 0.82)
         lane, x0 = self.geometry.lane, self.geometry.left
@@ -126,7 +129,7 @@ class Highway:
     def draw(self, frame: Frame, second: float, beat: float, speed: float = 1.0) -> None:
         """Draw everything that moves at `second` of the music.
 
-        beat : as drawn (scroll segments applied); speed : of the chart's speed segments, which C mods leave out
+        beat : beat as drawn (scroll segments applied); speed : factor of the speed segments, which C mods ignore
         """
         now = _Now(second, beat, self.spacing * (1.0 if self.by_time else speed))
         self._draw_lines(frame, now)
@@ -137,7 +140,7 @@ class Highway:
             self._draw_turned(frame)
 
     def _y(self, seconds: NDArray[np.float64], beats: NDArray[np.float64], now: _Now) -> NDArray[np.float64]:
-        """Middle of things at `seconds`/`beats` on the screen, pixels."""
+        """Return the y coordinates of the middles of notes or lines at `seconds` and `beats`, pixels."""
         away = seconds - now.second if self.by_time else beats - now.beat
         result: NDArray[np.float64] = self.geometry.receptor + away * now.spacing
         return result
@@ -150,7 +153,7 @@ class Highway:
         y = self._y(self.lines.second, self.lines.beat, now)
         lane = self.geometry.lane
         shown = np.flatnonzero(self._visible(y, 2))
-        if len(shown) > 400:  # so dense that lines would be a wall
+        if len(shown) > 400:  # at this density the lines would form a wall
             shown = shown[shown % BEATS_PER_MEASURE == 0][:400]
         x0 = self.geometry.left - EDGE * lane
         x1 = self.geometry.left + lane * (len(self.geometry.directions) + EDGE)
@@ -177,8 +180,9 @@ class Highway:
         return self.face.sprite(text, size, (190, 196, 220))
 
     def _draw_callouts(self, frame: Frame, now: _Now) -> None:
-        """Words beside their rows, on the right of the lanes. If several are near each other, the later ones are
-        farther off, so that none covers another.
+        """Draw words beside their rows, on the right of the lanes.
+
+        If several words are near each other, the later ones move away, so that none covers another.
         """
         if not self.geometry.tags:
             return
@@ -191,7 +195,7 @@ class Highway:
             middle = max(way * y[i], free + flag.shape[0] / 2)
             free = middle + flag.shape[0] / 2 + TAGS_APART
             at, (top, bottom) = way * middle - flag.shape[0] / 2, self._rows
-            # a mark is drawn whole or not at all
+            # A label is drawn whole or not at all.
             if self._tag_seconds[i] > now.second and top <= at and at + flag.shape[0] <= bottom:
                 blit(frame, flag, x, at, 1.0, self._rows)
 
@@ -202,7 +206,7 @@ class Highway:
         return sprites.flag(lines, size, self.style.callout[severity], self.face)
 
     def _draw_turned(self, frame: Frame) -> None:
-        """Show that the arrows are turned round, in the gap that notes do not pass."""
+        """Draw the words that say that the arrows are turned, in the gap that notes do not pass."""
         geometry, words = self.geometry, self._turned
         _, top, _, bottom = geometry.box
         edge, half = (bottom, 0.5 * self.size) if geometry.down else (top, -0.5 * self.size)
@@ -237,13 +241,13 @@ class Highway:
         _, top, _, bottom = self.geometry.box
         shown = np.flatnonzero(~gone & (high > top - self.size) & (low < bottom + self.size))
         if len(shown) > 3000:
-            shown = shown[:3000]  # beyond any readable density; keeps hostile charts bounded
+            shown = shown[:3000]  # more notes are unreadable; the limit bounds the work of hostile charts
         held = (notes.second <= second + 1e-6) & notes.judged
         holds = np.isin(notes.kind[shown], (Kind.HOLD, Kind.ROLL))
         let_go = self._y(notes.gone_second, notes.gone_beat, now)
         for i in shown[holds]:
             head = self.geometry.receptor if held[i] else y[i]
-            if np.isfinite(notes.gone_second[i]):  # bright to where it is let go, and dim from there on
+            if np.isfinite(notes.gone_second[i]):  # bright while it is played, and dim after that
                 at = min(max(let_go[i], min(head, tail[i])), max(head, tail[i]))
                 self._draw_hold(frame, int(i), Run(at, tail[i], y[i]), LET_GO)
                 self._draw_body(frame, int(i), Run(min(head, at), max(head, at), y[i]), 1.0 if held[i] else 0.78)
@@ -262,7 +266,7 @@ class Highway:
         strip(frame, tile, x, run, opacity, self._rows)
 
     def _draw_hold(self, frame: Frame, i: int, run: Run, opacity: float) -> None:
-        """run : from head to tail, whichever is higher, and phase"""
+        """Draw a hold. run : head, tail and phase; either end may be the higher one"""
         head, tail, phase = run
         self._draw_body(frame, i, Run(min(head, tail), max(head, tail), phase), opacity)
         end = self.tails[Kind(int(self.notes.kind[i])), int(self.notes.player[i])]

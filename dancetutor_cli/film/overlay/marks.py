@@ -1,4 +1,4 @@
-"""Lanes, and what is on and beside notes: marks of the limb that steps a note, words."""
+"""The lanes of a highway, the marks on notes that show the limbs, and the words beside notes."""
 
 from __future__ import annotations
 
@@ -21,23 +21,24 @@ from dancetutor_cli.film.overlay.text import Typeface, fitted, narrowest
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.film.words import short_words
 
-# Where the lanes of a highway lie in the picture.
+# The place of a highway's lanes in the picture.
 
-# heights of the box beside the number of a measure, and heights that three digits take
+# The gap beside the number of a measure, and the width of three digits, in heights of the box.
 NUMBER_EDGE, NUMBER_ROOM = 0.009, 0.045
-NUMBERS = 0.26  # part of the free width that is on the left of the lanes, where numbers stand
-NUMBER_OFF, EDGE = 0.2, 0.14  # lane widths from numbers to the first lane, and from the last one to its frame
-TAG_LEFT, TAG_EDGE = 3, 0.0105  # pixels on the left of words beside the notes; heights of the box on their right
-LEAST_LANES = 0.7  # part of their usual width that lanes keep at least, whatever words stand beside them
+NUMBERS = 0.26  # share of the free width on the left of the lanes, for the numbers of measures
+NUMBER_OFF, EDGE = 0.2, 0.14  # lane widths from numbers to the first lane, and from the last lane to the frame
+TAG_LEFT, TAG_EDGE = 3, 0.0105  # gap on the left of words beside the notes, pixels; on their right, heights of the box
+LEAST_LANES = 0.7  # minimum share of their usual width that lanes keep beside wide words
 
 
 @dataclass(frozen=True, slots=True)
 class HighwayGeometry:
-    """Where the highway lies, in pixels: box (left, top, right, bottom); lane width; y of the receptors' middle.
+    """The place of the highway, in pixels: box (left, top, right, bottom), lane width, y of the receptors' middle.
 
-    directions : per column, degrees clockwise from up, None for a middle panel; down : notes fall instead of rise
-    turned : she faces who looks on; the lanes stand the other way round, and `directions` are as they are seen then
-    tags : words stand beside the notes; letters : their size that room is left for, pixels
+    directions : for each column, degrees clockwise from up, None for a middle panel; down : notes fall instead of rise
+    turned : the dancer faces the viewer; the order of the lanes is reversed, and `directions` are as the viewer sees
+        them
+    tags : words stand beside the notes; letters : size of their letters for which there is room, pixels
     """
 
     box: tuple[int, int, int, int]
@@ -50,35 +51,35 @@ class HighwayGeometry:
     letters: float = 10.0
 
     def lane_of(self, column: int) -> int:
-        """The lane of a column, counted from the left."""
+        """Return the lane of a column, counted from the left."""
         return len(self.directions) - 1 - column if self.turned else column
 
     @property
     def left(self) -> float:
-        """x of the first lane; where words stand, more room is left for them on the right than for measure numbers."""
+        """The x coordinate of the first lane; words on the right have more room than measure numbers on the left."""
         spare = self.box[2] - self.box[0] - self.lane * len(self.directions)
         least = NUMBER_OFF * self.lane + NUMBER_ROOM * (self.box[3] - self.box[1])
         return self.box[0] + (min(max(NUMBERS * spare, least), 0.5 * spare) if self.tags else 0.5 * spare)
 
     @property
     def tags_left(self) -> float:
-        """x where words beside the notes begin."""
+        """The x coordinate at which words beside the notes begin."""
         return self.left + self.lane * (len(self.directions) + EDGE) + TAG_LEFT
 
     @property
     def tags_room(self) -> float:
-        """Pixels that such words may be wide, with their label."""
+        """The greatest width of the words beside the notes, with their label, pixels."""
         return self.box[2] - self.tags_left - TAG_EDGE * (self.box[3] - self.box[1])
 
     def corner(self, column: int, y: float, size: float) -> tuple[float, float]:
-        """Top left corner of a sprite of this size, in the middle of a column's lane at `y`."""
+        """Return the top left corner of a sprite of this size in the middle of a column's lane at `y`."""
         return self.left + (self.lane_of(column) + 0.5) * self.lane - size / 2, y - size / 2
 
 
 def lane_width_for_words(words: float, lane: float, box: tuple[int, int, int, int], columns: int) -> float:
-    """The width of lanes that leaves room for words of this width: `lane`, or less; the inverse of `tags_room`.
+    """Return the width of lanes that leaves room for words of this width; the inverse of `tags_room`.
 
-    words : pixels; lane : pixels that a lane has where there are none
+    words : width of the words, pixels; lane : width of a lane without words, pixels, which is the greatest result
     """
     width, height = box[2] - box[0], box[3] - box[1]
     free = width - words - TAG_LEFT - TAG_EDGE * height
@@ -87,29 +88,31 @@ def lane_width_for_words(words: float, lane: float, box: tuple[int, int, int, in
     return max(LEAST_LANES * lane, min(lane, beside_numbers, beside_part))
 
 
-# The marks that show which limb steps a note: their size, their place on the arrow, and which are left out.
+# The marks that show the limb of each note: their size, their place on the arrow, and the choice of marks.
 #
-# A mark stands on the arrow's tail, so that the head shows the direction. If the arrows of a lane overlap, it stands on
-# the visible strip of its arrow, and is no higher than that. If marks would cover each other, they are smaller; those
-# of the left foot stand on the left of the lane and those of the right foot on the right, and of one foot only as many
-# are drawn as can be read. On diagonals they stay on the tail's side as long as possible. The cross of a note that is
-# not played stays in the middle, where it covers neither side.
+# A mark stands on the arrow's tail, so that the head shows the direction. If the arrows of a lane overlap, the mark
+# stands on the visible strip of its arrow, and is no higher than the strip. If marks would cover each other, they are
+# smaller: the marks of the left foot stand on the left of the lane, the marks of the right foot on the right, and
+# unreadable marks are left out. On diagonals, marks stay on the tail's side as long as possible. The cross of a note
+# that is not played stays in the middle, where it covers neither side.
 
-MARK_SHARE, MARK_MOST = 0.04, 0.58  # an L or R is at least this many heights of the box, but at most this many lanes
-READ, READ_MOST = 16, 0.5  # pixels of a mark whose letter is 8 high, also on diagonal arrows; at most this many lanes
-LEAST_SHARE, LEAST_MOST = 0.023, 0.36  # the same where notes are dense
+MARK_SHARE, MARK_MOST = 0.04, 0.58  # minimum size of an L or R, in heights of the box; maximum size, in lanes
+READ, READ_MOST = 16, 0.5  # pixels of a mark with a letter 8 pixels high, also on diagonals; maximum size, in lanes
+LEAST_SHARE, LEAST_MOST = 0.023, 0.36  # size of a mark among dense notes, in heights of the box; maximum, in lanes
+# Distance of marks on one side of a lane from its middle, and their maximum size, in lanes.
 SIDE_OFFSET, SIDE_MAX_SIZE = (
     0.25,
     0.46,
-)  # lanes from the middle at which the marks then stand, and their largest size
-STEPS = 8  # number of spacings in each doubling for which sizes are computed
+)
+STEPS = 8  # number of spacings for each factor of two for which sizes are computed
 
 
 class Places(NamedTuple):
-    """The marks of all notes at some spacing, (n,) each.
+    """The marks of all notes at one spacing, (n,) each.
 
-    size : int16, pixels, 0 for none; side : int16, -1 on the left of the lane, 1 on its right, 0 where it stands by
-    itself; below : float64, pixels from the arrow's middle down to the mark's
+    size : int16, pixels, 0 for no mark
+    side : int16, -1 on the left of the lane, 1 on its right, 0 on the usual place of the arrow
+    below : float64, pixels from the arrow's middle down to the mark's middle
     """
 
     size: NDArray[np.int16]
@@ -118,7 +121,7 @@ class Places(NamedTuple):
 
 
 class Marks:
-    """Draws the marks of a chart's notes. by_time : notes are as far apart as their seconds are, else their beats."""
+    """The marks of a chart's notes. by_time : distances between notes follow seconds, otherwise beats"""
 
     def __init__(
         self, notes: NoteTrack, geometry: HighwayGeometry, style: sprites.HighwayStyle, face: Typeface, by_time: bool
@@ -137,11 +140,11 @@ class Marks:
         self._places = lru_cache(maxsize=64)(self._find)
 
     def of(self, direction: float | None) -> int:
-        """Pixels of a mark with room around it, on an arrow that points this way."""
+        """Return the size, pixels, of a mark with room around it on an arrow that points this way."""
         return self.full if direction is None else max(self._read, round(self._style.mark_tail * self.full))
 
     def behind(self, direction: float | None) -> tuple[float, float]:
-        """Where such a mark stands on its arrow, pixels from the middle."""
+        """Return the place of a mark with room around it, pixels to the right and down from its arrow's middle."""
         if direction is None:
             return 0.0, 0.0
         far = self._style.mark_aside[bool(direction % 90)] * self.geometry.lane
@@ -149,15 +152,18 @@ class Marks:
         return -far * math.sin(way), far * math.cos(way)
 
     def places(self, spacing: float) -> Places:
-        """The places of all marks if notes are so many pixels apart for each second or beat, but never for more room
-        than that.
+        """Return the places of all marks for a spacing in pixels per second or beat.
+
+        The spacing is rounded down to one of `STEPS`, so that the marks never need more room than there is.
         """
         return self._places(math.floor(STEPS * math.log2(max(abs(spacing), 1e-3))))
 
     def draw(self, frame: Frame, i: int, y: float, places: Places, gone: bool = False) -> None:
-        """Draw the mark of note `i`, whose arrow's middle is at `y`; gone : a cross, for it is not played.
+        """Draw the mark of note `i`, whose arrow's middle is at `y`.
 
-        A mine under a foot has a cross in its middle, too.
+        A mine under a foot has a cross in its middle.
+
+        gone : draw a cross, because nobody plays the note any more
         """
         if (size := int(places.size[i])) == 0:
             return
@@ -169,7 +175,7 @@ class Marks:
         blit(frame, badge, x + across, top + float(places.below[i]), 1.0, self.geometry.box[1::2])
 
     def _draw_sprite(self, size: int, limb: int) -> Sprite:
-        """A mark on the soft shade that lifts it off its arrow."""
+        """Draw a mark on a soft shade, which separates it from its arrow."""
         out, mark = sprites.shade(round(1.35 * size)).copy(), sprites.marker(size, limb, self._face, rim=True)
         sprites.centre(out, mark)
         return out
@@ -178,11 +184,11 @@ class Marks:
         notes, apart = self._notes, 2.0 ** (spacing / STEPS)
         size, side = np.zeros(len(notes.second), np.int16), np.zeros(len(notes.second), np.int16)
         below = np.zeros(len(notes.second))
-        size[self._on_mine] = self.of(0.0)  # none is left out, however dense
+        size[self._on_mine] = self.of(0.0)  # no mark of a mine is left out, at any density
         for column in np.unique(notes.column[self._marked]).tolist():
             lane = np.flatnonzero(notes.column == column)
             lane = lane[np.argsort(self._along[lane], kind="stable")]
-            # the visible part of an arrow that another arrow covers
+            # The visible part of an arrow that another arrow covers.
             strip = np.diff(self._along[lane] * apart, prepend=-np.inf)
             here, strip = lane[self._marked[lane]], strip[self._marked[lane]]
             direction = self.geometry.directions[column]
@@ -209,9 +215,11 @@ class Marks:
     def _seen(
         self, tail: NDArray[np.float64], size: NDArray[np.int16], strip: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """The places of marks at which they cover no arrow that comes sooner: `tail`, or farther from that arrow.
+        """Return the places of marks at which they do not cover the arrow before them.
 
-        tail : pixels down from the arrows' middles; size : of the marks; strip : what is seen of their arrows
+        A mark stays at `tail`, or moves away from that arrow.
+
+        tail : pixels down from the arrows' middles; size : sizes of the marks; strip : visible parts of their arrows
         """
         way = -1.0 if self.geometry.down else 1.0
         half = self._arrow / 2
@@ -219,9 +227,11 @@ class Marks:
         return np.asarray(way * np.where(size > 0, np.maximum(way * tail, np.minimum(least, half - size / 2)), 0.0))
 
     def _thinned(self, along: NDArray[np.float64], most: int, crosses: NDArray[np.float64]) -> NDArray[np.int16]:
-        """Sizes of marks of one side of a lane at these places, at most `most` pixels: 0 where the last is near.
+        """Return the sizes of the marks on one side of a lane, at most `most` pixels; 0 for a mark near the one before.
 
-        Beside `crosses` they are smaller, as far as they can still be read.
+        Marks beside a cross are smaller, as far as they can still be read.
+
+        along : places of the marks; crosses : places of the crosses
         """
         kept: list[int] = []
         for k, y in enumerate(along.tolist()):
@@ -239,44 +249,46 @@ class Marks:
     def _with_crosses(
         self, along: NDArray[np.float64], size: NDArray[np.int16], crosses: NDArray[np.bool_], most: int
     ) -> NDArray[np.int16]:
-        """Sizes of all marks of a lane: a cross where there is room for one between those of both sides."""
+        """Return the sizes of all marks of a lane, with a cross if there is room between the marks of both sides."""
         for k in np.flatnonzero(crosses).tolist():
             first, last = np.searchsorted(along, (along[k] - most, along[k] + most), side="left").tolist()
             near = np.arange(first, last)[size[first:last] > 0]
             away = along[near] - along[k]
-            room = np.min(-away[away <= 0], initial=most)  # marks stand as far from what comes sooner as they can
+            room = np.min(-away[away <= 0], initial=most)  # marks stand as far as possible from the arrow before them
             size[k] = room if room >= self.least and (size[near] <= np.abs(away)).all() else 0
         return size
 
 
-# Words beside the notes: how large their letters are, how much room they need, in how many lines they stand.
+# Words beside the notes: the size of their letters, the room that they need, and their lines.
 
-LETTERS, LEAST = 15.0, 10.4  # pixels of letters for which room is left: at a layout's default size, and at any size
-LINES, MOST_LINES = 2, 4  # lines of a phrase; of all phrases, if there are commas
-LEAD_SECONDS = 4.0  # seconds before its row that a tag, or a note, may be in the picture
+LETTERS, LEAST = 15.0, 10.4  # size of the letters at a layout's default size, and at least at any size, pixels
+LINES, MOST_LINES = 2, 4  # maximum lines of a phrase, and of all phrases between commas
+LEAD_SECONDS = 4.0  # seconds for which a tag or a note may be in the picture before its row
+# Tags with more letters than this stand at least this many seconds apart: brackets would be a wall of small letters.
 LONG, LONG_APART = (
     20,
     1.2,
-)  # letters of tags that stand at least so many seconds apart; before, brackets were a wall of small letters
-LABEL = 4  # pixels left and right of the words in their label, beside FLAG_EDGE
-NEAR = 0.95  # part of the letters' size that counts as the whole size, because sizes are tried in steps
-FEWER = 0.85  # down to this part, smaller letters are better than more lines, if they are not below `LEAST`
+)
+LABEL = 4  # pixels left and right of the words in their label, in addition to FLAG_EDGE
+NEAR = 0.95  # share of the letters' size that counts as the whole size, because sizes are tried in steps
+FEWER = 0.85  # down to this share, smaller letters are better than more lines, unless they are below `LEAST`
 
 
 def letters(scale: float) -> float:
-    """The size of letters that room is left for, pixels; scale : of the layout."""
+    """Return the size of letters for which there is room, pixels; scale : scale of the layout."""
     return max(LETTERS * scale, LEAST)
 
 
 def has_visible_callout(callouts: Iterable[Callout], passes: Iterable[Pass]) -> bool:
-    """Whether any of these stands beside the notes in one of these runs."""
+    """Whether any of these callouts stands beside the notes in one of these runs."""
     begins = np.array([callout.second for callout in callouts])
     return any(((one.start <= begins) & (begins <= one.end + LEAD_SECONDS)).any() for one in passes)
 
 
 def visible_limbs(notes: NoteTrack, passes: Iterable[Pass]) -> set[int]:
-    """The limbs, `feet.limbs.Limb`, whose notes are in the picture in these runs; a section may have fewer than the
-    song.
+    """Return the limbs, `feet.limbs.Limb`, whose notes are in the picture in these runs.
+
+    A section may have fewer limbs than the song.
     """
     here = np.zeros(len(notes.second), dtype=np.bool_)
     for one in passes:
@@ -285,7 +297,7 @@ def visible_limbs(notes: NoteTrack, passes: Iterable[Pass]) -> set[int]:
 
 
 class RowTag(NamedTuple):
-    """Words beside a row. second : of the music; beat : the same as drawn; severity : as of `Callout`"""
+    """Words beside a row. second : second of the music; beat : beat as drawn; severity : as in `Callout`"""
 
     second: float
     beat: float
@@ -294,9 +306,9 @@ class RowTag(NamedTuple):
 
 
 def row_tags(callouts: Iterable[Callout]) -> list[RowTag]:
-    """Each passage's tag where it begins, and those of its other moves, in order of time.
+    """Return the tags of each passage's first and later moves, in order of time.
 
-    Of long tags that follow each other quickly, such as those of brackets, it has the first; the calls beside the
+    Of long tags that follow each other quickly, such as tags of brackets, only the first is kept. The calls beside the
     dancer name the others.
     """
     found = [
@@ -313,26 +325,30 @@ def row_tags(callouts: Iterable[Callout]) -> list[RowTag]:
 
 
 def callout_texts(callouts: Iterable[Callout], words: Iterable[str]) -> set[str]:
-    """The possible words beside the notes: those of this film, and those that are the same in all films, so that lanes
-    of most films are alike.
+    """Return the possible words beside the notes: the tags of this film, and the tags that all films share.
 
-    words : of moves, some with {who} and {places} to be filled in
+    The shared tags make the lanes of most films alike.
+
+    words : the words of moves, some with {who} and {places} to be filled in
     """
     tags = {tag for one in callouts for tag in (one.tag, *(tag for *_, tag in one.further))}
     return tags | {short_words(text) for text in words if "{" not in text}
 
 
 def room_for(tags: Iterable[str], size: float, face: Typeface) -> float:
-    """Pixels that the widest of these words need with their label, at this size; each phrase in two lines at most."""
+    """Return the width of the widest tag with its label, pixels, with each phrase in at most two lines.
+
+    size : size of the letters
+    """
     phrases = {phrase for tag in tags for phrase in tag.split(", ")}
     widest = max((narrowest(phrase, size, face, LINES) for phrase in phrases), default=0.0)
     return widest + FLAG_EDGE * size + LABEL
 
 
 def lay_out_tag(tag: str, size: float, least: float, room: float, face: Typeface) -> tuple[list[str], float]:
-    """The lines of a tag, and the size of its letters: at most `size`, at least `least` if they can be; none is cut.
+    """Return the lines of a tag and the size of its letters, without cutting words off.
 
-    room : pixels for the label
+    size, least : greatest size, and smallest size if possible; room : pixels for the label
     """
     enough = NEAR * max(FEWER * least, min(least, LEAST))
     for most in range(LINES, MOST_LINES + 1):

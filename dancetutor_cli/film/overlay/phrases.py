@@ -1,4 +1,7 @@
-"""What a call says of a move beside its name: which foot, in front or behind, and why; the sentences are data."""
+"""The phrases of calls, which say more than the name of a move: the foot, in front or behind, and the reason.
+
+The sentences themselves are data of the languages.
+"""
 
 from __future__ import annotations
 
@@ -15,13 +18,14 @@ if TYPE_CHECKING:
 
 FRONT, BACK, JUMP = "crossover-front", "crossover-back", "crossover-jump"
 TURN_FRONT, TURN_BEHIND, TURN_ROUND = "half-turn-front", "half-turn-behind", "half-turn-round"
-JUST = 2.0  # seconds; the longest time since a foot "has just stepped"
+JUST = 2.0  # the longest time since a foot "has just stepped", seconds
 
 
 class Phrase(NamedTuple):
-    """A move in words. move : its name for people, the same for all of its kind; text : with foot and way
+    """A move in words. move : name for people, the same for all moves of a kind; text : words with foot and direction
 
-    tag : for the place beside the notes; why : a reason, or ""; several : how a count of different ones is written
+    tag : words for the place beside the notes; why : a reason, or ""
+    several : template for a count of moves with different words
     """
 
     move: str
@@ -31,7 +35,7 @@ class Phrase(NamedTuple):
     several: str = ""
 
     def counted(self, count: int, alike: bool) -> str:
-        """So many of them in a row; alike : all have the same words."""
+        """Return the words for `count` of these moves in a row; alike : whether all have the same words."""
         if count == 1:
             return self.text
         if alike or not self.several:
@@ -40,17 +44,17 @@ class Phrase(NamedTuple):
 
 
 def plain(text: str) -> Phrase:
-    """Words that stand for themselves."""
+    """Return a phrase that uses the same words everywhere."""
     return Phrase(text, text, short_words(text))
 
 
 def standing_tags(language: Language) -> tuple[str, ...]:
-    """The tags that are the same in every film."""
+    """Return the tags that are the same in every film."""
     return tuple(language.calls[f"{name}-tag"] for name in (FRONT, BACK, JUMP))
 
 
 def stepped_phrase(move: str, name: str, limbs: list[int], language: Language) -> Phrase:
-    """A move of the one foot that steps, for example a footswitch. limbs : of its row"""
+    """Return the phrase of a move of one foot, for example a footswitch. limbs : the limbs of its row"""
     feet = {limb for limb in limbs if limb in (0, 1)}
     text = language.calls.get(name)
     if text is None or len(feet) != 1:
@@ -59,10 +63,12 @@ def stepped_phrase(move: str, name: str, limbs: list[int], language: Language) -
 
 
 def crossing_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language) -> Phrase:
-    """A crossover at its first row: which foot crosses, in front or behind, and why it is that foot.
+    """Return the phrase of a crossover: the foot that crosses, in front or behind, and the reason.
 
-    move : its name for people; at : the play and the row in which it begins. That it is in front, towards the screen,
-    is said by `feet.solver`; of two feet that jump the one nearer to the screen is in front.
+    `feet.solver` decides whether the foot is in front, which is towards the screen. In a jump, the foot nearer to the
+    screen is in front.
+
+    move : name of the move for people; at : the play and the first row of the crossover
     """
     (play, row), calls = at, language.calls
     feet = [foot for foot in (0, 1) if foot in play.limb[row]]
@@ -83,10 +89,12 @@ def crossing_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Languag
 
 
 def turning_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language) -> Phrase:
-    """Half a turn: which foot goes round, whether it lands in front of the other one or behind it, and why.
+    """Return the phrase of a half turn: the foot that goes round, its place before or behind the other, and the reason.
 
-    move : its name for people, which says where she looks then; at : the play and the row that turns her. In front is
-    towards the screen; of two feet that jump it is reported which one is.
+    In front is towards the screen. In a jump, the phrase names the foot in front.
+
+    move : name of the move for people, which says where the dancer then looks
+    at : the play and the row that turns her
     """
     (play, row), calls = at, language.calls
     feet = [foot for foot in (0, 1) if foot in play.limb[row]]
@@ -105,7 +113,7 @@ def turning_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language
 
 
 def _reason(play: Play, row: int, foot: int) -> str:
-    """The reason why this foot crosses or turns the dancer: its label in the language's `calls`, or ""."""
+    """Return the reason why this foot crosses or turns the dancer: a label in the language's `calls`, or ""."""
     rows, other = play.rows, 1 - foot
     before = slice(0, row)
     if ((play.limb[before] == other) & (rows.hold_end[before] > rows.tick[row])).any():

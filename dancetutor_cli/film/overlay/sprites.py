@@ -1,4 +1,4 @@
-"""The pictures of the highway, made once for a lane width: arrows, receptors, flashes, mines, holds and L/R markers."""
+"""The sprites of the highway, drawn once for a lane width: arrows, receptors, flashes, mines, holds and L/R markers."""
 
 from __future__ import annotations
 
@@ -25,21 +25,22 @@ _ARROW = np.array([
     (-0.36, 0.88), (-0.36, 0.06), (-0.62, 0.32), (-0.94, 0.0),
 ])  # fmt: skip
 _SQUARE = np.array([(-0.86, -0.86), (0.86, -0.86), (0.86, 0.86), (-0.86, 0.86)])
-_WIDTH = 0.94  # size of an arrow, in its own size, whichever way it points
+_WIDTH = 0.94  # width of an arrow's shape in any direction, as a share of its size
 
 
-FLAG_STEP = 1.15  # from one line of a label to the next, in sizes of its letters
-FLAG_EDGE = 0.55  # left and right of a label's words together, in sizes of its letters
+FLAG_STEP = 1.15  # distance between the lines of a label, in sizes of its letters
+FLAG_EDGE = 0.55  # sum of the gaps left and right of a label's words, in sizes of its letters
 NOBODY = (150, 154, 170)  # colour of the mark of a note that is not played
+# Darkening at the end of an arrow's tail, and the share of the tail's half over which it grows: the head stands out.
 TAIL_DIM, TAIL_LONG = (
     0.6,
     0.75,
-)  # how much darker the end of an arrow's tail is, and over how much of its half: the head stands out
+)
 
 
 @dataclass(frozen=True, slots=True)
 class HighwayStyle:
-    """configs/highway.yaml: colours sRGB 0..255; sizes in lane widths; times in seconds."""
+    """The settings of configs/highway.yaml: colours sRGB 0..255, sizes in lane widths, times in seconds."""
 
     quantisation: dict[int, RGB]
     players: tuple[RGB, RGB]
@@ -64,22 +65,22 @@ class HighwayStyle:
 
 
 def highway_style() -> HighwayStyle:
-    """The style of configs/highway.yaml."""
+    """Load the style of configs/highway.yaml."""
     return load(config_path("highway.yaml"), HighwayStyle)
 
 
 def callout_words(language: Language) -> dict[str, str]:
-    """The moves that configs/highway.yaml calls out, and their words; FileError names a move without words."""
+    """Return the moves that configs/highway.yaml calls out, and their words; FileError names a move without words."""
     return move_words(highway_style().callouts, config_path("highway.yaml"), language)
 
 
 def arrow_size(lane: float, style: HighwayStyle) -> int:
-    """Pixels of an arrow in a lane so wide."""
+    """Return the size, pixels, of an arrow in a lane of this width."""
     return max(8, round(lane * style.arrow))
 
 
 def _outline(size: float, direction: float | None) -> NDArray[np.float64]:
-    """Corners of the note shape; direction in degrees clockwise from up. A diagonal fills its lane as others do."""
+    """Return the corners of the note shape; direction : degrees clockwise from up. A diagonal fills its lane, too."""
     if direction is None:
         return np.asarray(_SQUARE * size / 2)
     a = np.radians(direction)
@@ -93,15 +94,15 @@ def _outline(size: float, direction: float | None) -> NDArray[np.float64]:
 
 @lru_cache(maxsize=64)
 def distance(canvas: int, size: float, direction: float | None) -> blit.Field:
-    """Distance to the note shape on a square canvas; the slow part of a sprite, shared by all its colours."""
+    """Return the distance to the note shape on a square canvas; the sprites of all colours share this slow part."""
     x, y = blit.grid(canvas, canvas)
     return blit.polygon(x, y, _outline(size * 0.96, direction)) - 0.02 * size
 
 
 def arrow(size: int, direction: float | None, colour: RGB, hollow: bool = False) -> Sprite:
-    """A note: white rim, body in `colour` lit from above, dark edge, its tail darker than its head.
+    """Draw a note with a white rim, a body in `colour` lit from above, a dark edge, and a tail darker than its head.
 
-    hollow : a lift, only its rim in colour
+    hollow : draw a lift, with only its rim in colour
     """
     p = blit.Painter(size, size)
     d = distance(size, size * 0.95, direction)
@@ -120,14 +121,14 @@ def arrow(size: int, direction: float | None, colour: RGB, hollow: bool = False)
 
 
 def _bright(p: blit.Painter, size: int, direction: float | None) -> NDArray[np.float64]:
-    """How bright an arrow is at each place: 1 from its head to its middle, less towards the tail's end."""
+    """Return the brightness of an arrow at each place: 1 from its head to its middle, less towards the tail's end."""
     a = 0.0 if direction is None else np.radians(direction)
     behind = np.zeros_like(p.x + p.y) if direction is None else (p.y * np.cos(a) - p.x * np.sin(a)) / (0.5 * size)
     return np.asarray(1.0 - TAIL_DIM * np.clip(behind / TAIL_LONG, 0.0, 1.0)[..., None])
 
 
 def receptor(size: int, direction: float | None, colour: RGB) -> Sprite:
-    """The still target of a lane: a dark body with a bright rim."""
+    """Draw the still target of a lane: a dark body with a bright rim."""
     p = blit.Painter(size, size)
     d = distance(size, size * 0.95, direction)
     unit = size / 64
@@ -138,7 +139,7 @@ def receptor(size: int, direction: float | None, colour: RGB) -> Sprite:
 
 
 def glow(size: int, direction: float | None, colour: RGB) -> Sprite:
-    """Light around and on a receptor while its panel is pressed; 1.5 times as large as the arrow."""
+    """Draw the light around and on a receptor whose panel is pressed; 1.5 times as large as the arrow."""
     full = size * 3 // 2
     p = blit.Painter(full, full)
     d = distance(full, size * 0.95, direction)
@@ -150,7 +151,7 @@ def glow(size: int, direction: float | None, colour: RGB) -> Sprite:
 
 
 def mine(size: int, colour: RGB) -> Sprite:
-    """A round mine: dark ball, spikes, a burning middle. Its shape is unlike any arrow's."""
+    """Draw a round mine, unlike any arrow: a dark ball with spikes and a burning middle."""
     p = blit.Painter(size, size)
     angle = np.arctan2(p.y, p.x)
     spikes = 0.035 * size * np.cos(8 * angle)
@@ -165,7 +166,7 @@ def mine(size: int, colour: RGB) -> Sprite:
 
 
 def hold_body(width: int, colour: RGB, roll: bool) -> Sprite:
-    """A tile of a hold's body: a band; a roll's has a saw-tooth of light so that it differs without colour."""
+    """Draw a tile of a hold's body, a band; a roll's tile has a saw-tooth of light and so differs without colour."""
     height = 2 * (width // 2)
     p = blit.Painter(height, width)
     half = 0.5 * width
@@ -181,7 +182,7 @@ def hold_body(width: int, colour: RGB, roll: bool) -> Sprite:
 
 
 def hold_tail(width: int, colour: RGB) -> Sprite:
-    """The lower end of a hold: a half disc of the body's width."""
+    """Draw the lower end of a hold: a half disc of the body's width."""
     height = width // 2 + 1
     p = blit.Painter(2 * height, width)
     d = blit.disc(p.x, p.y, 0.5 * width - 1)
@@ -191,11 +192,12 @@ def hold_tail(width: int, colour: RGB) -> Sprite:
 
 
 def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None, rim: bool = False) -> Sprite:
-    """The mark of the limb that steps a note: letter, colour and shape. Left foot a disc, right foot a square, hands
-    the same with a ring.
+    """Draw the mark of the limb that steps a note: letter, colour and shape.
 
-    limb : value of `feet.limbs.Limb`, 0..3; -1 : no foot is left for it, a grey disc with a cross
-    rim : a light rim around the dark one, because the mark is on a note, and notes have all colours
+    A left foot is a disc, a right foot a square; hands have the same shapes with a ring.
+
+    limb : value of `feet.limbs.Limb`, 0..3; -1 for a note without a free foot, a grey disc with a cross
+    rim : draw a light rim around the dark rim, for a mark on a note of any colour
     """
     p = blit.Painter(size, size)
     paint = (NOBODY if limb < 0 else limb_colours().by_limb[limb]) if colour is None else colour
@@ -222,7 +224,7 @@ def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None, rim:
 
 
 def centre(target: Sprite, ink: Sprite) -> None:
-    """Lay `ink` over the middle of `target`, by its visible pixels."""
+    """Draw `ink`, centred by its visible pixels, over the middle of `target`."""
     ys, xs = np.nonzero(ink[..., 3] > 8)
     ink = ink[ys.min() : ys.max() + 1, xs.min() : xs.max() + 1]
     top, left = ((t - i + 1) // 2 for t, i in zip(target.shape[:2], ink.shape[:2], strict=True))
@@ -235,12 +237,12 @@ def _over(place: Sprite, ink: Sprite) -> None:
 
 
 def flag_height(lines: int, size: float) -> int:
-    """Pixels that a label of so many lines of this size is high."""
+    """Return the height, pixels, of a label with this number of lines and this size of letters."""
     return max(6, round(1.5 * size)) + round(FLAG_STEP * size) * (lines - 1)
 
 
 def flag(lines: Sequence[str], size: float, colour: RGB, face: Typeface, edge: RGB | None = None) -> Sprite:
-    """Lines of words on a dark label that stands beside the row they are about; edge : its colour, if another one."""
+    """Draw lines of words on a dark label, which stands beside a row; edge : colour of the edge, if not `colour`."""
     words = [face.sprite(line, size, colour, weight=0.012 * size) for line in lines]
     step, height = round(FLAG_STEP * size), flag_height(len(lines), size)
     one = height - step * (len(lines) - 1)
@@ -260,7 +262,7 @@ def flag(lines: Sequence[str], size: float, colour: RGB, face: Typeface, edge: R
 
 @lru_cache(maxsize=8)
 def shade(size: int) -> Sprite:
-    """A soft dark disc that lifts a marker off its arrow."""
+    """Draw a soft dark disc, which separates a marker from its arrow."""
     p = blit.Painter(size, size)
     p.paint(np.clip(1 - np.hypot(p.x, p.y) / (0.5 * size), 0, 1), (0, 0, 0), 0.6)
     return p.sprite()

@@ -1,4 +1,4 @@
-"""Text as sprites: in the built-in font, a file of the user's, or the system's fonts for letters that lack there."""
+"""Text as sprites, in the built-in font or a file of the user's; missing letters come from the system's fonts."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from dancetutor_cli.run.errors import FileError, UnavailableError
 from dancetutor_cli.run.languages import ENGLISH, load_language
 from dancetutor_cli.run.reading import FONT_LIMIT, read_bytes
 
-# Fonts: Pillow's built-in one, a file of the user's, and the system's fonts for letters that neither of them has.
+# Fonts: Pillow's built-in font, a file of the user's, and the system's fonts for letters that neither of them has.
 
-# Fonts with many letters that systems bring, by file name, those that look most like the built-in one first, and for
-# each script one after the other: Latin, Greek and Cyrillic; Japanese; Korean; Chinese; signs.
+# File names of systems' fonts with many letters, by script: Latin, Greek and Cyrillic; Japanese; Korean; Chinese;
+# signs. For each script, the fonts that look most like the built-in font come first.
 _SYSTEM_FONTS = (
     "segoeui.ttf", "NotoSans-Regular.ttf", "HelveticaNeue.ttc", "LiberationSans-Regular.ttf", "DejaVuSans.ttf",
     "arial.ttf", "Arial.ttf",
@@ -41,7 +41,7 @@ _SYSTEM_FONTS = (
 
 
 def _folders() -> list[Path]:
-    """Where this system keeps fonts; also matplotlib's, which many Python environments have."""
+    """Return the folders in which this system keeps fonts, and matplotlib's, which many Python environments have."""
     home = Path.home()
     if sys.platform == "win32":
         found = [Path(os.environ.get("WINDIR", r"C:\Windows")) / "Fonts"]
@@ -59,7 +59,7 @@ def _folders() -> list[Path]:
 
 @cache
 def system_fonts() -> tuple[str, ...]:
-    """Files of the known fonts that this system has, in the order in which they are tried."""
+    """Return the files of the known fonts that this system has, in the order in which they are tried."""
     rank = {name: place for place, name in reversed(list(enumerate(_SYSTEM_FONTS)))}
     found: dict[int, str] = {}
     for folder in _folders():
@@ -73,7 +73,7 @@ def system_fonts() -> tuple[str, ...]:
 
 @lru_cache(maxsize=128)
 def font(path: str | None, size: float) -> ImageFont.FreeTypeFont:
-    """A font, None: the built-in one, in a size in pixels. FileError if the file is no font."""
+    """Load a font, None for the built-in one; size : pixels. FileError if the file is not a font."""
     if path is None:
         built_in = ImageFont.load_default(size)
         assert isinstance(built_in, ImageFont.FreeTypeFont)  # it is scalable whenever Pillow has FreeType
@@ -81,7 +81,7 @@ def font(path: str | None, size: float) -> ImageFont.FreeTypeFont:
     data = _content(path)
     try:
         found = ImageFont.truetype(io.BytesIO(data), size)
-        found.getmask("Ag 1")  # damage to the letters shows only here
+        found.getmask("Ag 1")  # detects damaged letters
     except (OSError, ValueError, MemoryError) as error:
         raise FileError(path, f"cannot be used as a font: {error}") from error
     return found
@@ -94,11 +94,11 @@ def _content(path: str) -> bytes:
 
 @lru_cache(maxsize=65536)
 def has_glyph(path: str | None, character: str) -> bool:
-    """Whether a font can draw a character: if it cannot, the character looks like one that does not exist."""
+    """Whether a font can draw a character: a missing character looks like a character that does not exist."""
     one = font(path, 24)
     try:
         missing, mask = one.getmask("\U0010ffff"), one.getmask(character)
-    except (OSError, ValueError):  # a damaged letter is none
+    except (OSError, ValueError):  # a damaged letter counts as missing
         return False
     return mask.size != missing.size or bytes(mask) != bytes(missing)
 
@@ -108,26 +108,26 @@ def has_all(path: str | None, text: str) -> bool:
     return all(has_glyph(path, c) for c in text)
 
 
-# Text as sprites: in the built-in font, a file of the user's, or the system's fonts where those lack a letter.
+# Text as sprites.
 
 RGB = tuple[int, int, int]
-FINE = 4  # text is drawn so many times larger and made smaller: letters need not stand on whole pixels then
-LEAST = 4.0  # pixels of letters; nobody reads them, but hostile words end there
+FINE = 4  # text is drawn larger by this factor and made smaller, so that letters can stand between pixels
+LEAST = 4.0  # size of letters, pixels, at which hostile words stop to shrink; nobody can read them
 _NOT_FIRST = frozenset("、。，．・：；？！ー～〜）］｝」』】〉》ぁぃぅぇぉっゃゅょァィゥェォッャュョ)]}!?,.:;…々")
 _NOT_LAST = frozenset("（［｛「『【〈《([{")
-EVEN = 4  # lines at most that are made as long as each other
-LONGEST = 1000  # characters of one line that are looked at: titles may be 100 kB long
+EVEN = 4  # maximum number of lines that are made equally long
+LONGEST = 1000  # characters of one line that are read: titles may be 100 kB long
 _FOLD = {"–": "-", "—": "-", "～": "~", "〜": "~", "†": "+", "•": "·", "\u00a0": " ", "æ": "ae", "Æ": "AE", "ø": "o",
          "Ø": "O", "ß": "ss", "ð": "d", "þ": "th", "ł": "l", "Ł": "L", "œ": "oe", "Œ": "OE", "×": "x"}  # fmt: skip
 
 
-_PACKAGES = {"ja": "fonts-noto-cjk", "ko": "fonts-noto-cjk"}  # fonts for a language in Debian, else _PACKAGE
+_PACKAGES = {"ja": "fonts-noto-cjk", "ko": "fonts-noto-cjk"}  # Debian packages with fonts for a language; else _PACKAGE
 _PACKAGE = "fonts-dejavu-core"
 
 
 @lru_cache(maxsize=4096)
 def _font_of(main: str | None, character: str) -> str | None:
-    """The first font that has a character; the main one if none has."""
+    """Return the first font that has a character, or the main font if none has it."""
     for path in (main, None, *system_fonts()):
         if has_glyph(path, character):
             return path
@@ -140,10 +140,9 @@ def _can(main: str | None, character: str) -> bool:
 
 @lru_cache(maxsize=1024)
 def _runs(main: str | None, text: str) -> tuple[tuple[str | None, str], ...]:
-    """A text cut into (font, part): one font for all its letters if there is one, because a letter from another font is
-    ugly.
+    """Cut a text into (font, part), with one font for all letters if a font has them: a mixture of fonts is ugly.
 
-    Signs may come from another font: the whole of "crossover ×4" in another font was uglier.
+    Signs may come from another font: "crossover ×4" entirely in another font was uglier.
     """
     if has_all(main, text):
         return ((main, text),)
@@ -157,7 +156,7 @@ def _runs(main: str | None, text: str) -> tuple[tuple[str | None, str], ...]:
 
 @dataclass(frozen=True, slots=True)
 class Typeface:
-    """Draws text as premultiplied sprites. path : a font file, or None for the built-in one."""
+    """A typeface that draws text as premultiplied sprites. path : a font file, or None for the built-in font"""
 
     path: Path | None = None
 
@@ -166,11 +165,11 @@ class Typeface:
         return None if self.path is None else str(self.path)
 
     def missing(self, text: str) -> str:
-        """The characters of `text` that neither this font nor the system's can draw, each once."""
+        """Return the characters of `text` that neither this font nor the system's fonts can draw, each once."""
         return "".join(c for c in dict.fromkeys(text) if not _can(self._key, c))
 
     def drawable(self, text: str) -> str:
-        """`text` without control characters; what no font has is folded to a base letter, or becomes "?"."""
+        """Return `text` without control characters; a character without a font becomes its base letter or "?"."""
         return "".join(self._drawable(clean(text)))
 
     def _drawable(self, text: str) -> Iterator[str]:
@@ -183,11 +182,11 @@ class Typeface:
             yield folded if folded and not self.missing(folded) else "?"
 
     def width(self, text: str, size: float) -> float:
-        """Advance width in pixels."""
+        """Return the advance width of a text in pixels."""
         return sum(float(font(path, FINE * size).getlength(part)) for path, part in _runs(self._key, text)) / FINE
 
     def fit(self, text: str, size: float, width: float) -> str:
-        """`text`, shortened with an ellipsis, behind a word if one is near, until it is at most `width` pixels wide."""
+        """Return `text`, shortened with an ellipsis to at most `width` pixels, at the end of a word if one is near."""
         if len(text) <= LONGEST and self.width(text, size) <= width:
             return text
         low, high = 0, min(len(text), LONGEST)
@@ -203,7 +202,7 @@ class Typeface:
         return kept.rstrip(" ,;:-~/·&([") + "…"
 
     def shrink(self, text: str, size: float, width: float) -> tuple[str, float]:
-        """The text and a size with which it is at most `width` wide: smaller, down to four fifths, then cut off."""
+        """Return a text and a size that make it at most `width` wide: smaller, down to four fifths, then shortened."""
         low = 0.8 * size
         while size > low and self.width(text[:LONGEST], size) > width:
             size = max(low, 0.98 * size)
@@ -212,7 +211,7 @@ class Typeface:
     def sprite(
         self, text: str, size: float, colour: RGB, weight: float = 0.0, shadow: float = 0.0, opacity: float = 1.0
     ) -> Sprite:
-        """One line of text. The sprite's height depends on `size` alone, so that baselines line up.
+        """Draw one line of text. The sprite's height depends on `size` alone, so that baselines line up.
 
         weight : extra stroke in pixels (0 regular, size/25 bold); shadow : width of a dark halo in pixels
         """
@@ -231,7 +230,7 @@ class Typeface:
     def _ink(
         self, text: str, size: float, box: tuple[int, int], at: tuple[float, float], weight: float
     ) -> NDArray[np.float64]:
-        """How much of each pixel of `box` (width, height) is covered; `at`: where the baseline begins, pixels."""
+        """Return the covered share of each pixel of `box` (width, height); at : start of the baseline, pixels."""
         image = Image.new("L", (FINE * box[0], FINE * box[1]), 0)
         draw = ImageDraw.Draw(image)
         x, y = FINE * at[0], round(FINE * at[1])
@@ -244,7 +243,7 @@ class Typeface:
 
 
 def check_letters(name: str, path: Path | None) -> None:
-    """Raise UnavailableError if no font has the letters of a language. path : a font file, None for the built-in one"""
+    """Raise UnavailableError if a letter of a language has no font. path : a font file, None for the built-in font"""
     if name == ENGLISH:
         return
     language = load_language(name)
@@ -256,25 +255,25 @@ def check_letters(name: str, path: Path | None) -> None:
 
 
 def clean(text: str) -> str:
-    """Without control characters and escapes, which metadata of hostile files carries; whitespace runs become one."""
+    """Remove control characters and escapes, which hostile metadata has; each run of whitespace becomes one blank."""
     kept = "".join(c if unicodedata.category(c)[0] != "C" else (" " if c in "\t\r\n" else "") for c in text)
     return " ".join(kept.split())
 
 
 def wrapped(words: list[str], size: float, width: float, face: Typeface) -> list[str]:
-    """Words in lines of at most `width` pixels, where a word is not wider itself."""
+    """Lay words in lines of at most `width` pixels; a wider word has a line of its own."""
     return _laid([words[0], *(f" {word}" for word in words[1:])], size, width, face)
 
 
 def _laid(parts: list[str], size: float, width: float, face: Typeface, most: int = LONGEST) -> list[str]:
-    """Parts of a text, with the blanks before them, in lines of at most `width` pixels if no part is wider.
+    """Lay parts of a text, with the blanks before them, in lines of at most `width` pixels if no part is wider.
 
-    most : lines after which the rest is left away
+    most : number of lines after which the rest is left out
     """
     lines: list[str] = []
     first = 0
     while first < len(parts):
-        low, high = first + 1, len(parts)  # by halves: a stranger's title has 500 words
+        low, high = first + 1, len(parts)  # bisection, because an unknown title may have 500 words
         while low < high:
             middle = (low + high + 1) // 2
             if face.width("".join(parts[first:middle]).lstrip(), size) <= width:
@@ -289,9 +288,9 @@ def _laid(parts: list[str], size: float, width: float, face: Typeface, most: int
 
 
 def parts_of(text: str) -> list[str]:
-    """A text in the parts between which a line may end, each with the blank before it; "" has one.
+    """Cut a text into the parts between which a line may end, each with the blank before it; "" is one part.
 
-    Between words, and between two letters of scripts that are written without blanks, but not before what closes.
+    A line may end between words, and between two letters of scripts without blanks, but not before a closing sign.
     """
     parts: list[str] = []
     for word in text[:LONGEST].split():
@@ -311,7 +310,7 @@ def _wide_before(word: str, k: int) -> bool:
 
 
 def in_lines(text: str, size: float, width: float, face: Typeface, most: int) -> list[str]:
-    """A text in at most `most` lines of at most `width` pixels; the last ends with an ellipsis if there is more."""
+    """Lay a text in at most `most` lines of at most `width` pixels; an ellipsis ends the last line of a longer text."""
     lines = _laid(parts_of(text), size, width, face, most + 1)
     if len(lines) > most:
         rest = _after(text, lines[: most - 1])
@@ -320,7 +319,7 @@ def in_lines(text: str, size: float, width: float, face: Typeface, most: int) ->
 
 
 def _after(text: str, lines: list[str]) -> str:
-    """The part of a text after its first lines."""
+    """Return the part of a text after its first lines."""
     rest = " ".join(text[:LONGEST].split())
     for line in lines:
         rest = rest[len(line) :].lstrip()
@@ -328,9 +327,9 @@ def _after(text: str, lines: list[str]) -> str:
 
 
 def fitted(text: str, size: float, width: float, face: Typeface, most: int = 4) -> tuple[list[str], float]:
-    """A text in at most `most` lines of at most `width` pixels, and the size that makes it fit: nothing is cut off.
+    """Return a text in at most `most` lines of at most `width` pixels, and the size that makes it fit without a cut.
 
-    It is wrapped before it is made smaller, and its lines are about as long as each other.
+    The text is wrapped before it is made smaller, and its lines are about equally long.
     """
     parts = parts_of(text)
     while True:
@@ -341,7 +340,7 @@ def fitted(text: str, size: float, width: float, face: Typeface, most: int = 4) 
 
 
 def narrowest(text: str, size: float, face: Typeface, most: int) -> float:
-    """Pixels that a text needs at this size, in at most `most` lines."""
+    """Return the width, pixels, that a text needs at this size in at most `most` lines."""
     parts = parts_of(text)
     width = max(face.width(part.lstrip(), size) for part in parts)
     while len(_laid(parts, size, width, face, most + 1)) > most:
@@ -350,8 +349,9 @@ def narrowest(text: str, size: float, face: Typeface, most: int) -> float:
 
 
 def _even(parts: list[str], lines: list[str], room: tuple[float, float], face: Typeface) -> list[str]:
-    """The same number of lines, the longest as short as possible: no last line of one word. room : size and width,
-    pixels
+    """Return the same number of lines, the longest as short as possible, to avoid a last line of one word.
+
+    room : size and width, pixels
     """
     if not 1 < len(lines) <= EVEN:
         return lines

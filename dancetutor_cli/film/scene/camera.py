@@ -1,8 +1,8 @@
-"""Cameras: where the picture is taken from, and how much of it the dancer fills.
+"""Cameras: the place from which the picture is taken, and the part of the picture that the dancer fills.
 
 A pinhole camera in pixels: a point at depth d before the camera appears at ``centre + focal / d`` times its offset.
-`centre` moves instead of the camera turning, which puts the dancer beside the highway without bending the picture.
-Panning it follows her across a double pad, while everything that stands still only shifts by whole pixels.
+The camera does not turn. Instead `centre` moves, which puts the dancer beside the highway without bending the picture.
+A pan of the centre follows her across a double pad, while all still parts only shift by whole pixels.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from dancetutor_cli.run.errors import UsageError, did_you_mean
 
 Region = tuple[float, float, float, float]
 WHOLE: Region = (0.0, 0.0, 1.0, 1.0)
-_FACING, _STRAIGHT_DOWN = -0.35, 85.0  # cosine of the azimuth, degrees of the elevation
-NEAR = 0.05  # metres; nothing nearer is drawn
+_FACING, _STRAIGHT_DOWN = -0.35, 85.0  # limits of a front view: cosine of the azimuth, degrees of the elevation
+NEAR = 0.05  # the least depth that is drawn, metres
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,10 +28,11 @@ class Camera:
     """A pinhole camera.
 
     position, target : world, metres; the picture is upright unless the camera looks straight down
-    focal : focal length in picture heights; centre : where the line of sight meets the picture, 0..1 of its width and
-    height; pan : shift of the whole picture to the right, in picture widths; pan_range : least and greatest `pan` that
-    will be asked for (the standing part of the picture is drawn that much wider, once)
-    feet_only : of the dancer only her feet are drawn: seen from above her head would hide them
+    focal : focal length in picture heights
+    centre : the point at which the line of sight meets the picture, 0..1 of its width and height
+    pan : shift of the whole picture to the right, in picture widths
+    pan_range : least and greatest `pan` that will be used; the still part of the picture is drawn once, wider by these
+    feet_only : whether only the dancer's feet are drawn, because her head would hide them in a view from above
     """
 
     position: tuple[float, float, float]
@@ -43,11 +44,13 @@ class Camera:
     feet_only: bool = False
 
     def axes(self) -> Array:
-        """Rows: right, up and forward in the world, (3, 3)."""
+        """Return the rows right, up and forward in the world, (3, 3)."""
         return _axes(self.position, self.target)
 
     def matrix(self, size: tuple[int, int]) -> Array:
-        """World to picture, (3, 4): rows give x * depth, y * depth and depth in pixels and metres (y downwards).
+        """Return the matrix from world to picture, (3, 4).
+
+        Its rows give x * depth, y * depth and depth in pixels and metres (y downwards).
 
         size : (width, height) in pixels; the pan is rounded to whole pixels
         """
@@ -64,12 +67,12 @@ class Camera:
         return out
 
     def pan_pixels(self, width: int) -> int:
-        """The pan in whole pixels."""
+        """Return the pan in whole pixels."""
         low, high = self.pan_range
         return round(min(max(self.pan, low), high) * width)
 
     def project(self, points: Array, size: tuple[int, int]) -> Array:
-        """Pixel places and depths, (n, 3), of world points (n, 3)."""
+        """Return the pixel places and depths, (n, 3), of world points (n, 3)."""
         m = self.matrix(size)
         p = points @ m[:, :3].T + m[:, 3]
         out = p.copy()
@@ -79,7 +82,7 @@ class Camera:
 
 @lru_cache(maxsize=64)
 def _axes(position: tuple[float, float, float], target: tuple[float, float, float]) -> Array:
-    """`Camera.axes`, computed once for each place, because every frame needs it several times."""
+    """Return `Camera.axes`, computed once for each place, because every frame needs the axes several times."""
     forward = np.subtract(target, position)
     length = math.sqrt(float(forward[0] ** 2 + forward[1] ** 2 + forward[2] ** 2))
     if length < 1e-9:
@@ -87,7 +90,7 @@ def _axes(position: tuple[float, float, float], target: tuple[float, float, floa
     forward = forward / length
     flat = math.hypot(forward[0], forward[2])
     if flat < 1e-3:
-        # Straight down (or up) there is no upright; the screen side is up then, as on a plan of the pad.
+        # A view straight down (or up) has no upright direction; the screen side is up, as on a plan of the pad.
         forward = np.array([0.0, math.copysign(1.0, forward[1]), 0.0])
         right = np.array([-1.0, 0.0, 0.0])
     else:
@@ -107,15 +110,15 @@ def _axes(position: tuple[float, float, float], target: tuple[float, float, floa
 def preset(
     name: str, extent: tuple[Array, Array], size: tuple[int, int], look: Look, region: Region = WHOLE, tall: float = 0.0
 ) -> Camera:
-    """A camera by name that shows the whole dancer, jumping and with her arms up, inside a part of the picture.
+    """Return a camera by name that shows the whole dancer, jumping and with her arms up, in a part of the picture.
 
     Parameters
     ----------
     name : one of `look.cameras` (back, front, side, three-quarter, top)
     extent : least and greatest corner (3,) of the pad's surface in the world, see `Scene.extent`
-    size : (width, height) of the picture; region : left, top, right, bottom of the part she fills, 0..1;
-        where it is the whole picture, the camera's own holds
-    tall : height of who dances, metres, where it is more than the configured `height` of a camera that shows all of her
+    size : (width, height) of the picture; region : left, top, right, bottom of the part that she fills, 0..1;
+        the camera's own region replaces a region of the whole picture
+    tall : height of the dancer, metres, if it is more than the configured `height` of a camera that shows all of her
     """
     settings = _named(name, look)
     if region == WHOLE:
@@ -134,7 +137,7 @@ def preset(
     )
     focal = 0.5 / math.tan(math.radians(settings.field) / 2)
     near, far = 0.5, 200.0
-    for _ in range(50):  # bisection: the nearest place from which everything fits
+    for _ in range(50):  # bisection of the smallest distance at which everything fits
         middle = math.sqrt(near * far)
         fits, _ = _fit(box, target, target + middle * away, focal, size, region)
         near, far = (near, middle) if fits else (middle, far)
@@ -148,21 +151,21 @@ def free(
     look: Look,
     region: Region = WHOLE,
 ) -> Camera:
-    """A camera that stands at `position` and looks at `target`, which appears in the middle of `region`."""
+    """Return a camera that stands at `position` and looks at `target`, which appears in the middle of `region`."""
     camera = Camera(
         position,
         target,
         0.5 / math.tan(math.radians(look.free_field) / 2),
         ((region[0] + region[2]) / 2, (region[1] + region[3]) / 2),
     )
-    camera.axes()  # says so if the two are the same point
+    camera.axes()  # raises an error if the two are the same point
     return camera
 
 
 def parse(
     text: str, extent: tuple[Array, Array], size: tuple[int, int], look: Look, region: Region = WHOLE, tall: float = 0.0
 ) -> Camera:
-    """A camera from the command line: a preset's name, or ``x,y,z/x,y,z``, position and target in metres."""
+    """Parse a camera of the command line: a preset's name, or ``x,y,z/x,y,z``, position and target in metres."""
     if _is_name(text):
         return preset(text, extent, size, look, region, tall)
     (a, b, c), (d, e, f) = _points(text)
@@ -170,7 +173,7 @@ def parse(
 
 
 def is_front_view(text: str, look: Look) -> bool:
-    """Whether the dancer faces this camera, given as on the command line. Then her left is on the right."""
+    """Whether the dancer faces this camera of the command line, so that her left is on the right of the picture."""
     if _is_name(text):
         about = _named(text, look)
         return math.cos(math.radians(about.azimuth)) < _FACING and about.elevation < _STRAIGHT_DOWN
@@ -191,7 +194,7 @@ def _named(name: str, look: Look) -> CameraLook:
 
 
 def _points(text: str) -> list[list[float]]:
-    """Position and target, three numbers each."""
+    """Return position and target, three numbers each."""
     try:
         numbers = [[float(n) for n in part.split(",")] for part in text.split("/")]
     except ValueError:
@@ -202,12 +205,12 @@ def _points(text: str) -> list[list[float]]:
 
 
 def with_pan_range(camera: Camera, low: float, high: float) -> Camera:
-    """The camera, able to pan between `low` and `high` picture widths."""
+    """Return the camera with a range of pans between `low` and `high` picture widths."""
     return replace(camera, pan_range=(min(low, high), max(low, high)))
 
 
 def _box(extent: tuple[Array, Array], settings: CameraLook, thick: float) -> Array:
-    """Points (n, 3) that must be seen: the pad, arms stretched sideways over it, and hands up in the middle."""
+    """Return points (n, 3) that must be visible: the pad, arms stretched sideways, and hands up in the middle."""
     low, high = extent
     middle = (low[2] + high[2]) / 2
     shoulder = min(1.45, settings.height)
@@ -227,7 +230,7 @@ def _box(extent: tuple[Array, Array], settings: CameraLook, thick: float) -> Arr
 def _fit(
     box: Array, target: Array, position: Array, focal: float, size: tuple[int, int], region: Region
 ) -> tuple[bool, Camera]:
-    """Whether the box fits into the region, with the camera whose centre puts the box in the middle of it."""
+    """Return whether the box fits into the region, and the camera whose centre puts the box in the region's middle."""
     width, height = size
     camera = Camera(
         (float(position[0]), float(position[1]), float(position[2])),

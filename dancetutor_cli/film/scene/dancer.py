@@ -1,4 +1,4 @@
-"""The dancer's part of the picture: her state at a moment of the music, drawn."""
+"""The dancer's part of the picture, which draws her state at a moment of the music."""
 
 from __future__ import annotations
 
@@ -31,13 +31,14 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.picture import PadLike
 
 
-AWAY = 0.3  # metres from where she steps: farther away she walks, and does not only sway in a wait
+AWAY = 0.3  # metres from the place of her steps beyond which the dancer walks and does not only sway in a wait
 
 
 def sole_line(mark: FootMark) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Both ends of the line in the middle of a shoe, world (x, z): around the sole's middle, which stands on its panel.
+    """Return both ends of the line in the middle of a shoe, world (x, z).
 
-    A mark's line goes from the ankle to the ball, whose middle is farther back.
+    The line's middle is the middle of the sole, which stands on its panel. The line of a mark goes from the ankle to
+    the ball, and its middle is farther back.
     """
     heel, toe = np.array(mark.heel), np.array(mark.toe)
     along = (toe - heel) / max(float(np.linalg.norm(toe - heel)), 1e-9)
@@ -48,10 +49,10 @@ def sole_line(mark: FootMark) -> tuple[tuple[float, float], tuple[float, float]]
 
 @dataclass(frozen=True, slots=True)
 class Shot:
-    """How the dancer is filmed. size : (width, height); camera : by name or place; kind : the renderer
+    """The view of the dancer. size : (width, height); camera : name or place; kind : the renderer
 
     region : share of the picture that she fills
-    stands : the camera must not follow the dancer, because something else in the picture is drawn for one place
+    stands : whether the camera must not follow the dancer, because a part of the picture is drawn for one camera
     """
 
     size: tuple[int, int]
@@ -63,10 +64,10 @@ class Shot:
 
 
 class Dancer:
-    """Draws the dancer at any moment. Made in the process that draws: it may hold a GL context.
+    """A picture of the dancer at any moment. It is created in the process that draws, because it may hold a GL context.
 
-    motions : at each rate those of one or two who dance, in seconds of the music as it is heard at that rate
-    character : who dances; None: the project's own dancer
+    motions : the motions of one or two dancers at each rate, in seconds of the music as it is heard at that rate
+    character : the character who dances; None for the project's own dancer
     """
 
     def __init__(
@@ -97,7 +98,7 @@ class Dancer:
         self._theirs = np.array([joints.index(skeleton.names[j]) for j in self._ours])
 
     def frame(self, moment: Moment, joints: NDArray[np.float64]) -> Frame:
-        """The picture at a moment of the music, uint8 (h, w, 3); overwritten by the next call."""
+        """Draw the picture at a moment of the music, uint8 (h, w, 3), which the next call overwrites."""
         (lit, by), view = self._lit(moment.second), self.view(moment)
         frame = self.renderer.frame(FrameState(joints, view, lit, by))
         draw_hidden_feet(frame, self.scene, joints, view)
@@ -106,15 +107,16 @@ class Dancer:
         return frame
 
     def view(self, moment: Moment) -> Camera:
-        """The camera at a moment: the standing one, or the one that follows her across a wide pad."""
+        """Return the camera at a moment: the still camera, or the camera that follows the dancer across a wide pad."""
         return self._follow[moment.rate].at(moment.heard) if self._follow else self.camera
 
     def _followers(self, camera: str, size: tuple[int, int], region: Region) -> dict[float, Follow]:
-        """The camera that follows the dancer across a wide pad, for each rate, if it looks along the pad's short side.
+        """Return the camera for each rate that follows the dancer across a wide pad; none from another direction.
 
-        On other pads it moves only while she walks on or off at the picture's edge.
+        The camera looks along the pad's short side. On other pads, it moves only while she walks on or off at the
+        picture's edge.
 
-        It is made from the motion of the whole film, so that a frame does not depend on which process draws it.
+        It is made from the motion of the whole film, so that a frame does not depend on the process that draws it.
         """
         look = self.scene.look
         along = abs(float(self.camera.axes()[0][0])) > look.follow.along
@@ -133,12 +135,12 @@ class Dancer:
             if max(follow.cut for follow in found.values()) * size[0] < 1:
                 break
         low, high = zip(*(follow.camera.pan_range for follow in found.values()), strict=True)
-        for follow in found.values():  # what stands is drawn once for all of them
+        for follow in found.values():  # one still picture is wide enough for the cameras of all rates
             follow.camera = with_pan_range(follow.camera, min(low), max(high))
         return found
 
     def _roots(self, rate: float) -> NDArray[np.float64]:
-        """Where her root is, (f, 3) metres, at the times of her motion; of two who dance (2, f, 3)."""
+        """Return the dancer's root, (f, 3) metres, at the times of her motion; (2, f, 3) for two dancers."""
         hers, *others = self.motions[rate]
         if not others:
             return hers.root
@@ -148,10 +150,11 @@ class Dancer:
     def walks_behind(
         self, boxes: Sequence[tuple[float, float, float, float]], seconds: NDArray[np.float64], step: float, rate: float
     ) -> NDArray[np.bool_]:
-        """Whether the dancer is where one of `boxes` (pixels of her picture) is, and `AWAY` from where she steps at
-        `step`.
+        """Return for each second whether the dancer, while she walks, is in one of `boxes` (pixels of her picture).
 
-        seconds : float64 (n,), of the music; rate : at which it plays
+        She walks if she is more than `AWAY` from her place at the second `step`.
+
+        seconds : float64 (n,), seconds of the music; rate : the rate at which the music plays
         """
         moments = [Moment(float(second), rate) for second in (*seconds, step)]
         joints = self.joints(moments)
@@ -164,7 +167,10 @@ class Dancer:
         return np.array(found)
 
     def heads_and_feet(self, moments: Sequence[Moment]) -> NDArray[np.float64]:
-        """Where her head and her feet are in her picture at some moments, (n, 4): left, top, right, bottom, pixels."""
+        """Return the boxes of the dancer's head and feet in her picture at some moments.
+
+        (n, 4): left, top, right, bottom, pixels
+        """
         outline = Silhouette(self.scene.character)
         joints = self.joints(moments)
         seen = [
@@ -173,14 +179,14 @@ class Dancer:
         return np.concatenate([np.zeros((0, 4)), *seen])
 
     def still(self) -> Frame:
-        """The room without the dancer."""
+        """Draw the room without the dancer."""
         joints = self.joints([Moment(0.0, next(iter(self.motions)))])[0]
         joints[:, 1, 3] += 1000.0
         nobody = np.zeros(self.scene.panels)
         return self.renderer.frame(FrameState(joints, self.camera, nobody, nobody.astype(np.int64))).copy()
 
     def feet(self, joints: NDArray[np.float64]) -> list[FootFromAbove | None]:
-        """Both feet from above, in panel widths of the pad; for two dancers all four."""
+        """Return the feet of all dancers seen from above, in panel widths of the pad."""
         whose = ("", PREFIX)[: self._count]
         return [self._foot(mark) for one in whose for mark in foot_marks(self.scene, joints, one)]
 
@@ -192,9 +198,9 @@ class Dancer:
         return FootFromAbove(heel, toe, mark.height)
 
     def joints(self, moments: Sequence[Moment]) -> NDArray[np.float64]:
-        """World matrices (f, j, 4, 4) of the character's joints at f moments.
+        """Return the world matrices (f, j, 4, 4) of the character's joints at f moments.
 
-        Joints go by name: a character's file may order them its own way.
+        Joints are matched by name, because a character's file may have its own order.
         """
         parts = [self._joints_of(number, moments) for number in range(self._count)]
         if self._bar is not None:

@@ -1,8 +1,8 @@
-"""A camera that slowly follows the dancer across a wide pad, and shows her whole as she walks on and off.
+"""A camera that slowly follows the dancer across a wide pad, and shows all of her as she walks on and off.
 
 The camera does not turn or travel: the picture pans (see `Camera.pan`) by whole pixels, so the still part of the
-picture is drawn only once. The whole song is known, so the pan has no lag: it is the dancer's place, smoothed over a
-window that is symmetric in time.
+picture is drawn only once. The pan is the dancer's place, smoothed over a window that is symmetric in time. It has no
+lag, because the whole song is known.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from dancetutor_cli.film.scene.camera import WHOLE, Camera, Region, preset, with
 from dancetutor_cli.film.scene.scene import PANEL, Scene
 
 _STEP = 1.0 / 30.0  # seconds between the places that are smoothed
-_ASIDE = 0.45  # metres from her root to her hands as she walks
-# seconds by which the camera is ahead of the dancer at the picture's edge, and how softly it moves
+_ASIDE = 0.45  # metres from the dancer's root to her hands as she walks
+# Seconds by which the camera is ahead of the dancer at the picture's edge, and over which its move is smoothed.
 _COME, _EASE = 0.2, 0.6
 
 
@@ -31,10 +31,11 @@ def is_wide(scene: Scene) -> bool:
 class Follow:
     """The camera at every second of a song.
 
-    scene : with its pad; name : a preset camera; size : (width, height) of the picture; region : the part she fills
-    seconds : float64 (f,), increasing; roots : float64 (f, 3), where the dancer's root is then, metres
-        or (2, f, 3) of two who dance: then the camera goes with neither, it only shows both as they walk on and off
-    cut : after that, how much of the pad is outside of the picture at the worst moment, picture widths
+    scene : the scene with its pad; name : a preset camera; size : (width, height) of the picture
+    region : the part of the picture that she fills
+    seconds : float64 (f,), increasing; roots : float64 (f, 3), the places of the dancer's root, metres; or (2, f, 3)
+        for two dancers, whom the camera does not follow, but shows as they walk on and off
+    cut : the width of the pad that is outside of the picture at the worst moment, picture widths
     """
 
     def __init__(
@@ -62,14 +63,14 @@ class Follow:
         self.camera = with_pan_range(camera, float(pans.min()), float(pans.max()))
 
     def at(self, second: float) -> Camera:
-        """The camera at `second`; before the first and after the last it stands."""
+        """Return the camera at `second`; it does not move before the first second and after the last."""
         place = min(max((second - self._start) / _STEP, 0.0), len(self._pans) - 1.0)
         pan = float(np.interp(place, np.arange(len(self._pans)), self._pans))
         return replace(self.camera, pan=pan)
 
 
 def _nearer(scene: Scene, name: str, size: tuple[int, int], region: Region) -> Camera:
-    """The preset camera for the middle square of a wide pad, nearer than the one for the whole pad."""
+    """Return the preset camera for the middle square of a wide pad, nearer than the camera for the whole pad."""
     low, high = scene.extent
     middle, half = (low + high) / 2, 1.5 * PANEL
     square = low.copy(), high.copy()
@@ -78,20 +79,23 @@ def _nearer(scene: Scene, name: str, size: tuple[int, int], region: Region) -> C
 
 
 def _along(scene: Scene, camera: Camera, size: tuple[int, int], across: Array) -> tuple[Camera, Array]:
-    """The camera and its pans (n,) along a wide pad. across : her place at every `_STEP`, (n,), metres to her left"""
+    """Return the camera and its pans (n,) along a wide pad.
+
+    across : the dancer's place at every `_STEP`, (n,), metres to her left
+    """
     low, high = scene.extent
     middle = (low[0] + high[0]) / 2
     reach = min((high[0] - low[0]) / 2 - 1.5 * PANEL, _reach_with_whole_pad(camera, size, low, high))
-    # Clipped first: what is smoothed afterwards stays within the limits and has no corner at them.
+    # Clipped before the smoothing, so that the path stays within the limits and has no corner at them.
     places = _smooth(np.clip(across, middle - reach, middle + reach), scene.look.follow.seconds)
     there = _picture_x(scene, camera, size, np.append(places, middle))
     return camera, there[-1] - there[:-1]
 
 
 def _picture_x(scene: Scene, camera: Camera, size: tuple[int, int], across: Array) -> Array:
-    """Where places across the pad are in the picture, (n,), picture widths.
+    """Return the x coordinates in the picture of places across the pad, (n,), picture widths.
 
-    The dancer's height and depth do not move the camera: the place is a point at waist height over the pad's middle.
+    The dancer's height and depth do not move the camera: each place is a point at waist height over the pad's middle.
     """
     low, high = scene.extent
     points = np.column_stack([across, np.full(len(across), 0.9), np.full(len(across), (low[2] + high[2]) / 2)])
@@ -99,9 +103,9 @@ def _picture_x(scene: Scene, camera: Camera, size: tuple[int, int], across: Arra
 
 
 def _into_the_picture(seen: Array, camera: Camera, size: tuple[int, int], aside: float) -> Array:
-    """Pans (n,) that bring all dancers into the picture when one of them is at its edge.
+    """Return pans (n,) that bring all dancers into the picture when one of them is at its edge.
 
-    seen : their middles, (p, n), picture widths; aside : how far one reaches from it, metres
+    seen : the dancers' middles, (p, n), picture widths; aside : a dancer's reach from her middle, metres
     """
     depth = float(np.linalg.norm(np.subtract(camera.target, camera.position)))
     half = min(0.5, aside * camera.focal * size[1] / size[0] / depth)
@@ -111,7 +115,7 @@ def _into_the_picture(seen: Array, camera: Camera, size: tuple[int, int], aside:
 
 
 def _pad_cut(scene: Scene, camera: Camera, size: tuple[int, int], pans: Array) -> float:
-    """How much of the pad is beside the picture at the worst moment, picture widths."""
+    """Return the width of the pad that is outside of the picture at the worst moment, picture widths."""
     low, high = scene.extent
     corners = np.array([(x, high[1], z) for x in (low[0], high[0]) for z in (low[2], high[2])])
     edges = camera.project(corners, size)[:, 0] / size[0]
@@ -119,14 +123,14 @@ def _pad_cut(scene: Scene, camera: Camera, size: tuple[int, int], pans: Array) -
 
 
 def farther(region: Region, back: float) -> Region:
-    """The part of the picture that is filled from `back` times as far away, at the same lower edge."""
+    """Return the part of the picture that a region fills at `back` times the distance, with the same lower edge."""
     left, top, right, bottom = region
     middle, half = (left + right) / 2, (right - left) / 2 / back
     return middle - half, bottom - (bottom - top) / back, middle + half, bottom
 
 
 def _early(pans: Array) -> Array:
-    """Pans of the wanted size that begin before and end after, softly."""
+    """Return smooth pans of the same size that begin earlier and end later."""
     half = max(1, round(_COME / _STEP / 2)) + round(_EASE / _STEP)
     if not pans.any():
         return pans
@@ -136,8 +140,9 @@ def _early(pans: Array) -> Array:
 
 
 def _reach_with_whole_pad(camera: Camera, size: tuple[int, int], low: Array, high: Array) -> float:
-    """How far from the pad's middle a camera may follow, metres, so that the whole pad is in the picture; no limit if
-    it is not.
+    """Return how far from the pad's middle a camera may follow, metres, with the whole pad in the picture.
+
+    There is no limit if the picture does not show the whole pad.
 
     low, high : corners (3,) of the pad's surface
     """
@@ -151,7 +156,7 @@ def _reach_with_whole_pad(camera: Camera, size: tuple[int, int], low: Array, hig
 
 
 def _smooth(values: Array, seconds: float) -> Array:
-    """Two running means over `seconds` each: slow enough, and without a corner in the path. Ends count on."""
+    """Smooth values by two running means over `seconds` each, which leave no corner; both ends are extended."""
     half = max(1, round(seconds / _STEP / 2))
     for _ in range(2):
         padded = np.concatenate([np.full(half, values[0]), values, np.full(half, values[-1])])

@@ -1,4 +1,4 @@
-"""A character's meshes as flat arrays and its textures in several sizes, as both renderers draw them."""
+"""A character's meshes as flat arrays and its textures in several sizes, for both renderers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from dancetutor_cli.character.mesh import Character, Mesh
 from dancetutor_cli.feet.limbs import LIMBS
 from dancetutor_cli.run.errors import UsageError
 
-# Textures of a character, each with smaller copies of itself, so that distant surfaces do not shimmer.
+# Textures of a character, each with smaller copies, so that distant surfaces do not shimmer.
 
 Image = NDArray[np.uint8]
 LEVELS = 4  # the texture itself, and three halvings
@@ -22,11 +22,11 @@ LEVELS = 4  # the texture itself, and three halvings
 
 @dataclass(frozen=True, slots=True)
 class Skins:
-    """The textures of m meshes. s different ones.
+    """The textures of m meshes; s different textures.
 
-    pyramids : s tuples of `LEVELS` images uint8 (h, w, 4), each half the size of the one before (1 texel at least)
-    of_mesh : int32 (m,), which of them a mesh has; tint : float32 (m, 3), 0..1, multiplies its colours
-    limb : bool (m,), whether it wears a limb's colour, which shade leaves readable (`look.ToonLook.limbs`)
+    pyramids : s tuples of `LEVELS` images uint8 (h, w, 4), each half the size of the image before (1 texel at least)
+    of_mesh : int32 (m,), index of a mesh's texture; tint : float32 (m, 3), 0..1, factor of its colours
+    limb : bool (m,), whether the mesh has a limb's colour, which stays readable in shade (`look.ToonLook.limbs`)
     """
 
     pyramids: tuple[tuple[Image, ...], ...]
@@ -35,11 +35,11 @@ class Skins:
     limb: NDArray[np.bool_]
 
     def flat(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float32]]:
-        """All texels in one array, for kernels.
+        """Return all texels in one array, for kernels, with a table of the images and a row for each mesh.
 
-        texels int32 (n,), red in the lowest byte, then green and blue; table int32 (s * LEVELS, 3), first texel, width
-        and height of each image; and float32 (m, 5), each mesh's tint divided by 255, the row of its texture in the
-        table, and 1 for a limb's colour
+        texels : int32 (n,), red in the lowest byte, then green and blue
+        table : int32 (s * LEVELS, 3), first texel, width and height of each image
+        meshes : float32 (m, 5), tint divided by 255, the row of the mesh's texture in the table, 1 for a limb's colour
         """
         images = [image for pyramid in self.pyramids for image in pyramid]
         first = np.cumsum([0, *(i.shape[0] * i.shape[1] for i in images)])
@@ -51,9 +51,7 @@ class Skins:
 
 
 def skins_of(meshes: list[Mesh]) -> Skins:
-    """The textures of some meshes. Meshes without a texture get a white texel; meshes that share a texture share it
-    here.
-    """
+    """Return the textures of some meshes, each only once. Meshes without a texture get a white texel."""
     white = np.full((1, 1, 4), 255, np.uint8)
     different: list[NDArray[np.uint8]] = []
     number = []
@@ -74,7 +72,7 @@ def skins_of(meshes: list[Mesh]) -> Skins:
 def density(
     positions: NDArray[np.float32], uv: NDArray[np.float32], triangles: NDArray[np.int32]
 ) -> NDArray[np.float32]:
-    """How much of a texture, as a share of its side, there is on a metre of each triangle (t,), on average."""
+    """Return the mean length of texture on a metre of each triangle (t,), as a share of the texture's side."""
     corners, places = positions[triangles].astype(np.float64), uv[triangles].astype(np.float64)
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     surface = np.sqrt((across * across).sum(axis=1))
@@ -93,7 +91,7 @@ def _pyramid(image: Image) -> tuple[Image, ...]:
 
 
 def _halved(image: Image) -> Image:
-    """Means of 2 by 2 texels, rounded; the last row or column counts twice where the size is odd."""
+    """Return the rounded means of 2 by 2 texels; the last row or column of an odd size counts twice."""
     height, width = image.shape[:2]
     if height == 1 and width == 1:
         return image
@@ -106,26 +104,29 @@ F32 = NDArray[np.float32]
 FEET = tuple(f"{side}_{part}" for side in "lr" for part in ("talocrural", "metatarsal"))  # joints of the feet
 TRUNK = ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4")
 BELOW = (*TRUNK, *(f"{side}_{part}" for side in "lr" for part in ("sternoclavicular", "hip", "knee")), *FEET)
-ABOVE = 4.0  # metres: more than the dancer ever has above her, up to the light
+ABOVE = 4.0  # metres towards the light, more than any part of the dancer is above another
+# A vertex belongs to a foot if the foot's joints move more than this share of it, or of its whole closed piece, such as
+# a shoe's collar.
 OWN, SHARED = (
     0.5,
     0.2,
-)  # how much of a vertex, or of a whole closed piece such as a shoe's collar, these joints move; then it is a foot's
+)
 
 
 @dataclass(frozen=True, slots=True)
 class PackedMeshes:
-    """All meshes of a character in one. v vertices, t triangles, m materials.
+    """All meshes of a character in one; v vertices, t triangles, m materials.
 
-    positions, normals, hull : float32 (v, 3); `hull` is the normal averaged over vertices in one place, so that the
-    outline, drawn by moving vertices along it, has no gaps where a texture is cut
+    positions, normals, hull : float32 (v, 3); `hull` is the mean normal of all vertices in one place. The outline is
+        drawn with vertices moved along it, and so has no gaps at the cuts of a texture
     uv : float32 (v, 2); joints : int32 (v, 4); weights : float32 (v, 4), rows sum to 1
-    triangles : int32 (t, 3), counter-clockwise seen from outside, those of the feet first; feet : how many those are
+    triangles : int32 (t, 3), counter-clockwise seen from outside, the feet's triangles first
+    feet : number of the feet's triangles
     material : int32 (v,), number of the mesh, whose texture is in `skins`
-    density : float32 (t,), texels of the largest image of its texture on a metre of a triangle
-    above : float32 (v,), metres nearer to the light at which a vertex asks for her own shadow: on trunk, neck and legs
-    it is so far that there is none, for a hand's shadow on a thigh, or a braid's on the shirt, is seen as a stain
-    patch : int32 (t,), which connected piece of surface, without cuts in its texture, a triangle belongs to
+    density : float32 (t,), texels of the largest image of the texture on a metre of a triangle
+    above : float32 (v,), metres by which a vertex moves to the light in the test for the dancer's own shadow. Trunk,
+        neck and legs get no shadow, because a hand's shadow on a thigh, or a braid's on the shirt, looks like a stain
+    patch : int32 (t,), number of the connected piece of surface, without cuts in its texture, of a triangle
     """
 
     positions: F32
@@ -144,13 +145,13 @@ class PackedMeshes:
 
 
 def pack(character: Character) -> PackedMeshes:
-    """Put the meshes of a character together; UsageError if there is nothing to draw."""
+    """Combine the meshes of a character; UsageError for a character without triangles."""
     return _dancer() if character is load_dancer() else _packed(character)
 
 
 @cache
 def _dancer() -> PackedMeshes:
-    """The project's own dancer, who is drawn most: packed once for each process, and before workers are made."""
+    """Pack the project's own dancer, who is drawn most, once for each process and before workers are started."""
     return _packed(load_dancer())
 
 
@@ -196,8 +197,7 @@ def _feet(
     place: NDArray[np.intp],
     triangles: NDArray[np.int32],
 ) -> NDArray[np.bool_]:
-    """Which vertices (v,) belong to a foot: those that depend mostly on ankles and toes, and shoes up to their upper
-    end.
+    """Return whether each vertex (v,) belongs to a foot: it depends mostly on ankle and toes, or is part of a shoe.
 
     A part that moves partly with the shin, such as the rim of a high shoe, would leave a dark hole if it were cut off.
     """
@@ -208,20 +208,20 @@ def _feet(
 
 
 def _share(character: Character, joints: NDArray[np.int32], weights: F32, wanted: Iterable[str]) -> F32:
-    """How much (v,) of each vertex the wanted joints move, 0 to 1."""
+    """Return the share (v,) of each vertex that the wanted joints move, 0 to 1."""
     names = character.skeleton.names
     ours = [names.index(name) for name in wanted if name in names]
     return np.asarray((weights * np.isin(joints, ours)).sum(axis=1))
 
 
 def _places(positions: F32, material: NDArray[np.int32]) -> NDArray[np.intp]:
-    """Number of the place of each vertex (v,): vertices of one mesh that lie in one place have the same."""
+    """Return the number of each vertex's place (v,), which vertices of one mesh in one place share."""
     keys = np.column_stack([np.round(positions * 1e5).astype(np.int64), material])
     return np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
 
 
 def _welded(normals: F32, place: NDArray[np.intp]) -> F32:
-    """Normals averaged over the vertices that lie in one place."""
+    """Return the mean normals of the vertices in one place."""
     total = np.zeros((int(place.max()) + 1, 3))
     np.add.at(total, place, normals.astype(np.float64))
     out = total[place]
@@ -230,18 +230,18 @@ def _welded(normals: F32, place: NDArray[np.intp]) -> F32:
 
 
 def _patches(triangles: NDArray[np.int32], vertices: int) -> NDArray[np.int32]:
-    """Number of the piece of surface of each triangle: triangles that share vertices are of one piece."""
+    """Return the number of each triangle's piece of surface; triangles that share vertices belong to one piece."""
     return _pieces(triangles, vertices)[triangles[:, 0]].astype(np.int32)
 
 
 def _pieces(triangles: NDArray[np.integer], vertices: int) -> NDArray[np.intp]:
-    """The lowest vertex of the connected piece that each vertex belongs to, (vertices,)."""
+    """Return the lowest vertex of each vertex's connected piece, (vertices,)."""
     label = np.arange(vertices)
     while True:
         lowest = label[triangles].min(axis=1)
         before = label.copy()
         for corner in range(3):
             np.minimum.at(label, triangles[:, corner], lowest)
-        label = label[label]  # go to the lowest vertex known so far: few rounds even for long pieces
+        label = label[label]  # continue from the lowest known vertex, which takes few rounds even for long pieces
         if (label == before).all():
             return label

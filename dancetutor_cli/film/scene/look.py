@@ -28,11 +28,13 @@ class CameraLook:
 
 @dataclass(frozen=True, slots=True)
 class FollowLook:
-    """How the camera follows the dancer across a wide pad.
+    """The settings of the camera that follows the dancer across a wide pad.
 
-    seconds : how slowly; along : how much of the camera's sideways must be the pad's, 0..1; region : left, top, right,
-    bottom of the part of the picture that she fills; back : how many times as far away it may stand to show the pad
-    and who walks on or off it whole
+    seconds : the time over which the path is smoothed
+    along : least share of the camera's sideways direction that is along the pad, 0..1
+    region : left, top, right, bottom of the part of the picture that she fills
+    back : the greatest factor of the camera's distance, with which it shows the whole pad and dancers who walk on or
+        off
     """
 
     seconds: Positive
@@ -43,9 +45,9 @@ class FollowLook:
 
 @dataclass(frozen=True, slots=True)
 class LightLook:
-    """The one light and its shadows.
+    """The only light and its shadows.
 
-    shadow_far : 0..1, how much of it is left where head and hands cast it
+    shadow_far : 0..1, the share of the shadow that is left far from the dancer, where head and hands cast it
     """
 
     azimuth: float
@@ -60,10 +62,9 @@ class LightLook:
 
 @dataclass(frozen=True, slots=True)
 class ToonLook:
-    """How the dancer is shaded.
+    """The shading of the dancer.
 
-    limbs : share of half light, 0..1, that surfaces in a limb's colour have in deepest shade, because their colours
-    carry information
+    limbs : least share of half light, 0..1, of surfaces in a limb's colour, because their colours carry information
     """
 
     bands: tuple[float, float]
@@ -103,7 +104,7 @@ class StageLook:
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """All of configs/picture.yaml."""
+    """All settings of configs/picture.yaml."""
 
     cameras: dict[str, CameraLook]
     free_field: Positive
@@ -114,11 +115,11 @@ class Look:
 
 
 def read_look(path: Path) -> Look:
-    """Read and check one file; FileError names the key that is wrong."""
+    """Read and check one file; FileError names the wrong key."""
     return load(path, Look)
 
 
 @cache
 def default_look() -> Look:
-    """The look of configs/picture.yaml."""
+    """Return the look of configs/picture.yaml."""
     return read_look(config_path("picture.yaml"))

@@ -1,4 +1,4 @@
-"""Things on the stage with the dancer: the bar, which is of glass in front of her, and a screen in the room."""
+"""The objects on the stage: the bar, which is drawn as glass if it is in front of the dancer, and the screen."""
 
 from __future__ import annotations
 
@@ -20,16 +20,18 @@ if TYPE_CHECKING:
 
 # The bar behind the pad, drawn with the dancer so that each can hide the other.
 
-JOINT = "bar"  # name of the joint that the bar hangs on; it never moves
+JOINT = "bar"  # name of the bar's joint, which never moves
 STEEL = (0.62, 0.66, 0.74, 1.0)
-SIDES, CORNER = 12, 6  # of the tube; pieces of a rounded corner
+SIDES, CORNER = 12, 6  # number of the tube's sides; pieces of a rounded corner
 ROUND = 0.10  # metres, radius of the corners
 
 
 def with_bar(character: Character, bar: Bar | None, floor: float) -> Character:
-    """The character and, on a joint of its own, the bar, down to the height `floor` in metres; without a bar as it was.
+    """Return the character with the bar on a joint of its own, or unchanged if there is no bar.
 
-    The joint's place in the world is `bar_matrix`, whatever the dancer does.
+    The joint's place in the world is `bar_matrix`, independent of the dancer.
+
+    floor : height of the lower ends of the posts, metres
     """
     if bar is None:
         return character
@@ -51,7 +53,7 @@ def with_bar(character: Character, bar: Bar | None, floor: float) -> Character:
 
 
 def bar_matrix(bar: Bar) -> Array:
-    """Joint to world (4, 4) of the bar: the middle of all rails, not turned."""
+    """Return the matrix (4, 4) from the bar's joint to the world: the middle of all rails, without a rotation."""
     out = np.eye(4)
     out[:3, 3] = _middle(bar)
     return out
@@ -62,7 +64,7 @@ def _middle(bar: Bar) -> Array:
 
 
 def middle_line(bar: Bar, span: tuple[float, float], floor: float) -> Array:
-    """The middle line (n, 3) of one piece: up a post, along the rail, down the other post."""
+    """Return the middle line (n, 3) of one piece: up a post, along the rail, down the other post."""
     turn = np.linspace(0.0, np.pi / 2, CORNER + 1)
     x0, x1 = span
     left = np.column_stack((x0 + ROUND * (1 - np.cos(turn)), bar.height - ROUND * (1 - np.sin(turn))))
@@ -72,7 +74,7 @@ def middle_line(bar: Bar, span: tuple[float, float], floor: float) -> Array:
 
 
 def _tube(line: Array, radius: float, joint: int, number: int) -> Mesh:
-    """A round tube along a line in a plane of one z."""
+    """Return a round tube along a line in a plane of constant z."""
     along = np.gradient(line, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     across = np.array([0.0, 0.0, 1.0])
@@ -100,19 +102,19 @@ def _tube(line: Array, radius: float, joint: int, number: int) -> Mesh:
 
 # The bar in front of the dancer: a shell of glass with thin posts, through which feet, legs and panels can be seen.
 #
-# It is drawn over the finished picture, so that both renderers show the same, and casts no shadow on the pad.
+# It is drawn over the finished picture, so that both renderers show the same bar, and casts no shadow on the pad.
 
-EDGE, INSIDE = (0.45, 0.75), (0.12, 0.35)  # share of the steel in its edges and between them: posts, rail
+EDGE, INSIDE = (0.45, 0.75), (0.12, 0.35)  # share of the steel's colour at edges and between them: posts, rail
 LINE = 0.003  # metres, half an edge's width
 
 
 def stands_before(bar: Bar, camera: Camera) -> bool:
-    """Whether the bar is between this camera and the dancer: the camera is farther behind her than the bar is."""
+    """Whether the bar is between this camera and the dancer, so that the camera is farther behind her than the bar."""
     return (camera.position[2] - bar.behind) * bar.behind > 0.0
 
 
 class GlassBar:
-    """Draws the bar over pictures of `size` (width, height) pixels; floor : metres, where its posts end."""
+    """The glass bar over pictures of `size` (width, height) pixels; floor : height at which its posts end, metres"""
 
     def __init__(self, bar: Bar, floor: float, size: tuple[int, int]) -> None:
         self._lines = [middle_line(bar, span, floor) for span in bar.spans]
@@ -120,7 +122,7 @@ class GlassBar:
         self._made: tuple[Camera, NDArray[np.intp], Array] | None = None
 
     def draw(self, frame: Frame, camera: Camera) -> None:
-        """Lay it over a frame that this camera sees."""
+        """Draw the bar over a frame of this camera."""
         key = replace(camera, pan=0.0)
         if self._made is None or self._made[0] != key:
             self._made = (key, *self._shell(key))
@@ -132,10 +134,10 @@ class GlassBar:
         frame[row, column] = np.rint(under + (255.0 * np.array(STEEL[:3]) - under) * share)
 
     def _shell(self, camera: Camera) -> tuple[NDArray[np.intp], Array]:
-        """Row and column (2, n) of the pixels of the unpanned picture that it is in, and how much of it, (n,)."""
+        """Return row and column (2, n) of the bar's pixels in the unpanned picture, and its share of each, (n,)."""
         width, height = self._size
         left, right = (max(0, round(pan * width)) for pan in (camera.pan_range[1], -camera.pan_range[0]))
-        # pixels from its edge, less than 0 in it; pixels of a metre there; is it the rail, 0 to 1
+        # For each pixel: distance to the bar's edge, pixels, negative inside; pixels of a metre; 0 to 1 for the rail.
         found = np.zeros((3, height, left + width + right))
         found[0] = np.inf
         for line in self._lines:
@@ -154,7 +156,10 @@ class GlassBar:
         return at - np.array([[0], [left]]), share[at[0], at[1]]
 
     def _segment(self, found: Array, ends: Array) -> None:
-        """Note a straight piece where it is nearer than all before. ends : (2, 4), x, y, pixels of a metre, the rail"""
+        """Enter a straight piece at the pixels to which it is nearer than all pieces before.
+
+        ends : (2, 4), x, y, pixels of a metre, 0 to 1 for the rail
+        """
         size = found.shape[:0:-1]
         around = self._radius * ends[:, 2].max() + 3.0
         low = np.clip(np.floor(ends[:, :2].min(0) - around), 0, size).astype(int)
@@ -174,11 +179,14 @@ class GlassBar:
 
 FRAME = (14, 15, 24)
 RIM = (96, 104, 150)
-THICK = 0.035  # of the rim, as a part of the screen's sides
+THICK = 0.035  # thickness of the rim, as a share of the screen's sides
 
 
 class _Place(NamedTuple):
-    """Where the screen is. inverse : (3, 3), pixels to places on it, 0..1; box : pixels around it; rim : thickness."""
+    """The place of the screen. inverse : (3, 3), from pixels to places on the screen, 0..1
+
+    box : the box around the screen, pixels; rim : thickness of the rim
+    """
 
     inverse: NDArray[np.float64]
     box: NDArray[np.int64]
@@ -187,7 +195,10 @@ class _Place(NamedTuple):
 
 @njit(cache=True)
 def _warp(frame: Any, picture: Any, still: Any, place: Any, colours: Any) -> None:  # pragma: no cover
-    """Draw `picture` where the frame still shows `still`; place : `_Place`; colours : of screen and rim, (2, 3)."""
+    """Draw `picture` at the pixels at which the frame equals `still`.
+
+    place : `_Place`; colours : colours of frame and rim, (2, 3)
+    """
     inverse, box, rim = place
     rows, columns = picture.shape[0], picture.shape[1]
     for y in range(box[1], box[3]):
@@ -201,7 +212,7 @@ def _warp(frame: Any, picture: Any, still: Any, place: Any, colours: Any) -> Non
             for k in range(3):
                 if frame[y, x, k] != still[y, x, k]:
                     hidden = True
-            if hidden:  # the dancer stands before it
+            if hidden:  # behind the dancer
                 continue
             if u < 0 or u >= 1 or v < 0 or v >= 1:
                 edge = 1 if max(-u, u - 1, -v, v - 1) > 0.7 * rim else 0
@@ -220,7 +231,7 @@ def _warp(frame: Any, picture: Any, still: Any, place: Any, colours: Any) -> Non
 
 
 class Television:
-    """A screen at a place in the world, seen by a camera that never moves.
+    """A screen at a place in the world, for a camera that never moves.
 
     centre : world, metres; size : width and height, metres; still : the room without the dancer, uint8 (h, w, 3)
     """
@@ -232,7 +243,7 @@ class Television:
         height, width = still.shape[:2]
         x, y, z = centre
         w, h = size[0] / 2, size[1] / 2
-        # She looks to +Z, so the screen looks to -Z, and its left edge, as she sees it, is at greater x.
+        # The dancer looks to +Z, so the screen looks to -Z, and its left edge, as she sees it, is at greater x.
         corners = np.array([(x + w, y + h, z), (x - w, y + h, z), (x - w, y - h, z), (x + w, y - h, z)])
         places = camera.project(corners, (width, height))[:, :2]
         grown = places.mean(0) + (places - places.mean(0)) * (1 + 3 * THICK)
@@ -247,7 +258,7 @@ class Television:
 
 
 def _homography(places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The matrix (3, 3) that takes the corners (0,0), (1,0), (1,1), (0,1) to four places (4, 2) in the picture."""
+    """Return the matrix (3, 3) from the corners (0,0), (1,0), (1,1), (0,1) to four places (4, 2) in the picture."""
     rows, wanted = [], []
     for (u, v), (x, y) in zip(((0, 0), (1, 0), (1, 1), (0, 1)), places, strict=True):
         rows.append([u, v, 1, 0, 0, 0, -u * x, -v * x])

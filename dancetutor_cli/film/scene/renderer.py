@@ -1,4 +1,4 @@
-"""The interface of both renderers, the choice between them, and what both compute alike for a frame."""
+"""The interface of both renderers, the choice between them, and their common computations for a frame."""
 
 from __future__ import annotations
 
@@ -24,11 +24,14 @@ from dancetutor_cli.film.scene.scene import (
 )
 from dancetutor_cli.run.errors import UsageError
 
-MOST_JOINTS = 256  # what the uniform block of gl's shaders holds
+MOST_JOINTS = 256  # size of the uniform block of gl's shaders
 
 
 class Renderer(Protocol):
-    """Draws frames of one scene in one size. Not to be shared between threads; made after a process has started."""
+    """A renderer of frames of one scene in one size.
+
+    Threads must not share a renderer. A worker process creates its own.
+    """
 
     @property
     def name(self) -> str:
@@ -36,7 +39,7 @@ class Renderer(Protocol):
 
     @property
     def description(self) -> str:
-        """One line for people: what draws, and how."""
+        """One line for people about the device and the method that draw."""
 
     def frame(self, state: FrameState) -> NDArray[np.uint8]:
         """Draw one frame: uint8 (h, w, 3), sRGB, top row first.
@@ -45,7 +48,7 @@ class Renderer(Protocol):
         """
 
     def close(self) -> None:
-        """Give back what the renderer holds. It cannot draw after that."""
+        """Free the resources of the renderer, which cannot draw after that."""
 
 
 def create(
@@ -55,15 +58,15 @@ def create(
 
     Parameters
     ----------
-    scene : what to draw; size : (width, height) in pixels
+    scene : the scene to draw; size : (width, height) in pixels
     quality : ``draft`` one sample a pixel and no cast shadow, ``good`` 2x2 samples, ``best`` 4x4 samples
-    kind : ``cpu`` needs nothing; ``gl`` needs OpenGL through EGL; ``auto`` takes ``gl`` where it is a real GPU,
+    kind : ``cpu`` needs nothing; ``gl`` needs OpenGL through EGL; ``auto`` takes ``gl`` if there is a real GPU,
         unless the character has too many joints for it
 
     Raises
     ------
-    UsageError : unknown quality or kind, or a size that no picture can have
-    UnavailableError : ``gl`` was asked for and there is no OpenGL
+    UsageError : unknown quality or kind, or an impossible size
+    UnavailableError : ``gl`` without OpenGL
     """
     if quality not in QUALITIES:
         raise UsageError(f"there is no quality '{quality}'; choose {', '.join(QUALITIES)}")
@@ -80,7 +83,7 @@ def create(
 
 
 def resolve_renderer(kind: RendererKind) -> RendererKind:
-    """The renderer that "auto" stands for here, or the one that is named."""
+    """Return the renderer that "auto" means on this machine, or the named renderer."""
     if kind == "auto":
         return "gl" if _gpu() else "cpu"
     return kind
@@ -101,23 +104,25 @@ def _create_gl(scene: Scene, size: tuple[int, int], quality: Quality) -> Rendere
     return GlRenderer(scene, size, quality)
 
 
-# What both renderers compute alike before they draw a frame: matrices, the shadow map's place, feet, regions.
+# The common computations of both renderers before they draw a frame: matrices, the shadow map's place, feet, regions.
 
-SAMPLES: dict[Quality, int] = {"draft": 1, "good": 2, "best": 4}  # across and down a pixel
+SAMPLES: dict[Quality, int] = {"draft": 1, "good": 2, "best": 4}  # samples across and down a pixel
 SHADOW_MAP: dict[Quality, int] = {"draft": 0, "good": 512, "best": 1024}  # texels across, 0: no cast shadow
 SHADOW_REACH = 2.5  # metres of the world that the shadow map shows, around the dancer's root
 _MARK_REACH = 0.1  # metres around a foot that its mark and its contact shadow may reach
-_MARK_HEIGHT = 1.0  # a foot higher than this has no mark
-SHADOW_FADE = (0.25, 0.95)  # metres from her, on the floor, over which her shadow grows light
+_MARK_HEIGHT = 1.0  # greatest height of a foot with a mark, metres
+SHADOW_FADE = (0.25, 0.95)  # metres from the dancer, on the floor, over which her shadow fades
 NO_FOOT = -1.0
-_UNDER = 0.75  # panel widths from a panel's middle at which a sole may still press it
-RING_SHARE = 0.2  # part of its ring that a foot keeps beside the panel that it presses; on the panel the ring is white
-PLANTED = (0.88, 0.95)  # nearness to the ground from which on a foot stands: 26 mm above it, and 11 mm
+_UNDER = 0.75  # greatest distance from a panel's middle, in panel widths, at which a sole may press it
+RING_SHARE = 0.2  # share of its ring that a foot keeps beside the panel that it presses; on the panel the ring is white
+PLANTED = (0.88, 0.95)  # nearness to the ground over which a foot begins to stand: 26 mm above the ground, and 11 mm
 
 
 class Cast(NamedTuple):
-    """Where the shadow map is. axes : (3, 3), rows u, v and the direction to the light; origin : (2,), u and v of its
-    corner, metres; scale : texels a metre, 0 if there is none."""
+    """The place of the shadow map. axes : (3, 3), rows u, v and the direction to the light
+
+    origin : (2,), u and v of the map's corner, metres; scale : texels a metre, 0 for no map
+    """
 
     axes: Array
     origin: Array
@@ -125,7 +130,7 @@ class Cast(NamedTuple):
 
 
 class DancerVisibility(Enum):
-    """How much of the dancer a frame shows."""
+    """The part of the dancer that a frame shows."""
 
     NOTHING = 0
     FEET = 1
@@ -133,21 +138,24 @@ class DancerVisibility(Enum):
 
 
 def dancer_visibility(state: FrameState) -> DancerVisibility:
-    """How much of the dancer this frame shows."""
+    """Return the part of the dancer that this frame shows."""
     if state.joints is None:
         return DancerVisibility.NOTHING
     return DancerVisibility.FEET if state.camera.feet_only else DancerVisibility.ALL
 
 
 def joints_of(scene: Scene, state: FrameState) -> Array:
-    """The joints' world matrices; those of the binding pose where the dancer is not shown."""
+    """Return the joints' world matrices; the binding pose if the dancer is not shown."""
     if state.joints is not None:
         return state.joints
     return np.asarray(np.linalg.inv(scene.character.inverse_bind), dtype=np.float64)
 
 
 def skin_matrices(scene: Scene, joints: Array) -> Array:
-    """Binding pose to world, (j, 3, 4), in a fixed order of additions: matrix libraries differ in the last bit."""
+    """Return the matrices from binding pose to world, (j, 3, 4).
+
+    The order of additions is fixed, because matrix libraries differ in the last bit.
+    """
     inverse = scene.character.inverse_bind
     out = joints[:, :3, 0, None] * inverse[:, None, 0, :]
     for k in (1, 2, 3):
@@ -156,7 +164,10 @@ def skin_matrices(scene: Scene, joints: Array) -> Array:
 
 
 def place_cast(scene: Scene, camera: Camera, joints: Array, texels: int) -> Cast:
-    """The shadow map around the dancer, on the texel grid of the world: its edge must not crawl as she moves."""
+    """Return the shadow map around the dancer, on a texel grid fixed in the world.
+
+    With another grid, the shadow's edge would crawl as she moves.
+    """
     axes = shadow_axes(light_direction(scene.look, camera))
     if texels == 0:
         return Cast(axes, np.zeros(2), 0.0)
@@ -167,29 +178,30 @@ def place_cast(scene: Scene, camera: Camera, joints: Array, texels: int) -> Cast
 
 
 def shadow_middles(scene: Scene, joints: Array) -> Array:
-    """Where on the floor, x and z, the dancers stand, (2, 2): for a single dancer twice the same."""
+    """Return the dancers' places on the floor, x and z, (2, 2); both rows are equal for a single dancer."""
     names = scene.character.skeleton.names
     roots = [j for j, name in enumerate(names) if name.removeprefix(PREFIX) == "HumanoidRoot"] or [0]
     return np.ascontiguousarray(joints[[roots[0], roots[-1]]][:, (0, 2), 3])
 
 
 def pixels_per_metre(camera: Camera, joints: Array, size: tuple[int, int]) -> float:
-    """How large a metre is on the picture where the dancer's root is."""
+    """Return the pixels of a metre at the depth of the dancer's root."""
     forward = camera.axes()[2]
     depth = float(((joints[0, :3, 3] - camera.position) * forward).sum())
     return camera.focal * size[1] / max(depth, NEAR)
 
 
-# What feet and hands leave on the floor: entries of a row of `feet_on_floor`.
-HEEL_X, HEEL_Z, TOE_X, TOE_Z, GROUND = range(5)  # the line between heel and toe, and the height below it, metres
-NEARNESS = 5  # to the ground, 0 to 1, or NO_FOOT
-RED, GREEN, BLUE = 6, 7, 8  # of the mark, 0 to 255
-STRENGTH, PRESSED = 9, 10  # of the mark, and how much it presses a lit panel, 0 to 1
+# Entries of a row of `feet_on_floor`, for the marks and shadows of a foot or hand on the floor.
+HEEL_X, HEEL_Z, TOE_X, TOE_Z, GROUND = range(5)  # the line between heel and toe, the height of the ground, metres
+NEARNESS = 5  # nearness to the ground, 0 to 1, or NO_FOOT
+RED, GREEN, BLUE = 6, 7, 8  # colour of the mark, 0 to 255
+STRENGTH, PRESSED = 9, 10  # strength of the mark, and of the press on a lit panel, 0 to 1
 
 
 def feet_on_floor(scene: Scene, state: FrameState) -> Array:
-    """Rows of feet, then hands, (4, 11), with the entries above. A hand that is not near the floor leaves nothing on
-    it. For two dancers, the rows of hands are the feet of the second.
+    """Return the rows of feet, then of hands, (4, 11), with the entries above.
+
+    A hand that is not near the floor has no mark. For two dancers, the feet of the second dancer replace the hands.
     """
     out = np.zeros((4, 11))
     out[:, NEARNESS] = NO_FOOT
@@ -211,7 +223,7 @@ def feet_on_floor(scene: Scene, state: FrameState) -> Array:
 
 
 def _pressed(scene: Scene, state: FrameState, mark: FootMark, limb: int) -> float:
-    """How lit the panel is that this limb presses and that is at least partly under it, 0..1."""
+    """Return the light, 0..1, of the panel that this limb presses, if the panel is at least partly under the limb."""
     ours = np.flatnonzero((np.asarray(state.lit) > 0.0) & (np.asarray(state.lit_by) == limb))
     if len(ours) == 0:
         return 0.0
@@ -224,26 +236,26 @@ def _pressed(scene: Scene, state: FrameState, mark: FootMark, limb: int) -> floa
 
 
 def _planted(near: float) -> float:
-    """Whether a foot stands, 0..1."""
+    """Return the degree to which a foot stands, 0..1."""
     t = min(1.0, max(0.0, (near - PLANTED[0]) / (PLANTED[1] - PLANTED[0])))
     return t * t * (3.0 - 2.0 * t)
 
 
 def _strength(near: float) -> float:
-    """How strong a foot's ring is: solid where it stands, a faded trace of where it is in the air."""
+    """Return the strength of a foot's ring: solid for a standing foot, a faded trace for a foot in the air."""
     planted = _planted(near)
     return planted + (1.0 - planted) * (0.12 + 0.38 * near)
 
 
 def panel_lights(scene: Scene, state: FrameState) -> tuple[Array, Array]:
-    """How lit each panel is, (panels,) 0..1, and its colour, (panels, 3) 0..255."""
+    """Return the light of each panel, (panels,) 0..1, and its colour, (panels, 3) 0..255."""
     colours = np.array(scene.colours.by_limb, dtype=np.float64)
     lit = np.clip(np.asarray(state.lit, dtype=np.float64), 0.0, 1.0)
     return lit, colours[np.clip(np.asarray(state.lit_by, dtype=np.int64), 0, len(colours) - 1)]
 
 
 def ground_box(scene: Scene, camera: Camera, size: tuple[int, int], bounds: tuple[Array, Array], cast: Cast) -> Array:
-    """The part of the picture, x0, y0, x1, y1 in pixels, that holds the pad and all that falls on the floor.
+    """Return the part of the picture, x0, y0, x1, y1 in pixels, with the pad and all shadows and marks on the floor.
 
     bounds : least and greatest corner (3,) of the dancer
     """
@@ -261,7 +273,10 @@ def ground_box(scene: Scene, camera: Camera, size: tuple[int, int], bounds: tupl
 
 
 def pixel_box(camera: Camera, points: Array, size: tuple[int, int]) -> Array:
-    """Bounds of world points on the picture, int64 x0, y0, x1, y1; everything if one of them is behind the camera."""
+    """Return the bounds of world points on the picture, int64 x0, y0, x1, y1.
+
+    They are the whole picture if a point is behind the camera.
+    """
     places = camera.project(points, size)
     if (places[:, 2] < NEAR).any():
         return np.array([0, 0, *size], dtype=np.int64)
@@ -269,14 +284,14 @@ def pixel_box(camera: Camera, points: Array, size: tuple[int, int]) -> Array:
     return np.concatenate([np.clip(low, 0, size), np.clip(high, 0, size)]).astype(np.int64)
 
 
-# Matrices of the OpenGL renderer, and boxes that hold the dancer.
+# Matrices of the OpenGL renderer, and boxes around the dancer.
 
-FAR = 100.0  # metres; nothing farther is drawn
+FAR = 100.0  # the greatest depth that is drawn, metres
 CAST_DEPTH = (-2.0, 6.0)  # metres along the light that the shadow map covers
 
 
 def camera_matrix(camera: Camera, size: tuple[int, int]) -> Array:
-    """World to clip space (4, 4), the picture's first row at y = -1."""
+    """Return the matrix from world to clip space (4, 4), with the picture's first row at y = -1."""
     m = camera.matrix(size)
     out = np.empty((4, 4))
     out[0] = 2.0 / size[0] * m[0] - m[2]
@@ -288,7 +303,7 @@ def camera_matrix(camera: Camera, size: tuple[int, int]) -> Array:
 
 
 def light_matrix(cast: Cast) -> Array:
-    """World to clip space of the shadow map (4, 4); what is nearer to the light has less depth."""
+    """Return the matrix from world to clip space of the shadow map (4, 4); the depth is less nearer to the light."""
     out = np.zeros((4, 4))
     for k in (0, 1):
         out[k, :3] = cast.axes[k] * (2.0 / SHADOW_REACH)
@@ -301,9 +316,9 @@ def light_matrix(cast: Cast) -> Array:
 
 
 class JointBoxes(NamedTuple):
-    """The box of the vertices of each joint: any pose of the skin lies within these boxes, without skinning it here.
+    """The box of each joint's vertices; the skin lies within these boxes in any pose, so that no skinning is needed.
 
-    joint : int (k,), the joints that hold any; corners : (k, 8, 3), of the box around what one holds, binding pose
+    joint : int (k,), the joints with vertices; corners : (k, 8, 3), corners of the boxes in the binding pose
     """
 
     joint: NDArray[np.intp]
@@ -311,7 +326,7 @@ class JointBoxes(NamedTuple):
 
 
 def joint_boxes(positions: NDArray[Any], joints: NDArray[Any], weights: NDArray[Any]) -> JointBoxes:
-    """The boxes of a mesh (v, 3), whose vertices hang on joints (v, 4) by weights (v, 4) that sum to 1."""
+    """Return the boxes of a mesh (v, 3), whose vertices follow joints (v, 4) with weights (v, 4) that sum to 1."""
     held = weights > 0
     owner, vertex = joints[held], np.nonzero(held)[0]
     ends = np.empty((2, int(joints.max()) + 1, 3))
@@ -324,13 +339,13 @@ def joint_boxes(positions: NDArray[Any], joints: NDArray[Any], weights: NDArray[
 
 
 def places_of(held: JointBoxes, matrices: Array) -> Array:
-    """World points (n, 3) whose hull holds the dancer. matrices : (j, 3, 4), binding pose to world"""
+    """Return world points (n, 3) whose hull holds the dancer. matrices : (j, 3, 4), from binding pose to world"""
     turn = matrices[held.joint]
     return np.asarray(held.corners @ turn[:, :, :3].transpose(0, 2, 1) + turn[:, None, :, 3]).reshape(-1, 3)
 
 
 def within(light: Array, places: Array) -> Array:
-    """The part of the shadow map (4,), left, top, right and bottom from 0 to 1, beyond which nothing of her is.
+    """Return the part of the shadow map that holds the dancer: left, top, right and bottom from 0 to 1, (4,).
 
     light : `light_matrix`; places : `places_of`
     """

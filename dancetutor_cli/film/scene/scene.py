@@ -1,4 +1,4 @@
-"""The stage, the scene that stands still, and the state of one frame."""
+"""The stage, the still scene, and the state of one frame."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from dancetutor_cli.film.scene.camera import WHOLE, Camera, Region, parse
 from dancetutor_cli.film.scene.look import Look, StageLook, default_look
 from dancetutor_cli.run.errors import UsageError
 
-# The stage: floor, wall and pad as flat surfaces, each with a kind that says how it is coloured.
+# The stage: floor, wall and pad as flat surfaces, whose kinds determine their colours.
 #
-# Their colours (`cpu.stage_colours`) depend only on the position on the surface; there are no textures, so the stage is
+# The colours (`cpu.stage_colours`) depend only on the position on the surface; there are no textures, so the stage is
 # sharp at any size.
 
-_SIDES = 24  # of the room
+_SIDES = 24  # number of the room's sides
 _WALL_HEIGHT = 5.0
 _FLOOR_REACH = 40.0
 
 
 class SurfaceKind(IntEnum):
-    """How a surface is coloured."""
+    """The kind of a surface, which determines its colours."""
 
     FLOOR = 0
     PAD = 1
@@ -39,11 +39,11 @@ class SurfaceKind(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Tiles:
-    """The pad's surface as a grid of tiles. a tiles across (to -X), b tiles deep (to +Z).
+    """The pad's surface as a grid of tiles: a tiles across (to -X), b tiles deep (to +Z).
 
     corner : world (x, z) of the first tile's outer corner: greatest x, least z
-    panel : int32 (a, b), column of the tile's panel, or -1; arrow : float64 (a, b, 2), world (x, z) direction of its
-    arrow, (0, 0) for none
+    panel : int32 (a, b), column of the tile's panel, or -1
+    arrow : float64 (a, b, 2), world (x, z) direction of the panel's arrow, (0, 0) for none
     """
 
     corner: tuple[float, float]
@@ -53,7 +53,7 @@ class Tiles:
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """Quadrilaterals, seen counter-clockwise from their front; their backs are not drawn. q of them.
+    """The stage as q quadrilaterals, counter-clockwise from their front; their backs are not drawn.
 
     corners : float64 (q, 4, 3), world; uv : float64 (q, 4, 2), places on a wall; kinds : int32 (q,), `SurfaceKind`
     """
@@ -65,7 +65,7 @@ class Stage:
 
 
 def tiles_of(pad: PadLike) -> Tiles:
-    """The grid of tiles under the panels: squares of 3 by 3, as many as hold all panels, the first around (0, 0)."""
+    """Return the grid of tiles under the panels: squares of 3 by 3 that hold all panels, the first around (0, 0)."""
     panels = np.asarray(pad.panels, dtype=np.float64)
     first = 3 * np.floor((np.round(panels.min(0)) + 1) / 3) - 1
     squares = np.floor((np.round(panels.max(0)) + 1 - (first + 1)) / 3) + 1
@@ -85,7 +85,7 @@ def tiles_of(pad: PadLike) -> Tiles:
 
 
 def build_stage(pad: PadLike, look: StageLook) -> Stage:
-    """The surfaces of floor, wall and pad."""
+    """Build the surfaces of floor, wall and pad."""
     tiles = tiles_of(pad)
     low, high = pad_extent(tiles)
     bottom = -look.pad_height
@@ -112,7 +112,7 @@ def build_stage(pad: PadLike, look: StageLook) -> Stage:
 
 
 def pad_extent(tiles: Tiles) -> tuple[Array, Array]:
-    """Least and greatest corner (3,) of the pad's surface in the world."""
+    """Return the least and greatest corner (3,) of the pad's surface in the world."""
     across, deep = tiles.panel.shape
     x, z = tiles.corner
     return np.array([x - across * PANEL, 0.0, z]), np.array([x, 0.0, z + deep * PANEL])
@@ -122,18 +122,18 @@ def _flat(x0: float, z0: float, x1: float, z1: float, y: float) -> list[tuple[fl
     return [(x0, y, z0), (x0, y, z1), (x1, y, z1), (x1, y, z0)]
 
 
-FAR_AWAY = 1e6  # metres: a dancer who is farther away is a mistake
-_JUMP = 0.10  # metres above her own height that a camera shows: a jump
-SOLE_RADIUS = 0.052  # metres: a sole is drawn on the floor as all points so near to the line from heel to toe
-TOE_AHEAD = 0.022  # metres that this line reaches beyond the ball, and beyond the ankle
-_HEEL, _TOE = (0.0, -TOE_AHEAD), (0.0, TOE_AHEAD)  # the same, (x, z) at rest
+FAR_AWAY = 1e6  # metres; a dancer who is farther away is an error
+_JUMP = 0.10  # metres for a jump above the dancer's own height
+SOLE_RADIUS = 0.052  # metres; a sole on the floor is all points this near to the line from heel to toe
+TOE_AHEAD = 0.022  # metres by which this line reaches beyond the ball, and beyond the ankle
+_HEEL, _TOE = (0.0, -TOE_AHEAD), (0.0, TOE_AHEAD)  # both ends of the line, (x, z) from ankle and ball at rest
 
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """Everything that does not change during a video.
+    """The parts of the picture that do not change during a film.
 
-    character : the dancer; pad : where the panels are; stage : the surfaces around her
+    character : the dancer; pad : the panels; stage : the surfaces around her
     """
 
     character: Character
@@ -147,31 +147,31 @@ class Scene:
 
     @property
     def extent(self) -> tuple[Array, Array]:
-        """Least and greatest corner (3,) of the pad's surface in the world, metres."""
+        """The least and greatest corner (3,) of the pad's surface in the world, metres."""
         return pad_extent(self.stage.tiles)
 
     @property
     def panels(self) -> int:
-        """Number of panels that can light up."""
+        """The number of panels that can light up."""
         return len(self.pad.panels)
 
     def camera(self, text: str, size: tuple[int, int], region: Region = WHOLE) -> Camera:
-        """A camera by name or ``x,y,z/x,y,z`` for a picture of that size; she fills `region` (0..1) of it."""
+        """Return a camera by name or ``x,y,z/x,y,z`` for a picture of that size; the dancer fills `region` (0..1)."""
         return parse(text, self.extent, size, self.look, region, self.tall)
 
     @property
     def tall(self) -> float:
-        """The room that the dancer needs above the ground, metres: her height, and a jump."""
+        """The height that the dancer needs above the ground, metres: her own height and a jump."""
         return float(rest_vertices(self.character)[:, 1].max()) + _JUMP
 
 
 @dataclass(frozen=True, slots=True)
 class FrameState:
-    """One frame.
+    """The state of one frame.
 
     joints : float64 (j, 4, 4), world matrices of the character's joints, see `dance.rig.body.joint_matrices`; None for
-    the room without her
-    camera : where it is seen from; frames from one camera (but for its pan) are quick, a moved camera redraws the stage
+        the room without the dancer
+    camera : the camera of the frame; a change of its pan is fast, any other change redraws the stage
     lit : float (panels,), 0 dark to 1 fully lit; lit_by : int (panels,), `feet.limbs.Limb` whose colour a panel has
     """
 
@@ -183,16 +183,16 @@ class FrameState:
 
 @dataclass(frozen=True, slots=True)
 class FootMark:
-    """A foot as seen on the floor: the line from heel to toe, world (x, z), and how high its sole is, metres."""
+    """The mark of a foot on the floor: the line from heel to toe, world (x, z), and the height of the sole, metres."""
 
     heel: tuple[float, float]
     toe: tuple[float, float]
     height: float
-    ground: float  # height of what is below it: the pad, or the floor beside it
+    ground: float  # height of the pad or floor below the foot
 
 
 def check_state(scene: Scene, state: FrameState) -> None:
-    """UsageError if the arrays do not fit the scene."""
+    """Raise UsageError if the arrays do not fit the scene."""
     joints = len(scene.character.skeleton.names)
     if state.joints is not None and state.joints.shape != (joints, 4, 4):
         raise UsageError(f"frame: joints have shape {state.joints.shape}, the character needs ({joints}, 4, 4)")
@@ -204,9 +204,9 @@ def check_state(scene: Scene, state: FrameState) -> None:
 
 
 def foot_marks(scene: Scene, joints: Array, whose: str = "") -> tuple[FootMark | None, FootMark | None]:
-    """Where the left and the right foot are, for marks and contact shadows; None for a character without feet.
+    """Return the left and the right foot, for marks and contact shadows; None for a character without feet.
 
-    whose : before the names of the joints, `character.mesh.PREFIX` for the second of two
+    whose : prefix of the joints' names, `character.mesh.PREFIX` for the second of two dancers
     """
     names = scene.character.skeleton.names
     rest = scene.character.skeleton.rest
@@ -228,8 +228,8 @@ def foot_marks(scene: Scene, joints: Array, whose: str = "") -> tuple[FootMark |
 
 
 def hand_marks(scene: Scene, joints: Array) -> tuple[FootMark | None, FootMark | None]:
-    """As `foot_marks`, for the palms: a palm is a foot whose heel and toe are one point."""
-    from dancetutor_cli.dance.rig.body import palm_points  # brings numba, which choosing a scene must not
+    """Return the marks of the palms, as `foot_marks` does for feet; heel and toe of a palm are one point."""
+    from dancetutor_cli.dance.rig.body import palm_points  # imports numba, which the choice of a scene must not
 
     skeleton = scene.character.skeleton
     needed = [f"{side}_{part}" for side in "lr" for part in ("shoulder", "elbow", "radiocarpal")]
@@ -244,7 +244,7 @@ def hand_marks(scene: Scene, joints: Array) -> tuple[FootMark | None, FootMark |
 
 
 def light_direction(look: Look, camera: Camera) -> Array:
-    """Unit vector (3,) to the light, which stands beside the camera, so that the side that the camera sees is lit."""
+    """Return the unit vector (3,) to the light, which is beside the camera, so that the visible side is lit."""
     forward, up = camera.axes()[2], camera.axes()[1]
     heading = forward if math.hypot(forward[0], forward[2]) > 1e-3 else up
     yaw = math.atan2(-heading[0], -heading[2]) + math.radians(look.light.azimuth)
@@ -259,7 +259,7 @@ def _on_pad(scene: Scene, point: Array) -> bool:
 
 
 def shadow_axes(light: Array) -> Array:
-    """Rows u, v and the direction to the light: the light's view of the world, v downwards, (3, 3)."""
+    """Return the light's view of the world, (3, 3): rows u, v (downwards) and the direction to the light."""
     u = np.array([light[2], 0.0, -light[0]]) / math.hypot(light[0], light[2])
     v = np.array(
         [u[1] * light[2] - u[2] * light[1], u[2] * light[0] - u[0] * light[2], u[0] * light[1] - u[1] * light[0]]

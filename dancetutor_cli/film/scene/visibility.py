@@ -1,4 +1,4 @@
-"""Which parts of the dancer are visible: feet under a cape, a foot behind a leg, the dancer's place in the picture."""
+"""The visible parts of the dancer: feet under a cape, a foot behind a leg, the dancer's place in the picture."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.film.scene.camera import NEAR, Camera
 from dancetutor_cli.film.scene.scene import SOLE_RADIUS, FootMark, Scene, foot_marks
 
-# Whether a character's feet are visible from a camera. A cape or a large head may hide them from behind.
+# The visibility of a character's feet from a camera. A cape or a large head may hide them from behind.
 
-LEAST = 0.2  # part of the places of the feet that are visible at rest; with fewer, the feet are hidden
-_LOOKED_AT = 160  # places of the feet that are looked at, at most
+LEAST = 0.2  # smallest share of the feet's vertices that is visible at rest; below it, the feet count as hidden
+_LOOKED_AT = 160  # maximum number of the feet's vertices that are checked
 
 
 def feet_hidden(character: Character, camera: Camera, size: tuple[int, int]) -> bool:
-    """Whether the rest of the body covers the feet of a standing dancer. False without feet."""
+    """Whether the rest of the body covers the feet of a standing dancer; False for a character without feet."""
     feet = np.concatenate([on_foot(character, m, "l") | on_foot(character, m, "r") for m in character.meshes])
     if not feet.any():
         return False
@@ -49,16 +49,16 @@ def _covered(place: Array, corners: Array) -> bool:
     return bool((corners[inside, :, 2].max(axis=1) < place[2] - 0.01).any())
 
 
-# Where the dancer is in the picture, from her joints alone: which words she would stand behind.
+# The dancer's place in the picture, found from her joints alone, and the words that she would stand behind.
 
-FACE_AND_FEET = ("skullbase", "_talocrural", "_metatarsal")  # the joints of head and feet, of a second dancer, too
+FACE_AND_FEET = ("skullbase", "_talocrural", "_metatarsal")  # endings of the joints of heads and feet of all dancers
 _SIGNS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=bool)
 
 
 class Silhouette:
-    """A box around the vertices that follow each joint most, in that joint's own axes: it holds in every pose.
+    """A box around the vertices that follow each joint most, in the joint's own axes, which is valid in every pose.
 
-    named : which of these are of heads and feet
+    named : indices of the boxes of heads and feet
     """
 
     def __init__(self, character: Character) -> None:
@@ -79,7 +79,7 @@ class Silhouette:
     def behind(
         self, boxes: Sequence[tuple[float, float, float, float]], joints: Array, camera: Camera, size: tuple[int, int]
     ) -> bool:
-        """Whether any part of the dancer is where one of `boxes` (left, top, right, bottom; pixels) is.
+        """Whether any part of the dancer reaches into one of `boxes` (left, top, right, bottom; pixels).
 
         joints : world matrices (j, 4, 4); size : (width, height) of the picture in pixels
         """
@@ -90,11 +90,11 @@ class Silhouette:
         )
 
     def heads_and_feet(self, joints: Array, camera: Camera, size: tuple[int, int]) -> Array:
-        """Where these are: left, top, right and bottom of each part that is before the camera, (n, 4), pixels."""
+        """Return left, top, right and bottom of each head and foot before the camera, (n, 4), pixels."""
         return self._picture_boxes(self.named, joints, camera, size)
 
     def _picture_boxes(self, parts: NDArray[np.int64], joints: Array, camera: Camera, size: tuple[int, int]) -> Array:
-        """Boxes in the picture around `parts`, indices of `self.joints`."""
+        """Return the boxes in the picture around `parts`, indices of `self.joints`."""
         world = joints[self.joints[parts]]
         points = np.einsum("pij,pkj->pki", world[:, :3, :3], self.corners[parts]) + world[:, None, :3, 3]
         seen = camera.project(points.reshape(-1, 3), size).reshape(points.shape)
@@ -102,34 +102,34 @@ class Silhouette:
         return np.concatenate([seen.min(1), seen.max(1)], axis=1)
 
 
-# A foot that a leg hides: its shoe is outlined over that leg, because the places of the feet must stay visible.
+# A foot behind a leg. Its shoe is outlined over the leg, because the places of the feet must stay visible.
 #
 # The hidden parts follow from the joints alone, with legs as tapered tubes, so that both renderers show the same.
 
-_LEG = ("knee", "talocrural", "metatarsal")  # what is above the knee hides no foot
-_RADII = (0.062, 0.05, 0.045)  # metres, of a leg at these joints
-_SHOE = 0.035  # metres above its sole at which a foot is looked for
-HIDDEN = (0.3, 0.6)  # share of a foot that is hidden where it begins to be drawn, and where it is as strong as ever
-SHOE = (0.046, 0.040)  # metres, how far a shoe reaches around the line between heel and toe, at either end
-LINE = 0.004  # metres, half its outline's width
-LOW = 0.12  # metres over the ground over which a foot in the air is not drawn
+_LEG = ("knee", "talocrural", "metatarsal")  # the parts above the knee hide no foot
+_RADII = (0.062, 0.05, 0.045)  # radius of a leg at these joints, metres
+_SHOE = 0.035  # height above the sole of the points that are checked, metres
+HIDDEN = (0.3, 0.6)  # hidden share of a foot at which the outline begins, and at which it has its full strength
+SHOE = (0.046, 0.040)  # radius of a shoe around the line between heel and toe, at either end, metres
+LINE = 0.004  # half the width of the outline, metres
+LOW = 0.12  # height over the ground from which a foot in the air has no outline, metres
 
 
 @dataclass(frozen=True, slots=True)
 class _Legs:
-    """Parts of a leg in the picture. ends : (p, 2, 3) places and depths, pixels and metres; radii : (p, 2) pixels"""
+    """The parts of legs in the picture. ends : (p, 2, 3) places and depths, pixels and metres; radii : (p, 2) pixels"""
 
     ends: Array
     radii: Array
 
     @property
     def box(self) -> tuple[Array, Array]:
-        """Left and top, right and bottom of all of them, pixels."""
+        """Left and top, right and bottom of all parts, pixels."""
         places, around = self.ends[..., :2], self.radii[..., None]
         return (places - around).min((0, 1)), (places + around).max((0, 1))
 
     def cover(self, place: Array, soft: float = 1.0) -> Array:
-        """How much of the things at places (..., 3), `soft` pixels large, is behind the legs, 0 to 1."""
+        """Return the share, 0 to 1, of discs at places (..., 3), `soft` pixels large, that is behind the legs."""
         out = np.zeros(place.shape[:-1])
         for (a, b), (first, last) in zip(self.ends, self.radii, strict=True):
             along = b[:2] - a[:2]
@@ -142,7 +142,7 @@ class _Legs:
 
 
 def draw_hidden_feet(frame: Frame, scene: Scene, joints: Array, camera: Camera) -> None:
-    """Draw the shoes of feet behind another leg over the picture of them. joints : world matrices (j, 4, 4)."""
+    """Draw the outlines of shoes behind another leg over the picture. joints : world matrices (j, 4, 4)"""
     found = _leg_joints(scene.character.skeleton.names)
     if camera.feet_only or found is None:
         return
@@ -170,7 +170,7 @@ def draw_hidden_feet(frame: Frame, scene: Scene, joints: Array, camera: Camera) 
 
 @lru_cache(maxsize=4)
 def _leg_joints(names: tuple[str, ...]) -> NDArray[np.intp] | None:
-    """The joints of each leg, left and right, of the second dancer too, (l, 3); None without such legs."""
+    """Return the joints of each leg, left and right, also of a second dancer, (l, 3); None without these joints."""
     whose = ("", PREFIX) if any(name.startswith(PREFIX) for name in names) else ("",)
     needed = [f"{one}{side}_{joint}" for one in whose for side in "lr" for joint in _LEG]
     if not set(needed) <= set(names):
@@ -179,7 +179,7 @@ def _leg_joints(names: tuple[str, ...]) -> NDArray[np.intp] | None:
 
 
 def _share(mark: FootMark, before: _Legs, camera: Camera, size: tuple[int, int]) -> float:
-    """How strongly a foot is drawn, 0 to 1, by how much of it is hidden."""
+    """Return the strength of a foot's outline, 0 to 1, which depends on the hidden share of the foot."""
     t = np.linspace(-0.2, 1.2, 9)[:, None]
     flat = np.array(mark.heel) + t * (np.array(mark.toe) - np.array(mark.heel))
     points = np.column_stack([flat[:, 0], np.full(len(t), mark.ground + mark.height + _SHOE), flat[:, 1]])
@@ -193,11 +193,12 @@ def _share(mark: FootMark, before: _Legs, camera: Camera, size: tuple[int, int])
 
 
 def _shoe(frame: Frame, mark: FootMark, before: _Legs, camera: Camera, ink: Array) -> None:
-    """Draw the outline of the part of a shoe that is behind a leg. ink : (4,), red, green, blue 0..255, and how strong
-    0..1
+    """Draw the outline of the part of a shoe that is behind a leg.
 
-    The ring is not drawn again: it lies on the floor, and over a leg it would look like a noose around it. The outline
-    is not filled either: a patch on a leg looked like a bandage.
+    The ring on the floor is not drawn over the leg, because it would look like a noose around it. The outline is not
+    filled, because a patch on a leg looked like a bandage.
+
+    ink : (4,), red, green, blue 0..255, and strength 0..1
     """
     size = frame.shape[1], frame.shape[0]
     height = mark.ground + mark.height + float(np.mean(SHOE))
