@@ -202,7 +202,7 @@ def shaders() -> dict[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class IndexEntry:
-    """A page in an index. file : its name in the folder; title, artist : words of the song; label : the chart's label"""
+    """A page in an index. file : its name in the folder; title, artist : of the song; label : the chart's label"""
 
     file: str
     title: str

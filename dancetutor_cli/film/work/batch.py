@@ -1,4 +1,4 @@
-"""Films of folders, or a single one: which charts, under which names; what is done already, and the list of work."""
+"""One film, or the films of folders: the choice of charts, the names of files, and the list of work."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.choices import RendererKind
 
 
-# From folders to the films of a batch: which charts, in which order, under which names.
+# The way from folders to the films of a batch: their charts, order and names.
 
 DEFAULT_NAME = "{folder}-{steps_type}-{difficulty}"
 FIELDS = ("title", "artist", "folder", "pack", "file", "steps_type", "difficulty", "meter", "index")
@@ -41,8 +41,8 @@ FIELDS = ("title", "artist", "folder", "pack", "file", "steps_type", "difficulty
 class BatchRequest:
     """The contents of a batch. request : the film of each chart (its path and selection are replaced)
 
-    name : template of the films' names; meters : least and greatest meter or None; shard : (number from 1, of how many)
-    exclude : patterns of files that are left out
+    name : template of the films' names; meters : least and greatest meter or None
+    shard : (number from 1, number of shards); exclude : patterns of files that are left out
     """
 
     paths: tuple[Path, ...]
@@ -65,7 +65,7 @@ class UnreadableFile:
 
 
 class FilmList(NamedTuple):
-    """The films of a batch, the files that could not be read, and those that have no chart that is wanted."""
+    """The films of a batch, the files that could not be read, and the files without a matching chart."""
 
     films: list[FilmJob]
     unreadable: list[UnreadableFile]
@@ -73,7 +73,7 @@ class FilmList(NamedTuple):
 
 
 def parse_meters(text: str) -> tuple[int, int]:
-    """ "8", "8-12", "8-" or "-12"; UsageError for anything else."""
+    """Parse a range of meters, "8", "8-12", "8-" or "-12"; UsageError for anything else."""
     match = re.fullmatch(r"\s*(\d*)\s*(-?)\s*(\d*)\s*", text)
     if not match or not (match[1] or match[3]):
         raise UsageError(f"--meter {text}: write a number such as 9, or a range such as 8-12")
@@ -85,7 +85,7 @@ def parse_meters(text: str) -> tuple[int, int]:
 
 
 def parse_shard(text: str) -> tuple[int, int]:
-    """ "2/5" to (2, 5); UsageError for anything else."""
+    """Parse a shard, "2/5" to (2, 5); UsageError for anything else."""
     match = re.fullmatch(r"\s*(\d{1,6})\s*/\s*(\d{1,6})\s*", text)
     if not match or not 1 <= int(match[1]) <= int(match[2]):
         raise UsageError(f"--shard {text}: write it as 2/5 for the second of five parts")
@@ -93,7 +93,7 @@ def parse_shard(text: str) -> tuple[int, int]:
 
 
 def check_name(template: str) -> None:
-    """UsageError if a template names a field that does not exist, or could lead out of the folder."""
+    """Raise UsageError if a template names an unknown field, or could lead out of the folder."""
     try:
         fields = [name for _, name, _, _ in string.Formatter().parse(template) if name is not None]
     except ValueError as error:
@@ -105,7 +105,7 @@ def check_name(template: str) -> None:
 
 
 def film_list(batch: BatchRequest) -> FilmList:
-    """The films of the batch (of this shard), sorted by path. Of files without a film only the first shard reports."""
+    """Return the films of the batch (of this shard), sorted by path; only the first shard has files without a film."""
     check_name(batch.name)
     jobs: list[FilmJob] = []
     bad: list[UnreadableFile] = []
@@ -114,7 +114,7 @@ def film_list(batch: BatchRequest) -> FilmList:
     for path in chart_files(batch.paths, batch.exclude):
         try:
             song = load(path)
-        except NoChartsError:  # the music of a menu, which nobody means to dance
+        except NoChartsError:  # the music of a menu, which is not for dancing
             without.append(path)
             continue
         except (DancetutorError, OSError) as error:
@@ -128,7 +128,7 @@ def film_list(batch: BatchRequest) -> FilmList:
 
 
 def chart_files(paths: Sequence[Path], exclude: Sequence[str] = ()) -> Iterator[Path]:
-    """Chart files; for a song with both kinds the .ssc, as in the games. exclude : as for `find_files`"""
+    """Yield the chart files; for a song with both kinds the .ssc, as in the games. exclude : as for `find_files`"""
     for path in find_files(paths, exclude):
         if path.suffix.lower() == ".sm" and path not in paths and twin(path) is not None:
             continue
@@ -146,7 +146,7 @@ def _job(batch: BatchRequest, song: Song, chart: Chart, taken: set[str]) -> Film
     suffix = "" if batch.encoding.target == PICTURES else f".{batch.encoding.target}"
     stem = file_name(batch.name, song, chart)
     name, number = stem, 2
-    while name.lower() in taken:  # two charts of one name; file systems may ignore case
+    while name.lower() in taken:  # two charts have one name; file systems may ignore case
         name, number = f"{stem}-{number}", number + 1
     taken.add(name.lower())
     dance = replace(batch.request.dance, path=song.path, selection=Selection(index=chart.index))
@@ -155,7 +155,7 @@ def _job(batch: BatchRequest, song: Song, chart: Chart, taken: set[str]) -> Film
 
 
 def file_name(template: str, song: Song, chart: Chart) -> str:
-    """A template filled in, in characters that every file system takes."""
+    """Fill in a template, with characters that every file system accepts."""
     folder = song.path.resolve().parent
     values = {
         "title": song.title or song.path.stem,
@@ -173,16 +173,13 @@ def file_name(template: str, song: Song, chart: Chart) -> str:
 
 # The list of work that any workers can share, for one film or many.
 #
-# The film of each chart is prepared, drawn in segments and joined by separate pieces of work, so that all workers stay
-# busy to the end of a pack. Finished segments stay when a run is interrupted, if records are kept. A finished film is
-# known by a hash of everything that it is made of, and is not made again. This process writes the records (`records`).
+# Separate pieces of work prepare the film of each chart, draw its segments and join them, so that all workers stay busy
+# to the end of a pack. Finished segments stay after an interruption, if records are kept. A finished film is recognised
+# by a hash of everything that it is made of, and is not made again. This process writes the records (`records`).
 
 
 def film_workers(jobs: int, advance: Callable[[int], None], kind: RendererKind) -> Workers:
-    """`jobs` workers that get ready to draw with this renderer.
-
-    advance : gets the number of frames drawn since its last call
-    """
+    """Start `jobs` workers, which prepare to draw with this renderer. advance : called with a number of drawn frames"""
     common = segments.common_to_workers(kind) if jobs > 1 else ""
     workers = open_workers(jobs, lambda _key, frames: advance(frames), common)
     if jobs > 1 and not common:
@@ -192,7 +189,7 @@ def film_workers(jobs: int, advance: Callable[[int], None], kind: RendererKind) 
 
 @dataclass
 class _Film:
-    """A film in work. record : what is kept of it; work : name of its folder; waiting : pieces of work not done yet."""
+    """A film in work. record : its record; work : name of its folder; waiting : number of unfinished pieces of work"""
 
     job: FilmJob
     began: float
@@ -205,11 +202,11 @@ class _Film:
 
 @dataclass
 class Batch:
-    """Runs film jobs on workers; yields one outcome per job as they end, whatever happens to single ones.
+    """A run of film jobs on workers, with one outcome for each job, also for a job that fails.
 
-    records : what is kept of unfinished films for a later run; where none are kept, nothing is left of them
-    ahead : pieces of work, for each that is done at a time, below which the next film is opened. A film to be opened
-        is one, and so is each of its segments: short films are opened by many workers at once, long ones one by one.
+    records : the records of unfinished films for a later run; if no records are kept, unfinished films are removed
+    ahead : the next film is opened if there are fewer than this many pieces of work for each worker. A film that opens
+        is one piece, and so is each segment. Many workers open short films at once; long films open one by one.
     """
 
     jobs: Sequence[FilmJob]
@@ -221,10 +218,10 @@ class Batch:
     _queue: deque[int] = field(default_factory=deque)
 
     def run(self) -> Iterator[FilmOutcome]:
-        """Do it all, and end the workers. The order of outcomes depends on the workers; the films do not."""
+        """Do all jobs, and end the workers. The order of outcomes depends on the workers; the films do not."""
         self._queue = deque(range(len(self.jobs)))
         try:
-            if len(self.jobs) == 1:  # opened by this process, while the workers get ready
+            if len(self.jobs) == 1:  # this process opens the film while the workers get ready
                 outcome = self._ended(attempt(self._open_task(), lambda _units: None))
                 if outcome is not None:
                     yield outcome
@@ -236,22 +233,22 @@ class Batch:
                     yield outcome
         finally:
             self.workers.close()
-            for film in self._films.values():  # there are some if this is interrupted
+            for film in self._films.values():  # not empty after an interruption
                 self._remove_useless(film)
 
     def _fill(self) -> None:
-        """Open films until there is enough to do."""
+        """Open films until there are enough pieces of work."""
         enough = self.ahead * self.workers.at_once()
         while self._queue and sum(map(self._pieces_left, self._films.values())) < enough:
             self.workers.submit(self._open_task())
 
     def _open_task(self) -> Task:
-        """The piece of work that opens the next film."""
+        """Return the piece of work that opens the next film."""
         number = self._queue.popleft()
         job, work = self.jobs[number], new_work_name()
         record = self.records.read(job.output)
         film = self._films[number] = _Film(job, time.monotonic(), record, work)
-        if record.size is None:  # else it is probably done
+        if record.size is None:  # otherwise the film is probably done
             self._keep(film, replace(record, folders=(*record.folders, work)))
         return Task(("open", number), film_jobs.open_film, (job, record, work))
 
@@ -322,7 +319,7 @@ class Batch:
         return film_jobs.outcome(film.job, film.opened, film.error, seconds)
 
     def _remove_useless(self, film: _Film) -> None:
-        """Remove what there is of an unfinished film, if no later run can use it."""
+        """Remove the folder of an unfinished film, if no later run can use it."""
         if film.record.digests and self.records.kept:
             return
         remove_work(film.job.output.parent / film.work)

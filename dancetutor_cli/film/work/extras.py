@@ -1,4 +1,4 @@
-"""What can be made besides a film: a picture for each row, a poster, subtitles."""
+"""The files besides a film: a picture for each row, a poster, subtitles."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ INDEX = "poses.json"
 
 
 def pose_plan(plan: FilmPlan, label: str) -> FilmPlan:
-    """The film of a plan, with one frame for each row with a step: what an editor shows while its user scrolls."""
+    """Return a plan with one frame for each row with a step, which an editor can show while its user scrolls."""
     start, end = plan.clock.passes[0].start, plan.clock.passes[0].end
     rows = plan.rows
     times = () if rows is None else tuple(float(t) for t in rows.second if start <= t <= end)
@@ -36,7 +36,7 @@ def pose_plan(plan: FilmPlan, label: str) -> FilmPlan:
 
 
 def write_pose_index(folder: Path, song: Song, chart: Chart, plan: FilmPlan) -> None:
-    """Write which picture shows which row: an object with one entry for each picture."""
+    """Write the index of pictures and rows: an object with one entry for each picture."""
     assert isinstance(plan.clock, Moments)
     notes = chart.notes
     seconds = chart.timing.seconds(notes.tick)
@@ -58,7 +58,7 @@ def write_pose_index(folder: Path, song: Song, chart: Chart, plan: FilmPlan) -> 
 
 
 def write_poster(path: Path, film: Film) -> None:
-    """A picture for a title page: the first called-out move, or a note a third into the film."""
+    """Write a picture for a title page: the first called-out move, or a note a third into the film."""
     plan = film.plan
     one = plan.clock.passes[-1]
     first = max(one.start, one.sound_from) + 1.0
@@ -72,12 +72,12 @@ def write_poster(path: Path, film: Film) -> None:
 
 
 def write_subtitles(path: Path, plan: FilmPlan) -> list[str]:
-    """Subtitles that name the moves, beside the film. Returns a warning if there is nothing to name, so no file."""
+    """Write subtitles that name the moves, beside the film; without moves, write no file and return a warning."""
     from dancetutor_cli.film.media.subtitles import subtitle_style, subtitles
 
     text = subtitles(plan.cues, plan.clock, subtitle_style())
     if not text:
-        path.unlink(missing_ok=True)  # one of an earlier film would lie
+        path.unlink(missing_ok=True)  # the subtitles of an earlier film would be wrong
         return [
             f"no move of this film has a name, so there is no {path.name}; configs/subtitles.yaml says what is named"
         ]

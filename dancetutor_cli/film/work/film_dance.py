@@ -1,4 +1,4 @@
-"""Who dances in a film, and how: the play that it shows, without quiet times, and the motions of all dancers."""
+"""The dance of a film: the play that it shows, without quiet times, and the motions of all dancers."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.notes import NoteTrack
 
 
-# The parts that are neither danced nor shown: before the step to which a film counts in, and after a passage.
+# The parts that are neither danced nor shown: the count-in, and the time after a passage.
 
-REST_SECONDS = 0.7  # seconds of the film before it begins from which on she makes no step: she stands when it does
+REST_SECONDS = 0.7  # seconds without steps before the film begins, so that the dancer stands at its beginning
 
 
 class Quiet(NamedTuple):
@@ -40,13 +40,14 @@ class Quiet(NamedTuple):
     until: float
 
     def has(self, second: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Which of these seconds are among them."""
+        """Return for each of these seconds whether it is in the quiet time."""
         return np.asarray((second >= self.since) & (second < self.until - 1e-6))
 
 
 def quiet_times(passes: Sequence[Pass]) -> list[Quiet]:
-    """The count-in of the runs of a film, which all begin at the same second, if they have one; and the time after a
-    passage, in which the dancer comes to rest, unless the film ends with the passage.
+    """Return the quiet times: the count-in if there is one, and the time after a passage in which the dancer rests.
+
+    All runs of a film begin at the same second, and so have the same count-in.
     """
     one, times = passes[0], []
     if one.count:
@@ -57,7 +58,7 @@ def quiet_times(passes: Sequence[Pass]) -> list[Quiet]:
 
 
 def shown_play(play: Play, passes: Sequence[Pass]) -> Play:
-    """The play without the rows in quiet times; where one of these would leave no row, it stays as it is."""
+    """Return the play without the rows in quiet times; a quiet time that would leave no row is ignored."""
     for quiet in quiet_times(passes):
         keep = ~quiet.has(play.rows.second)
         if keep.all() or not (play.limb[keep] >= 0).any():
@@ -69,14 +70,14 @@ def shown_play(play: Play, passes: Sequence[Pass]) -> Play:
 
 
 def shown_notes(track: NoteTrack, passes: Sequence[Pass]) -> NoteTrack:
-    """The notes without those in quiet times."""
+    """Return the notes outside of quiet times."""
     for quiet in quiet_times(passes):
         track = replace(track, **_filter_arrays(track, ~quiet.has(track.second)))
     return track
 
 
 def _filter_arrays(arrays: Any, keep: NDArray[np.bool_]) -> dict[str, Any]:
-    """Of each array of a dataclass the entries to keep."""
+    """Return the entries to keep of each array of a dataclass."""
     found = {field.name: getattr(arrays, field.name) for field in fields(arrays)}
     return {name: value[keep] for name, value in found.items() if isinstance(value, np.ndarray)}
 
@@ -86,12 +87,13 @@ def _filter_arrays(arrays: Any, keep: NDArray[np.bool_]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class FilmDance:
-    """A chart as a film shows it.
+    """The dance of a chart as a film shows it.
 
-    solved : each player's part, one for most charts; plays : of each, without the notes that nobody plays at the
-    fastest rate, nor those of which the film shows nothing; play : all of them on the pad under all, `pad`
-    motions : of each dancer at each rate; none where the picture has no dancer
-    on_mines : mines that a foot is on at the fastest rate as they pass
+    solved : the parts of the players, one for most charts
+    plays : the play of each part, without notes that nobody plays at the fastest rate or that the film does not show
+    play : all plays together on the common pad, `pad`
+    motions : the motion of each dancer at each rate; empty for a picture without a dancer
+    on_mines : the mines that pass under a foot at the fastest rate
     """
 
     solved: tuple[Solved, ...]
@@ -117,19 +119,19 @@ def film_dance(request: FilmRequest, subject: FilmSubject) -> FilmDance:
                 _file_motions(request, performance) if request.motions else _cut(request, performance, clock)
             )
     results, on_mines = _mines(motions, list(zip(solved, plays, strict=True)), rates[-1])
-    shown = shown_play(play_of_all(solved, plays), clock.passes)  # rows of which nothing is left, too
+    shown = shown_play(play_of_all(solved, plays), clock.passes)  # also without rows that have become empty
     return FilmDance(solved, plays, shown, pad_of(solved), results, on_mines)
 
 
 def _cut(request: FilmRequest, performance: Performance, clock: Clock) -> tuple[Motion, ...]:
-    """The part of a performance that the film shows, with each dancer at her place on the pad under all."""
+    """Return the part of a performance that the film shows, with each dancer at her place on the common pad."""
     wanted = replace(clock.cut_at(performance.rate), walks_off=request.background)
     done = performance.motions(wanted, pooled())
     return tuple(shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True))
 
 
 def _file_motions(request: FilmRequest, performance: Performance) -> tuple[Motion, ...]:
-    """The motions of files in place of the performance's own."""
+    """Return the motions of files, which replace the performance's own."""
     count = len(performance.dancers)
     if performance.rate != 1.0:
         raise UsageError("the motion of --dance is for music at normal speed; leave --rate out, or bake it again")
@@ -143,7 +145,7 @@ def _file_motions(request: FilmRequest, performance: Performance) -> tuple[Motio
 def _mines(
     motions: Mapping[float, Sequence[Motion]], plays: Sequence[tuple[Solved, Play]], fastest: float
 ) -> tuple[dict[float, tuple[Motion, ...]], tuple[OnMine, ...]]:
-    """The motions, whose notes report mines that a foot is on, and these mines at the fastest rate."""
+    """Return the motions with notes about mines under a foot, and these mines at the fastest rate."""
     pad = pad_of([one for one, _ in plays])
     out: dict[float, tuple[Motion, ...]] = {}
     found: list[OnMine] = []

@@ -1,4 +1,4 @@
-"""The pieces of work of whole films: open one, close it, and what becomes of it; `segments` draws it in between."""
+"""The pieces of work of whole films: open a film, close it, and report its outcome; `segments` draws the frames."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class FilmJob:
-    """A film to be made. label : the chart's, for people; output : the file (for "png" the folder) it becomes.
+    """A film to make. label : the chart's label, for people; output : the film's file (for "png" its folder)
 
-    longest : seconds; a longer film is refused; poses : of "png", one picture for each row
-    poster : where a title picture is put; srt : whether subtitles are put beside the film
+    longest : maximum seconds; a longer film is an error; poses : for "png", one picture for each row
+    poster : the file of a title picture; srt : whether to write subtitles beside the film
     """
 
     request: FilmRequest
@@ -43,9 +43,10 @@ class FilmJob:
 
 @dataclass(frozen=True, slots=True)
 class OpenedFilm:
-    """A film ready to be drawn, in `folder`. finished : numbers of segments of an earlier run; skipped : it is done.
+    """A film that is ready to be drawn in `folder`.
 
-    sound : what is to be written into `sound_file`, and on which clock; None: the film is silent
+    finished : numbers of the segments that an earlier run has finished; skipped : whether the whole film is done
+    sound : the sound for `sound_file` and its clock; None for a silent film
     """
 
     key: str
@@ -60,18 +61,18 @@ class OpenedFilm:
 
     @property
     def missing(self) -> list[Segment]:
-        """The segments that are to be drawn."""
+        """The segments that have to be drawn."""
         return [part for part in self.parts if part.number not in self.finished]
 
     @property
     def sound_file(self) -> Path:
-        """The sound track, a WAV file."""
+        """The file of the sound track, a WAV file."""
         return self.folder / "sound.wav"
 
 
 @dataclass(frozen=True, slots=True)
 class FilmOutcome:
-    """How a film job ended. status : "done", "skipped" or "failed"."""
+    """The outcome of a film job. status : "done", "skipped" or "failed"."""
 
     job: FilmJob
     status: str
@@ -81,7 +82,7 @@ class FilmOutcome:
     seconds: float
 
     def as_json(self) -> dict[str, Any]:
-        """One line of the results."""
+        """Return one line of the results."""
         return {
             "path": str(self.job.request.path),
             "chart": self.job.label,
@@ -96,7 +97,7 @@ class FilmOutcome:
 
 
 def outcome(job: FilmJob, opened: OpenedFilm | None, error: DancetutorError | None, seconds: float) -> FilmOutcome:
-    """What became of a job."""
+    """Return the outcome of a job."""
     if error is not None:
         return FilmOutcome(job, "failed", error, () if opened is None else opened.warnings, 0, seconds)
     assert opened is not None
@@ -105,9 +106,9 @@ def outcome(job: FilmJob, opened: OpenedFilm | None, error: DancetutorError | No
 
 
 def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> OpenedFilm:
-    """Everything before the first frame. The results of an earlier run of the same film are used.
+    """Do all work before the first frame, with the results of an earlier run of the same film.
 
-    earlier : what is kept of that run; work : name of the folder to make beside the output, for what is not finished
+    earlier : the record of that run; work : name of the folder to make beside the output, for unfinished files
     """
 
     subject = look_up(job.request)
@@ -121,7 +122,7 @@ def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> O
     finished: tuple[int, ...] = ()
     try:
         left = [job.output.parent / name for name in earlier.folders if name != work]
-        left += _new_folder(folder)  # before the slow work, so that a full or read-only disk is noticed at once
+        left += _new_folder(folder)  # before the slow work, so that a full or read-only disk is found at once
         plan, sound, warnings = _prepared(job, subject)
         parts = tuple(segments(plan.clock.frames, job.encoding, folder))
         if earlier.key == key and job.encoding.target != PICTURES:
@@ -135,14 +136,14 @@ def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> O
             write_pose_index(parts[0].path, subject.song, subject.chart, plan)
         file = write_plan(plan, folder / "plan.pickle")
     except OSError as error:
-        if not finished:  # segments of an earlier run can be used
+        if not finished:  # a later run can use finished segments
             remove_work(folder)
         raise _not_written(job, error) from error
     return OpenedFilm(key, folder, file, parts, finished, sound, plan.clock.frames, (*subject.warnings, *warnings))
 
 
 def _prepared(job: FilmJob, subject: FilmSubject) -> tuple[FilmPlan, tuple[SoundPlan, Clock] | None, tuple[str, ...]]:
-    """The plan of a film, its sound, and warnings."""
+    """Return the plan of a film, its sound, and warnings."""
     from dancetutor_cli.film.work.planning import prepare
 
     prepared = prepare(job.request, subject)
@@ -156,9 +157,9 @@ def _not_written(job: FilmJob, error: OSError) -> FileError:
 
 
 def _new_folder(folder: Path) -> list[Path]:
-    """Make a folder that nobody else can write. One that is there is set aside and returned.
+    """Make a folder that nobody else can write. An existing folder is set aside and returned.
 
-    There is one where a cluster begins this piece of work again, because its worker was lost.
+    A folder exists if a cluster begins this piece of work again, because its worker was lost.
     """
     try:
         folder.mkdir(mode=0o700)
@@ -171,12 +172,12 @@ def _new_folder(folder: Path) -> list[Path]:
 
 
 def _take_over_segment(part: Segment, folders: list[Path], digest: str | None) -> bool:
-    """Whether a segment has been finished by an earlier run, in one of those folders; then it is in its place now."""
+    """Move a segment that an earlier run has finished to its place; whether one of the folders has it."""
     return digest is not None and any(move_segment(old / part.path.name, part.path, digest) for old in folders)
 
 
 def size_of(output: Path) -> int | None:
-    """Bytes of a finished film, or how many pictures; None if there is none."""
+    """Return the bytes of a finished film, or the number of its pictures; None if there is no film."""
     try:
         return sum(1 for _ in output.iterdir()) if output.is_dir() else output.stat().st_size
     except OSError:
@@ -184,14 +185,17 @@ def size_of(output: Path) -> int | None:
 
 
 class ClosedFilm(NamedTuple):
-    """A film in its place. size : `size_of` it, None if it is gone again."""
+    """A finished film. size : its `size_of`, None if the film is gone again"""
 
     size: int | None
     warnings: tuple[str, ...]
 
 
 def close_film(report: Report, job: FilmJob, opened: OpenedFilm, digests: dict[int, str]) -> ClosedFilm:
-    """Join the segments, if they are as they were written, and put the film and what belongs to it in its place."""
+    """Join the segments, and write the film, poster and subtitles to their places.
+
+    FileError if a segment has changed since it was written.
+    """
     if job.encoding.target != PICTURES:
         for part in opened.parts:
             if digest_of(part.path) != digests[part.number]:
@@ -222,11 +226,11 @@ def write_sound(report: Report, sound: SoundPlan, clock: Clock, path: Path) -> N
 
 
 def finish(parts: list[Segment], encoding: Encoding, sound: Path | None, folder: Path, output: Path) -> None:
-    """Join the segments and put the result in its place."""
+    """Join the segments and move the result to its place."""
     if encoding.target == PICTURES:
         _place_pictures(parts[0].path, output)
         return
-    output = place_of(output)  # a link stays one, and the film is where it leads
+    output = place_of(output)  # a link stays a link, and the film is written to its target
     film = folder / f"film.{encoding.target}"
     join([part.path for part in parts], encoding, sound, folder, film)
     try:
@@ -236,7 +240,7 @@ def finish(parts: list[Segment], encoding: Encoding, sound: Path | None, folder:
 
 
 def _place_pictures(source: Path, target: Path) -> None:
-    """Move all pictures into the target folder, then remove those of an earlier, longer film."""
+    """Move all pictures into the target folder, then remove the pictures of an earlier, longer film."""
     try:
         target.mkdir(exist_ok=True)
         names = set()

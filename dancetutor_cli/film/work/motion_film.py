@@ -30,21 +30,21 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.picture import Frame
 
 SIZE, FPS = (720, 720), 30
-EYE = np.array([1.5, 0.45, 3.1])  # from what the camera looks at, metres
-LOOK = 0.9  # height that it looks at, metres
+EYE = np.array([1.5, 0.45, 3.1])  # place of the camera, from its target, metres
+LOOK = 0.9  # height of the camera's target, metres
 FOCAL, ALONG = 1.35, 0.4  # focal length in picture heights; hertz below which the camera follows
-ROOM = 2.0  # panels of floor around her way
-FAR = 10.0  # centimetres from which a point's distance is drawn in full red
+ROOM = 2.0  # panels of floor around the dancer's path
+FAR = 10.0  # smallest distance of a point that is drawn in full red, centimetres
 NEAR_COLOUR, FAR_COLOUR = np.array([0, 158, 115]), np.array([213, 0, 0])
 INK, PAPER = (20, 20, 20), (255, 255, 255)
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """The input beside which a motion is shown. p points over the motion's keys (f,).
+    """A comparison of a motion with its input, by p points over the motion's keys (f,).
 
-    given : the input, of the same character and times; names : (p,) of the points
-    before, after : (f, p, 3) where the points are on the input and on the motion, metres
+    given : the input, for the same character and times; names : (p,), names of the points
+    before, after : (f, p, 3), places of the points on the input and on the motion, metres
     """
 
     given: Motion
@@ -55,7 +55,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class BareFloor:
-    """A pad of tiles without arrows, as large as her way."""
+    """A pad of tiles without arrows, as large as the dancer's path."""
 
     panels: Array
     arrows: Array
@@ -64,9 +64,10 @@ class BareFloor:
 
 @contextmanager
 def work_folder(output: Path) -> Iterator[Path]:
-    """A hidden folder beside the output for what is not finished; gone afterwards, whatever happens.
+    """Make a hidden folder for unfinished files, which is always removed afterwards.
 
-    Beside it, so that the last step is a rename, and so that a full or read-only disk is noticed at once.
+    The folder is beside the output, so that the last step is a rename, and so that a full or read-only disk is found at
+    once.
     """
     try:
         folder = TemporaryDirectory(
@@ -80,15 +81,15 @@ def work_folder(output: Path) -> Iterator[Path]:
     except EncoderError as error:
         raise FileError(output, str(error)) from error
     except OSError as error:
-        if error.filename is None:  # from a write to an open file: it is ours
+        if error.filename is None:  # from a write to an open file of this program
             raise FileError(output, f"cannot be written: {error.strerror or error}") from error
         raise
 
 
 def film(path: Path, character: Character, motion: Motion, comparison: Comparison | None = None) -> int:
-    """Write an .mp4 and return its frames; nothing is left if that fails. Raises FileError or UnavailableError.
+    """Write an .mp4 and return its number of frames. Raises FileError or UnavailableError, and then leaves no file.
 
-    comparison : what to show to the left of it, and which distances to draw on it; None shows her alone
+    comparison : the input to show on the left, and the points whose distances to draw; None for the motion alone
     """
     count = max(1, int((motion.times[-1] - motion.times[0]) * FPS) + 1)
     size = SIZE if comparison is None else (2 * SIZE[0], SIZE[1])
@@ -102,7 +103,7 @@ def film(path: Path, character: Character, motion: Motion, comparison: Compariso
 
 
 def frames(character: Character, motion: Motion, count: int, comparison: Comparison | None = None) -> Iterator[Frame]:
-    """The first pictures of the film."""
+    """Draw the first `count` pictures of the film."""
     times = motion.times[0] + np.arange(count) / FPS
     poses = [sample(one, times) for one in ((motion,) if comparison is None else (comparison.given, motion))]
     scene = Scene(character, floor_under(np.concatenate([root for _, root in poses])))
@@ -123,7 +124,7 @@ def frames(character: Character, motion: Motion, count: int, comparison: Compari
 
 
 def _compared(shown: list[Frame], camera: Camera, comparison: Comparison, keys: Array, at: Array) -> Frame:
-    """Input and output in one picture; on the output each point's way from where the input has it, and how far."""
+    """Draw input and output in one picture, with a line on the output from each point's place on the input."""
     image = Image.fromarray(np.concatenate(shown, axis=1))
     draw, letters = ImageDraw.Draw(image), font(None, 20)
     before, after = (sample_path(points, keys, at)[0] for points in (comparison.before, comparison.after))
@@ -143,7 +144,7 @@ def _compared(shown: list[Frame], camera: Camera, comparison: Comparison, keys: 
 
 
 def floor_under(root: Array) -> BareFloor:
-    """A floor around the way (f, 3) of one or more roots."""
+    """Return a floor around the path (f, 3) of one or more roots."""
     low, high = root[:, [0, 2]].min(axis=0) / PANEL, root[:, [0, 2]].max(axis=0) / PANEL
     corners = np.array([[-high[0] - ROOM, low[1] - ROOM], [-low[0] + ROOM, high[1] + ROOM]])
     return BareFloor(np.round(corners), np.zeros((2, 2)), (0.0, 0.0))

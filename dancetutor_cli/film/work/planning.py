@@ -1,4 +1,4 @@
-"""From a request to a film's plan: read the chart, find the dance, and lay everything on the clock of the film."""
+"""The way from a request to a film's plan: find the dance, and put everything on the clock of the film."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.findings import Finding
 
 
-FADE = 0.6  # seconds in which a film's picture goes dark at its end, and that of a GIF before it goes round
-HIGH = "front-high"  # the camera of configs/picture.yaml for anyone who hides her feet from behind
+FADE = 0.6  # seconds in which the picture goes dark at the end of a film, or before a GIF starts again
+HIGH = "front-high"  # the camera of configs/picture.yaml for characters who hide their feet from behind
 
 
 @dataclass(frozen=True, slots=True)
 class PreparedFilm:
-    """A film's plan, its sound (None: silent), and warnings that the subject had not yet."""
+    """A film's plan, its sound (None for a silent film), and warnings in addition to the subject's."""
 
     plan: FilmPlan
     sound: SoundPlan | None
@@ -58,7 +58,7 @@ class PreparedFilm:
 
 
 def prepare(request: FilmRequest, subject: FilmSubject) -> PreparedFilm:
-    """Do everything slow that comes before the first frame. DancetutorError says in one line what is wrong."""
+    """Do all slow work before the first frame. DancetutorError describes an error in one line."""
     song, chart, clock = subject.song, subject.chart, subject.clock
     dance = film_dance(request, subject)
     play, pad = dance.play, dance.pad
@@ -101,20 +101,21 @@ def prepare(request: FilmRequest, subject: FilmSubject) -> PreparedFilm:
 
 
 def _dancers(dance: FilmDance) -> list[tuple[Play, int]]:
-    """For several dancers, each one's play and the first of its columns."""
+    """Return the play of each of several dancers, with its first column; empty for one dancer."""
     plays = [(play, one.chart.first_column) for one, play in zip(dance.solved, dance.plays, strict=True)]
     return plays if len(plays) > 1 else []
 
 
 def _scroll_bpm(chart: Chart, track: NoteTrack, speeds: SpeedSegments) -> float:
-    """The tempo of which M mods make their speed."""
+    """Return the tempo from which M mods make their speed."""
     seconds, first = np.unique(track.second[track.judged], return_index=True)
     return reading_bpm(seconds, track.beat[track.judged][first], speeds.at(seconds)) or fastest_bpm(chart)
 
 
 def _with_feet_camera(look: FilmLook, character: Character | None, pad: Pad) -> FilmLook:
-    """The look with a camera that shows the feet of characters who hide them from behind, unless the user chose a
-    camera.
+    """Return the look with a camera that shows the feet of a character who hides them from behind.
+
+    A camera that the user has chosen stays.
     """
     part = look.layout.dancer
     if character is None or part is None or look.camera is not None or look.layout.screen is not None:
@@ -125,7 +126,7 @@ def _with_feet_camera(look: FilmLook, character: Character | None, pad: Pad) -> 
 
 
 def _callouts(dance: FilmDance, style: CallStyle, scrolls: ScrollSegments) -> tuple[Callout, ...]:
-    """The calls; for two dancers the moves that both make, because no call names its dancer, except those of mines."""
+    """Return the calls; for two dancers only common moves and mines, because only calls of mines name their dancer."""
     if len(dance.solved) == 1:
         return callouts_of(_about(dance.solved[0]), dance.play, style, scrolls, dance.on_mines)
     pairs = zip(dance.solved, dance.plays, strict=True)
@@ -146,7 +147,7 @@ def _findings(one: Solved) -> tuple[Finding, ...]:
 
 
 def _mines_of_each(dance: FilmDance, style: CallStyle, scrolls: ScrollSegments) -> Iterator[Callout]:
-    """For two dancers, the mines under a foot, with the dancer whose foot it is."""
+    """Return the calls of mines under a foot for two dancers, each with the name of its dancer."""
     mines_alone = replace(style, findings=False)
     for one in dance.solved:
         under = [mine for mine in dance.on_mines if mine.player == one.chart.player]
@@ -161,7 +162,7 @@ def _calls(look: FilmLook) -> CallStyle:
 
 
 def _cues(dance: FilmDance, look: FilmLook) -> list[Cue]:
-    """The moves for subtitles; for two dancers with the player's number."""
+    """Return the moves for subtitles; for two dancers with the player's number."""
     language = load_language(look.language)
     words, facing = subtitle_words(language), turned(look)
     cues = [
@@ -180,10 +181,11 @@ def _at_rate(rate: float, notes: tuple[str, ...]) -> list[str]:
 def _fitted(
     name: str, motions: Mapping[float, tuple[Motion, ...]], given: bool
 ) -> tuple[Character | None, Mapping[float, tuple[Motion, ...]]]:
-    """The character who dances and the motions for its skeleton; None for the project's dancer, whom each drawing
-    process has.
+    """Return the character who dances and the motions for its skeleton.
 
-    given : the motions are of files, which may be for the character's skeleton already
+    The character is None for the project's dancer, whom each drawing process has.
+
+    given : whether the motions are from files, which may already be for the character's skeleton
     """
     if not motions or (name == DANCER and not given):
         return None, motions

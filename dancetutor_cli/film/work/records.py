@@ -1,9 +1,9 @@
-"""Records that a batch keeps between runs: which films are done, and digests of the segments of those that are not.
+"""The records that a batch keeps between runs: finished films, and digests of the segments of unfinished films.
 
 Records are in the user's own cache and never beside the films, because a folder of charts and its contents may come
 from anybody. Unfinished films are beside the output, so that the last step is a rename and the machines of a cluster
-see them: in a folder that each run makes again, under a name that nobody can guess. A segment of an interrupted run is
-moved over from the folder of that run, and counts only with the digest in the record.
+see them. Each run makes a new folder for them, under a name that nobody can guess. A segment of an interrupted run is
+moved from the folder of that run, and counts only with the digest in the record.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from dancetutor_cli.run.files import encoded, write_atomic
 from dancetutor_cli.run.reading import read_json
 from dancetutor_cli.run.trust import exclude, kept_folder, results_folder
 
-WORK = ".dancetutor-"  # how the folder of a film in work begins; behind it 32 random hexadecimal digits
+WORK = ".dancetutor-"  # beginning of the name of a work folder, before 32 random hexadecimal digits
 _WORK_NAME = re.compile(re.escape(WORK) + "[0-9a-f]{32}")
 _DIGEST = re.compile("[0-9a-f]{64}")
 _NO_LINK = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
@@ -33,10 +33,10 @@ _NO_LINK = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr
 
 @dataclass(frozen=True, slots=True)
 class FilmRecord:
-    """What earlier runs have left of a film.
+    """The record of a film from earlier runs.
 
-    key : hash of what the film is made of, see `film_key`; folders : names of the folders in which it was in work
-    digests : SHA-256 of each finished segment, by number; size : that of the finished film, None while it is in work
+    key : hash of everything that the film is made of, see `film_key`; folders : names of its work folders
+    digests : SHA-256 of each finished segment, by number; size : size of the finished film, None for an unfinished film
     """
 
     key: str = ""
@@ -46,18 +46,21 @@ class FilmRecord:
 
 
 class FilmRecords:
-    """One file per film in a private folder; without a folder nothing is kept, and a second run begins again."""
+    """The records of films, one file for each film in a private folder.
+
+    Without a folder nothing is kept, and a second run begins again.
+    """
 
     def __init__(self, folder: Path | None) -> None:
         self._folder = folder
 
     @property
     def kept(self) -> bool:
-        """Whether a later run will find what is written here."""
+        """Whether a later run will find the records."""
         return self._folder is not None
 
     def read(self, output: Path) -> FilmRecord:
-        """What is kept of the film of that name; an empty record if there is nothing, or nothing that can be used."""
+        """Return the record of the film of that name; an empty record if there is no usable one."""
         if self._folder is None:
             return FilmRecord()
         try:
@@ -66,7 +69,7 @@ class FilmRecords:
             return FilmRecord()
 
     def write(self, output: Path, record: FilmRecord) -> None:
-        """Keep a record. If it cannot be written it is left out, because the film itself does not need it."""
+        """Write a record. A record that cannot be written is left out, because the film itself does not need it."""
         if self._folder is None:
             return
         data = {
@@ -92,16 +95,16 @@ def _hash(text: str) -> str:
 
 
 def _checked(data: Any) -> FilmRecord:
-    """A record as read; whatever is wrong with it is an exception."""
+    """Return a record from its data; any error in them raises an exception."""
     digests = {int(number): digest for number, digest in data["digests"].items() if _DIGEST.fullmatch(digest)}
     folders = tuple(name for name in data["folders"] if _WORK_NAME.fullmatch(name))
     return FilmRecord(str(data["key"]), folders, digests, None if data["size"] is None else int(data["size"]))
 
 
 def find_records(foreign: tuple[Path, ...] = ()) -> tuple[FilmRecords, str]:
-    """The records of this user, and "" or why there can be none.
+    """Return the records of this user, and "" or the reason why there are no records.
 
-    foreign : folders with what others may have written, such as a pack; a cache that a variable puts there is not used
+    foreign : folders whose contents others may have written, such as a pack; a cache inside them is not used
     """
     for path in foreign:
         exclude(path)
@@ -109,12 +112,12 @@ def find_records(foreign: tuple[Path, ...] = ()) -> tuple[FilmRecords, str]:
 
 
 def new_work_name() -> str:
-    """The name of a folder for a film in work."""
+    """Return a new name of a work folder."""
     return f"{WORK}{secrets.token_hex(16)}"
 
 
 def remove_work(folder: Path) -> None:
-    """Remove the folder of a film in work, or whatever has its name; of a link the link, and not what it leads to."""
+    """Remove a work folder, or a file or link of this name; the target of a link stays."""
     try:
         folder.unlink()
     except OSError:
@@ -122,9 +125,9 @@ def remove_work(folder: Path) -> None:
 
 
 def move_segment(source: Path, target: Path, digest: str) -> bool:
-    """Move a segment of an earlier run into the folder of this one. Whether it is what that run had written."""
+    """Move a segment of an earlier run into the folder of this run; whether it is unchanged since that run."""
     with suppress(OSError):
-        source.rename(target)  # of a link the link itself
+        source.rename(target)  # moves a link itself, not its target
         if digest_of(target) == digest:
             return True
     remove_work(target)
@@ -132,7 +135,7 @@ def move_segment(source: Path, target: Path, digest: str) -> bool:
 
 
 def digest_of(path: Path) -> str:
-    """SHA-256 of an ordinary file; OSError for a link, and "" for a device, a pipe or a folder."""
+    """Return the SHA-256 of an ordinary file; OSError for a link, and "" for a device, a pipe or a folder."""
     with open(os.open(path, os.O_RDONLY | _NO_LINK), "rb") as file:  # noqa: PTH123
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
             return ""

@@ -1,4 +1,4 @@
-"""The film that the user wants, whether it can be made, and its key: the same hash, the same film."""
+"""The request for a film, the check whether the film can be made, and its key: equal keys mean equal films."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class FilmRequest:
-    """The film that the user wants. Pickles, so that another process can prepare it.
+    """The film that the user wants. A request can be pickled, so that another process can prepare the film.
 
-    dance : which chart, and how it is danced; look : how it is shown
+    dance : the chart and the way of dancing it; look : the look of the picture
     section : "START:END" in seconds, beats or measures, or None for the whole song
-    sync : seconds by which the music plays late against the notes
+    sync : seconds by which the music is later than the notes
     character : a name of `character.characters.BUILT_IN`, or a .glb or .vrm file
-    background : the film that a game plays behind the notes: as long as the music, and of the dancer alone
-    motions : files of a baked motion that is drawn in place of the request's own dance, one for each dancer
+    background : a film for a game to play behind the notes, with only the dancer, and as long as the music
+    motions : files of baked motions that replace the request's own dance, one for each dancer
     """
 
     dance: DanceRequest
@@ -56,7 +56,7 @@ class FilmRequest:
 class FilmSubject:
     """The subject of a film, read and checked.
 
-    music : the song's file, None for a film without; section : whether only a part is wanted
+    music : the song's file, None for a film without music; section : whether the user asked for a part of the song
     """
 
     choice: ChartChoice
@@ -67,7 +67,7 @@ class FilmSubject:
 
     @property
     def song(self) -> Song:
-        """The song."""
+        """The song of the chart."""
         return self.choice.song
 
     @property
@@ -77,7 +77,7 @@ class FilmSubject:
 
     @property
     def chart_seconds(self) -> float:
-        """Length of the chart as written, empty measures included, unless only a section is wanted; seconds."""
+        """The length of the chart as written, with empty measures, seconds; 0 for a film of a section."""
         if self.section:
             return 0.0
         end = np.array([len(self.chart.measures.line) * TICKS_PER_MEASURE], dtype=np.int64)
@@ -85,7 +85,7 @@ class FilmSubject:
 
 
 def look_up(request: FilmRequest) -> FilmSubject:
-    """Read the chart, choose the section and find the music. DancetutorError if there is nothing to render."""
+    """Read the chart, find the section and the music. DancetutorError if there is nothing to render."""
     if request.look.layout.dancer is not None:
         check_request(request.dance)
     choice = read_chart(request.dance, request.section)
@@ -105,21 +105,22 @@ def look_up(request: FilmRequest) -> FilmSubject:
 
 
 def _with_the_music(end: float, music: Path | None) -> tuple[float, float]:
-    """The film behind the notes begins with the music and is as long, or lasts until after the last note."""
+    """Return start and end of a film behind the notes: as long as the music, but at least until after the last note."""
     from dancetutor_cli.film.media.sound import seconds_of
 
     return 0.0, end if music is None else max(end, seconds_of(music))
 
 
 def film_key(request: FilmRequest, subject: FilmSubject, encoding: Encoding) -> str:
-    """Hash (hex) of the chart file, which chart, the music, what is wanted of the film, and this program.
+    """Return a hash (hex) of the chart file, the choice of the chart, the music, the request, and this program.
 
-    Every field of the request is in it, and every file in which people say whose foot it is (`chart.pack_files`).
+    The hash includes every field of the request, and every file in which people set feet (`chart.pack_files`).
     """
     choice = subject.choice
     part = choice.parts[0]
     player = part.player if len(choice.parts) == 1 else None
-    # however chart and presets were chosen, and with all that presets extend; the chart file counts by its content
+    # The key is independent of the way in which chart and presets were chosen. It has all presets that these extend,
+    # and the content of the chart file.
     dance = replace(request.dance, selection=Selection(index=part.index, player=player), preset=None)
     music = None if subject.music is None else file_hash(subject.music)
     words = feet_fingerprint(request.path), _findings(request.path), music
@@ -127,7 +128,7 @@ def film_key(request: FilmRequest, subject: FilmSubject, encoding: Encoding) -> 
 
 
 def _findings(path: Path) -> str:
-    """Which findings are called out in the picture: dancetutor.yaml says so, and files that it extends."""
+    """Return a fingerprint of the settings for findings: dancetutor.yaml and the files that it extends."""
     from dancetutor_cli.lint.configuration import load_configuration
 
     return load_configuration(find_settings_file(path.absolute().parent), found=True).settings.fingerprint()

@@ -29,12 +29,12 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.plan import FilmPlan
 
 
-SEGMENT_SECONDS = 4.0  # seconds of film; the same for any number of workers, so that the files are the same too
+SEGMENT_SECONDS = 4.0  # seconds of film; independent of the number of workers, so that the files are the same
 
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """A stretch of a film that one worker draws and encodes: frames first..last - 1 into `path`, a file or folder."""
+    """A part of a film that one worker draws and encodes: frames first..last - 1 into `path`, a file or folder."""
 
     number: int
     first: int
@@ -43,7 +43,7 @@ class Segment:
 
 
 class PlanFile(NamedTuple):
-    """A file with a film's plan that every worker can read, and the SHA-256 by which a worker recognises that plan."""
+    """A file with a film's plan for all workers, and the SHA-256 by which a worker recognises the plan."""
 
     path: Path
     digest: str
@@ -60,7 +60,7 @@ def segments(frames: int, encoding: Encoding, folder: Path) -> list[Segment]:
 
 
 def write_plan(plan: FilmPlan, path: Path) -> PlanFile:
-    """Put a film's plan into a new file; once, and not once for each segment."""
+    """Write a film's plan to a new file, which all segments share."""
     data = pickle.dumps(plan, protocol=pickle.HIGHEST_PROTOCOL)
     with path.open("xb") as file:
         file.write(data)
@@ -69,9 +69,9 @@ def write_plan(plan: FilmPlan, path: Path) -> PlanFile:
 
 @lru_cache(maxsize=1)
 def film_of(plan: PlanFile) -> Film:
-    """The film of a plan's file; kept while segments of one film follow each other.
+    """Load the film of a plan's file; it is kept while segments of one film follow each other.
 
-    A pickle can run anything, so one that this program has not written is never loaded.
+    A pickle can run any code, so a pickle that this program has not written is never loaded.
     """
     from dancetutor_cli.film.film import Film
 
@@ -82,9 +82,9 @@ def film_of(plan: PlanFile) -> Film:
 
 
 def common_to_workers(kind: RendererKind) -> str:
-    """The module that drawing workers have in common; "" if kernels must be compiled first.
+    """Return the module that all drawing workers share; "" if kernels must be compiled first.
 
-    Then one worker compiles alone, by `warm_up`, and the others fetch the result.
+    In that case, one worker compiles the kernels with `warm_up`, and the others load the result.
     """
     from dancetutor_cli.film.scene import renderer
     from dancetutor_cli.film.scene.cpu.shade import resolve
@@ -100,7 +100,7 @@ def common_to_workers(kind: RendererKind) -> str:
 def warm_up(report: Report) -> None:
     """Do the work before the first frame of the "cpu" renderer, while the film is still being prepared.
 
-    It imports what drawing needs and fetches or compiles its kernels, by drawing a tiny room.
+    It imports the modules for drawing, and loads or compiles their kernels by drawing a tiny room.
     """
     from dancetutor_cli.film import film  # noqa: F401
     from dancetutor_cli.film.media import yuv  # noqa: F401
@@ -120,7 +120,7 @@ def warm_up(report: Report) -> None:
 
 
 def render_segment(report: Report, plan: PlanFile, segment: Segment, encoding: Encoding) -> str:
-    """Draw and encode one segment; returns its SHA-256, "" for pictures. Its file appears whole or not at all."""
+    """Draw and encode one segment; returns its SHA-256, "" for pictures. An incomplete file is never left."""
 
     film = film_of(plan)
     part = segment.path
@@ -139,7 +139,7 @@ def render_segment(report: Report, plan: PlanFile, segment: Segment, encoding: E
 
 
 def _clear(part: Path, segment: Segment) -> None:
-    """Remove what there is of a segment that will not be finished."""
+    """Remove the files of a segment that will not be finished."""
     pictures = [part / f"frame_{number:06d}.png" for number in range(segment.first, segment.last)]
     for file in pictures if part.is_dir() else [part]:
         with suppress(OSError):
@@ -147,12 +147,12 @@ def _clear(part: Path, segment: Segment) -> None:
 
 
 def frames_of(task: Task) -> int:
-    """How many frames a piece of work draws."""
+    """Return the number of frames that a piece of work draws."""
     return sum(part.last - part.first for part in task.arguments if isinstance(part, Segment))
 
 
 def _report_frames(frames: Iterator[Frame], report: Callable[[int], None]) -> Iterator[Frame]:
-    """Pass frames on, and report every few of them."""
+    """Pass frames on, and report their number every few frames."""
     waiting = 0
     for frame in frames:
         yield frame

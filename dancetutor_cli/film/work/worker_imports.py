@@ -1,6 +1,6 @@
-"""Imported once for all workers that make films: what they have in common is in memory before they are made.
+"""The common imports of all workers that make films, in memory before the workers start.
 
-These are modules, kept kernels and the dancer: two thirds of a worker's work before its first frame.
+They are modules, cached kernels and the dancer: two thirds of a worker's work before its first frame.
 """
 
 from __future__ import annotations
@@ -13,6 +13,6 @@ from dancetutor_cli.film.work import segments
 from dancetutor_cli.run.process import reduce_garbage_collection
 
 reduce_garbage_collection()
-with suppress(Exception):  # a film that needs what is missing will say so
+with suppress(Exception):  # a film that needs a missing part reports it
     segments.warm_up(lambda units: None)
-gc.freeze()  # the garbage collector does not look through it, which would give each worker a copy
+gc.freeze()  # keeps these objects from the garbage collector, which would give each worker a copy

@@ -1,6 +1,6 @@
-"""Imported once for all workers that make films by OpenGL without a graphics card: their slow imports.
+"""The slow common imports of all workers that make films by OpenGL without a graphics card.
 
-With a card, each worker imports for itself, because what its driver loads might not survive a fork.
+With a card, each worker has its own imports, because the driver's libraries might not survive a fork.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from dancetutor_cli.run.errors import UnavailableError
 from dancetutor_cli.run.process import reduce_garbage_collection
 
 reduce_garbage_collection()
-with suppress(UnavailableError):  # who draws will say so
+with suppress(UnavailableError):  # the worker that draws reports it
     load_pyrender()
 pack(load_dancer())
-gc.freeze()  # the garbage collector does not look through it, which would give each worker a copy
+gc.freeze()  # keeps these objects from the garbage collector, which would give each worker a copy

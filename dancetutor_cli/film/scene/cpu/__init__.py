@@ -1,1 +1,1 @@
-"""The software renderer: triangles drawn by numba kernels, on one core, the same bytes on every run."""
+"""The software renderer, in which numba kernels draw triangles on one core, with the same bytes in every run."""

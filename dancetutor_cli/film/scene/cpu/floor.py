@@ -1,4 +1,4 @@
-"""The live part of the floor: shadow, contact shadows, lit panels and the marks under the feet."""
+"""The moving parts of the floor: shadow, contact shadows, lit panels and the marks under the feet."""
 
 from __future__ import annotations
 
@@ -29,25 +29,28 @@ from dancetutor_cli.film.scene.renderer import (
 from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
 Array = NDArray[np.float64]
-# Half a ring's width and its distance from the sole, metres, in the air, and what standing adds: tight and thick.
+# Half a ring's width in the air, its change for a standing foot; the ring's distance from the sole, its change; metres.
 RING = (0.0040, 0.0060, 0.0220, -0.0090)
-OUTSIDE = 0.030  # metres from the sole: no ring is farther out
+OUTSIDE = 0.030  # greatest distance of a ring from the sole, metres
 CONTACT_DARK, CONTACT_SOFT, PANEL_LIGHT, SOLE_RADIUS = range(4)  # entries of `Live.numbers`: shares, metres
-LIT = 0.80  # part of its light that a lit panel keeps in the deepest shadow, which must not hide a pressed panel
+LIT = 0.80  # share of its light that a lit panel keeps in the deepest shadow, which must not hide a pressed panel
 
 
 @njit(cache=True, inline="always")
 def smooth(low: float, high: float, x: float) -> float:  # pragma: no cover
-    """0 below `low`, 1 above `high`, a cubic between."""
+    """Return 0 below `low`, 1 above `high`, and a cubic between them."""
     t = min(1.0, max(0.0, (x - low) / (high - low)))
     return t * t * (3.0 - 2.0 * t)
 
 
 @njit(cache=True)
 def blur(whole: Any, box: Any, radius: int, room: Any) -> None:  # pragma: no cover
-    """Box blur of a picture's part x0, y0, x1, y1 in place, both ways; `room` has its shape. Beyond it counts as 0."""
+    """Blur the part x0, y0, x1, y1 of a picture in place with a box, in both directions; 0 outside of the part.
+
+    room : working memory of the picture's shape
+    """
     left, top, right, bottom = box
-    mask, spare = whole[top:bottom, left:right], room[top:bottom, left:right]  # as wide as the picture, too: one kernel
+    mask, spare = whole[top:bottom, left:right], room[top:bottom, left:right]  # equal strides need one kernel only
     height, width = mask.shape
     share = 1.0 / (2 * radius + 1)
     for row in range(height):
@@ -76,7 +79,7 @@ def blur(whole: Any, box: Any, radius: int, room: Any) -> None:  # pragma: no co
 
 @njit(cache=True)
 def occupied(depth: Any, mask: Any) -> Any:  # pragma: no cover
-    """1 where a shadow map has something, else 0; returns x0, y0, x1, y1 around it."""
+    """Fill the mask with 1 for occupied texels of a shadow map, else 0; return x0, y0, x1, y1 around them."""
     left, top, right, bottom = depth.shape[1], depth.shape[0], 0, 0
     for row in range(depth.shape[0]):
         some = False
@@ -106,7 +109,7 @@ def _bilinear(picture: Any, x: float, y: float) -> float:  # pragma: no cover
 
 @njit(cache=True, inline="always")
 def _from_foot(x: float, z: float, feet: Any, f: int) -> float:  # pragma: no cover
-    """Distance from the line between heel and toe of foot f."""
+    """Return the distance from the line between heel and toe of foot f."""
     dx, dz = feet[f, TOE_X] - feet[f, HEEL_X], feet[f, TOE_Z] - feet[f, HEEL_Z]
     length = dx * dx + dz * dz
     t = 0.0
@@ -119,9 +122,9 @@ def _from_foot(x: float, z: float, feet: Any, f: int) -> float:  # pragma: no co
 class Shadow(NamedTuple):
     """The shadow on the floor.
 
-    mask : float32 (s, s), how much; part : texels of it outside of which there is nothing, (left, top, right, bottom)
-    cast : its place; dark : 0..1, of the whole shadow
-    middles : (2, 2), `renderer.shadow_middles`; far : 0..1, how much is left a step away from them
+    mask : float32 (s, s), strength of the shadow; part : texels around the shadow, (left, top, right, bottom)
+    cast : place of the shadow map; dark : 0..1, darkness of the whole shadow
+    middles : (2, 2), `renderer.shadow_middles`; far : 0..1, share of the shadow that is left far from them
     """
 
     mask: NDArray[np.float32]
@@ -134,17 +137,17 @@ class Shadow(NamedTuple):
 
 @njit(cache=True, inline="always")
 def _left_of_shadow(x: float, z: float, middles: Any, far: float) -> float:  # pragma: no cover
-    """How much of the shadow, 0..1, is left at a place of the floor."""
+    """Return the share of the shadow, 0..1, that is left at a place of the floor."""
     first = (x - middles[0, 0]) ** 2 + (z - middles[0, 1]) ** 2
     second = (x - middles[1, 0]) ** 2 + (z - middles[1, 1]) ** 2
     return 1.0 - (1.0 - far) * smooth(SHADOW_FADE[0], SHADOW_FADE[1], np.sqrt(min(first, second)))
 
 
 class Live(NamedTuple):
-    """What changes on the floor from frame to frame.
+    """The parts of the floor that change from frame to frame.
 
     lit, lit_colour : `renderer.panel_lights`; feet : `renderer.feet_on_floor`
-    numbers : by `CONTACT_DARK` and the indices behind it
+    numbers : indexed by `CONTACT_DARK` and the constants after it
     """
 
     lit: Array
@@ -155,7 +158,7 @@ class Live(NamedTuple):
 
 @njit(cache=True, inline="always")
 def _is_lit(panel: int, lit: Any) -> bool:  # pragma: no cover
-    """Whether the panel of a tile is lit or, in a tile with several, any of them."""
+    """Whether the panel of a tile is lit, or any panel of a tile with several panels."""
     most = 0.0
     for p in range(lit.shape[0]):
         if panel in (p, SEVERAL):
@@ -165,7 +168,7 @@ def _is_lit(panel: int, lit: Any) -> bool:  # pragma: no cover
 
 @inner_kernel
 def _shaded(low: Any, high: Any, shade: Any) -> bool:  # pragma: no cover
-    """Whether the shadow may fall on a place of the box between two corners."""
+    """Whether the shadow may fall into the box between two corners."""
     left, top, right, bottom = shade.part
     axes, origin, scale = shade.cast.axes, shade.cast.origin, shade.cast.scale
     for k, first, last in ((0, left, right), (1, top, bottom)):
@@ -180,8 +183,9 @@ def _shaded(low: Any, high: Any, shade: Any) -> bool:  # pragma: no cover
 
 @inner_kernel
 def _trodden(low: Any, high: Any, coarse: float, live: Any) -> bool:  # pragma: no cover
-    """Whether the marks of a foot may fall on a place of the box between two corners. coarse : metres of its largest
-    pixel
+    """Whether the marks of a foot may fall into the box between two corners.
+
+    coarse : size of the largest pixel in the box, metres
     """
     feet, numbers = live.feet, live.numbers
     far = numbers[SOLE_RADIUS] + max(1.6 * numbers[CONTACT_SOFT], OUTSIDE + coarse)
@@ -200,9 +204,7 @@ def _trodden(low: Any, high: Any, coarse: float, live: Any) -> bool:  # pragma: 
 
 @inner_kernel
 def _touched(tiles: Any, row: int, column: int, shade: Any, live: Any) -> int:  # pragma: no cover
-    """Whether light, shadow or a foot may change a pixel of a tile. -1: nothing does; otherwise how many feet to look
-    at.
-    """
+    """Return the number of feet to check for a tile, or -1 if no light, shadow or foot changes any of its pixels."""
     low, high = tiles.low[row, column], tiles.high[row, column]
     if low[0] > high[0]:
         return -1
@@ -214,16 +216,16 @@ def _touched(tiles: Any, row: int, column: int, shade: Any, live: Any) -> int:  
 
 @kernel
 def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live: Any) -> None:  # pragma: no cover
-    """Redraw the pixels of `box` (x0, y0, x1, y1) that something falls on, tile by tile.
+    """Redraw the pixels of `box` (x0, y0, x1, y1) with light, shadow or a mark, tile by tile.
 
-    shift : columns that the standing picture, a `Background`, is ahead; shade : `Shadow`; live : `Live`
+    shift : columns from the left of the still picture, a `Background`, to the frame; shade : `Shadow`; live : `Live`
     """
     colour, ground, takes, panel = standing.colour, standing.ground, standing.takes, standing.panel
     glow, white, foot = standing.glow, standing.white, standing.footprint
     shadow, dark, axes, origin, scale = shade.mask, shade.dark, shade.cast.axes, shade.cast.origin, shade.cast.scale
     lit, lit_colour, feet, numbers = live.lit, live.lit_colour, live.feet, live.numbers
     radius = numbers[SOLE_RADIUS]
-    far = 0.35 + 2.0 * numbers[CONTACT_SOFT]  # nothing of a foot is farther than that from both heel and toe
+    far = 0.35 + 2.0 * numbers[CONTACT_SOFT]  # greatest distance of a foot's marks from its heel and toe
     for i in range(box[1] // TILE, (box[3] + TILE - 1) // TILE):
         for j in range((box[0] + shift) // TILE, (box[2] + shift + TILE - 1) // TILE):
             near_feet = _touched(standing.tiles, i, j, shade, live)
@@ -267,7 +269,7 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
                         band *= feet[f, STRENGTH]
                         if band <= ring:
                             continue
-                        light = 0.0  # on the panel that this foot presses: the colour of the panel is the foot's
+                        light = 0.0  # light of the panel that this foot presses, which has the foot's colour
                         if (
                             feet[f, PRESSED] > 0.0
                             and p >= 0

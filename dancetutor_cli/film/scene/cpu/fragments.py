@@ -1,8 +1,8 @@
-"""Colours of places on the dancer, many at a time: toon light, self shadow, rim and texture.
+"""The colours of places on the dancer, many at a time: toon light, self shadow, rim and texture.
 
-Each step handles all places of a block before the next step begins. Steps that fetch scattered data only fetch; steps
-that calculate are small loops without branches, which the compiler turns into vector code. That takes a third of the
-time of handling one place after the other.
+Each step handles all places of a block before the next step begins. Some steps only fetch scattered data. The others
+calculate in small loops without branches, which the compiler turns into vector code. This takes a third of the time of
+a loop over single places.
 """
 
 from __future__ import annotations
@@ -18,31 +18,31 @@ from dancetutor_cli.film.scene.look import ToonLook
 from dancetutor_cli.run.kernels.compiling import float32, int32, njit, uint64
 
 F32 = NDArray[np.float32]
-BLOCK = 256  # places that are coloured together: what is known of them stays in the nearest cache
+BLOCK = 256  # places that are coloured together, whose data stay in the nearest cache
 
-# Places in the rows that `shade.light_vertices` writes, one row of 64 bytes for each vertex.
+# Indices in the rows that `shade.light_vertices` writes, one row of 64 bytes for each vertex.
 X, Y, W, TO_LIGHT, FACING, UP, SU, SV, HEIGHT, U, V, MATERIAL = range(12)
-# Places in the row of numbers `toon`; see `toon_numbers`.
+# Indices in the row of numbers `toon`; see `toon_numbers`.
 _BANDS, _STEEP, _LEVELS, _RIM, _SHADE, OUTLINE, _CAST, _LIMBS, PER_METRE = 0, 2, 3, 6, 8, 11, 14, 15, 16
 _RIM_WIDTH = 0.2
-_BELOW = 100.0  # what `raster.project_light` adds to heights
+_BELOW = 100.0  # the constant that `raster.project_light` adds to heights
 _ONE, _HALF, _NONE = float32(1.0), float32(0.5), float32(0.0)
 
 
 def toon_numbers(toon: ToonLook, cast: bool) -> F32:
-    """The numbers of the shading in one row; cast : is there a shadow map?
+    """Return the numbers of the shading in one row; cast : whether there is a shadow map.
 
-    The last, `PER_METRE`, is for the pixels that a metre of the dancer has, which changes with the camera.
+    The last number, `PER_METRE`, is the pixels of a metre of the dancer, which changes with the camera.
     """
     shade, outline = np.array(toon.shade) / 255.0, np.array(toon.outline) / 255.0
-    starts = [edge - toon.soft for edge in toon.bands]  # each edge is a step from here, 1 / steepness wide
+    starts = [edge - toon.soft for edge in toon.bands]  # each edge is a step that starts here, 1 / steepness wide
     numbers = [*starts, 0.5 / toon.soft, *toon.levels, toon.rim, toon.rim_from, *shade, *outline, float(cast)]
     numbers += [toon.limbs, 0.0]
     return np.array(numbers, dtype=np.float32)
 
 
 class Surface(NamedTuple):
-    """What does not change of the triangles' look; see `geometry.PackedMeshes` and `geometry.Skins.flat`."""
+    """The constant part of the triangles' look; see `geometry.PackedMeshes` and `geometry.Skins.flat`."""
 
     uv: F32
     above: F32
@@ -55,32 +55,32 @@ class Surface(NamedTuple):
 
 
 class Light(NamedTuple):
-    """What colours are made with. vertex : of `shade.light_vertices`; shadow : the map; toon : `toon_numbers`"""
+    """The data for colours. vertex : rows of `shade.light_vertices`; shadow : the shadow map; toon : `toon_numbers`"""
 
     vertex: F32
     shadow: F32
     toon: F32
 
 
-# The data of the places of a block are in rows of one flat array, at a fixed distance from each other. Only then the
-# compiler sees that rows do not overlap, and makes vector code of the loops over them.
+# The data of a block's places are in rows of one flat array, at a fixed distance from each other. With this layout the
+# compiler can see that rows do not overlap, and makes vector code of the loops over them.
 (
-    _LIT, _FACE, _UPWARD, _LEFT, _TOP, _HIGH, _ACROSS, _ALONG,  # what the rows of the triangle's vertices come to there
-    _SUN,  # how much of the light is not taken by her own shadow
-    _LEAST, _TINT_RED, _TINT_GREEN, _TINT_BLUE,  # of the mesh
-    _LEVEL, _HALF_LIGHT, _EDGE,  # of the toon light
+    _LIT, _FACE, _UPWARD, _LEFT, _TOP, _HIGH, _ACROSS, _ALONG,  # interpolated rows of the triangle's vertices
+    _SUN,  # share of the light that the dancer's own shadow leaves
+    _LEAST, _TINT_RED, _TINT_GREEN, _TINT_BLUE,  # numbers of the mesh
+    _LEVEL, _HALF_LIGHT, _EDGE,  # numbers of the toon light
     _UPPER_LEFT, _UPPER_RIGHT, _LOWER_LEFT, _LOWER_RIGHT,  # weights of four texels
     RED, GREEN, BLUE,  # 0..1
 ) = (np.uint64(row * BLOCK) for row in range(23))  # fmt: skip
-_FIRST, _WIDTH, _TALL, _A, _B, _C, _D = (np.uint64(row * BLOCK) for row in range(7))  # whole numbers: of the image
+_FIRST, _WIDTH, _TALL, _A, _B, _C, _D = (np.uint64(row * BLOCK) for row in range(7))  # whole numbers of the image
 
 
 class Fragments(NamedTuple):
     """A block of places on the dancer.
 
-    triangle : int32 (n,); spot : float32 (n, 2), where in samples; share : float32 (n,), of a pixel
-    pixel : int32 (n,), as `shade` numbers them
-    rows : float32 (23 * n,) and places : int32 (7 * n,), what is known of each; three rows are the colours, 0..1
+    triangle : int32 (n,); spot : float32 (n, 2), place in samples; share : float32 (n,), share of a pixel
+    pixel : int32 (n,), the number of the pixel in `shade`
+    rows : float32 (23 * n,) and places : int32 (7 * n,), the data of each place; three rows are the colours, 0..1
     """
 
     triangle: NDArray[np.int32]
@@ -92,7 +92,7 @@ class Fragments(NamedTuple):
 
 
 def empty_fragments() -> Fragments:
-    """Room for a block."""
+    """Return memory for a block."""
     rows = np.zeros(23 * BLOCK, np.float32)
     rows[int(_SUN) : int(_SUN) + BLOCK] = 1.0
     return Fragments(
@@ -107,9 +107,9 @@ def empty_fragments() -> Fragments:
 
 @inner_kernel
 def _interpolate(count: int, some: Any, triangles: Any, surface: Any, light: Any) -> None:  # pragma: no cover
-    """Gather what is needed of triangles and meshes.
+    """Gather the data of triangles and meshes.
 
-    Weights are those on the picture, kept inside of the triangle (a pixel's middle may lie just outside).
+    The weights come from the place on the picture, kept inside the triangle (a pixel's middle may lie just outside).
     """
     rows, places, vertex = some.rows, some.places, light.vertex
     meshes, textures, near = surface.meshes, surface.textures, light.toon[PER_METRE]
@@ -126,7 +126,7 @@ def _interpolate(count: int, some: Any, triangles: Any, surface: Any, light: Any
         w2 = max((px - x0) * (y1 - y0) - (py - y0) * (x1 - x0), _NONE) * vertex[c, W]
         whole = _ONE / (w0 + w1 + w2)
         w0, w1, w2 = w0 * whole, w1 * whole, w2 * whole
-        # everything is read before anything is written, so that the processor can do it in one go
+        # All reads come before all writes, which is faster.
         to_light = vertex[a, TO_LIGHT] * w0 + vertex[b, TO_LIGHT] * w1 + vertex[c, TO_LIGHT] * w2
         facing = vertex[a, FACING] * w0 + vertex[b, FACING] * w1 + vertex[c, FACING] * w2
         up = vertex[a, UP] * w0 + vertex[b, UP] * w1 + vertex[c, UP] * w2
@@ -138,7 +138,7 @@ def _interpolate(count: int, some: Any, triangles: Any, surface: Any, light: Any
             height = vertex[a, HEIGHT] * w0 + vertex[b, HEIGHT] * w1 + vertex[c, HEIGHT] * w2
             rows[_LEFT + i], rows[_TOP + i], rows[_HIGH + i] = su, sv, height
         m = uint64(int(vertex[a, MATERIAL] + _HALF))
-        # The image of the texture in which a texel is about a pixel.
+        # Choose the image of the texture in which a texel is about a pixel.
         dense, image = float32(0.7) * surface.density[t], uint64(int(meshes[m, 3]))
         for _ in range(LEVELS - 1):
             if dense > near:
@@ -154,9 +154,9 @@ def _interpolate(count: int, some: Any, triangles: Any, surface: Any, light: Any
 
 @inner_kernel
 def _shadowed(count: int, some: Any, light: Any) -> None:  # pragma: no cover
-    """Fill the row of the sun: nine comparisons, the mean over two by two texels; 1 outside of the map.
+    """Fill the row of the sun by nine comparisons, as the mean over two by two texels; 1 outside of the map.
 
-    The same as four taps of a graphics card, half a texel away from the place in both directions.
+    The result is the same as four taps of a graphics card, half a texel away from the place in both directions.
     """
     shadow, toon, rows = light.shadow, light.toon, some.rows
     least = toon[_BANDS]
@@ -184,7 +184,7 @@ def _shadowed(count: int, some: Any, light: Any) -> None:  # pragma: no cover
 
 @njit(cache=True, inline="always")
 def _step(t: Any) -> Any:  # pragma: no cover
-    """0 below 0, 1 above 1, a cubic between."""
+    """Return 0 below 0, 1 above 1, and a cubic between them."""
     t = min(_ONE, max(_NONE, t))
     return t * t * (float32(3.0) - float32(2.0) * t)
 
@@ -198,7 +198,7 @@ def _toon_light(count: int, rows: Any, toon: Any) -> None:  # pragma: no cover
     for n in range(count):
         i = uint64(n)
         to_light, up, sun = rows[_LIT + i], rows[_UPWARD + i], rows[_SUN + i]
-        # a cast shadow is lighter than shade
+        # A cast shadow is lighter than shade.
         half = _step((to_light - half_from) * steep) * (_HALF + _HALF * sun)
         full = _step((to_light - full_from) * steep) * sun
         half = max(half, rows[_LEAST + i] * limbs)
@@ -210,7 +210,7 @@ def _toon_light(count: int, rows: Any, toon: Any) -> None:  # pragma: no cover
 
 @inner_kernel
 def _texel_places(count: int, rows: Any, places: Any) -> None:  # pragma: no cover
-    """Fill the places of four texels, which repeat, and their weights."""
+    """Fill the indices and weights of four texels, of a texture that repeats."""
     for n in range(count):
         i = uint64(n)
         u, v, first, width, tall = (
@@ -237,7 +237,7 @@ def _texel_places(count: int, rows: Any, places: Any) -> None:  # pragma: no cov
 
 @inner_kernel
 def _fetch(count: int, places: Any, texels: Any) -> None:  # pragma: no cover
-    """Put the four texels where their places were."""
+    """Replace the indices of the four texels by the texels."""
     for n in range(count):
         i = uint64(n)
         a, b = texels[uint64(places[_A + i])], texels[uint64(places[_B + i])]
@@ -252,7 +252,7 @@ def _channel(texel: Any, shift: Any) -> Any:  # pragma: no cover
 
 @inner_kernel
 def _lit(count: int, rows: Any, places: Any, toon: Any) -> None:  # pragma: no cover
-    """Fill the colours: the texture, bilinear, in the light."""
+    """Fill the colours from the texture, interpolated and lit."""
     shade_red, shade_green, shade_blue = toon[_SHADE], toon[_SHADE + 1], toon[_SHADE + 2]
     for n in range(count):
         i = uint64(n)
@@ -275,7 +275,7 @@ def _lit(count: int, rows: Any, places: Any, toon: Any) -> None:  # pragma: no c
 
 @inner_kernel
 def colour(count: int, some: Any, triangles: Any, surface: Any, light: Any) -> None:  # pragma: no cover
-    """Fill the colours of the first `count` of `Fragments`, whose triangles, places and shares are there."""
+    """Fill the colours of the first `count` places of `Fragments`, which have triangles, spots and shares."""
     _interpolate(count, some, triangles, surface, light)
     if light.toon[_CAST] > 0.0:
         _shadowed(count, some, light)

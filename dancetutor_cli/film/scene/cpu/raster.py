@@ -1,4 +1,4 @@
-"""Vertices and triangles: skinning, projection, and filling depth and triangle numbers; slow kernels."""
+"""Kernels for vertices and triangles: skinning, projection, and filling depth and triangle numbers."""
 
 from __future__ import annotations
 
@@ -9,30 +9,28 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.run.kernels.compiling import float32, njit, uint64
 
-# How the slow kernels are compiled: without counting references to arrays, by which `shade.resolve` takes a quarter
-# less time. A division by 0 is no error in them: looking for that keeps loops from being done several rounds at once.
+# The slow kernels are compiled without counts of references to arrays, which saves `shade.resolve` a quarter of its
+# time. A division by 0 is not an error in them, because a check prevents vector code.
 
 kernel = njit(cache=True, counted=False, error_model="numpy")
 inner_kernel = njit(counted=False, error_model="numpy", no_cpython_wrapper=True)  # only kernels call it
 
-# Vertices and triangles: skinning, projection, and filling depth and triangle numbers.
-#
 # Places on the picture are snapped to 1/16 sample, so that edge functions are exact in double precision: two triangles
-# that share an edge leave no gap, and every machine finds the same samples covered.
+# that share an edge leave no gap, and the covered samples are the same on every machine.
 
 SNAP = 16.0
-DEPTH_UNIT = float(1 << 26)  # 1 / depth is at most 20: it fits 31 bits, and says a micrometre at 5 m
+DEPTH_UNIT = float(1 << 26)  # 1 / depth is at most 20, so it fits 31 bits, with a resolution of a micrometre at 5 m
 FRONT, BACK = 1, -1
-BAND = 8  # samples: what is drawn is noted for so many rows together; a multiple of the samples across a pixel
+BAND = 8  # samples; the rows with a common entry in `Canvas.spans`; a multiple of the samples across a pixel
 _LANES = np.arange(8.0)  # samples of a row that are handled together, one in each lane of a vector unit
 _FINE = 65536.0  # depth is stepped in whole numbers of 1 / _FINE units
-_STEEP = 1e13  # units from sample to sample; only slivers come near to it
-_FOLD = 0.35  # if the normals look at the viewer more than this, skin in a fold has turned a triangle over: no edge
-_AWAY = -0.85  # cosine to the viewer; a back turned away more than this cannot show beside the front
+_STEEP = 1e13  # greatest step from sample to sample, units; only slivers come near to it
+_FOLD = 0.35  # cosine to the viewer above which a back is skin that a fold has turned over, not an edge
+_AWAY = -0.85  # cosine to the viewer below which a back cannot show beside the front
 
 
 class SkinnedVertices(NamedTuple):
-    """Vertices as they are bound to joints; see `geometry.PackedMeshes`."""
+    """The vertices in the binding pose, with their joints; see `geometry.PackedMeshes`."""
 
     positions: NDArray[np.float32]
     normals: NDArray[np.float32]
@@ -42,9 +40,9 @@ class SkinnedVertices(NamedTuple):
 
 
 class View(NamedTuple):
-    """How the world comes to the picture. matrix : `Camera.matrix`; eye : (3,); samples : across a pixel
+    """The projection from world to picture. matrix : `Camera.matrix`; eye : (3,); samples : samples across a pixel
 
-    near : what is nearer is left out, metres; focal : pixels
+    near : least depth that is drawn, metres; focal : pixels
     """
 
     matrix: NDArray[np.float64]
@@ -55,12 +53,12 @@ class View(NamedTuple):
 
 
 class Canvas(NamedTuple):
-    """What triangles are drawn on, samples.
+    """The samples on which triangles are drawn.
 
     nearest : int64 (h, w), the greatest 1 / depth in units of 1 / DEPTH_UNIT in its upper half, and the number of that
-    triangle in its lower half; 0 where there is nothing
-    spans : int64 (bands, 2), the first column drawn on and the one after the last, in each band of `BAND` rows
-    least : int64 (bands, blocks), the least 1 / depth in squares of `BAND` samples, as `note_least` has found it
+        triangle in its lower half; 0 for an empty sample
+    spans : int64 (bands, 2), the first drawn column and the column after the last, in each band of `BAND` rows
+    least : int64 (bands, blocks), the least 1 / depth in squares of `BAND` samples, from `note_least`
     """
 
     nearest: NDArray[np.int64]
@@ -69,7 +67,7 @@ class Canvas(NamedTuple):
 
 
 def empty_canvas(height: int, width: int) -> Canvas:
-    """A canvas of so many samples with nothing on it."""
+    """Return an empty canvas of this number of samples."""
     bands, blocks = -(-height // BAND), -(-width // BAND)
     spans = np.tile(np.array([width, 0], np.int64), (bands, 1))
     return Canvas(np.zeros((height, width), np.int64), spans, np.zeros((bands, blocks), np.int64))
@@ -77,9 +75,9 @@ def empty_canvas(height: int, width: int) -> Canvas:
 
 @njit(cache=True)
 def skin(bound: Any, matrices: Any, world: Any) -> None:  # pragma: no cover
-    """Vertices in the world. matrices (j, 3, 4): binding pose to world; world (v, 9): place, normal, hull direction.
+    """Compute the vertices in the world. Both directions get length 1.
 
-    Both directions get length 1.
+    matrices (j, 3, 4) : from binding pose to world; world (v, 9) : place, normal, hull direction
     """
     positions, normals, hull, joints, weights = bound
     m = np.empty(12)
@@ -114,7 +112,7 @@ def skin(bound: Any, matrices: Any, world: Any) -> None:  # pragma: no cover
 
 @njit(cache=True)
 def extent(world: Any) -> Any:  # pragma: no cover
-    """Least and greatest place of the vertices, (3,) each."""
+    """Return the least and greatest coordinates of the vertices, (3,) each."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for v in range(world.shape[0]):
         for k in range(3):
@@ -125,7 +123,7 @@ def extent(world: Any) -> Any:  # pragma: no cover
 
 @njit(cache=True)
 def project(world: Any, view: Any, points: Any) -> None:  # pragma: no cover
-    """Places in samples and 1 / depth, points (v, 3); 1 / depth is 0 for vertices nearer than `near`."""
+    """Compute places in samples and 1 / depth, points (v, 3); 1 / depth is 0 for vertices nearer than `near`."""
     camera, samples, near = view.matrix, view.samples, view.near
     for v in range(world.shape[0]):
         x, y, z = world[v, 0], world[v, 1], world[v, 2]
@@ -142,9 +140,9 @@ def project(world: Any, view: Any, points: Any) -> None:  # pragma: no cover
 
 @njit(cache=True)
 def project_hull(world: Any, view: Any, width: float, out: Any) -> None:  # pragma: no cover
-    """As `project`, but moved outward on the picture by `width` pixels, and a centimetre away from the camera.
+    """Project vertices as `project` does, moved outward by `width` pixels and away from the camera by a centimetre.
 
-    out (v, 4): the last column is the cosine between normal and the direction to the eye
+    out (v, 4) : the last column is the cosine between the normal and the direction to the eye
     """
     camera, eye, samples, near, focal = view
     for v in range(world.shape[0]):
@@ -157,7 +155,7 @@ def project_hull(world: Any, view: Any, width: float, out: Any) -> None:  # prag
         py = (camera[1, 0] * x + camera[1, 1] * y + camera[1, 2] * z + camera[1, 3]) / w
         nx, ny, nz = world[v, 6], world[v, 7], world[v, 8]
         nw = camera[2, 0] * nx + camera[2, 1] * ny + camera[2, 2] * nz
-        # The normal on the picture, as a part of the length it has when it points sideways.
+        # The normal on the picture, as a share of the length of a sideways normal.
         dx = (camera[0, 0] * nx + camera[0, 1] * ny + camera[0, 2] * nz - px * nw) / focal
         dy = (camera[1, 0] * nx + camera[1, 1] * ny + camera[1, 2] * nz - py * nw) / focal
         grow = width / (np.sqrt(dx * dx + dy * dy) + 0.12)
@@ -170,20 +168,23 @@ def project_hull(world: Any, view: Any, width: float, out: Any) -> None:  # prag
 
 @njit(cache=True)
 def project_light(world: Any, axes: Any, origin: Any, scale: float, out: Any) -> None:  # pragma: no cover
-    """Places on the shadow map in texels, and height towards the light in metres. axes (3, 3): u, v, to the light."""
+    """Compute places on the shadow map in texels, and the height towards the light in metres.
+
+    axes (3, 3) : u, v, and the direction to the light
+    """
     for v in range(world.shape[0]):
         x, y, z = world[v, 0], world[v, 1], world[v, 2]
         a = axes[0, 0] * x + axes[0, 1] * y + axes[0, 2] * z
         b = axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z
         out[v, 0] = np.floor((a - origin[0]) * scale * SNAP + 0.5) / SNAP
         out[v, 1] = np.floor((b - origin[1]) * scale * SNAP + 0.5) / SNAP
-        # Any positive number that grows towards the light serves as depth; 0 means nothing is there.
+        # Any positive number that grows towards the light serves as depth; 0 means an empty texel.
         out[v, 2] = axes[2, 0] * x + axes[2, 1] * y + axes[2, 2] * z + 100.0
 
 
 @njit(cache=True, inline="always")
 def _hidden(least: Any, box: Any, depth: float) -> bool:  # pragma: no cover
-    """Whether everything drawn in this box of samples is nearer than `depth`, 1 / depth in units of 1 / DEPTH_UNIT."""
+    """Whether all samples of this box are nearer than `depth`, which is 1 / depth in units of 1 / DEPTH_UNIT."""
     left, top, right, bottom = box
     for i in range(top // BAND, bottom // BAND + 1):
         for j in range(left // BAND, right // BAND + 1):
@@ -194,7 +195,7 @@ def _hidden(least: Any, box: Any, depth: float) -> bool:  # pragma: no cover
 
 @njit(cache=True, inline="always")
 def _fine(value: float) -> int:  # pragma: no cover
-    """A depth, or a step of it, in whole numbers of 1 / _FINE units."""
+    """Return a depth, or a step of depth, in whole numbers of 1 / _FINE units."""
     return int(min(max(value, -_STEEP), _STEEP) * _FINE)
 
 
@@ -202,9 +203,11 @@ def _fine(value: float) -> int:  # pragma: no cover
 def fill(points: Any, triangles: Any, keep: int, offset: int, canvas: Any) -> None:  # pragma: no cover
     """Draw triangles on a `Canvas`, each with its number + `offset` + 1.
 
-    points (v, 3): x, y in samples, 1 / depth; a triangle with a 0 there is left out. keep: FRONT or BACK; for backs
-    points (v, 4) has a column from `project_hull`, and those that only the front could hide are left out, as are those
-    that `canvas.least` says are hidden.
+    Backs that the front or the triangles in `canvas.least` hide are left out.
+
+    points (v, 3) : x, y in samples, 1 / depth; a triangle with a depth entry of 0 is left out. For backs, points (v, 4)
+        has the cosine of `project_hull`
+    keep : FRONT or BACK
     """
     nearest, spans, least = canvas.nearest, canvas.spans, canvas.least
     height, width = nearest.shape
@@ -236,7 +239,7 @@ def fill(points: Any, triangles: Any, keep: int, offset: int, canvas: Any) -> No
             spans[band, 0] = min(spans[band, 0], left)
             spans[band, 1] = max(spans[band, 1], right + 1)
         sign = 1.0 if area > 0.0 else -1.0
-        # Edge functions: how far a sample is inside of each edge; steps for one sample right and one down.
+        # Edge functions: the distance of a sample inside each edge; steps for one sample right and one down.
         sx0, sy0 = sign * (y2 - y1), -sign * (x2 - x1)
         sx1, sy1 = sign * (y0 - y2), -sign * (x0 - x2)
         sx2, sy2 = sign * (y1 - y0), -sign * (x1 - x0)
@@ -252,7 +255,7 @@ def fill(points: Any, triangles: Any, keep: int, offset: int, canvas: Any) -> No
         for y in range(top, bottom + 1):
             x = left
             while x <= right:
-                first = min(x, width - lanes)  # the last step may look again at samples that the one before has seen
+                first = min(x, width - lanes)  # the last step may repeat samples of the step before
                 f0, f1, f2 = e0 + (first - left) * sx0, e1 + (first - left) * sx1, e2 + (first - left) * sx2
                 z = zrow + (first - left) * right_step
                 for k in range(lanes):
@@ -269,13 +272,13 @@ def fill(points: Any, triangles: Any, keep: int, offset: int, canvas: Any) -> No
 
 @njit(cache=True)
 def note_least(canvas: Any) -> None:  # pragma: no cover
-    """Fill `canvas.least` from what is drawn."""
+    """Fill `canvas.least` from the drawn samples."""
     nearest, spans, least = canvas.nearest, canvas.spans, canvas.least
     height, width = nearest.shape
     for band in range(least.shape[0]):
         for block in range(least.shape[1]):
             least[band, block] = 0
-        # only whole blocks: where a part of one lies outside of the spans, nothing is drawn there
+        # Only whole blocks are filled: a block that is partly outside of the spans has empty samples.
         for block in range((spans[band, 0] + BAND - 1) // BAND, min(spans[band, 1], width) // BAND):
             lowest = nearest[band * BAND, block * BAND]
             for y in range(band * BAND, min(band * BAND + BAND, height)):
@@ -286,7 +289,7 @@ def note_least(canvas: Any) -> None:  # pragma: no cover
 
 @kernel
 def fill_depth(points: Any, triangles: Any, depth: Any) -> None:  # pragma: no cover
-    """As `fill`, what is turned to the light and only its depth: for the shadow map."""
+    """Draw the depth of triangles that face the light, for the shadow map, as `fill` does."""
     height, width = depth.shape
     lanes = min(width, _LANES.shape[0])
     for t in range(triangles.shape[0]):
@@ -297,7 +300,7 @@ def fill_depth(points: Any, triangles: Any, depth: Any) -> None:  # pragma: no c
         x2, y2, z2 = points[c, 0], points[c, 1], points[c, 2]
         area = (x2 - x0) * (y1 - y0) - (x1 - x0) * (y2 - y0)
         if area <= 0.0:
-            continue  # what is turned to the light is enough: meshes are closed
+            continue  # triangles that face the light are enough, because meshes are closed
         left = max(int(np.ceil(min(x0, x1, x2) - 0.5)), 0)
         right = min(int(np.floor(max(x0, x1, x2) - 0.5)), width - 1)
         top = max(int(np.ceil(min(y0, y1, y2) - 0.5)), 0)

@@ -1,4 +1,4 @@
-"""The software renderer: one frame from the cached stage, the live floor and the dancer."""
+"""The software renderer, which makes a frame from the cached stage, the moving parts of the floor and the dancer."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ Array = NDArray[np.float64]
 
 
 class CpuRenderer:
-    """Draws with numba kernels on one core. See `film.scene.renderer.Renderer`."""
+    """A renderer with numba kernels on one core. See `film.scene.renderer.Renderer`."""
 
     name = "cpu"
 
@@ -100,12 +100,12 @@ class CpuRenderer:
         return self._out
 
     def close(self) -> None:
-        """Nothing to give back."""
+        """Do nothing, because there are no resources to free."""
 
     def _standing(self, camera: Camera) -> Background:
         key = replace(camera, pan=0.0)
         if self._background is None or self._background[0] != key:
-            self._background = None  # free the old one first
+            self._background = None  # free the old background first
             drawn = draw_background(self._scene.stage, self._scene.look, key, self._size, max(2, self._samples))
             self._background = (key, drawn)
         return self._background[1]
@@ -119,7 +119,7 @@ class CpuRenderer:
         fill_depth(self._light_points, triangles, self._shadow)
         left, top, right, bottom = occupied(self._shadow, self._mask)
         radius = max(1, round(light.shadow_soft * cast.scale / 2))
-        reach = 2 * radius + 1  # nothing comes farther; what lies beyond is 0 and stays so
+        reach = 2 * radius + 1  # greatest reach of the blur; texels beyond it stay 0
         box = max(0, left - reach), max(0, top - reach), right + reach, bottom + reach
         for _ in range(2):
             blur(self._mask, box, radius, self._spare)

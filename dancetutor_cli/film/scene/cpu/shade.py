@@ -1,4 +1,4 @@
-"""The dancer's pixels: which places of her are coloured, her outlines, and the mean over the samples of a pixel."""
+"""The dancer's pixels: the choice of places to colour, her outlines, and the mean over the samples of a pixel."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ from dancetutor_cli.run.kernels.compiling import float32, njit, uint64
 Array = NDArray[np.float64]
 
 
-_CLOSE = 0.006  # part of its depth: samples that are farther from each other are coloured separately
-_ROW, _COLUMN = 16, 0xFFFF  # places of the row and the column in a pixel's number; no picture is so large
-OFF_SURFACE = (0.012, 0.006)  # metres along normal and light: a surface must not shadow itself
+_CLOSE = 0.006  # greatest difference of depth, as a share of the depth, of samples with one colour
+_ROW, _COLUMN = 16, 0xFFFF  # shift of the row and mask of the column in a pixel's number; pictures are smaller
+OFF_SURFACE = (0.012, 0.006)  # metres along normal and light, so that a surface does not shadow itself
 
 
 class RasterResult(NamedTuple):
-    """What `raster.fill` has drawn of which triangles; numbers from their count on are outline."""
+    """The canvas of `raster.fill` and its triangles; numbers from their count on are outline."""
 
     canvas: Canvas
     triangles: NDArray[np.int32]
@@ -50,8 +50,9 @@ class RasterResult(NamedTuple):
 class Room(NamedTuple):
     """Working memory for fragments on their way to the picture.
 
-    seen : int64 (s,), the triangles of a pixel's samples, -1 once it is a fragment, and depths : float64 (s,)
-    pixels : int64 (n, 2), rows and columns that are waiting for their fragments' colours; sum : float32 (n, 4), 0..255
+    seen : int64 (s,), triangles of a pixel's samples, -1 for a sample of an earlier fragment; depths : float64 (s,)
+    pixels : int64 (n, 2), rows and columns of pixels that wait for their fragments' colours
+    sum : float32 (n, 4), 0..255
     """
 
     seen: NDArray[np.int64]
@@ -62,7 +63,7 @@ class Room(NamedTuple):
 
 
 def empty_room(samples: int) -> Room:
-    """Room for a picture of samples x samples a pixel."""
+    """Return working memory for a picture of samples x samples a pixel."""
     count = samples * samples
     pixels, total = np.zeros((BLOCK, 2), np.int64), np.zeros((BLOCK, 4), np.float32)
     return Room(np.empty(count, np.int64), np.empty(count), pixels, total, empty_fragments())
@@ -70,9 +71,9 @@ def empty_room(samples: int) -> Room:
 
 @njit(cache=True)
 def light_vertices(world: Any, points: Any, surface: Any, eye: Any, cast: Any, out: Any) -> None:  # pragma: no cover
-    """What is interpolated over a triangle, out float32 (v, 16).
+    """Compute the numbers that are interpolated over a triangle, out float32 (v, 16).
 
-    world (v, 9), points (v, 3) from `raster`; cast : `renderer.Cast`
+    world (v, 9), points (v, 3) : from `raster`; cast : `renderer.Cast`
     """
     uv, above, material = surface.uv, surface.above, surface.material
     axes, origin, scale = cast.axes, cast.origin, cast.scale
@@ -95,9 +96,9 @@ def light_vertices(world: Any, points: Any, surface: Any, eye: Any, cast: Any, o
 
 @njit(cache=True, inline="always")
 def _one_piece(keys: Any, row: int, column: int, samples: int, triangles: Any) -> bool:  # pragma: no cover
-    """Whether all samples of a pixel see one triangle, or one piece of surface at about the same depth.
+    """Whether all samples of a pixel show one triangle, or one piece of surface at about the same depth.
 
-    keys : of `raster.Canvas.nearest`, the first sample's place; triangles : their count, and the piece of each
+    keys : `raster.Canvas.nearest`; row, column : the first sample; triangles : their count, and the piece of each
     """
     count, patch = triangles
     key = keys[row, column]
@@ -118,7 +119,7 @@ def _one_piece(keys: Any, row: int, column: int, samples: int, triangles: Any) -
 
 @inner_kernel
 def _put(out: Any, pixels: int, count: int, room: Any) -> None:  # pragma: no cover
-    """Add the fragments' colours to their pixels, and those to the picture."""
+    """Add the fragments' colours to their pixels, and write the pixels to the picture."""
     some, total = room.fragments, room.sum
     rows, most, half = some.rows, float32(255.0), float32(0.5)
     for n in range(count):
@@ -142,10 +143,11 @@ def _put(out: Any, pixels: int, count: int, room: Any) -> None:  # pragma: no co
 
 @kernel
 def resolve(out: Any, samples: int, drawn: Any, surface: Any, light: Any, room: Any) -> None:  # pragma: no cover
-    """Put the samples on the picture and forget them: nothing is left on the canvas.
+    """Draw the samples on the picture and clear the canvas.
+
+    All samples of a pixel that show the same piece of surface at about the same depth share one colour.
 
     drawn : `RasterResult`; surface : `Surface`; light : `Light`; room : `Room`
-    One colour serves all samples of a pixel that see the same piece of surface at about the same depth.
     """
     nearest, spans, triangles = drawn.canvas.nearest, drawn.canvas.spans, drawn.triangles
     patch, toon, seen, depths, some = surface.patch, light.toon, room.seen, room.depths, room.fragments
@@ -157,7 +159,7 @@ def resolve(out: Any, samples: int, drawn: Any, surface: Any, light: Any, room: 
         top, band = row * samples, row * samples // BAND
         first, last = spans[band, 0] // samples, (spans[band, 1] + samples - 1) // samples
         for column in range(first, last):
-            if n > BLOCK - total or pixels == BLOCK:  # there may be no room for this pixel
+            if n > BLOCK - total or pixels == BLOCK:  # the block may have no room for this pixel
                 colour(n, some, triangles, surface, light)
                 _put(out, pixels, n, room)
                 pixels, n = 0, 0
