@@ -50,7 +50,7 @@ def blur(whole: Any, box: Any, radius: int, room: Any) -> None:  # pragma: no co
     room : working memory of the picture's shape
     """
     left, top, right, bottom = box
-    mask, spare = whole[top:bottom, left:right], room[top:bottom, left:right]  # equal strides need one kernel only
+    mask, spare = whole[top:bottom, left:right], room[top:bottom, left:right]  # the same layout: one kernel
     height, width = mask.shape
     share = 1.0 / (2 * radius + 1)
     for row in range(height):

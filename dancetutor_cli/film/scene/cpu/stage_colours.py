@@ -1,6 +1,6 @@
-"""Colours of the stage, one rule for each kind of surface.
+"""The colours of the stage, by one rule for each kind of surface.
 
-numpy draws them once for each camera: compiling this took as long as drawing fifty pictures of it.
+numpy computes them once for each camera. The compilation of a kernel took as long as fifty of these pictures.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ COLOURS = (
     "groove", "arrow",
 )  # fmt: skip
 Array = NDArray[np.float64]
-_NUMBERS = len(COLOURS)  # row of the palette with tile, pool; the next has the pad's middle and half size
+_NUMBERS = len(COLOURS)  # row of the palette with tile and pool; the next row has the pad's middle and half size
 
 
 class Place(NamedTuple):
-    """Places on a surface, n each. x, z : in the world; u, v : on the surface; footprint : metres of it in a pixel"""
+    """Places on a surface, n each. x, z : in the world; u, v : on the surface; footprint : metres in a pixel"""
 
     x: Array
     z: Array
@@ -33,9 +33,9 @@ class Place(NamedTuple):
 
 
 class SurfaceColours(NamedTuple):
-    """The look of places. colour : (n, 3), 0..1; takes : how much of shadows; panel : int32 (n,), column or -1
+    """The look of places. colour : (n, 3), 0..1; takes : share of shadows on them; panel : int32 (n,), column or -1
 
-    glow, white : (n,), of a fully lit panel
+    glow, white : (n,), shares of colour and of white in the light of a fully lit panel
     """
 
     colour: Array
@@ -48,7 +48,7 @@ class SurfaceColours(NamedTuple):
 class Paints(NamedTuple):
     """The colours and numbers of the stage.
 
-    palette : colours 0..1 in the order of `COLOURS`, then rows of numbers, (n, 4); panel, arrow : of `scene.Tiles`
+    palette : colours 0..1 in the order of `COLOURS`, then rows of numbers, (n, 4); panel, arrow : as in `scene.Tiles`
     """
 
     palette: Array
@@ -57,7 +57,7 @@ class Paints(NamedTuple):
 
 
 def paints_of(look: StageLook, stage: Stage) -> Paints:
-    """The colours of a stage, for kernels."""
+    """Return the colours and numbers of a stage as arrays."""
     out = np.zeros((_NUMBERS + 3, 4))
     for row, name in enumerate(COLOURS):
         colour: RGB = getattr(look, name)
@@ -70,23 +70,23 @@ def paints_of(look: StageLook, stage: Stage) -> Paints:
 
 
 def _smooth(low: float, high: float, x: Array) -> Array:
-    """0 below `low`, 1 above `high`, a cubic between."""
+    """Return 0 below `low`, 1 above `high`, and a cubic between them."""
     t = np.clip((x - low) / (high - low), 0.0, 1.0)
     return t * t * (3.0 - 2.0 * t)
 
 
 def _mix(palette: Array, a: int, b: int, t: Array) -> Array:
-    """From colour a to colour b, (n, 3)."""
+    """Return a mixture of colours a and b, (n, 3); t : (n,), the share of b."""
     return np.asarray(palette[a, :3] + (palette[b, :3] - palette[a, :3]) * t[:, None])
 
 
 def _cover(x: Array) -> Array:
-    """How much of a pixel is covered whose middle is so many pixels inside of an edge."""
+    """Return the covered share of a pixel whose middle is x pixels inside an edge."""
     return np.clip(x + 0.5, 0.0, 1.0)
 
 
 def _line(x: Array, tile: float, half: float, footprint: Array) -> Array:
-    """How much of a footprint around x is covered by lines of half width `half`, one every `tile` metres."""
+    """Return the share of a footprint around x that lines of half width `half`, one every `tile` metres, cover."""
     d = np.abs(x / tile - np.floor(x / tile + 0.5)) * tile
     return np.asarray(_cover((half - d) / footprint) * np.minimum(1.0, 2.0 * half / footprint))
 
@@ -106,7 +106,7 @@ def _floor(place: Place, palette: Array) -> SurfaceColours:
 
 
 def arrow_distance(a: Any, b: Any) -> Any:
-    """How far outside of an arrow a place is (negative: inside), in panel widths; it points along a, |a|, |b| < 0.5."""
+    """Return the distance of a place from an arrow along a, in panel widths, negative inside; |a|, |b| < 0.5."""
     b = np.abs(b)
     head = np.maximum(0.02 - a, (a + 1.12 * b - 0.36) * 0.666)
     shaft = np.maximum(b - 0.105, np.maximum(-0.33 - a, a - 0.05))
@@ -137,8 +137,9 @@ def _pad(place: Place, paints: Paints) -> SurfaceColours:
 
 
 def _wall(place: Place, palette: Array) -> SurfaceColours:
-    """The wall has a lamp at the foot of each part. Its light is wide and has no edge farther up, because the song's
-    words stand there.
+    """Return the look of the wall, with a lamp at the foot of each part.
+
+    The light is wide and has no edge farther up, because the song's words stand there.
     """
     u, v = place.u, place.v
     core, beam = u / (0.03 + 0.5 * v), u / (0.16 + 1.1 * v)
@@ -151,12 +152,12 @@ def _wall(place: Place, palette: Array) -> SurfaceColours:
 
 
 def _unlit(count: int) -> tuple[NDArray[np.int32], Array, Array]:
-    """Column, glow and whiteness of places that are on no panel."""
+    """Return column, glow and whiteness of places outside of panels."""
     return np.full(count, -1, np.int32), np.zeros(count), np.zeros(count)
 
 
 def surface(kind: int, place: Place, paints: Paints) -> SurfaceColours:
-    """The look of a kind of surface (`scene.SurfaceKind`) at some of its places."""
+    """Return the look of a kind of surface (`scene.SurfaceKind`) at some of its places."""
     palette = paints.palette
     if kind == SurfaceKind.FLOOR:
         return _floor(place, palette)

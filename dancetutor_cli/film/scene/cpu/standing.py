@@ -1,4 +1,4 @@
-"""The still part of the picture, drawn once for each camera: a ray through each pixel to the nearest surface."""
+"""The still part of the picture, drawn once for each camera by a ray through each pixel to the nearest surface."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from dancetutor_cli.run.kernels.compiling import njit
 
 F32 = NDArray[np.float32]
 TILE = 8
-BAND = 64  # rows that are drawn together: large pictures need no more room than small ones
-SEVERAL = -2  # panels in a tile
+BAND = 64  # rows that are drawn together, so that large pictures need no more memory than small ones
+SEVERAL = -2  # the panel of a tile with several panels
 Array = NDArray[np.float64]
 
 
 class GroundTiles(NamedTuple):
-    """What squares of `TILE` by `TILE` pixels hold of the ground; t rows, u columns of them.
+    """The ground in squares of `TILE` by `TILE` pixels, in t rows and u columns.
 
-    low, high : float32 (t, u, 3), least and greatest x, y, z of it; low is above high where there is none
-    panel : int16 (t, u), column of the panel in it, -1 for none, `SEVERAL`
-    coarse : float32 (t, u), metres of its largest pixel
+    low, high : float32 (t, u, 3), least and greatest x, y, z of the ground; low is above high for a tile without ground
+    panel : int16 (t, u), column of the panel in the tile, -1 for none, `SEVERAL`
+    coarse : float32 (t, u), size of the largest pixel, metres
     """
 
     low: F32
@@ -43,10 +43,11 @@ class Background(NamedTuple):
     """The stage as one camera sees it, without dancer, shadows and lights; h rows, w columns with the pan's room.
 
     colour : float32 (h, w, 3), sRGB 0..255; picture : uint8 (h, w, 3), the same, dithered
-    ground : float32 (h, w, 3), world x, y and z of what is seen, and takes : float32 (h, w), 0..1, how much of the
-    pixel takes shadows; panel : int16 (h, w), column or -1; glow, white : float32 (h, w), of a fully lit panel
+    ground : float32 (h, w, 3), world x, y and z of the visible surface
+    takes : float32 (h, w), 0..1, share of the pixel that can have shadows; panel : int16 (h, w), column or -1
+    glow, white : float32 (h, w), shares of colour and of white in the light of a fully lit panel
     footprint : float32 (h, w), metres of the surface in a pixel
-    tiles : `GroundTiles`, what squares of `TILE` pixels hold of the ground
+    tiles : the ground in squares of `TILE` pixels
     left : columns of room to the left of the unpanned picture
     """
 
@@ -63,7 +64,7 @@ class Background(NamedTuple):
 
 
 class _Rays(NamedTuple):
-    """Where rays start and how a place of the picture becomes one; see `_rays`. focal : pixels."""
+    """The start of rays, and the matrix from places of the picture to rays; see `_rays`. focal : pixels"""
 
     eye: Array
     back: Array
@@ -71,7 +72,7 @@ class _Rays(NamedTuple):
 
 
 class _Places(NamedTuple):
-    """Places of a picture, n each: pixels by number, row by row, and where in the unpanned picture a ray goes."""
+    """Places of a picture, n each: the number of the pixel, row by row, and the ray's place in the unpanned picture."""
 
     pixel: NDArray[np.int64]
     x: NDArray[np.floating]
@@ -80,7 +81,7 @@ class _Places(NamedTuple):
 
 
 class _Stage(NamedTuple):
-    """What rays may meet. quads : `_quads`; kinds : `scene.SurfaceKind` of each"""
+    """The surfaces that rays may meet. quads : `_quads`; kinds : `scene.SurfaceKind` of each surface"""
 
     quads: Array
     kinds: NDArray[np.int32]
@@ -88,34 +89,37 @@ class _Stage(NamedTuple):
 
 
 def _within(quad: Array, x: Array, y: Array, z: Array) -> tuple[Array, Array]:
-    """Where world points are on a surface: both 0..1 inside of it."""
+    """Return the coordinates of world points on a surface, both 0..1 inside the surface."""
     u = quad[4] * x + quad[5] * y + quad[6] * z + quad[7]
     v = quad[8] * x + quad[9] * y + quad[10] * z + quad[11]
     return u, v
 
 
 def _direction(x: NDArray[np.floating], y: NDArray[np.floating], rays: _Rays) -> Array:
-    """Rays through places of the unpanned picture, (3, ...)."""
+    """Return the rays through places of the unpanned picture, (3, ...)."""
     return np.stack(np.broadcast_arrays(*(row[0] * x + row[1] * y + row[2] for row in rays.back)))
 
 
 def _linear(direction: Array, rays: _Rays) -> Array:
-    """How far rays go along a direction of the world (3,) at depth 1: that times (x, y, 1) of the unpanned picture."""
+    """Return the linear function of rays along a direction of the world (3,) at depth 1.
+
+    Its product with (x, y, 1) of the unpanned picture is the ray's component in this direction.
+    """
     return np.asarray((direction[:, None] * rays.back).sum(axis=0))
 
 
 def _at(places: Array, x: NDArray[np.floating], y: NDArray[np.floating]) -> Array:
-    """A linear function of `_linear` at places of the unpanned picture; a column and a row make a rectangle."""
+    """Return a linear function of `_linear` at places of the unpanned picture; a column and a row make a rectangle."""
     return np.asarray((places[0] * x + places[2]) + places[1] * y)
 
 
 def _find(
     rays: _Rays, quads: Array, x: NDArray[np.floating], y: NDArray[np.floating], boxes: NDArray[np.int64] | None = None
 ) -> NDArray[np.int16]:
-    """Number of the nearest surface at places of the unpanned picture, -1 where there is none.
+    """Return the number of the nearest surface at places of the unpanned picture, -1 for no surface.
 
-    x, y : of one shape, or columns (1, w) and rows (h, 1); boxes : what part of those each surface can be in at most,
-    (q, 4): first column and row, last column and row + 1
+    x, y : arrays of one shape, or columns (1, w) and rows (h, 1)
+    boxes : the largest part of these that each surface can be in, (q, 4): first column and row, last column and row + 1
     """
     shape = np.broadcast_shapes(x.shape, y.shape)
     found, best = np.full(shape, -1, np.int16), np.full(shape, 1e30)
@@ -132,7 +136,7 @@ def _find(
         with np.errstate(divide="ignore"):
             t = (quad[3] - (quad[:3] * rays.eye).sum()) / facing
         here = (facing < 0.0) & (t > 0.0) & (t < best[part])
-        for across in (quad[4:8], quad[8:12]):  # both 0..1 inside of it
+        for across in (quad[4:8], quad[8:12]):  # both coordinates are 0..1 inside the surface
             place = _at(_linear(across[:3], rays), px, py)
             place *= t
             place += (across[:3] * rays.eye).sum() + across[3]
@@ -142,7 +146,10 @@ def _find(
 
 
 def _boxes(stage: Stage, camera: Camera, size: tuple[int, int], left: int, wide: int) -> NDArray[np.int64]:
-    """The part of the picture that each surface can be in, int64 (q, 4); all of it for one that comes near the eye."""
+    """Return the part of the picture that each surface can be in, int64 (q, 4).
+
+    A surface that comes near the eye has the whole picture.
+    """
     height = size[1]
     out = np.tile(np.array([0, 0, wide, height], np.int64), (len(stage.corners), 1))
     for number, corners in enumerate(stage.corners):
@@ -156,7 +163,7 @@ def _boxes(stage: Stage, camera: Camera, size: tuple[int, int], left: int, wide:
 
 
 def _alike(found: NDArray[np.int16]) -> NDArray[np.bool_]:
-    """Whether all pixels around one, and the pixel itself, see the same surface."""
+    """Return for each pixel whether it and all pixels around it show the same surface."""
     height, width = found.shape
     around = np.pad(found, 1, mode="edge")
     out = np.ones(found.shape, dtype=bool)
@@ -167,7 +174,7 @@ def _alike(found: NDArray[np.int16]) -> NDArray[np.bool_]:
 
 
 def _paint(rays: _Rays, stage: _Stage, places: _Places, found: NDArray[np.int16], share: float) -> None:
-    """Add the colours of places to a picture; their surfaces are `found`. share : of the pixel that each is worth."""
+    """Add the colours of places to a picture. found : their surfaces; share : the share of the pixel for each place"""
     drawn = places.drawn
     for number in np.unique(found[found >= 0]):
         at = np.flatnonzero(found == number)
@@ -191,7 +198,7 @@ def _paint(rays: _Rays, stage: _Stage, places: _Places, found: NDArray[np.int16]
 
 
 def _shade(rays: _Rays, stage: _Stage, samples: int, found: NDArray[np.int16], drawn: Background) -> None:
-    """Colour the picture that `drawn` has room for: samples x samples rays a pixel where surfaces meet."""
+    """Fill the picture of `drawn`, with samples x samples rays for a pixel in which surfaces meet."""
     alike, wide = _alike(found), found.shape[1]
     for top in range(0, len(found), BAND):
         row, column = np.nonzero(alike[top : top + BAND])
@@ -208,7 +215,7 @@ def _shade(rays: _Rays, stage: _Stage, samples: int, found: NDArray[np.int16], d
 
 @njit(cache=True)
 def quantise(value: float, row: int, column: int) -> int:  # pragma: no cover
-    """0..255 with an ordered dither of 4x4 pixels, so that dark gradients show no steps."""
+    """Round a value to 0..255 with an ordered dither of 4x4 pixels, so that dark gradients show no steps."""
     r, c = row & 3, column & 3
     # The 4x4 Bayer matrix from the bits of row and column.
     rank = ((r ^ c) & 1) * 8 + (r & 1) * 4 + (((r ^ c) >> 1) & 1) * 2 + ((r >> 1) & 1)
@@ -216,7 +223,7 @@ def quantise(value: float, row: int, column: int) -> int:  # pragma: no cover
 
 
 def _dithered(colour: F32) -> NDArray[np.uint8]:
-    """What `quantise` makes of every pixel."""
+    """Return the result of `quantise` for every pixel."""
     r, c = np.ogrid[: colour.shape[0], : colour.shape[1]]
     r, c = r & 3, c & 3
     rank = ((r ^ c) & 1) * 8 + (r & 1) * 4 + (((r ^ c) >> 1) & 1) * 2 + ((r >> 1) & 1)
@@ -224,13 +231,13 @@ def _dithered(colour: F32) -> NDArray[np.uint8]:
 
 
 def _tiles_of(drawn: Background) -> GroundTiles:
-    """What the tiles of a picture hold."""
+    """Return the ground in the tiles of a picture."""
     ground, takes = drawn.ground, drawn.takes > 0.0
     height, width = takes.shape
     spare = (0, -height % TILE), (0, -width % TILE)
 
     def tiles(values: NDArray[Any], empty: float) -> NDArray[Any]:
-        """The pixels of each tile that are ground beside each other, (t, u, TILE * TILE); `empty` for the others."""
+        """Return the values of each tile's pixels, (t, u, TILE * TILE); `empty` for pixels that are not ground."""
         padded = np.pad(np.where(takes, values, np.asarray(empty, values.dtype)), spare, constant_values=empty)
         t, u = padded.shape[0] // TILE, padded.shape[1] // TILE
         return padded.reshape(t, TILE, u, TILE).swapaxes(1, 2).reshape(t, u, TILE * TILE)
@@ -246,9 +253,12 @@ def _tiles_of(drawn: Background) -> GroundTiles:
 
 
 def draw_background(stage: Stage, look: Look, camera: Camera, size: tuple[int, int], samples: int) -> Background:
-    """Draw the stage; samples x samples rays a pixel where surfaces meet. size : (width, height) of the picture."""
+    """Draw the stage, with samples x samples rays for a pixel in which surfaces meet.
+
+    size : (width, height) of the picture
+    """
     width, height = size
-    # Panned to the right, the picture shows what is farther left: positive pans need room on the left.
+    # Positive pans move the picture to the right, and need room on the left.
     left, right = (max(0, round(pan * width)) for pan in (camera.pan_range[1], -camera.pan_range[0]))
     wide = width + left + right
     rays, shape = _rays(camera, size), (height, wide)
@@ -267,7 +277,7 @@ def draw_background(stage: Stage, look: Look, camera: Camera, size: tuple[int, i
 
 
 def _rays(camera: Camera, size: tuple[int, int]) -> _Rays:
-    """The eye (3,), the matrix (3, 3) from (x, y, 1) of the unpanned picture to a direction of depth 1."""
+    """Return the eye (3,) and the matrix (3, 3) from (x, y, 1) of the unpanned picture to a direction of depth 1."""
     width, height = size
     right, up, forward = camera.axes()
     focal = camera.focal * height
@@ -279,7 +289,7 @@ def _rays(camera: Camera, size: tuple[int, int]) -> _Rays:
 
 
 def _quads(stage: Stage) -> Array:
-    """Plane (normal, distance) and the two places within it as linear functions of the world, (q, 12)."""
+    """Return planes (normal, distance) and both coordinates in them as linear functions of the world, (q, 12)."""
     out = np.empty((len(stage.corners), 12))
     for q, (a, b, _, d) in enumerate(stage.corners):
         along, across = b - a, d - a

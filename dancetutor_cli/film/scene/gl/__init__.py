@@ -1,1 +1,1 @@
-"""The OpenGL renderer: pyrender without a window, through EGL, with the project's shaders. Loaded when asked for."""
+"""The OpenGL renderer: pyrender without a window, through EGL, with the project's shaders; loaded only on request."""

@@ -1,4 +1,4 @@
-"""The OpenGL of this machine, found with ctypes alone; corrections before pyrender is imported; the shaders."""
+"""The search for OpenGL with ctypes alone, the corrections before the import of pyrender, and the shaders."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from dancetutor_cli.run.errors import UnavailableError, install_command
 
-# The OpenGL of this machine, found with ctypes alone, before any OpenGL package with unreadable errors is imported.
+# The search for OpenGL on this machine uses ctypes alone, because OpenGL packages raise unreadable errors on import.
 
 MISSING = "No OpenGL found. Debian/Ubuntu: apt-get install libegl1 libgl1. Or use --renderer cpu."
 NO_PACKAGE = f"The OpenGL renderer is not installed. {install_command('gl')}. Or use --renderer cpu."
@@ -26,7 +26,7 @@ _MOST_DEVICES = 32
 
 
 def require_gl() -> None:
-    """UnavailableError with what to install if pyrender or the system's libraries are not there."""
+    """Raise UnavailableError, with the packages to install, if pyrender or the system's libraries are missing."""
     if find_spec("pyrender") is None:
         raise UnavailableError(NO_PACKAGE)
     if _library("libEGL.so.1") is None or _library("libGL.so.1") is None:
@@ -35,7 +35,7 @@ def require_gl() -> None:
 
 @cache
 def gpu_device() -> int | None:
-    """Number of the first EGL device that is real hardware and starts, or None; works without pyrender, too."""
+    """Return the number of the first EGL device that is real hardware and starts, or None, also without pyrender."""
     if find_spec("pyrender") is None or not sys.platform.startswith("linux") or _library("libGL.so.1") is None:
         return None
     egl = _library("libEGL.so.1")
@@ -69,7 +69,7 @@ def _library(name: str) -> ctypes.CDLL | None:
 
 
 def _function(egl: ctypes.CDLL, name: bytes, result: type) -> ctypes._FuncPointer | None:
-    """A function of an EGL extension; they are not exported by name."""
+    """Return a function of an EGL extension, which the library does not export by name."""
     egl.eglGetProcAddress.restype = ctypes.c_void_p
     egl.eglGetProcAddress.argtypes = [ctypes.c_char_p]
     address = egl.eglGetProcAddress(name)
@@ -77,7 +77,7 @@ def _function(egl: ctypes.CDLL, name: bytes, result: type) -> ctypes._FuncPointe
 
 
 def _starts(egl: ctypes.CDLL, display: int) -> bool:
-    """A device may be listed and yet be forbidden to this user."""
+    """Whether a device starts: a device may be listed, but forbidden to this user."""
     egl.eglInitialize.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
     egl.eglTerminate.argtypes = [ctypes.c_void_p]
     if not egl.eglInitialize(display, None, None):
@@ -91,18 +91,18 @@ def _starts(egl: ctypes.CDLL, display: int) -> bool:
 # Call `load_pyrender` instead of importing pyrender.
 #
 # - PyOpenGL chooses its platform when it is imported: PYOPENGL_PLATFORM=egl draws without a screen.
-# - pyrender 0.1.45 uses ``np.infty``, which NumPy 2.0 took away.
-# - pyrender 0.1.45 imports its viewer window with pyglet, and with it libXrender, on import; pyglet 2 has not even got
-#   what it asks for. A module in its place has the one name that pyrender wants.
+# - pyrender 0.1.45 uses ``np.infty``, which NumPy 2.0 removed.
+# - pyrender 0.1.45 imports its viewer window on import, and with it pyglet and libXrender; pyglet 2 lacks a name that
+#   the viewer needs. A module in its place has the only name that pyrender needs.
 # - Python 3.12 moved the type of byref() to ``_ctypes.CArgObject``, for which PyOpenGL 3.1.0 has no format handler:
-#   arguments passed by reference fail with "No array-type handler". It is registered under its new name.
-# - PyOpenGL checks for errors after each call, which costs more than the call. It is switched off (`renderer` asks once
-#   a
-#   frame); PyOpenGL 3.1.0 then leaves out a name in OpenGL.raw.EGL._errors that its own EGL modules want.
+#   arguments passed by reference fail with "No array-type handler". The type is registered under its new name.
+# - PyOpenGL checks for errors after each call, which takes more time than the call. This check is switched off
+#   (`renderer` checks once a frame). PyOpenGL 3.1.0 then leaves out a name in OpenGL.raw.EGL._errors that its own EGL
+#   modules need.
 
 
 def load_pyrender() -> Any:
-    """pyrender, corrected; UnavailableError with one readable line if there is no OpenGL."""
+    """Return pyrender with the corrections; UnavailableError with one readable line if there is no OpenGL."""
     require_gl()
     chosen = os.environ.get("PYOPENGL_PLATFORM")
     if "OpenGL" in sys.modules and chosen != "egl":
@@ -132,7 +132,7 @@ def load_pyrender() -> Any:
 
 
 def _register_references() -> None:
-    """Add the type of byref() to those that PyOpenGL's handler for ctypes arguments takes, if it is not there."""
+    """Add the type of byref() to the types of PyOpenGL's handler for ctypes arguments, if it is missing."""
     from OpenGL.plugins import FormatHandler
 
     kind = type(ctypes.byref(ctypes.c_int()))
@@ -142,7 +142,7 @@ def _register_references() -> None:
         handler.check.append(name)
 
 
-# Where the shaders are, and how one for desktop OpenGL is read by WebGL 2: they differ in their first lines only.
+# The folder of the shaders, and their form for WebGL 2, which differs from desktop OpenGL only in the first lines.
 
 SHADERS = Path(__file__).resolve().parent / "shaders"
 _DESKTOP = "#version 330 core"
@@ -153,7 +153,7 @@ precision highp sampler2DShadow;"""
 
 
 def web_source(text: str) -> str:
-    """A shader's text for WebGL 2. ValueError for one that does not begin as those here do."""
+    """Return a shader's text for WebGL 2. ValueError for a text without the first line of a desktop shader."""
     if not text.startswith(_DESKTOP):
         raise ValueError(f"a shader begins with '{_DESKTOP}'")
     return _WEB + text[len(_DESKTOP) :]

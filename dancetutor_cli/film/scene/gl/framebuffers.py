@@ -1,4 +1,4 @@
-"""Textures and framebuffers of the OpenGL renderer, the standing picture in them, and the floor drawn again."""
+"""Textures and framebuffers of the OpenGL renderer, the still picture in them, and the redrawn parts of the floor."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ _STORED = {
 
 
 def texture(image: NDArray[Any]) -> int:
-    """A texture of an image (h, w, 3 or 4) of uint8 or float32, its first row at v = 0, for reading single texels."""
+    """Create a texture of an image (h, w, 3 or 4) of uint8 or float32, for reads of single texels.
+
+    The first row is at v = 0.
+    """
     number = int(GL.glGenTextures(1))
     GL.glBindTexture(GL.GL_TEXTURE_2D, number)
     _parameters(GL.GL_NEAREST, GL.GL_NEAREST, GL.GL_REPEAT)
@@ -36,7 +39,7 @@ def texture(image: NDArray[Any]) -> int:
 
 
 def pyramid(images: tuple[NDArray[np.uint8], ...]) -> int:
-    """A smooth texture of an image and its halvings."""
+    """Create a smooth texture of an image and its smaller copies."""
     number = int(GL.glGenTextures(1))
     GL.glBindTexture(GL.GL_TEXTURE_2D, number)
     _parameters(GL.GL_LINEAR_MIPMAP_NEAREST, GL.GL_LINEAR, GL.GL_REPEAT, len(images) - 1)
@@ -65,7 +68,7 @@ def refill(number: int, image: NDArray[Any], level: int = 0) -> None:
 
 
 def smooth(number: int) -> None:
-    """Let a texture be read between its texels."""
+    """Allow interpolated reads between the texels of a texture."""
     GL.glBindTexture(GL.GL_TEXTURE_2D, number)
     _parameters(GL.GL_LINEAR, GL.GL_LINEAR, GL.GL_CLAMP_TO_EDGE)
 
@@ -116,12 +119,12 @@ class Target:
         GL.glFramebufferRenderbuffer(GL.GL_FRAMEBUFFER, place, GL.GL_RENDERBUFFER, buffer)
 
     def bind(self) -> None:
-        """Draw into it from now on."""
+        """Make this the target of all later drawing."""
         GL.glBindFramebuffer(GL.GL_FRAMEBUFFER, self.framebuffer)
         GL.glViewport(0, 0, *self.size)
 
     def copy_from(self, other: Target, box: tuple[int, int, int, int], to: tuple[int, int]) -> None:
-        """Copy the pixels of `box` (x0, y0, x1, y1) of another target so that its first corner lies at `to`.
+        """Copy the pixels of `box` (x0, y0, x1, y1) of another target, with the box's first corner at `to`.
 
         Samples of a pixel become their mean.
         """
@@ -132,7 +135,7 @@ class Target:
         GL.glBlitFramebuffer(x0, y0, x1, y1, *to, *end, GL.GL_COLOR_BUFFER_BIT, GL.GL_NEAREST)
 
     def delete(self) -> None:
-        """Give its memory back."""
+        """Free the memory."""
         GL.glDeleteFramebuffers(1, [self.framebuffer])
         if self.texture:
             GL.glDeleteTextures([self.texture])
@@ -141,7 +144,7 @@ class Target:
 
 
 def _shadow_texture(size: tuple[int, int]) -> int:
-    """Depth that a sampler compares with, four neighbours weighted by the hardware."""
+    """Create a depth texture for comparisons by a sampler, with four neighbours weighted by the hardware."""
     number = int(GL.glGenTextures(1))
     GL.glBindTexture(GL.GL_TEXTURE_2D, number)
     _parameters(GL.GL_LINEAR, GL.GL_LINEAR, GL.GL_CLAMP_TO_EDGE)
@@ -151,22 +154,22 @@ def _shadow_texture(size: tuple[int, int]) -> int:
     return number
 
 
-# The parts of the floor on which something falls: only there the floor is drawn again.
+# The parts of the floor with light, shadow or marks, which alone are drawn again.
 #
-# Found tile by tile, as cpu/floor.py does. Import only after `available.load_pyrender`.
+# They are found tile by tile, as in cpu/floor.py. Import only after `available.load_pyrender`.
 
-_NEAR = 0.03  # metres above or below the ground under a foot: other ground has nothing of it
+_NEAR = 0.03  # metres above or below the ground under a foot within which the ground has its marks
 
 
 def has_ground(tiles: GroundTiles) -> NDArray[np.bool_]:
-    """Which tiles (t, u) have any ground; the values of the others mean nothing."""
+    """Return whether each tile (t, u) has ground; the values of the other tiles have no meaning."""
     return tiles.low[..., 0] <= tiles.high[..., 0]
 
 
 def shaded(tiles: GroundTiles, light: Array, part: Array, spread: float) -> NDArray[np.bool_]:
-    """Which tiles (t, u) the shadow may fall on. light : `film.scene.renderer.light_matrix`
+    """Return whether the shadow may fall on each tile (t, u). light : `film.scene.renderer.light_matrix`
 
-    part : `film.scene.renderer.within`; spread : distance of the shadow's taps, part of the map
+    part : `film.scene.renderer.within`; spread : distance of the shadow's taps, as a share of the map
     """
     out = np.ones(tiles.panel.shape, dtype=bool)
     for axis in (0, 1):
@@ -181,9 +184,9 @@ def shaded(tiles: GroundTiles, light: Array, part: Array, spread: float) -> NDAr
 
 
 def trodden(tiles: GroundTiles, feet: Array, far: float) -> NDArray[np.bool_]:
-    """Which tiles the marks of a foot may fall on.
+    """Return whether the marks of a foot may fall on each tile.
 
-    feet : `renderer.feet_on_floor`; far : metres from the line between heel and toe, pixels apart
+    feet : `renderer.feet_on_floor`; far : reach from the line between heel and toe, metres, without the size of pixels
     """
     out = np.zeros(tiles.panel.shape, dtype=bool)
     reach = far + tiles.coarse
@@ -196,13 +199,13 @@ def trodden(tiles: GroundTiles, feet: Array, far: float) -> NDArray[np.bool_]:
 
 
 def is_lit(tiles: GroundTiles, lit: Array) -> NDArray[np.bool_]:
-    """Which tiles have a pixel of a lit panel. lit : (panels,)"""
-    some = np.append(lit > 0.0, False)  # -1: no panel
+    """Return whether each tile has a pixel of a lit panel. lit : (panels,)"""
+    some = np.append(lit > 0.0, False)  # the last entry is for -1, no panel
     return np.where(tiles.panel == SEVERAL, bool(some.any()), some[np.maximum(tiles.panel, -1)])
 
 
 def rectangles(touched: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Neighbours in a row together: x0, y0, x1, y1 in pixels of the standing picture, (n, 4)."""
+    """Return rectangles of neighbouring tiles in a row: x0, y0, x1, y1 in pixels of the still picture, (n, 4)."""
     edges = np.diff(np.pad(touched.astype(np.int8), ((0, 0), (1, 1))), axis=1)
     row, first = np.nonzero(edges == 1)
     last = np.nonzero(edges == -1)[1]
@@ -210,7 +213,7 @@ def rectangles(touched: NDArray[np.bool_]) -> NDArray[np.int64]:
 
 
 class Patches:
-    """Draws rectangles with the current program, made of patches.vert."""
+    """Rectangles that are drawn with the current program, which is made of patches.vert."""
 
     def __init__(self) -> None:
         self._array, self._buffer = int(GL.glGenVertexArrays(1)), int(GL.glGenBuffers(1))
@@ -221,7 +224,7 @@ class Patches:
         GL.glBindVertexArray(0)
 
     def draw(self, boxes: NDArray[Any], size: tuple[int, int]) -> None:
-        """boxes : x0, y0, x1, y1 in pixels of a target of that size, (n, 4)"""
+        """Draw rectangles. boxes : x0, y0, x1, y1 in pixels of a target of that size, (n, 4)"""
         if not len(boxes):
             return
         ends = boxes / np.array([*size, *size]) * 2.0 - 1.0
@@ -235,20 +238,20 @@ class Patches:
         GL.glBindVertexArray(0)
 
     def delete(self) -> None:
-        """Give its memory back."""
+        """Free the memory."""
         GL.glDeleteVertexArrays(1, [self._array])
         GL.glDeleteBuffers(1, [self._buffer])
 
 
-# The still part of the picture as textures. cpu/standing.py draws it, once for each camera, so that it cannot differ.
+# The still part of the picture as textures. cpu/standing.py draws it for both renderers, once for each camera.
 #
 # Import only after `available.load_pyrender`.
 
 
 class StandingTarget:
-    """What `cpu.standing.Background` holds, for the shader ground.frag; `target` has the picture to copy.
+    """The data of `cpu.standing.Background` for the shader ground.frag; `target` has the picture to copy.
 
-    tiles : what squares of it hold, for patches.vert; has_ground : bool (t, u), which of them hold any
+    tiles : the ground in squares of pixels, for patches.vert; has_ground : bool (t, u), whether each tile has ground
     """
 
     def __init__(self, scene: Scene, camera: Camera, size: tuple[int, int], samples: int) -> None:
@@ -269,6 +272,6 @@ class StandingTarget:
         self.panels = texture(np.dstack(info))
 
     def delete(self) -> None:
-        """Give its memory back."""
+        """Free the memory."""
         self.target.delete()
         GL.glDeleteTextures([self.colour, self.ground, self.panels])

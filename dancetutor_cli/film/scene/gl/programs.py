@@ -17,20 +17,23 @@ from dancetutor_cli.film.scene.geometry import PackedMeshes
 from dancetutor_cli.film.scene.gl.available import SHADERS
 from dancetutor_cli.film.scene.renderer import DancerVisibility
 
-# pyrender's shader programs with the project's shaders, with uniforms that are looked up once, and with error checks.
+# pyrender's shader programs with the project's shaders, with one look-up of each uniform, and with error checks.
 #
 # Import only after `available.load_pyrender`.
 
 
 class Program(ShaderProgram):  # type: ignore[misc]
-    """A shader program. Unlike pyrender's, a uniform that cannot be set is an error, not silence."""
+    """A shader program. Unlike in pyrender, a uniform that cannot be set is an error."""
 
     def __init__(self, vertex_shader: str, fragment_shader: str) -> None:
         super().__init__(vertex_shader, fragment_shader)
         self._places: dict[str, tuple[int, int]] = {}  # name: place and type
 
     def _add_to_context(self) -> None:
-        """Compile and link. Not validated as PyOpenGL does: samplers of different kinds get their units later."""
+        """Compile and link the program.
+
+        PyOpenGL's validation is left out, because samplers of different kinds get their units later.
+        """
         self._vao_id = GL.glGenVertexArrays(1)
         parts = [
             gl_shaders.compileShader(self._load(self.vertex_shader), GL.GL_VERTEX_SHADER),
@@ -53,18 +56,18 @@ class Program(ShaderProgram):  # type: ignore[misc]
 
     @property
     def number(self) -> int:
-        """OpenGL's name of the program."""
+        """The number of the program in OpenGL."""
         return int(self._program_id)
 
     @property
     def empty_array(self) -> int:
-        """A vertex array without attributes, for triangles that the shader makes."""
+        """A vertex array without attributes, for triangles that the shader creates."""
         return int(self._vao_id)
 
     def set_uniform(self, name: str, value: Any, unsigned: bool = False) -> None:
         """Set a uniform: int, float, a vector (n,), some vectors (k, n), or a matrix (4, 4).
 
-        One that the driver has optimised away is no error: it is not in the program then.
+        A uniform that the driver has optimised away, and that is not in the program, is ignored.
         """
         place, kind = self._places.get(name, (-1, 0))
         if place < 0:
@@ -82,7 +85,7 @@ class Program(ShaderProgram):  # type: ignore[misc]
                 setters[array.shape[-1]](place, 1 if array.ndim == 1 else len(array), array)
 
     def use(self, **uniforms: Any) -> None:
-        """Make it the current program and set uniforms."""
+        """Make this the current program and set uniforms."""
         self._bind()
         for name, value in uniforms.items():
             self.set_uniform(name, value)
@@ -95,7 +98,7 @@ class ProgramCache(ShaderProgramCache):  # type: ignore[misc]
         super().__init__(str(SHADERS))
 
     def program(self, vertex: str, fragment: str) -> Program:
-        """The program of two shader files, compiled once."""
+        """Return the program of two shader files, which is compiled once."""
         key = (vertex, fragment)
         if key not in self._program_cache:
             program = Program(str(SHADERS / vertex), str(SHADERS / fragment))
@@ -106,12 +109,13 @@ class ProgramCache(ShaderProgramCache):  # type: ignore[misc]
         return found
 
 
-# OpenGL's state that the passes of the renderer set. Import only after `available.load_pyrender`.
+# The OpenGL state for the passes of the renderer. Import only after `available.load_pyrender`.
 
 
 def set_state() -> None:
-    """The state that all passes need. The picture's first row is y = 0, upside down for OpenGL: triangles turn
-    clockwise.
+    """Set the state that all passes need.
+
+    The picture's first row is y = 0, upside down for OpenGL, so that triangles are clockwise.
     """
     GL.glEnable(GL.GL_CULL_FACE)
     GL.glFrontFace(GL.GL_CW)
@@ -137,7 +141,7 @@ def scissor(box: NDArray[Any]) -> None:
 
 
 def cover(program: Program) -> None:
-    """Run the program's fragment shader for every pixel that the scissor leaves."""
+    """Run the program's fragment shader for every pixel inside the scissor box."""
     GL.glBindVertexArray(program.empty_array)
     GL.glDisable(GL.GL_CULL_FACE)
     GL.glDrawArrays(GL.GL_TRIANGLES, 0, 3)
@@ -152,7 +156,7 @@ _FLOAT = 4  # bytes
 
 
 class SkinnedPrimitive(Primitive):  # type: ignore[misc]
-    """All triangles of one material; attributes in the order of shaders/skinned.vert."""
+    """All triangles of one material, with attributes in the order of shaders/skinned.vert."""
 
     def __init__(self, mesh: PackedMeshes, material: int) -> None:
         super().__init__(mesh.positions, normals=mesh.normals, texcoord_0=mesh.uv)
@@ -189,7 +193,7 @@ class SkinnedPrimitive(Primitive):  # type: ignore[misc]
         GL.glBindVertexArray(0)
 
     def draw(self, part: DancerVisibility) -> None:
-        """Draw it, or the part of it that is shown, with the current program."""
+        """Draw the visible part of these triangles with the current program."""
         self._bind()
         count = {
             DancerVisibility.NOTHING: 0,

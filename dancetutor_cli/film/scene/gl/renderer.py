@@ -1,6 +1,7 @@
 """The OpenGL renderer: the same picture as cpu/, with skinning, shadow, outline and light in shaders.
 
-Import only after `available.load_pyrender`. Made in the process that uses it, after a spawn: contexts survive no fork.
+Import only after `available.load_pyrender`. Create a renderer in the process that uses it, because a context does not
+survive a fork.
 """
 
 from __future__ import annotations
@@ -76,15 +77,14 @@ from dancetutor_cli.film.scene.scene import SOLE_RADIUS, FrameState, Scene, chec
 from dancetutor_cli.run.errors import UnavailableError, UsageError
 
 _OFF_SURFACE = (0.012, 0.006)
-_RING = 0.032  # metres from a sole: no ring of ground.frag is farther out
+_RING = 0.032  # greatest distance of a ring of ground.frag from a sole, metres
 _SHADOW_UNIT, _SKIN_UNIT, _FIRST_UNIT = 4, 5, 0
 
 
 class _DancerInFrame(NamedTuple):
-    """The dancer in one frame. part : what of her is shown; joints : (j, 4, 4); places :
-    `film.scene.renderer.places_of`
+    """The dancer in one frame. part : her visible part; joints : (j, 4, 4)
 
-    cast, light : where her shadow map is, and its matrix (4, 4)
+    places : `film.scene.renderer.places_of`; cast, light : the place of her shadow map, and its matrix (4, 4)
     """
 
     part: DancerVisibility
@@ -95,7 +95,7 @@ class _DancerInFrame(NamedTuple):
 
 
 class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
-    """Draws through EGL. See `film.scene.renderer.Renderer`."""
+    """A renderer through EGL. See `film.scene.renderer.Renderer`."""
 
     name = "gl"
 
@@ -108,8 +108,8 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         self._program_cache = ProgramCache()
         device = bytes(GL.glGetString(GL.GL_RENDERER)).decode("utf-8", "replace")
         most = int(GL.glGetIntegerv(GL.GL_MAX_SAMPLES))
-        # Two by two pixels for each of the picture's: cheaper than as many samples if a processor draws. If there are
-        # to be more samples, they are samples of these pixels.
+        # Draw two by two pixels for each pixel of the picture, which is faster than four samples if a processor draws.
+        # More samples are samples of these pixels.
         self._fine = min(SAMPLES[quality], 2)
         inner = min((SAMPLES[quality] // self._fine) ** 2, most)
         self._samples = inner if inner > 1 else 0
@@ -165,7 +165,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         return self._read()
 
     def close(self) -> None:
-        """Free the context and all that is in it."""
+        """Free the context and everything in it."""
         if self._platform is not None:
             self._platform.make_current()
             for primitive, *_ in self._primitives:
@@ -245,12 +245,12 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         look, (width, height) = self._scene.look.toon, self._size
         wide = look.outline_width * pixels_per_metre(camera, dancer.joints, self._size)
         box = pixel_box(camera, dancer.places, self._size)
-        around = math.ceil(wide)  # her outline stands out so far
+        around = math.ceil(wide)  # width of the outline around the dancer
         box = np.clip(box + np.array([-around, -around, around, around]), 0, [width, height, width, height])
         if box[0] >= box[2] or box[1] >= box[3]:
             return
         self._drawn.bind()
-        GL.glDisable(GL.GL_SCISSOR_TEST)  # to clear all of it is quicker than a part where a processor draws
+        GL.glDisable(GL.GL_SCISSOR_TEST)  # if a processor draws, it clears the whole target faster than a part
         GL.glClear(GL.GL_COLOR_BUFFER_BIT | GL.GL_DEPTH_BUFFER_BIT)
         scissor(self._fine * box)
         GL.glEnable(GL.GL_DEPTH_TEST)
@@ -279,7 +279,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             program.set_uniform("tint", tint)
             program.set_uniform("least", least)
             primitive.draw(dancer.part)
-        # with a shader of its own: a processor would compute the dancer's light, too, wherever it tries the outline
+        # The outline has its own shader, so that a processor does not compute the dancer's light for its pixels.
         self._use_skinned("outline.frag", dancer, outline=float(wide), line=np.array(look.outline) / 255.0, **view)
         GL.glCullFace(GL.GL_FRONT)
         for primitive, *_ in self._primitives:
@@ -287,7 +287,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         self._lay_over(box)
 
     def _lay_over(self, box: NDArray[Any]) -> None:
-        """Put the dancer on the picture: each pixel is the mean of everything that was drawn for it."""
+        """Draw the dancer over the picture: each pixel is the mean of its fine pixels and samples."""
         if self._samples:
             GL.glDisable(GL.GL_SCISSOR_TEST)
             x0, y0, x1, y1 = (int(v) for v in self._fine * box)
@@ -316,12 +316,12 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
 
 
 def _foot_reach(light: LightLook) -> float:
-    """Metres from the line between heel and toe that marks and contact shadows reach, pixels apart."""
+    """Return the reach of marks and contact shadows from the line between heel and toe, without the size of pixels."""
     return SOLE_RADIUS + max(1.6 * light.contact_soft, _RING)
 
 
 def _start(size: tuple[int, int]) -> EGLPlatform:
-    """A context on the GPU if there is one, else on the first device: Mesa's software driver."""
+    """Start a context on the GPU if there is one, else on the first device, which is Mesa's software driver."""
     try:
         devices = query_devices()
         number = gpu_device() or 0
