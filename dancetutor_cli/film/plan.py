@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class FilmPlan:
-    """All data of a film that exist before its first frame. Worker processes get the plan pickled.
+    """The data of a film that are known before its first frame. Worker processes get the plan pickled.
 
     beats : float64 (clock.frames,), the beat that each frame shows, as drawn
     directions : for each column, degrees clockwise from up, None for a middle panel

@@ -199,7 +199,7 @@ def _feet(
 ) -> NDArray[np.bool_]:
     """Return whether each vertex (v,) belongs to a foot: it depends mostly on ankle and toes, or is part of a shoe.
 
-    A part that moves partly with the shin, such as the rim of a high shoe, would leave a dark hole if it were cut off.
+    Without a part that moves partly with the shin, such as the rim of a high shoe, there would be a dark hole.
     """
     share = _share(character, joints, weights, FEET)
     piece = _pieces(place[triangles], int(place.max()) + 1)[place]
