@@ -19,7 +19,8 @@ _STEP = np.zeros(256, dtype=bool)
 _STEP[list(b"124Ll")] = True
 _SPECIAL = np.zeros(256, dtype=bool)
 _SPECIAL[list(b"[\\{D" + PLAYERS)] = True
-_FOREIGN = re.compile(rb"[{%b]|D[LM]" % PLAYERS)  # not a letter for each column (StepF2, StepManiaX), or whose it is
+# cells that are not one letter for each column (StepF2, StepManiaX), or that name a player
+_FOREIGN = re.compile(rb"[{%b]|D[LM]" % PLAYERS)
 _STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
 _KEYSOUND = re.compile(rb"\[[^\]]*\]?")
 
@@ -28,8 +29,8 @@ _KEYSOUND = re.compile(rb"\[[^\]]*\]?")
 class StepRows:
     """The written rows that hold a step (`1`, `2`, `4`, `L`), in file order; n of them, c columns.
 
-    row : int64 (n,), place in the chart's `RowTable`
-    steps : bool (n, c), which columns
+    row : int64 (n,), index of the row in the chart's `RowTable`
+    steps : bool (n, c), whether each column holds a step
     """
 
     row: NDArray[np.int64]
@@ -40,7 +41,7 @@ class StepRows:
 
 
 def step_rows(data: bytes, chart: Chart) -> StepRows:
-    """Find the steps of a chart as written, whatever the timing makes of them; `data` are the bytes of its file."""
+    """Find the steps of a chart as they are written, whatever its timing; `data` holds the bytes of its file."""
     columns = chart.columns
     start, end = chart.rows.start, chart.rows.end
     steps = np.zeros((len(start), columns), dtype=bool)
@@ -65,7 +66,7 @@ def step_rows(data: bytes, chart: Chart) -> StepRows:
 
 
 def _columns_at(chart: Chart, tick: int) -> NDArray[np.int16]:
-    """Where the notes that are steps stand at a tick, as the chart was read."""
+    """The columns of the steps at a tick, taken from the notes of the chart."""
     notes = chart.notes
     first, last = np.searchsorted(notes.tick, [tick, tick + 1])
     return notes.column[first:last][np.isin(notes.kind[first:last], _STEPS)]
@@ -75,9 +76,9 @@ def _columns_at(chart: Chart, tick: int) -> NDArray[np.int16]:
 class MeasureLine:
     """The rest of the line on which a measure opens, after its `:` or `,`.
 
-    measure : its number
-    start : offset of the comment's `//`, or without a comment where one may be put
-    end : end of the comment, before the line's end; without a comment the same as `start`
+    measure : number of the measure
+    start : offset of the comment's `//`; without a comment, the offset at which a comment may be inserted
+    end : offset of the end of the comment, before the line break; without a comment, the same as `start`
     """
 
     measure: int
@@ -88,8 +89,8 @@ class MeasureLine:
 def measure_lines(data: bytes, chart: Chart) -> Iterator[MeasureLine]:
     """The opening lines of a chart's measures that have a comment or may get one.
 
-    Left out are lines on which rows already stand, and lines with a CR of their own inside: some readers end a line
-    there, so that a comment would swallow rows or not reach as far as it should.
+    Lines that already hold rows are left out. Lines with a CR in the middle are left out too: some readers end the line
+    at the CR, so a comment could hide rows or end too early.
     """
     for measure, anchor in enumerate(chart.measures.anchor.tolist()):
         end = data.find(b"\n", anchor)
@@ -113,7 +114,7 @@ def markers_in(comment: bytes) -> list[re.Match[bytes]]:
 
 @dataclass(frozen=True, slots=True)
 class _Pin:
-    """One pinned measure. offset : of its letters in the file."""
+    """One pinned measure. offset : where its letters begin in the file, in bytes"""
 
     measure: int
     line: int
@@ -122,7 +123,7 @@ class _Pin:
 
 
 def pinned(song: Song, chart: Chart) -> tuple[list[CellOverride], list[FeetProblem]]:
-    """Every pinned cell as it stands, and the measures that could not be read."""
+    """Return every pinned cell of a chart, and a problem for each pinned measure that could not be read."""
     pins = list(_pins(song.data, chart))
     if not pins:
         return [], []
@@ -151,7 +152,7 @@ def pinned(song: Song, chart: Chart) -> tuple[list[CellOverride], list[FeetProbl
 
 
 def has_pins(data: bytes, chart: Chart) -> bool:
-    """Whether there may be a pinned measure in a chart."""
+    """Whether the chart may have a pinned measure."""
     return data.find(b"{dt1!", *chart.notes_span) >= 0
 
 
@@ -166,7 +167,7 @@ def _pins(data: bytes, chart: Chart) -> Iterator[_Pin]:
 
 
 def _check_shape(tokens: list[Token], columns: list[list[int]]) -> None:
-    """As many tokens as rows, and in each as many letters as steps; else NotationError at the first that is wrong."""
+    """Check that each row has a token, and each step a letter. Raises NotationError at the first mismatch."""
     if len(tokens) != len(columns):
         at = tokens[len(columns)].at if len(tokens) > len(columns) else 0
         raise NotationError(f"{len(tokens)} tokens for {len(columns)} rows with steps", at)
@@ -178,7 +179,7 @@ def _check_shape(tokens: list[Token], columns: list[list[int]]) -> None:
 
 
 def _parse_token(tick: int, token: Token, columns: list[int], line: int, start: int) -> Iterator[CellOverride]:
-    """What one token says. start : column of the marker's text in its line"""
+    """Yield the overrides of one token. start : column at which the marker's text begins in its line"""
     for letter, place, column in zip(token.letters, token.places, columns, strict=True):
         if letter in MEANING:
             limb, part = MEANING[letter]

@@ -1,4 +1,4 @@
-"""Which charts an entry of dancetutor.yaml is about, and mistakes in that."""
+"""The `when` conditions of dancetutor.yaml, which select the charts that an entry applies to."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from dancetutor_cli.run.schema import SEVERAL, Entries, Parsed, Texts
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """When a layer holds; an empty part always does.
+    """The condition under which an entry applies; an empty field matches everything.
 
     paths : shell patterns, relative to the folder of the configuration `root`
-    steps_types : shell patterns in lower case; difficulties : names of today in lower case
+    steps_types : shell patterns in lower case; difficulties : current names in lower case
     meters : least and greatest meter
     """
 
@@ -30,11 +30,11 @@ class Condition:
 
     @property
     def is_about_charts(self) -> bool:
-        """Whether it can only be decided for a chart."""
+        """Whether the condition depends on the chart, not only on the path."""
         return bool(self.steps_types or self.difficulties or self.meters)
 
     def holds_for_path(self, path: Path) -> bool:
-        """Whether one of the patterns fits; a pattern without a slash fits any part of the path, as in .gitignore."""
+        """Whether a pattern matches the path; as in .gitignore, a pattern without a slash matches any part of it."""
         if not self.paths:
             return True
         path = path.absolute()
@@ -47,7 +47,7 @@ class Condition:
         )
 
     def holds_for_chart(self, steps_type: str, difficulty: str, meter: int) -> bool:
-        """Whether steps type, difficulty and meter fit."""
+        """Whether the steps type, the difficulty and the meter match."""
         return (
             (not self.steps_types or any(fnmatchcase(steps_type.lower(), pattern) for pattern in self.steps_types))
             and (not self.difficulties or difficulty.lower() in self.difficulties)
@@ -56,7 +56,7 @@ class Condition:
 
 
 def _steps_type(text: Any) -> str:
-    """A steps type or a shell pattern of such, that fits one at least."""
+    """Return a steps type, or a shell pattern that matches at least one known steps type; else raise ValueError."""
     pattern = names.steps_type(str(text))
     if not any(fnmatchcase(known, pattern) for known in names.COLUMNS):
         near = did_you_mean(pattern, names.COLUMNS)
@@ -66,7 +66,7 @@ def _steps_type(text: Any) -> str:
 
 
 def _difficulty(text: Any) -> str:
-    """A difficulty under today's name; old ones ("Heavy", "Oni") are known as everywhere."""
+    """Return the current name of a difficulty, in lower case; old names such as "Heavy" and "Oni" are accepted."""
     name, known = names.difficulty(str(text), "", 0, old=True)
     if not known:
         near, there = did_you_mean(str(text), names.DIFFICULTIES), ", ".join(names.DIFFICULTIES)
@@ -75,7 +75,7 @@ def _difficulty(text: Any) -> str:
 
 
 def _meters(value: Any) -> tuple[int, int]:
-    """A meter, or a range written "1-7", "8-" or "-7"."""
+    """Parse a meter, or a range of meters written "1-7", "8-" or "-7"."""
     low, dash, high = str(value).partition("-")
     try:
         return int(low or 0), int(high or 1_000_000) if dash else int(low)
@@ -85,7 +85,7 @@ def _meters(value: Any) -> tuple[int, int]:
 
 @dataclass(eq=False, repr=False)
 class _WhenKeys:
-    """What `when` of an entry may say; each one value or a list, as in `Condition`."""
+    """The keys of `when` in an entry, as in `Condition`; every key except `meter` also takes a list."""
 
     HYPHENS: ClassVar[bool] = True
     path: Texts = ()
@@ -98,5 +98,5 @@ When = Annotated[_WhenKeys, Entries(1)]
 
 
 def condition_of(when: When, folder: Path) -> Condition:
-    """When an entry holds. folder : of the file, which its paths are relative to"""
+    """Return the condition of an entry. folder : folder of the file, to which the paths of the entry are relative"""
     return Condition(str(folder.absolute()), when.path, when.steps_type, when.difficulty, when.meter)

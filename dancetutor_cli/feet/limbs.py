@@ -15,7 +15,7 @@ from dancetutor_cli.run.yaml_files import load
 
 
 class Limb(IntEnum):
-    """Who presses a panel. `NONE`: there is no step in that cell; `UNPLAYED`: no limb is left for the step."""
+    """The limb that presses a panel. `NONE`: the cell has no step; `UNPLAYED`: no limb is free for the step."""
 
     LEFT_FOOT = 0
     RIGHT_FOOT = 1
@@ -26,18 +26,18 @@ class Limb(IntEnum):
 
 
 class Part(IntEnum):
-    """Which part of a foot: only brackets (one foot on two panels) distinguish heel and toe."""
+    """The part of a foot; only brackets (one foot on two panels) distinguish the heel from the toe."""
 
     WHOLE = 0
     HEEL = 1
     TOE = 2
 
 
-# The letters of feet, `{dt1 LR(Lr)}`: how markers in files are written and read.
+# The letters of feet in markers, such as `{dt1 LR(Lr)}`.
 #
-# One token stands for each row of note data that holds a step: a letter, or for several steps their letters from left
-# to right in brackets. `L` and `R` are the feet (of a bracket: the heel), `l` and `r` their toes, `<` and `>` the left
-# and right hand, `.` is unknown.
+# One token stands for each row of note data that holds a step: one letter, or the letters of several steps from left to
+# right in parentheses. `L` and `R` are the feet (in a bracket, the heels), `l` and `r` the toes, `<` and `>` the hands.
+# `.` is an unknown limb.
 
 UNKNOWN = "."
 _LETTERS: dict[tuple[int, int], str] = {
@@ -60,27 +60,27 @@ MEANING: dict[str, tuple[Limb, Part]] = {
 }
 LETTERS = frozenset(MEANING) | {UNKNOWN}
 
-# A marker inside a comment; the "!" pins the measure: its letters are the author's word. `{dt1 ` is our own, whatever
-# an edit by hand has made of the letters.
+# A marker inside a comment. With "!", the author has pinned the measure, and the solver keeps its letters. A marker
+# that begins with `{dt1 ` belongs to this program, even if somebody has edited its letters.
 MARKER = re.compile(rb"\{dt1(?:(?P<pin>!)[ \t]*|[ \t]+)(?P<text>[^{}\r\n]*)\}")
 _TOKEN = re.compile(r"[ \t]*(?:\((?P<group>[^()]*)\)|(?P<letter>[^()]))")
 
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """The letters of one row. places : offset of each in the marker's text"""
+    """The letters of one row. places : offset of each letter in the marker's text"""
 
     letters: str
     places: tuple[int, ...]
 
     @property
     def at(self) -> int:
-        """Where the row's letters begin."""
+        """The offset at which the letters of the row begin."""
         return self.places[0]
 
 
 class NotationError(ValueError):
-    """Text that is not a row of tokens; `at` is where it stops making sense."""
+    """A marker's text that cannot be parsed; `at` is the offset of the first wrong character."""
 
     def __init__(self, message: str, at: int) -> None:
         super().__init__(message)
@@ -93,13 +93,13 @@ def letter(limb: int, part: int) -> str:
 
 
 def marker(tokens: Iterable[str]) -> bytes:
-    """The marker of a measure; `tokens` has the letters of each row with a step."""
+    """Return the marker of a measure; `tokens` holds the letters of each row with a step."""
     text = "".join(letters if len(letters) == 1 else f"({letters})" for letters in tokens)
     return b"{dt1 " + text.encode("ascii") + b"}"
 
 
 def parse(text: bytes) -> list[Token]:
-    """The tokens of a marker's text; blanks between them do not count. Raises NotationError."""
+    """Return the tokens of a marker's text; blanks between tokens are ignored. Raises NotationError."""
     return list(_tokens(text.decode("latin-1").rstrip(" \t")))
 
 
@@ -126,12 +126,12 @@ def _printable(character: str) -> str:
     return character if character.isprintable() else f"\\x{ord(character):02x}"
 
 
-# The colours that mean left foot, right foot and the hands, everywhere in the program (configs/colours.yaml).
+# The colours of the left foot, the right foot and the hands, everywhere in the program (configs/colours.yaml).
 
 
 @dataclass(frozen=True, slots=True)
 class LimbColours:
-    """sRGB colours, 0..255, of what presses a panel."""
+    """The sRGB colours, 0..255, of the limbs that press panels."""
 
     left_foot: RGB
     right_foot: RGB
@@ -140,20 +140,21 @@ class LimbColours:
 
     @property
     def by_limb(self) -> tuple[RGB, RGB, RGB, RGB]:
-        """In the order of `feet.limbs.Limb`: left foot, right foot, left hand, right hand."""
+        """The colours in the order of `feet.limbs.Limb`: left foot, right foot, left hand, right hand."""
         return (self.left_foot, self.right_foot, self.left_hand, self.right_hand)
 
 
-LIMBS = frozenset(field.name for field in fields(LimbColours))  # names that say: this wears a limb's colour
+LIMBS = frozenset(field.name for field in fields(LimbColours))  # names of parts that have the colour of a limb
 
 
 @dataclass(frozen=True, slots=True)
 class PartnerColours:
-    """Which colours the second of two dancers wears in place of the first one's.
+    """How the clothes of the second of two dancers are recoloured.
 
-    hues : degrees on the colour circle, from and to, that are clothes; turn : degrees by which they are others
-    least : share of colour that one must have to count, 0..1
-    tint : sRGB that a character without such colours is tinted with
+    hues : first and last hue of the clothes, degrees on the colour circle; turn : degrees by which these hues are
+    shifted
+    least : least saturation of a colour that is shifted, 0..1
+    tint : sRGB colour with which a character without these hues is tinted
     """
 
     hues: tuple[float, float]

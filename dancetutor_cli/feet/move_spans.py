@@ -1,4 +1,4 @@
-"""Moves of a play that last for several rows, such as crossovers, streams and drills: from where to where."""
+"""The first and last rows of moves that last for several rows, such as crossovers, streams and drills."""
 
 from __future__ import annotations
 
@@ -14,16 +14,17 @@ if TYPE_CHECKING:
 
     from dancetutor_cli.feet.play import Play
 
-HALF, FULL = "crossover-half", "crossover-full"  # a row has one of them as long as the feet are crossed
+HALF, FULL = "crossover-half", "crossover-full"  # every row in which the feet are crossed has one of the two
 CROSSED = (HALF, FULL)
 
 
 @dataclass(frozen=True, slots=True)
 class CrossoverSpan:
-    """Rows, one after the other, in which the feet are crossed.
+    """A run of consecutive rows in which the feet are crossed.
 
-    first, last : the first and the last of these rows; end : the row that uncrosses the feet, or the play's last
-    begins : the first row and its kind of `CROSSED`; also the row in which a half crossover becomes a full one
+    first, last : the first and the last of these rows; end : the row that uncrosses the feet, or the last row of the
+    play
+    begins : the first row and its kind (one of `CROSSED`), and the row in which a half crossover becomes a full one
     """
 
     first: int
@@ -33,13 +34,13 @@ class CrossoverSpan:
 
 
 def spans(play: Play, names: Collection[str]) -> list[tuple[int, int]]:
-    """First and last row of each run of rows that have one of these names of `feet.solver.vocabulary.EVENTS`."""
+    """The first and last row of each run of rows with one of these names of `feet.solver.vocabulary.EVENTS`."""
     inside = np.array([any(name in moves for name in names) for moves in play.moves], dtype=bool)
     return [(first, after - 1) for first, after in runs(inside).tolist()]
 
 
 def crossover_spans(play: Play) -> list[CrossoverSpan]:
-    """Where the feet are crossed, in the order of rows."""
+    """The spans of rows in which the feet are crossed, in the order of rows."""
     found = []
     for first, last in spans(play, CROSSED):
         full = next((row for row in range(first, last + 1) if FULL in play.moves[row]), None)

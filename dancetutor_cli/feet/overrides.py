@@ -1,4 +1,4 @@
-"""Feet that people have set in a chart, mistakes in them, and those that nobody can dance."""
+"""The feet that people have set in a chart, and the contradictions in them."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from dancetutor_cli.feet.pads import load_pad
 
 @dataclass(frozen=True, slots=True)
 class Overrides:
-    """Limbs that a person has laid down, for the solver to keep; n entries, sorted by (tick, column), each cell once.
+    """The limbs that a person has set and the solver keeps: n entries, sorted by (tick, column), each cell once.
 
     ticks : int64 (n,), 1/48 beats
     columns : int16 (n,)
     limbs : int8 (n,), `feet.limbs.Limb`
-    part : uint8 (n,), `feet.limbs.Part`; WHOLE also where nobody said which part of the foot
+    part : uint8 (n,), `feet.limbs.Part`; WHOLE also where the part of the foot is not specified
     """
 
     ticks: NDArray[np.int64]
@@ -35,12 +35,12 @@ class Overrides:
 
     @staticmethod
     def none() -> Overrides:
-        """No override at all."""
+        """Return an empty set of overrides."""
         return _NONE
 
     @staticmethod
     def of(cells: dict[tuple[int, int], tuple[int, int]]) -> Overrides:
-        """From {(tick, column): (limb, part)}."""
+        """Make overrides from {(tick, column): (limb, part)}."""
         keys = sorted(cells)
         values = [cells[key] for key in keys]
         return Overrides(
@@ -51,7 +51,7 @@ class Overrides:
         )
 
     def cells(self) -> dict[tuple[int, int], tuple[int, int]]:
-        """As {(tick, column): (limb, part)}."""
+        """Return the overrides as {(tick, column): (limb, part)}."""
         keys = zip(self.ticks.tolist(), self.columns.tolist(), strict=True)
         return dict(zip(keys, zip(self.limbs.tolist(), self.part.tolist(), strict=True), strict=True))
 
@@ -61,9 +61,9 @@ _NONE = Overrides.of({})
 
 @dataclass(frozen=True, slots=True)
 class Ignores:
-    """Findings that a person does not want to see at some rows, in SMEditor's words or by rule.
+    """The findings that a person has silenced at some rows, by SMEditor's codes or by the linter's rules.
 
-    codes : {tick: of "DS" (doublestep), "FS" (footswitch missed), "AM" (ambiguous) those that are silenced there}
+    codes : {tick: the silenced codes: "DS" (doublestep), "FS" (footswitch missed), "AM" (ambiguous)}
     rules : {tick: codes or names of the linter's rules, or beginnings of codes}
     """
 
@@ -71,21 +71,21 @@ class Ignores:
     rules: Mapping[int, frozenset[str]] = field(default_factory=dict)
 
     def silenced(self, tick: int, code: str) -> bool:
-        """Whether findings of this kind in the row at `tick` are not wanted."""
+        """Whether findings with this code are silenced in the row at `tick`."""
         return code in self.codes.get(tick, ())
 
     def silenced_rule(self, tick: int, code: str, name: str) -> bool:
-        """Whether findings of a rule of the linter are not wanted in the row at `tick`."""
+        """Whether findings of a rule of the linter are silenced in the row at `tick`."""
         cells = self.rules.get(tick, ())
         return any(name == one.lower() or code.startswith(one.upper()) or one.lower() == "all" for one in cells)
 
 
 @dataclass(frozen=True, slots=True)
 class FeetProblem:
-    """A contradiction in the feet that a person has set; the linter makes a finding of it.
+    """A contradiction in the feet that a person has set; the linter reports it as a finding.
 
     code : short stable name: "pin-count", "pin-syntax", "pin-far", "pin-twice", "pin-unplayable", "sme-unreadable", ...
-    line, column : 1-based place in the chart file (None: another file, named in the message)
+    line, column : 1-based place in the chart file (None: the place is in another file, which the message names)
     """
 
     code: str
@@ -94,7 +94,8 @@ class FeetProblem:
     column: int | None = None
 
 
-# Feet that nobody can dance: one foot on two far panels, one limb twice in a row, a foot that is needed in two places.
+# Contradictory overrides: one foot on two panels that are far apart, one limb twice in a row, or a step by a foot that
+# holds another panel.
 
 _NAMES = {
     Limb.LEFT_FOOT: "the left foot",
@@ -107,7 +108,7 @@ _Near = NDArray[np.bool_] | None  # (c, c): which panels one foot can press toge
 
 @dataclass(frozen=True, slots=True)
 class CellOverride:
-    """One cell that a person has given a limb. source : for messages; line, place : where, 1-based, None if unknown."""
+    """One cell whose limb a person has set. source : its name in messages; line, place : 1-based, None if unknown"""
 
     tick: int
     column: int
@@ -119,10 +120,10 @@ class CellOverride:
 
 
 def contradictions(chart: Chart, cells: Iterable[CellOverride]) -> tuple[list[CellOverride], list[FeetProblem]]:
-    """Divide the overrides into those that can be danced and those that contradict themselves.
+    """Divide the overrides into those that can be danced and the problems of those that cannot.
 
-    A row that contradicts itself is dropped as a whole. A step that contradicts a hold which its foot must keep
-    pressing is dropped alone.
+    A row that contradicts itself is dropped as a whole. Of a step that contradicts a hold of the same foot, only the
+    step is dropped.
     """
     ordered = sorted(cells, key=lambda s: (s.tick, s.column))
     if not ordered:
@@ -169,7 +170,7 @@ def _row_problem(row: Sequence[CellOverride], near: _Near) -> FeetProblem | None
 
 
 def _hold_problem(step: CellOverride, hold: CellOverride, near: _Near) -> FeetProblem | None:
-    """A step by a limb that holds another panel; a foot may reach a panel that is near with its other part."""
+    """Return the problem of a step by a limb that holds another panel; a foot may bracket a neighbouring panel."""
     name = _NAMES[Limb(step.limb)]
     if step.limb in (Limb.LEFT_HAND, Limb.RIGHT_HAND) or _far(step.column, hold.column, near):
         return _problem("feet-far", f"{name} cannot step on column {step.column} while it holds {hold.column}", step)

@@ -1,4 +1,6 @@
-"""A pad: where its panels are, which of them one foot can press together, and where the dancer waits."""
+"""The geometry of a pad: its panels, the pairs of panels that one foot can press together, and the place where the
+dancer waits.
+"""
 
 from __future__ import annotations
 
@@ -17,20 +19,20 @@ from dancetutor_cli.run.yaml_files import read
 
 MAX_PANELS = 10  # a row of the solver packs into 64 bits
 SQUARE = 3  # panels
-HOME_WIDTH = 0.25  # a foot on no panel stands so far beside the centre (docs/cost-model.md)
+HOME_WIDTH = 0.25  # panel widths from the centre to a foot that stands on no panel (docs/cost-model.md)
 
 
 @dataclass(frozen=True)
 class Pad:
-    """Geometry of a steps type; c panels in column order, lengths in panel widths, x right and y to the screen.
+    """The pad of a steps type: c panels in column order, lengths in panel widths, x to the right, y towards the screen.
 
     steps_type : "dance-single"
     names : c names of panels
     panels : float64 (c, 2), middle of each panel
-    arrows : float64 (c, 2), where the arrow on each panel points; (0, 0) where there is none
+    arrows : float64 (c, 2), direction of the arrow on each panel; (0, 0) for a panel without an arrow
     centre : (x, y) where the dancer waits
     home : columns on which the left and the right foot start
-    reach : panels at most so far apart are neighbours
+    reach : greatest distance between the middles of neighbouring panels
     """
 
     steps_type: str
@@ -46,24 +48,24 @@ class Pad:
 
     @cached_property
     def distances(self) -> NDArray[np.float64]:
-        """Distance between the middles of any two panels, (c, c)."""
+        """The distances between the middles of all pairs of panels, (c, c)."""
         difference = self.panels[:, None] - self.panels[None]
         return np.hypot(difference[..., 0], difference[..., 1])
 
     @cached_property
     def width(self) -> float:
-        """Distance along x between the middles of the outermost panels."""
+        """The distance along x between the middles of the outermost panels."""
         return float(np.ptp(self.panels[:, 0]))
 
     @cached_property
     def neighbours(self) -> NDArray[np.bool_]:
-        """Whether one foot can press two panels, (c, c); no panel is its own neighbour."""
+        """Whether one foot can press two panels at once, (c, c); no panel is its own neighbour."""
         near: NDArray[np.bool_] = (self.distances <= self.reach + 1e-6) & ~np.eye(len(self), dtype=bool)
         return near
 
     @cached_property
     def squares(self) -> NDArray[np.float64]:
-        """Middle of each square of three by three panels, (s, 2): one of single, two of double."""
+        """The middle of each square of three by three panels, (s, 2): one square for single, two for double."""
         low, high = self.panels.min(axis=0), self.panels.max(axis=0)
         count = int(np.floor((high[0] - low[0] + 1e-6) / SQUARE)) + 1
         along = (low[0] + high[0]) / 2 + SQUARE * (np.arange(count) - (count - 1) / 2)
@@ -71,11 +73,11 @@ class Pad:
 
     @property
     def directions(self) -> tuple[float | None, ...]:
-        """Where each panel's arrow points, degrees clockwise from up (to the screen); None for a middle panel."""
+        """The direction of each panel's arrow, degrees clockwise from up (to the screen); None for a middle panel."""
         return tuple(math.degrees(math.atan2(x, y)) % 360 if x or y else None for x, y in self.arrows.tolist())
 
     def mirrored(self, *, left_right: bool) -> NDArray[np.int64] | None:
-        """For each column the column of the mirrored panel, left-right or up-down; None if the pad is not symmetric."""
+        """The column of each column's mirror image, left-right or up-down; None if the pad is not symmetric."""
         sign = np.array([-1.0, 1.0] if left_right else [1.0, -1.0])
         image = np.array(self.centre) + (self.panels - self.centre) * sign
         apart = np.abs(image[:, None] - self.panels[None]).max(axis=2)
@@ -85,14 +87,14 @@ class Pad:
 
 
 def load_pad(steps_type: str, path: Path | None = None) -> Pad | None:
-    """The pad of a steps type, or None if there is none for it.
+    """Return the pad of a steps type, or None if the steps type has no pad.
 
     Parameters
     ----------
-    steps_type : as in chart files; case does not count
-    path : another file in the form of configs/pads.yaml
+    steps_type : the name as in chart files; case is ignored
+    path : another file in the format of configs/pads.yaml
 
-    Raises FileError for a file that is wrong, with line and the names that exist.
+    Raises FileError if the file is wrong; the message has the line and the valid names.
     """
     return load_pads(path or config_path("pads.yaml")).get(steps_type.lower())
 
@@ -102,7 +104,7 @@ _Panel = Annotated[tuple[Text, float, float, tuple[float, float]], Meaning("a pa
 
 @dataclass(frozen=True, slots=True)
 class _PadEntry:
-    """A pad in the file. panels : name, x, y, and where the arrow points; home : names of two of them"""
+    """A pad in the file. panels : name, x, y and arrow of each panel; home : names of two of the panels"""
 
     panels: Annotated[tuple[_Panel, ...], Entries(2, MAX_PANELS)]
     centre: tuple[float, float]
@@ -112,7 +114,7 @@ class _PadEntry:
 
 @cache
 def load_pads(path: Path) -> dict[str, Pad]:
-    """Every pad of a file in the form of configs/pads.yaml, by steps type. Raises FileError."""
+    """Load all pads of a file in the format of configs/pads.yaml, by steps type. Raises FileError."""
     source = read(path)
     return {name.lower(): _pad(source, name, pad) for name, pad in convert(source, dict[Text, _PadEntry]).items()}
 

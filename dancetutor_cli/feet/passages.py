@@ -1,4 +1,4 @@
-"""The hardest passages of a chart, read from the solver's play alone."""
+"""The hardest passages of a chart, found from the solver's play alone."""
 
 from __future__ import annotations
 
@@ -21,12 +21,15 @@ if TYPE_CHECKING:
 
 _CROSSED = ("crossover-half", "crossover-full")
 _SWITCHES = ("footswitch-up", "footswitch-down", "footswitch", "sideswitch-left", "sideswitch-right", "jump-footswitch")
-_SHORTEST = 0.12  # seconds: a measure that warps leave less of has no speed anyone could play
+_SHORTEST = 0.12  # seconds; a passage that warps make shorter than this has no meaningful speed
 
 
 @dataclass(frozen=True, slots=True)
 class PassageSettings:
-    """configs/passages.yaml. What a row weighs is `step` and the rest of what it is; a passage is `measures` long."""
+    """The keys of configs/passages.yaml.
+
+    A row weighs `step`, plus the weight of each of its moves; a passage is `measures` long.
+    """
 
     measures: Annotated[int, Bounds(0)]
     most: Annotated[int, Bounds(0)]
@@ -47,12 +50,13 @@ class PassageSettings:
 
 @dataclass(frozen=True, slots=True)
 class Passage:
-    """One passage: from measure `first` to where `last` begins, from `start` to `end` seconds.
+    """One passage: from the start of measure `first` to the start of measure `last`, from `start` to `end` seconds.
 
-    score : weight of its rows a second; rate : rows a second; steps : rows
-    crossovers : how often the left and the right foot cross over; turn : the farthest the dancer faces away, degrees
-    spins, brackets, footswitches, doublesteps, jacks, jumps, hands : rows with such a move
-    stream : rows in streams; unsure : rows in which the other foot is nearly as good
+    score : weight of the rows per second; rate : rows per second; steps : number of rows
+    crossovers : how often the left and the right foot cross over; turn : the largest angle between the dancer and the
+    screen, degrees
+    spins, brackets, footswitches, doublesteps, jacks, jumps, hands : number of rows with each move
+    stream : number of rows in streams; unsure : number of rows in which other limbs cost hardly more
     """
 
     first: int
@@ -77,15 +81,15 @@ class Passage:
 
 @cache
 def passage_settings() -> PassageSettings:
-    """The numbers of configs/passages.yaml; FileError says what is wrong with them."""
+    """Load configs/passages.yaml. Raises FileError if a value is wrong."""
     return load(config_path("passages.yaml"), PassageSettings)
 
 
 def hardest(play: Play, timing: Timing, settings: PassageSettings | None = None) -> tuple[Passage, ...]:
-    """The hardest passages, the hardest first; none overlap, none for a chart without steps.
+    """Return the hardest passages, the hardest first; passages do not overlap. A chart without steps has no passages.
 
-    Passages begin with a measure. Each is as many measures as the settings say (fewer at the chart's end), and its rows
-    weigh more a second than `harder` times the chart's mean.
+    A passage begins at the start of a measure and is `measures` of the settings long, or as long as a shorter chart.
+    Its rows weigh at least `harder` times as much per second as the mean of the chart.
     """
     settings = settings or passage_settings()
     stepped = _visible_steps(play)
@@ -120,30 +124,30 @@ def hardest(play: Play, timing: Timing, settings: PassageSettings | None = None)
 
 
 def _visible_steps(play: Play) -> NDArray[np.bool_]:
-    """Which cells (n, c) a person sees a step in: not the virtual taps of rolls."""
+    """Whether each cell (n, c) has a step that a person sees; the virtual taps of rolls are left out."""
     steps = play.rows.steps
     return np.asarray((steps != StepKind.NONE) & (steps != StepKind.ROLL_TAP))
 
 
 def _marks(play: Play, rows: NDArray[np.int64], names: tuple[str, ...]) -> NDArray[np.bool_]:
-    """Which of the rows have one of these moves."""
+    """Whether each of the rows has one of these moves."""
     return np.array([any(name in play.moves[row] for name in names) for row in rows.tolist()], dtype=bool)
 
 
 def _begins(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Where a run of marked rows begins: feet that stay crossed cross over once."""
+    """Whether each row is the first of a run of marked rows; feet that stay crossed count as one crossover."""
     return np.asarray(marked & ~np.concatenate([[False], marked[:-1]]))
 
 
 def _turned(play: Play, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """How far the dancer turns into each row, degrees."""
+    """The angle by which the dancer turns between the row before and each row, degrees."""
     facing = play.facing[rows]
     change = np.abs(np.diff(facing, prepend=facing[:1]))
     return np.asarray(np.minimum(change, 360.0 - np.minimum(change, 360.0)))
 
 
 def _unsure(play: Play, rows: NDArray[np.int64], close: float) -> NDArray[np.bool_]:
-    """Rows whose best play with other limbs costs hardly more, of those that could be stepped otherwise."""
+    """Whether each row can be stepped with other limbs at hardly more cost."""
     if play.margin is None:
         return np.zeros(len(rows), dtype=bool)
     mean = max(float(play.cost.sum()) / max(len(play.rows), 1), 1.0)
@@ -173,7 +177,7 @@ def _weights(
 def _counts(
     play: Play, rows: NDArray[np.int64], stepped: NDArray[np.bool_], settings: PassageSettings
 ) -> dict[str, Any]:
-    """The counts of some rows, as in `Passage`; stepped : (rows, columns), where they have steps that are seen."""
+    """The counts of some rows, as in `Passage`; stepped : (rows, columns), whether each cell has a visible step"""
 
     def count(*names: str) -> int:
         return int(_marks(play, rows, names).sum())

@@ -1,6 +1,4 @@
-"""Rows and the limbs that step them: from the notes of a chart to the solver's input, its result, and notes that nobody
-can play.
-"""
+"""The rows of a chart, the play that the solver finds for them, and the notes that nobody can play."""
 
 from __future__ import annotations
 
@@ -22,7 +20,7 @@ from dancetutor_cli.feet.preset import HAND, LEAP, DropReason
 
 
 class StepKind(IntEnum):
-    """What a limb does in a cell of `Rows.steps`."""
+    """The kind of step in a cell of `Rows.steps`."""
 
     NONE = 0
     TAP = 1
@@ -36,15 +34,17 @@ class Ambiguity(IntEnum):
     """Whether a row could be stepped with other limbs at the same cost."""
 
     NONE = 0
-    RESOLVED = 1  # whichever limb comes, the rows after it are stepped the same way
-    OPEN = 2  # what follows depends on the limb
+    RESOLVED = 1  # the limbs of all later rows are the same, whichever limb steps this row
+    OPEN = 2  # the limbs of later rows depend on the limb
 
 
 @dataclass(frozen=True, slots=True)
 class Rows:
-    """The rows a solver sees: beats with at least one step or mine, rolls already tapped. n rows, c columns.
+    """The rows that the solver reads: beats with at least one step or mine, with rolls divided into taps. n rows, c
+    columns.
 
-    tick : int64 (n,), 1/48 beats; second : float64 (n,); line : int32 (n,), 0 for rows that only a roll made
+    tick : int64 (n,), 1/48 beats; second : float64 (n,); line : int32 (n,), 0 for rows that have only virtual taps of a
+    roll
     steps : uint8 (n, c), `StepKind`
     hold_end : int64 (n, c), tick at which a HOLD that starts here ends, else -1
     mines : bool (n, c)
@@ -65,19 +65,19 @@ class Rows:
 
 @dataclass(frozen=True, slots=True)
 class Play:
-    """The cheapest way to play `rows`. n rows, c columns, t cost terms.
+    """The cheapest play of `rows`. n rows, c columns, t cost terms.
 
     limb : int8 (n, c), `Limb`; part : uint8 (n, c), `Part`
     feet : int16 (n, 2), panel that the left and right foot stand on after the row (a bracket: the heel's), -1 at home
     facing : float64 (n,), degrees after the row, positive left
     terms : names of the cost terms, in the preset's order; cost : int32 (n, t), cost of each row by term
-    margin : int64 (n,) or None; how much more the best play with other limbs in this row costs, -1: no other way
-    ambiguity : uint8 (n,) or None, `Ambiguity` of each row
-    moves : per row the names of what happens ("crossover", "spin", "doublestep", ...), sorted
-    preset : name of the cost preset
-    confidence : float64 (n,) or None; how likely people step each row this way, 0 to 1, nan: not known (no step in it)
-    events : int32 (n,) or None; what `moves` names, as bits of `solver.vocabulary.EVENTS`, where the solver made the
+    margin : int64 (n,) or None; how much more the best play with other limbs in this row costs; -1: there is no other
     play
+    ambiguity : uint8 (n,) or None, `Ambiguity` of each row
+    moves : the names of each row's moves ("crossover-half", "spin", "doublestep", ...), sorted
+    preset : name of the cost preset
+    confidence : float64 (n,) or None; how likely the limbs of each row are right, 0 to 1; nan for a row without steps
+    events : int32 (n,) or None; `moves` as bits of `solver.vocabulary.EVENTS`; None if the play is not from the solver
     """
 
     rows: Rows
@@ -95,10 +95,10 @@ class Play:
     events: NDArray[np.int32] | None = None
 
     def kinds(self) -> tuple[list[tuple[str, ...]], NDArray[np.intp]]:
-        """What `moves` holds, in the order in which it comes first, and (n,) which of that each row is.
+        """Return the distinct entries of `moves`, in order of first appearance, and the index of each row's entry,
+        (n,).
 
-        Where nobody has made `events`, the names are told apart by the objects that they are: some may be listed more
-        than once.
+        Without `events`, entries are distinguished by object identity, so equal entries may be listed more than once.
         """
         marks = self.events
         if marks is None:
@@ -111,39 +111,38 @@ class Play:
 
     @property
     def total(self) -> int:
-        """Cost of the whole play: the minimum possible."""
+        """The cost of the whole play, in cost units; no play costs less."""
         return int(self.cost.sum())
 
 
-# From the notes of a chart to the rows of a solver: rolls become taps, and notes that the game does not judge are left
-# out.
+# Rows from the notes of a chart: rolls become taps, and notes that the game does not judge are left out.
 
 _STEP_OF_KIND = np.zeros(max(Kind) + 1, dtype=np.uint8)
 _STEP_OF_KIND[[Kind.TAP, Kind.LIFT, Kind.HOLD, Kind.ROLL]] = StepKind.TAP, StepKind.LIFT, StepKind.HOLD, StepKind.ROLL
 # 1, 1/2, 1/3, 1/4, 1/6, 1/8, 1/12, 1/16 beat in ticks, longest first
 _ROLL_GAPS = tuple(TICKS_PER_BEAT // part for part in (1, 2, 3, 4, 6, 8, 12, 16))
 _MINE, _HOLD = int(Kind.MINE), int(StepKind.HOLD)
-_CHART = 40  # bits of a tick: all of a later chart come after those before
+_CHART = 40  # bits of a tick; the number of the chart is above them, so that the ticks of charts do not mix
 _TICK = (1 << _CHART) - 1
 _EPSILON = 1e-6  # seconds (docs/cost-model.md)
 
 
 def prepare(chart: Chart, pad: Pad, roll_window: float = 0.35) -> Rows:
-    """The rows of a chart: beats with at least one step or mine (docs/cost-model.md, "Rows").
+    """Return the rows of a chart: beats with at least one step or mine (docs/cost-model.md, "Rows").
 
     Parameters
     ----------
-    chart : its unjudged notes, fakes and keysounds are left out, and columns that the pad does not have
+    chart : the chart; unjudged notes, fakes, keysounds and columns that the pad does not have are left out
     pad : gives the number of columns, c
-    roll_window : seconds that a roll may go unpressed; it becomes taps at most so far apart
+    roll_window : seconds that a roll may go unpressed: the greatest gap between its virtual taps
     """
     return prepare_all([chart], pad, roll_window)[0]
 
 
 def prepare_all(charts: Sequence[Chart], pad: Pad, roll_window: float) -> list[Rows]:
-    """The rows of each of some charts that share their timing: most are short, and each array takes time to make.
+    """Return the rows of several charts that share their timing; one call is faster than a call for each chart.
 
-    ValueError if they do not share it.
+    Raises ValueError if the charts do not share their timing.
     """
     timing, c = charts[0].timing, len(pad)
     if any(chart.timing is not timing for chart in charts):
@@ -171,7 +170,7 @@ def prepare_all(charts: Sequence[Chart], pad: Pad, roll_window: float) -> list[R
     if len(rolls):
         steps[known.searchsorted(roll_tick) * c + roll_column] = StepKind.ROLL_TAP
     step = np.flatnonzero(kind)
-    steps[cell[step]] = kind[step]  # a real note wins over a virtual one
+    steps[cell[step]] = kind[step]  # a real note replaces a virtual tap
     hold_end = np.full(n * c, -1, dtype=np.int64)
     hold = np.flatnonzero(kind == _HOLD)
     hold_end[cell[hold]] = notes.end[here[hold]]
@@ -190,7 +189,7 @@ def prepare_all(charts: Sequence[Chart], pad: Pad, roll_window: float) -> list[R
 
 
 def _joined(tables: Sequence[NoteTable]) -> NoteTable:
-    """Notes of charts one after the other, the number of the chart above `_CHART` in their ticks."""
+    """Concatenate the notes of charts, with the number of the chart above the lowest `_CHART` bits of each tick."""
     if len(tables) == 1:
         return tables[0]
     whole = NoteTable(*(np.concatenate([getattr(one, name) for one in tables]) for name in NoteTable.__slots__))
@@ -199,7 +198,7 @@ def _joined(tables: Sequence[NoteTable]) -> NoteTable:
 
 
 def _is_new(ticks: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Whether each of some ascending ticks is another one than that before it."""
+    """Whether each of the ascending ticks differs from the tick before it."""
     new = np.ones(len(ticks), dtype=bool)
     np.not_equal(ticks[1:], ticks[:-1], out=new[1:])
     return new
@@ -208,7 +207,7 @@ def _is_new(ticks: NDArray[np.int64]) -> NDArray[np.bool_]:
 def _roll_taps(
     notes: NoteTable, timing: Timing, rolls: NDArray[np.intp], window: float
 ) -> tuple[NDArray[np.int64], NDArray[np.int16]]:
-    """Tick and column of every virtual tap, heads included."""
+    """The tick and the column of every virtual tap, including the heads of rolls."""
     ticks, columns = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int16)]
     for note in rolls.tolist():
         chart, head = divmod(int(notes.tick[note]), 1 << _CHART)
@@ -219,18 +218,18 @@ def _roll_taps(
 
 
 def roll_gap(bpm: float, window: float) -> int:
-    """Ticks between the virtual taps of a roll that starts at `bpm`: the longest gap of at most `window` seconds."""
+    """The ticks between the virtual taps of a roll that starts at `bpm`: the longest gap of at most `window` seconds."""
     for gap in _ROLL_GAPS:
         if gap / TICKS_PER_BEAT * 60.0 / bpm <= window + _EPSILON:
             return gap
     return _ROLL_GAPS[-1]
 
 
-# Notes that nobody can play: which ones, and why. The dancer does not play them, and the linter reports them.
+# Notes that nobody can play. The dancer does not play them, and the linter reports them.
 
-MOVE = "unplayable"  # what a row with such a note is called, as where the solver has no limb left
+MOVE = "unplayable"  # the move name of a row with an unplayed note
 SAME_TIME = 1e-6  # seconds
-_NOT_WITHOUT = ("hand", "jump", "bracket")  # moves that a row has no more if what makes them is let go begin so
+_NOT_WITHOUT = ("hand", "jump", "bracket")  # beginnings of the moves that a row loses with an unplayed note
 
 
 WORDS = {
@@ -242,7 +241,7 @@ WORDS = {
 
 @dataclass(frozen=True, slots=True)
 class DroppedNote:
-    """A note that the dancer does not play. second : of the music; row, column : of the play"""
+    """A note that the dancer does not play. second : time in the music; row, column : place in the play"""
 
     second: float
     row: int
@@ -253,12 +252,13 @@ class DroppedNote:
 def without_unplayable(
     play: Play, pad: Pad, before: Sequence[DroppedNote] = ()
 ) -> tuple[Play, tuple[DroppedNote, ...]]:
-    """The play without the notes that nobody can play, and these notes in order of time.
+    """Return the play without the notes that nobody can play, and these notes in order of time.
 
-    Notes that the solver left over stay `Limb.UNPLAYED`, and the notes that `too_quick` finds become so: the foot stays
-    where it is, the hand is up, and feet go on alone.
+    Notes for which the solver found no limb stay `Limb.UNPLAYED`, and the notes that `too_quick` finds become
+    `Limb.UNPLAYED`. A foot without its note stays where it is.
 
-    play : its seconds are those of the music as it is heard; before : why notes are left over in it already
+    play : a play whose seconds are those of the audible music; before : known reasons for notes that are already
+    unplayed
     """
     found = list(too_quick(play, pad))
     if not found and not (play.limb == Limb.UNPLAYED).any():
@@ -275,18 +275,18 @@ def without_unplayable(
 
 
 def too_quick(play: Play, pad: Pad) -> Iterator[tuple[int, int, DropReason]]:
-    """Row and column of each note whose limb cannot be there in time, and why.
+    """Yield the row, the column and the reason of each note that its limb cannot reach in time.
 
-    A foot leaps if it steps within `LEAP` seconds of its last step, to a panel that touches none of that step's. A hand
-    does not play a note within `HAND` seconds of the last note for it, played or not; of many notes, the first is
-    played. A hand that stays there drums a roll, if the dancer stands on a foot.
+    A foot leaps if it steps within `LEAP` seconds of its last step, and no panel of the one step touches a panel of the
+    other. A hand does not play a note within `HAND` seconds of its previous note, whether that note was played or not.
+    Virtual taps of a roll do not count, except in rows in which both feet step.
     """
     yield from _leaps(play, pad)
     yield from _hands(play)
 
 
 def dropped_notes_message(gone: Sequence[DroppedNote]) -> str:
-    """How many notes are not played and why, in one line for people; nothing if none is."""
+    """Return one line for people about how many notes are not played, and why; "" if all notes are played."""
     if not gone:
         return ""
     counts = Counter(one.reason for one in gone)
@@ -295,7 +295,7 @@ def dropped_notes_message(gone: Sequence[DroppedNote]) -> str:
 
 
 def _leaps(play: Play, pad: Pad) -> Iterator[tuple[int, int, DropReason]]:
-    """Row and column of each note that its foot would have to leap to."""
+    """Yield the row, the column and the reason of each note to which its foot would have to leap."""
     touching = pad.neighbours | np.eye(len(pad), dtype=bool)
     for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
         mine: NDArray[np.bool_] = play.limb == side
@@ -309,7 +309,7 @@ def _leaps(play: Play, pad: Pad) -> Iterator[tuple[int, int, DropReason]]:
 
 
 def _hands(play: Play) -> Iterator[tuple[int, int, DropReason]]:
-    """Row and column of each note for which a hand would have to hop."""
+    """Yield the row, the column and the reason of each note for which a hand would have to press again too soon."""
     both = (play.limb == Limb.LEFT_FOOT).any(axis=1) & (play.limb == Limb.RIGHT_FOOT).any(axis=1)
     fresh = (play.rows.steps != StepKind.ROLL_TAP) | both[:, None]
     for side in (Limb.LEFT_HAND, Limb.RIGHT_HAND):
@@ -323,7 +323,7 @@ def _hands(play: Play) -> Iterator[tuple[int, int, DropReason]]:
 
 
 def _without(play: Play, pad: Pad, found: Sequence[tuple[int, int, DropReason]]) -> Play:
-    """The play in which no limb has these notes; feet, facing and the names of moves are what is left then."""
+    """Return the play in which no limb presses these notes, with its feet, its facing and its moves adapted."""
     limb, part, moves = play.limb.copy(), play.part.copy(), list(play.moves)
     for row, column, _ in found:
         limb[row, column], part[row, column] = Limb.UNPLAYED, 0
@@ -345,13 +345,13 @@ def _without(play: Play, pad: Pad, found: Sequence[tuple[int, int, DropReason]])
 
 
 def _face_anew(play: Play, pad: Pad, first: int, end: int) -> None:
-    """Turn rows from `first` to before `end` with both feet as they stand there, in place."""
+    """Compute the facing of the rows from `first` to before `end` again, from the places of the feet; in place."""
     places = []
     for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT):
         before = np.flatnonzero((play.limb[:end] == side).any(axis=1))
         at = np.searchsorted(before, np.arange(first, end), side="right") - 1
         if not len(before) or at.min() < 0:
-            return  # one is still where she began
+            return  # one foot has not stepped yet
         stands = np.array([pad.panels[play.limb[row] == side].mean(axis=0) for row in before[at.min() :]])
         places.append(stands[at - at.min()])
     across = places[1] - places[0]
@@ -361,5 +361,5 @@ def _face_anew(play: Play, pad: Pad, first: int, end: int) -> None:
 
 
 def runs(flags: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """First and one past the last index of each run of True, of rows or of frames, (n, 2)."""
+    """The first index of each run of True and the index after its last, (n, 2)."""
     return np.flatnonzero(np.diff(flags, prepend=False, append=False)).reshape(-1, 2)

@@ -1,4 +1,4 @@
-"""Plays in the JSON of `analyze` (docs/formats.md): rows written as text at once, and read from any program."""
+"""Plays in the JSON of `analyze` (docs/formats.md): the writer of rows, and the reader of plays from any program."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ from dancetutor_cli.feet.play import Play, Rows, StepKind
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import read_json, shown_key
 
-# Most rows are like others: everything besides the time, the line and the margin of a row is written once for all rows
-# of a run that share it.
+# Most rows repeat others: apart from the time, the line, the margin and the confidence, the text of equal rows is made
+# once and cached.
 
 _LIMBS = {int(limb): limb.name.lower() for limb in Limb if limb >= 0}
 _KINDS = {int(kind): kind.name.lower() for kind in StepKind}
 _PARTS = {int(Part.HEEL): "heel", int(Part.TOE): "toe"}
-_SMALL, _LARGE = 0.001, 1e9  # numbers beyond are written with an exponent, or with more digits than a float has
-_UNASKED, _UNKNOWN = -1.0, -2.0  # for confidence that nobody has measured, and in rows without a step
+_SMALL, _LARGE = 0.001, 1e9  # beyond these limits, fixed-point text differs from the `repr` of a float
+_UNASKED, _UNKNOWN = -1.0, -2.0  # confidence that the preset does not have, and confidence of rows without a step
 _BETWEEN = ", "
-_MAX_CACHED = 100_000  # texts kept, so that a long run does not fill the memory
+_MAX_CACHED = 100_000  # limit of cached texts, so that a long run does not fill the memory
 
 
 def json_rows(play: Play, file_lines: NDArray[np.int32]) -> str:
-    """The JSON of a list, one object for each row with a step, keys in the documented order.
+    """Return a JSON list with one object for each row with a step, keys in the documented order.
 
-    A row of mines alone is there too if it costs something, so that the rows add up to the chart's cost.
+    A row of mines only is included if it costs something, so that the costs of the rows add up to the chart's cost.
     file_lines : (rows,), the line in the file of each row
     """
     is_shown = np.asarray(play.rows.steps.any(axis=1))
@@ -65,13 +65,13 @@ def json_rows(play: Play, file_lines: NDArray[np.int32]) -> str:
 def _second(second: float) -> str:
     if abs(second) < _SMALL or second > _LARGE:
         return repr(round(second, 6))
-    decimals = f"{second:.6f}".rstrip("0")  # what `repr` of the rounded number is, in a third of the time
+    decimals = f"{second:.6f}".rstrip("0")  # the same text as `repr` of the rounded number, in a third of the time
     return f"{decimals}0" if decimals[-1] == "." else decimals
 
 
 @lru_cache(maxsize=_MAX_CACHED)
 def _beat(tick: int) -> str:
-    """The start of a row, up to its second."""
+    """The text at the start of a row, up to its second."""
     return f'{{"beat": {round(tick / TICKS_PER_BEAT, 6)!r}, "measure": {tick // TICKS_PER_MEASURE}, "second": '
 
 
@@ -82,7 +82,7 @@ def _line(line: int) -> str:
 
 @lru_cache(maxsize=_MAX_CACHED)
 def _end(margin: int, sure: float) -> str:
-    """The end of a row, and what stands between it and the next. sure : `Play.confidence`, `_UNASKED` or `_UNKNOWN`"""
+    """The text at the end of a row, with the separator after it. sure : `Play.confidence`, `_UNASKED` or `_UNKNOWN`"""
     text = "null" if margin < 0 else str(margin)
     if sure != _UNASKED:
         text += f', "confidence": {"null" if sure == _UNKNOWN else repr(round(100 * sure, 1))}'
@@ -90,7 +90,7 @@ def _end(margin: int, sure: float) -> str:
 
 
 def _looks(play: Play, shown: NDArray[np.intp]) -> list[str]:
-    """The text of some rows about their steps, feet and moves."""
+    """The text of the steps, feet, facing and moves of some rows."""
     moves = np.fromiter(map(id, play.moves), np.int64, len(play.moves)) if play.events is None else play.events
     known: dict[bytes, str] = {} if play.events is None else _row_text_cache(play.limb.shape[1])
     rows = play.rows
@@ -99,14 +99,14 @@ def _looks(play: Play, shown: NDArray[np.intp]) -> list[str]:
 
 
 def _costs(play: Play, shown: NDArray[np.intp]) -> list[str]:
-    """The text of some rows about their costs."""
+    """The text of the costs of some rows."""
     return _cached_texts(
         _bytes(shown, play.cost), _cost_text_cache(play.terms), lambda at: _terms(play, int(shown[at]))
     )
 
 
 def _cached_texts(keys: list[bytes], known: dict[bytes, str], say: Callable[[int], str]) -> list[str]:
-    """What is known of each key; of a new one what `say` reports its place."""
+    """Return the cached text of each key; the text of a new key is made by `say` from its index."""
     if len(known) > _MAX_CACHED:
         known.clear()
     texts = [*map(known.get, keys)]
@@ -118,18 +118,18 @@ def _cached_texts(keys: list[bytes], known: dict[bytes, str], say: Callable[[int
 
 @lru_cache(maxsize=32)
 def _row_text_cache(columns: int) -> dict[bytes, str]:
-    """What is known of rows of so many columns: the text of steps, feet, facing and moves by their bytes."""
+    """The cache for rows of `columns` columns: the text of steps, feet, facing and moves by their bytes."""
     return {}
 
 
 @lru_cache(maxsize=32)
 def _cost_text_cache(terms: tuple[str, ...]) -> dict[bytes, str]:
-    """The text of costs by their bytes."""
+    """The cache for rows with these cost terms: the text of costs by their bytes."""
     return {}
 
 
 def _bytes(shown: NDArray[np.intp], *arrays: NDArray[Any]) -> list[bytes]:
-    """For each of some rows all that arrays have there."""
+    """The bytes of all arrays in each of some rows, as keys of a cache."""
     table = np.concatenate([np.ascontiguousarray(array[shown]).view(np.uint8) for array in arrays], axis=1)
     keys: list[bytes] = table.view(f"V{table.shape[1]}").ravel().tolist() if table.size else [b""] * len(table)
     return keys
@@ -156,10 +156,9 @@ def _terms(play: Play, row: int) -> str:
     return f'"cost": {json.dumps(costs)}, "margin": '
 
 
-# A play read from the JSON of `analyze --format json`: any program can drive the dancer.
-#
-# The rows come from the chart; the file says which limb takes each step, where the feet stand after each row, and which
-# way they face. Steps that the file does not name, and rows that the chart does not have, are errors.
+# Plays from the JSON of `analyze --format json`, so that any program can drive the dancer.  The rows come from the
+# chart; the file has the limb of each step, and the places of the feet and the facing after each row. It is an error if
+# a step has no limb, or if the chart does not have a row of the file.
 
 SCHEMA = 1
 _LIMB_NUMBERS = {limb.name.lower(): int(limb) for limb in Limb if limb >= 0}
@@ -167,14 +166,14 @@ _PART_NUMBERS = {"heel": int(Part.HEEL), "toe": int(Part.TOE)}
 
 
 def read_play(path: Path, chart: Chart, rows: Rows, pad: Pad) -> Play:
-    """The play of `chart` in a JSON file.
+    """Read the play of `chart` from a JSON file.
 
     Parameters
     ----------
-    path : the file; chart : whose play it is, found by index and steps type
-    rows : its rows, as `play.prepare` gives them; pad : c panels
+    path : the file; chart : the chart of the play, identified by index, steps type and player
+    rows : the rows of the chart, from `play.prepare`; pad : c panels
 
-    Raises FileError for a file that is not such JSON, or that does not fit the chart.
+    Raises FileError if the file does not have this format, or does not fit the chart.
     """
     table = _rows_by_tick(path, _chart_data(path, chart))
     n, c = rows.steps.shape
@@ -230,7 +229,7 @@ def _rows_by_tick(path: Path, rows: list[Any]) -> dict[int, dict[str, Any]]:
 
 
 def _steps(path: Path, row: dict[str, Any], tick: int, steps: Any, limb: Any, part: Any) -> None:
-    """Fill one row of limb and part."""
+    """Read the steps of one row into `limb` and `part`."""
     where = f"beat {tick / TICKS_PER_BEAT:g}"
     for step in _listed(path, row, "steps"):
         if not isinstance(step, dict):
@@ -249,7 +248,7 @@ def _steps(path: Path, row: dict[str, Any], tick: int, steps: Any, limb: Any, pa
 
 
 def _leave_mines(feet: Any, mines: Any, held: Any) -> None:
-    """A row of mines only: feet (2,) that stand on one go home, unless they hold their panel (docs/cost-model.md)."""
+    """Move the feet (2,) that stand on a mine home, unless they hold their panel (docs/cost-model.md); in place."""
     for side in (0, 1):
         if feet[side] >= 0 and mines[feet[side]] and not held[side]:
             feet[side] = -1

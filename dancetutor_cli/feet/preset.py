@@ -1,4 +1,4 @@
-"""Cost presets: rules of play and costs, the preset that a chart gets, reasons why a note is not played."""
+"""Cost presets: their rules and costs, the choice of a chart's preset, and the reasons why a note is not played."""
 
 from __future__ import annotations
 
@@ -20,22 +20,23 @@ from dancetutor_cli.run.yaml_files import read
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
 
-# Reasons why nobody can play a note, and limits of time. Needs no numpy: the linter's rules name these.
+# Reasons why nobody can play a note, and their time limits. They are here because the linter's rules use them without
+# numpy.
 
-LEAP = 0.08  # seconds: a foot that stepped so shortly before goes to no panel apart from the one it is on
-HAND = 0.40  # and a hand that came down so shortly before does not come down again
+LEAP = 0.08  # seconds between two steps of a foot within which it reaches only panels that touch its own
+HAND = 0.40  # seconds between two presses of a hand within which it does not come down again
 
 
 class DropReason(IntEnum):
     """Why a note is not played."""
 
     LIMBS = 0  # more panels at once than limbs
-    LEAP = 1  # a foot that has just stepped on a panel apart from it
-    HAND = 2  # a hand that has just been on the floor
+    LEAP = 1  # the foot has just stepped on a panel that does not touch this one
+    HAND = 2  # the hand has just pressed another note
 
 
 DEFAULT_PRESET = "itg"
-_DEFAULTS = {"pump": "pump", "smx": "smx"}  # by the first word of the steps type; DEFAULT_PRESET for all others
+_DEFAULTS = {"pump": "pump", "smx": "smx"}  # first word of the steps type -> preset; all others have DEFAULT_PRESET
 MAX_WEIGHT = 1_000_000
 _WORDS = tuple(sorted({name.partition("-")[0] for name in COLUMNS}))
 Curve = tuple[tuple[int, int], ...]  # (milliseconds, cost), by milliseconds
@@ -43,15 +44,15 @@ Curve = tuple[tuple[int, int], ...]  # (milliseconds, cost), by milliseconds
 
 @dataclass(frozen=True, slots=True)
 class Preset:
-    """A complete set of rules and costs; hashable, and it pickles.
+    """A complete set of rules and costs. It can be hashed and pickled.
 
-    name : as the user gave it, without folder and suffix
-    model : which rules it is about, a key of `solver.vocabulary.MODELS`
+    name : the name that the user gave, without folder and suffix
+    model : the cost model, a key of `solver.vocabulary.MODELS`
     roll_window : seconds a roll may go unpressed
     switches, weights, curves : (name, value) in the order of the model; costs are whole numbers; a curve has knots
         (milliseconds since the last row with steps, cost), between which it is straight and beyond which it is level
-    pads : for which it was made: steps types ("pump-double") or their first words ("pump"); empty: for any
-    confidence : (margin, tenths of a per cent) of how likely people step a row this way; empty: nobody has measured it
+    pads : the steps types ("pump-double"), or their first words ("pump"), for which the preset was made; empty: all
+    confidence : (margin, tenths of a per cent) of how likely the feet of a row are right; empty: not measured
     """
 
     name: str
@@ -64,20 +65,20 @@ class Preset:
     confidence: Curve = ()
 
     def is_for(self, steps_type: str) -> bool:
-        """Whether it was made for the pads of a steps type; it works on all of them."""
+        """Whether the preset was made for the pads of a steps type. It works on all pads."""
         name = steps_type.lower()
         return not self.pads or name in self.pads or name.partition("-")[0] in self.pads
 
     def switch(self, name: str) -> bool:
-        """A switch by name."""
+        """Return the value of a switch."""
         return dict(self.switches)[name]
 
     def weight(self, name: str) -> int:
-        """A weight by name."""
+        """Return the value of a weight, in cost units."""
         return dict(self.weights)[name]
 
     def curve(self, name: str) -> Curve:
-        """A curve by name."""
+        """Return the knots of a curve."""
         return dict(self.curves)[name]
 
     def with_values(
@@ -87,7 +88,7 @@ class Preset:
         switches: Mapping[str, bool] | None = None,
         curves: Mapping[str, Curve] | None = None,
     ) -> Preset:
-        """The same preset with some values changed. Raises KeyError for a name the model does not have."""
+        """Return the preset with some values changed. Raises KeyError for a name that the model does not have."""
         changed: list[Any] = []
         for old, new in ((self.switches, switches or {}), (self.weights, weights or {}), (self.curves, curves or {})):
             if unknown := set(new) - {name for name, _ in old}:
@@ -97,17 +98,17 @@ class Preset:
 
 
 def preset_names() -> list[str]:
-    """Names of the presets that come with the program."""
+    """The names of the presets that come with the program."""
     return config_names("presets")
 
 
 def default_preset(steps_type: str) -> str:
-    """Name of the preset for the charts of a steps type when nobody names another one."""
+    """The name of the default preset of a steps type."""
     return _DEFAULTS.get(steps_type.lower().partition("-")[0], DEFAULT_PRESET)
 
 
 def _pad(name: Any) -> str:
-    """A steps type, or the first word of some."""
+    """Check that a name is a steps type or the first word of one; else raise ValueError."""
     if name not in _WORDS and name not in COLUMNS:
         near = did_you_mean(str(name), (*_WORDS, *COLUMNS))
         raise ValueError(f"'{shown_key(name)}' is not a steps type{near}; their first words are: {', '.join(_WORDS)}")
@@ -144,12 +145,13 @@ class _PresetFile:
 
 
 def load_preset(name_or_path: str | Path, *, confined: bool = False) -> Preset:
-    """A preset by name, or from a YAML file of one's own.
+    """Load a preset by name, or from a YAML file.
 
-    confined : a file may only extend what comes with the program or lies in its own folder: it may be a stranger's
+    confined : whether a file may extend only presets of the program and files in its own folder, because it may be
+    untrusted
 
-    A file may say `extends: NAME` and then only what differs. Raises UsageError for an unknown preset;
-    FileError for a file that cannot be read, or with an unknown key or value, with its line and the names that exist.
+    A file may have `extends: NAME` and only the values that differ. Raises UsageError for an unknown preset. Raises
+    FileError if a file cannot be read or has an unknown key or value; the message has the line and the valid names.
     """
     return _load(named_file("presets", name_or_path), (), confined)
 
@@ -179,7 +181,7 @@ def _load(path: Path, seen: tuple[Path, ...], confined: bool) -> Preset:
         weights=_values(source, "weights", file.weights, model, base),
         curves=_values(source, "curves", {k: tuple(sorted(v.items())) for k, v in file.curves.items()}, model, base),
         pads=file.pads if file.pads is not None else base.pads if base else (),
-        # not taken over from the preset that is extended: other weights are right less or more often
+        # not inherited from the extended preset, because it was measured with other weights
         confidence=tuple(sorted(file.confidence.items())),
     )
 
@@ -200,7 +202,7 @@ def _base(source: MarkedYaml, name: str, seen: tuple[Path, ...], confined: bool)
 def _values(
     source: MarkedYaml, group: str, given: Mapping[str, Any], model: str, base: Preset | None
 ) -> tuple[tuple[str, Any], ...]:
-    """Switches, weights or curves in the order of the model: those given, else those of the preset it extends."""
+    """The switches, weights or curves in the order of the model: the given values, else those of the extended preset."""
     known: tuple[str, ...] = getattr(MODELS[model], group)
     source.check_names((group,), given, known)
     values = {**dict(getattr(base, group) if base else ()), **given}
@@ -210,24 +212,24 @@ def _values(
     return tuple((name, values[name]) for name in known)
 
 
-# Which cost preset a chart is solved with: the one place that decides it, for every command.
-#
-# Imports neither numpy nor numba: a kept result is reported without them.
+# The choice of the cost preset with which a chart is solved, for every command.  Neither numpy nor numba is imported,
+# because a cached result is reported without them.
 
 
 @dataclass(frozen=True, slots=True)
 class PresetChoice:
-    """What was said about presets. Pickles; its `repr` says all that a play depends on but the program itself.
+    """The presets of the command line and the configuration. It can be pickled, and its `repr` identifies every setting
+    that affects a play.
 
-    override : what --preset names: it holds for every chart
-    ruled : (condition, preset) of the configuration: of those that hold for a chart the last one counts
+    override : the preset of --preset, which is used for every chart
+    ruled : (condition, preset) of the configuration; the last entry whose condition holds for a chart is used
     """
 
     override: Preset | None = None
     ruled: tuple[tuple[Condition, Preset], ...] = ()
 
     def candidates(self) -> Iterator[Preset]:
-        """Every preset that a chart may get, but those for other pads that nobody has named."""
+        """Yield every preset that a chart may get, except the defaults for other pads."""
         if self.override is not None:
             yield self.override
             return
@@ -237,9 +239,10 @@ class PresetChoice:
 
 
 def preset_for(chart: Chart, path: Path, choice: PresetChoice) -> Preset:
-    """The preset of a chart: the command line's, else the configuration's, else the one for its steps type.
+    """Return the preset of a chart: from the command line, else from the configuration, else the default of its steps
+    type.
 
-    path : the chart file, which conditions may be about
+    path : the chart file, for conditions on paths
     """
     if choice.override is not None:
         return choice.override
@@ -253,9 +256,9 @@ _default = cache(load_preset)
 
 
 def choice_of(given: str | None, named: Sequence[tuple[Condition, str]] = ()) -> PresetChoice:
-    """The presets that --preset and a configuration name, loaded; UsageError or FileError if one cannot be.
+    """Load the presets that --preset and the configuration name. Raises UsageError or FileError as `load_preset` does.
 
-    named : the configuration's, with the condition of each
+    named : the names of the configuration's presets, each with its condition
     """
     if given is not None:
         return PresetChoice(load_preset(given))
@@ -263,7 +266,7 @@ def choice_of(given: str | None, named: Sequence[tuple[Condition, str]] = ()) ->
 
 
 def mismatch(preset: Preset, steps_type: str) -> str | None:
-    """A line for people where a preset was made for other pads than a chart's, else None."""
+    """Return a message if a preset was made for other pads than this steps type's, else None."""
     if preset.is_for(steps_type):
         return None
     return f"preset '{preset.name}' was made for {' and '.join(preset.pads)} pads, not for {steps_type}"

@@ -1,4 +1,4 @@
-"""SMEditor's `data.sme` as input: the feet and the silenced findings that a person has set in that editor."""
+"""The reader of SMEditor's `data.sme`: the feet and the silenced findings that a person has set in that editor."""
 
 from __future__ import annotations
 
@@ -18,8 +18,9 @@ from dancetutor_cli.run.files import UCS_SUFFIX
 from dancetutor_cli.run.reading import CHART_LIMIT, parse_json, read_bytes
 
 FILE_NAME = EDITOR_FILE
-OURS = "dancetutor"  # our own key in the file: what we wrote into it, which is no person's word
-# SMEditor's values: a foot, or with numbers a part of one.
+# this program's own key in the file: the overrides that the program wrote, which are not a person's
+OURS = "dancetutor"
+# SMEditor's values: a foot by its name, or a part of a foot by its number.
 FEET: dict[str | int, tuple[Limb, Part]] = {
     "Left": (Limb.LEFT_FOOT, Part.WHOLE),
     "Right": (Limb.RIGHT_FOOT, Part.WHOLE),
@@ -43,7 +44,10 @@ class ChartData:
 
 
 def read_sme(song: Song, chart: Chart) -> ChartData:
-    """The contents of the `data.sme` in the song's folder for a chart; nothing if there is none. Never raises."""
+    """Read the entry of a chart from the `data.sme` in the song's folder; it is empty if there is no file.
+
+    Never raises.
+    """
     path = editor_file(song.path)
     if path is None:
         return ChartData()
@@ -65,20 +69,21 @@ def read_sme(song: Song, chart: Chart) -> ChartData:
 
 
 def editor_file(song: Path) -> Path | None:
-    """The `data.sme` beside a chart file, if there is one, be it only a link."""
+    """The path of the `data.sme` beside a chart file, or None; a broken link counts as a file."""
     path = song.parent / FILE_NAME
-    if song.suffix.lower() == UCS_SUFFIX:  # it is about the charts of the song beside it
+    if song.suffix.lower() == UCS_SUFFIX:  # `data.sme` holds the charts of a .sm or .ssc file in the same folder
         return None
-    return path if os.path.lexists(path) else None  # most often none, and an error takes many times as long to raise
+    # most songs have no file, and raising an error is much slower than this check
+    return path if os.path.lexists(path) else None
 
 
 def place_in_type(song: Song, chart: Chart) -> int:
-    """The place of a chart among those of its steps type, in file order: `data.sme` distinguishes charts by it."""
+    """The index of a chart among the charts of its steps type, in file order; `data.sme` identifies charts by it."""
     return [c.index for c in song.charts if c.steps_type == chart.steps_type].index(chart.index)
 
 
 def chart_entry(data: Any, chart: Chart, place: int) -> Any:
-    """The value that belongs to a chart in the parsed file; None where there is none."""
+    """The value of a chart in the parsed file, or None."""
     parity = data.get("parity") if isinstance(data, dict) else None
     charts = parity.get(chart.steps_type) if isinstance(parity, dict) else None
     return charts[place] if isinstance(charts, list) and place < len(charts) else None
@@ -90,7 +95,7 @@ def _our_overrides(data: Any, chart: Chart, place: int) -> set[tuple[float, int,
 
 
 def overrides_of(entry: Any) -> Iterator[tuple[float, int, str | int]]:
-    """The well-formed overrides of a chart's entry: beat, column, value."""
+    """Yield the beat, the column and the value of each well-formed override of a chart's entry."""
     listed = entry.get("overrides") if isinstance(entry, dict) else None
     for item in listed if isinstance(listed, list) else ():
         if not isinstance(item, list) or len(item) != 3:
@@ -102,7 +107,7 @@ def overrides_of(entry: Any) -> Iterator[tuple[float, int, str | int]]:
 
 
 def tick_of(beat: float) -> int:
-    """The tick that SMEditor means by a beat rounded to three digits."""
+    """The tick of a beat that SMEditor has rounded to three digits."""
     return round(beat * TICKS_PER_BEAT)
 
 
@@ -125,7 +130,7 @@ def _chart_data(entry: Any, chart: Chart, ours: set[tuple[float, int, object]]) 
 
 
 def _with_parts(overrides: list[CellOverride]) -> Iterator[CellOverride]:
-    """SMEditor calls a foot that is on one panel its heel; here heel and toe are only told apart in brackets."""
+    """Convert SMEditor's parts, in which a foot on one panel is a heel: here, only brackets have a heel and a toe."""
     toes = {(s.tick, s.limb) for s in overrides if s.part == Part.TOE}
     heels = {(s.tick, s.limb) for s in overrides if s.part != Part.TOE}
     for s in overrides:

@@ -1,4 +1,4 @@
-"""Charts with their feet, for every command: feet that people have set hold, and the rest is solved."""
+"""Charts with their feet, for every command: the solver keeps the feet that people have set."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.solver import solve
 from dancetutor_cli.feet.song_feet import SongFeet
 
-_AT_ONCE = 16  # charts whose rows are prepared together
+_AT_ONCE = 16  # number of charts whose rows are prepared together
 
 
 @dataclass(frozen=True, slots=True)
 class Solved:
-    """A chart, or of one for several a player's part, with its feet.
+    """A chart with its feet; a chart for several players is one `Solved` for each player.
 
-    play, pad : None where no pad is known for the steps type; preset : the costs with which the feet were found
-    overrides : feet that people laid down; ignores, problems : findings they do not want to see, and what is wrong in
-    what they said
+    play, pad : None if the steps type has no pad; preset : the costs with which the feet were found
+    overrides : the feet that people have set; ignores : the findings that they silenced; problems : the contradictions
+    in the feet that they have set
     """
 
     song: Song
@@ -37,9 +37,9 @@ class Solved:
 
 
 def solve_song(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart], Preset]) -> Iterator[Solved]:
-    """Charts of a song with the cheapest plays that keep pinned measures and `data.sme`.
+    """Yield the charts of a song with the cheapest plays that keep the feet that people have set.
 
-    Contradictions in them are not kept; they are in `problems`, of which the linter makes findings.
+    Contradictory feet are not kept: they are in `problems`, and the linter reports them.
     """
     feet = SongFeet(song)
     for first in range(0, len(charts), _AT_ONCE):
@@ -52,7 +52,9 @@ def solve_song(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart],
 
 
 def _rows(charts: Sequence[tuple[Chart, Preset]]) -> list[Rows | None]:
-    """The rows of charts, None for those without a pad; of those of one pad and timing they are prepared together."""
+    """The rows of each chart, None without a pad; charts with the same pad, timing and roll window are prepared
+    together.
+    """
     alike: dict[tuple[str, int, float], list[int]] = defaultdict(list)
     for place, (chart, preset) in enumerate(charts):
         alike[chart.steps_type, id(chart.timing), preset.roll_window].append(place)

@@ -1,4 +1,4 @@
-"""Everything people said about the feet of a song: in its files, in SMEditor's data, in dancetutor.yaml."""
+"""The feet that people have set for a song: in its file, in SMEditor's `data.sme`, and in dancetutor.yaml."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _Tick = Annotated[int, Parsed(_tick)]  # written as a beat
 
 @dataclass(frozen=True, slots=True)
 class FeetEntry:
-    """An entry of `feet`. steps : {tick: letters}; ignore : {tick: rules, as they are written}"""
+    """An entry of `feet`. steps : {tick: letters}; ignore : {tick: rules, as the user wrote them}"""
 
     when: When
     steps: dict[_Tick, Annotated[str, Parsed(_letters)]] = field(default_factory=dict)
@@ -61,7 +61,7 @@ class FeetEntry:
 
 @dataclass(frozen=True, slots=True)
 class SettingsFeet:
-    """What dancetutor.yaml says about one chart."""
+    """The feet, ignores and problems that dancetutor.yaml has for one chart."""
 
     cells: tuple[CellOverride, ...] = ()
     ignores: Mapping[int, frozenset[str]] | None = None
@@ -69,7 +69,7 @@ class SettingsFeet:
 
 
 def read_settings(song: Song, chart: Chart, path: Path | None) -> SettingsFeet:
-    """What a dancetutor.yaml says about a chart; nothing without one. FileError if it cannot be read."""
+    """Read the feet of a chart from a dancetutor.yaml; without a path, there are none. Raises FileError."""
     if path is None:
         return SettingsFeet()
     status = path.stat()
@@ -97,14 +97,14 @@ def _entries(path: Path, _time: int, _size: int) -> tuple[tuple[Condition, FeetE
 
 
 def entries_of(source: MarkedYaml) -> tuple[FeetEntry, ...]:
-    """The entries of `feet` in a dancetutor.yaml, checked; FileError names the line and what there is."""
+    """Return the checked entries of `feet` in a dancetutor.yaml. Raises FileError with the line and the valid names."""
     if source.data.get("feet") is None:
         return ()
     return convert(source, tuple[FeetEntry, ...], ("feet",))
 
 
 def _parse_letters(chart: Chart, tick: int, letters: str) -> Iterator[CellOverride | FeetProblem]:
-    """Who steps the notes of a row; one problem in place of them if the letters do not fit."""
+    """Yield an override for each note of a row, or one problem if the number of letters does not fit."""
     here = [n for n in (chart.notes.tick == tick).nonzero()[0].tolist() if chart.notes.kind[n] in _STEPS]
     beat = f"{SETTINGS_FILE} gives beat {tick / TICKS_PER_BEAT:g}"
     if len(here) != len(letters):
@@ -119,18 +119,18 @@ def _parse_letters(chart: Chart, tick: int, letters: str) -> Iterator[CellOverri
             yield CellOverride(tick, int(chart.notes.column[n]), limb, part, SETTINGS_FILE, int(chart.notes.line[n]), 1)
 
 
-# Limbs, and what people said about them: overrides and ignores read from annotations and from data.sme.
+# Overrides and ignores from all three sources.
 
 AuthorFeet = tuple[Overrides, Ignores, tuple[FeetProblem, ...]]
 
 
 def overrides_for(song: Song, chart: Chart) -> AuthorFeet:
-    """Everything people said about the feet of a chart, see `SongFeet.author_feet`."""
+    """Return the feet that people have set for a chart, see `SongFeet.author_feet`."""
     return SongFeet(song).author_feet(chart)
 
 
 class SongFeet:
-    """Everything people said about the feet of a song's charts; where it may stand is looked up once for all."""
+    """The feet that people have set for the charts of a song; the files that may hold them are searched once."""
 
     def __init__(self, song: Song) -> None:
         self._song = song
@@ -138,16 +138,17 @@ class SongFeet:
         self._settings = find_settings_file(song.path.parent)
 
     def author_feet(self, chart: Chart) -> AuthorFeet:
-        """What was said about a chart; to be asked before the chart is solved.
+        """Return the feet, the ignores and the problems of a chart, for the solver and the linter.
 
-        Pinned measures in the file, overrides in `data.sme` beside it, `feet` in the dancetutor.yaml up the tree; where
-        several speak of a cell, the first of these counts.
+        The sources are pinned measures in the file, overrides in `data.sme` beside it, and `feet` in the
+        dancetutor.yaml of a folder above. If several sources set a cell, the first of these is used.
 
-        Returns the overrides for the solver, the ignores for the linter, and what was contradictory, for findings.
-        FileError : dancetutor.yaml cannot be read
+        Returns the overrides for the solver, the ignores for the linter, and the contradictions, which become findings.
+        Raises FileError if dancetutor.yaml cannot be read.
         """
         song = self._song
-        whole = chart if chart.written is None else chart.written  # people speak of a chart as it stands in the file
+        # people set feet for the chart as it is written in the file
+        whole = chart if chart.written is None else chart.written
         in_file = whole if shares_rows(chart) else chart
         if self._editor is None and self._settings is None and not has_pins(song.data, in_file):
             return Overrides.none(), Ignores(), ()
@@ -159,7 +160,7 @@ class SongFeet:
             (s.tick, s.column): s for s in (given if chart.written is None else _of_player(chart, given))
         }  # later win
         good, contradictory = contradictions(chart, overrides.values())
-        if chart.player > 1:  # what is wrong beside the notes is reported with the first player's
+        if chart.player > 1:  # problems outside the notes are reported only for the first player
             editor, settings = replace(editor, problems=()), replace(settings, problems=())
             problems = [] if shares_rows(chart) else problems
         cells = {(s.tick, s.column): (s.limb, s.part) for s in good}
@@ -168,7 +169,7 @@ class SongFeet:
 
 
 def _of_player(chart: Chart, overrides: Iterable[CellOverride]) -> Iterator[CellOverride]:
-    """What is about the notes of one of two players, in this player's columns."""
+    """Yield the overrides of the notes of one player, in this player's columns."""
     mine = set(zip(chart.notes.tick.tolist(), chart.notes.column.tolist(), strict=True))
     for one in overrides:
         column = one.column - chart.first_column

@@ -19,19 +19,19 @@ from dancetutor_cli.feet.solver.engine import Engine, Layers, engine_for
 from dancetutor_cli.feet.solver.solve import forced_limbs, play_of
 from dancetutor_cli.feet.solver.store import COST, FACTS, LIMB_CODES, NEXT, WIDE_ACTION
 
-# The next best plays: the cheapest ways to step the rows that differ in at least one limb, and what decides.
+# The next best plays: the cheapest ways that differ in at least one limb, and the cost terms that decide.
 #
-# Each play that is found divides the rest: the same limbs up to a row, and other limbs there (Lawler's partition). The
-# cheapest rest of every state is known from one backward pass, so a division costs a look at one row.
+# Each play that is found divides the other plays by the first row with other limbs (Lawler's partition). One backward
+# pass finds the cheapest continuation of every state, so each division has to examine only one row.
 
 
 @dataclass(frozen=True, slots=True)
 class Alternative:
     """A play, and how it differs from the cheapest.
 
-    play : without margins; extra : how much more it costs
-    rows : numbers of the rows that other limbs step
-    terms : cost term -> difference, for those that differ; the largest decide
+    play : the play, without margins; extra : how many cost units more than the cheapest play it costs
+    rows : indices of the rows that are stepped with other limbs
+    terms : cost term -> difference in cost units, for the terms that differ
     """
 
     play: Play
@@ -43,9 +43,9 @@ class Alternative:
 def alternatives(
     rows: Rows, pad: Pad, preset: Preset, count: int, overrides: Overrides | None = None
 ) -> tuple[Alternative, ...]:
-    """The `count` cheapest plays that differ from each other in who steps what, the cheapest first.
+    """Return the `count` cheapest plays that differ from each other in at least one limb, the cheapest first.
 
-    Fewer, if there are no more. The first one is what `solve_rows` finds: it differs from nothing.
+    There are fewer if the rows have no more. The first is the play that `solve_rows` finds, with no differences.
     """
     if not len(rows) or count < 1:
         return ()
@@ -71,7 +71,7 @@ _Reached = dict[int, tuple[int, tuple[int, int] | None]]  # state -> cost, and t
 
 
 class _Ways:
-    """All ways through the rows, by cost. States, moves and actions are numbers of the engine's tables."""
+    """All ways through the rows, by cost. States, moves and actions are indices into the engine's tables."""
 
     def __init__(self, engine: Engine, layers: Layers) -> None:
         self._layers = layers
@@ -86,9 +86,9 @@ class _Ways:
         self._rest = self._cheapest_rest()
 
     def cheapest(self) -> Iterator[list[int]]:
-        """The moves of each way, the cheapest first; ways with the same limbs come once.
+        """Yield the moves of each way, the cheapest first; of the ways with the same limbs, only the cheapest.
 
-        A branch is a run of actions, and actions that must not follow it.
+        A branch is a sequence of actions, and a set of actions that must not follow it.
         """
         heap: list[tuple[int, int, tuple[int, ...], frozenset[int]]] = [(0, 0, (), frozenset())]
         number = 0
@@ -101,7 +101,7 @@ class _Ways:
                 heapq.heappush(heap, (cost, number, others, but))
 
     def _moves(self, row: int, state: int) -> list[tuple[int, int]]:
-        """Moves of a state in a row, and their costs."""
+        """Return the moves of a state in a row, and their costs."""
         ms = self._layers.elapsed[row]
         key = (self._layers.pattern[row], ms, state)
         if key not in self._known:
@@ -112,7 +112,7 @@ class _Ways:
         return self._known[key]
 
     def _cheapest_rest(self) -> list[dict[int, int]]:
-        """For each row, and after the last, what the rest costs from each state before it."""
+        """Return for each row, and after the last row, the cost of the cheapest continuation from each state."""
         rest: list[dict[int, int]] = [dict.fromkeys(self._layers.states[-1], 0)]
         for row in range(len(self._layers.elapsed) - 1, -1, -1):
             after = rest[-1]
@@ -125,7 +125,7 @@ class _Ways:
         return rest[::-1]
 
     def _step(self, row: int, reached: _Reached, action: int | None, barred: frozenset[int]) -> _Reached:
-        """What is reached by one row's action, or by any that is not barred."""
+        """Return the states that a row reaches by one action, or by every action that is not barred."""
         out: _Reached = {}
         for state, (so_far, _) in reached.items():
             for move, cost in self._moves(row, state):
@@ -140,7 +140,7 @@ class _Ways:
     def _splits(
         self, actions: list[int], start: int, barred: frozenset[int]
     ) -> Iterator[tuple[int, tuple[int, ...], frozenset[int]]]:
-        """Cost and branch of the cheapest ways that leave a way in each row from `start` on."""
+        """Yield the cost and the branch of the cheapest ways that differ from a way first in each row from `start` on."""
         reached: _Reached = {self._layers.states[0][0]: (0, None)}
         for row, action in enumerate(actions):
             if row >= start:
@@ -152,7 +152,7 @@ class _Ways:
             reached = self._step(row, reached, action, frozenset())
 
     def _best_of(self, prefix: tuple[int, ...], barred: frozenset[int]) -> list[int]:
-        """Moves of the cheapest way of a branch."""
+        """Return the moves of the cheapest way of a branch."""
         trail: list[_Reached] = [{self._layers.states[0][0]: (0, None)}]
         for row, action in enumerate(prefix):
             trail.append(self._step(row, trail[-1], action, frozenset()))
@@ -162,7 +162,7 @@ class _Ways:
         return [*_back(trail, at), *self._onwards(len(prefix) + 1, at)]
 
     def _onwards(self, row: int, state: int) -> Iterator[int]:
-        """Moves of the cheapest rest."""
+        """Yield the moves of the cheapest continuation from a state."""
         for at in range(row, len(self._layers.elapsed)):
             rest = self._rest[at + 1]
             move = min(
@@ -174,7 +174,7 @@ class _Ways:
 
 
 def _back(trail: list[_Reached], state: int) -> list[int]:
-    """Moves along a trail to one of its last states."""
+    """Return the moves along a trail to one of its last states."""
     path = []
     for reached in reversed(trail[1:]):
         before = reached[state][1]
@@ -184,14 +184,14 @@ def _back(trail: list[_Reached], state: int) -> list[int]:
     return path[::-1]
 
 
-# Why a foot has to step twice in a row: which hold, mine or jump forces it.
+# Causes of doublesteps: the hold, mine or jump that makes a foot step twice in a row.
 #
-# A forced doublestep is forced by the hold of the other foot. For an unforced one, the chart is solved again without
+# The cause of a forced doublestep is the hold of the other foot. For an unforced one, the chart is solved again without
 # each of the holds, mines and jumps shortly before it: the first that removes the doublestep is its cause. If none
-# does, the pattern of single steps itself asks for it.
+# does, the cause is the pattern of single steps.
 
-_ROWS_BEFORE = 16  # a cause is looked for in so many rows before the doublestep
-_ROWS_AFTER = 32  # and so many after it are solved along, so that the end of the excerpt decides nothing
+_ROWS_BEFORE = 16  # number of rows before the doublestep that are searched for a cause
+_ROWS_AFTER = 32  # number of rows after the doublestep in the excerpt, so that its end does not affect the result
 _HELD = np.zeros(len(StepKind), dtype=bool)
 _HELD[[StepKind.HOLD, StepKind.ROLL, StepKind.ROLL_TAP]] = True
 
@@ -200,9 +200,9 @@ _HELD[[StepKind.HOLD, StepKind.ROLL, StepKind.ROLL_TAP]] = True
 class Blame:
     """The cause of a doublestep.
 
-    row : of the doublestep; forced : whether the other foot holds at that moment
-    cause : "hold", "mine", "jump", or "pattern" if nothing but the single steps asks for it
-    cause_row, cause_column : where it is, -1 for a pattern; the column of a jump is that of its first step
+    row : row of the doublestep; forced : whether the other foot holds a panel at that moment
+    cause : "hold", "mine", "jump", or "pattern" for the single steps alone
+    cause_row, cause_column : place of the cause, -1 for a pattern; a jump has the column of its first step
     """
 
     row: int
@@ -213,7 +213,7 @@ class Blame:
 
 
 def blame(play: Play, pad: Pad, preset: Preset) -> tuple[Blame, ...]:
-    """The causes of all doublesteps of a play, forced or not, in order of their rows."""
+    """Return the causes of all doublesteps of a play, forced or not, in the order of rows."""
     out = []
     holds: dict[int, NDArray[np.int64]] = {}
     engine = engine_for(pad, preset)
@@ -224,7 +224,8 @@ def blame(play: Play, pad: Pad, preset: Preset) -> tuple[Blame, ...]:
             for foot in range(2):
                 if foot not in holds:
                     holds[foot] = np.flatnonzero(_HELD[play.rows.steps] & (play.limb == foot))
-            found = [_holder(row, holds[foot], len(pad)) for foot in (other, stepping)]  # or a bracket on its own hold
+            # the second is for a bracket on the foot's own hold
+            found = [_holder(row, holds[foot], len(pad)) for foot in (other, stepping)]
             lasting = [one for one in found if _lasts(play.rows, one)]
             out.append(lasting[0] if lasting else Blame(row, True, "pattern"))
         elif "doublestep" in names:
@@ -233,7 +234,9 @@ def blame(play: Play, pad: Pad, preset: Preset) -> tuple[Blame, ...]:
 
 
 def _holder(row: int, holds: NDArray[np.int64], columns: int) -> Blame:
-    """The last hold or roll before a row, of those of the foot that it reserves; holds : row * columns + column."""
+    """Return the last hold or roll of a foot before a row; holds : row * columns + column of the foot's holds and
+    rolls.
+    """
     before = int(holds.searchsorted(row * columns)) - 1
     if before < 0:
         return Blame(row, True, "pattern")
@@ -242,7 +245,7 @@ def _holder(row: int, holds: NDArray[np.int64], columns: int) -> Blame:
 
 
 def _lasts(rows: Rows, held: Blame) -> bool:
-    """Whether a hold went on after the row before the doublestep; nobody knows it of a roll, which goes on by taps."""
+    """Whether a hold ended after the row two before the doublestep; always true of a roll, whose end is not known."""
     if held.cause != "hold":
         return False
     end = int(rows.hold_end[held.cause_row, held.cause_column])
@@ -252,10 +255,10 @@ def _lasts(rows: Rows, held: Blame) -> bool:
 def _culprit(play: Play, row: int, engine: Engine) -> Blame:
     suspects = _suspects(play.rows, row)
     if not suspects:
-        return Blame(row, False, "pattern")  # whatever the feet do, nothing else is there
+        return Blame(row, False, "pattern")  # only single steps are near
     first, last = max(0, row - 2 * _ROWS_BEFORE), row + _ROWS_AFTER
     here = _without(play.rows, first, last, row, [None, *suspects], engine) - 1
-    if here < 0:  # what is further back matters
+    if here < 0:  # a cause further back in the chart affects the row
         here = _without(play.rows, 0, len(play.rows), row, suspects, engine)
     if here == len(suspects):
         return Blame(row, False, "pattern")
@@ -263,7 +266,9 @@ def _culprit(play: Play, row: int, engine: Engine) -> Blame:
 
 
 class _Suspect(NamedTuple):
-    """A possible cause: a cell, and the column that is named; for all steps of a jump the column of its first step."""
+    """A possible cause: a cell, and the column to report, which for all steps of a jump is the column of its first
+    step.
+    """
 
     cause: str
     row: int
@@ -271,14 +276,14 @@ class _Suspect(NamedTuple):
     named: int
 
     def instead(self, step: int, end: int, mine: int) -> tuple[int, int, int]:
-        """The cell without the cause: no mine, a hold as a tap, a jump as one step of it."""
+        """Return the cell without the cause: a mine or a step of a jump is removed, a hold becomes a tap."""
         if self.cause == "mine":
             return step, end, 0
         return int(StepKind.TAP if self.cause == "hold" else StepKind.NONE), -1, mine
 
 
 def _suspects(rows: Rows, row: int) -> list[_Suspect]:
-    """The possible causes of a doublestep, the nearest first."""
+    """Return the possible causes of a doublestep, the nearest first."""
     first = max(0, row - _ROWS_BEFORE + 1)
     steps, mines = rows.steps[first : row + 1].tolist(), rows.mines[first : row + 1].tolist()
     out = []
@@ -294,9 +299,9 @@ def _suspects(rows: Rows, row: int) -> list[_Suspect]:
 
 
 def _without(rows: Rows, first: int, last: int, row: int, suspects: Sequence[_Suspect | None], engine: Engine) -> int:
-    """Which of some suspects is the first without which no foot steps twice in a row, or their number.
+    """Return the index of the first suspect without which the row has no doublestep, or the number of suspects.
 
-    Rows from `first` on and before `last` are solved, 16,000 times in a folder of 400 files. None stands for nobody.
+    The rows from `first` to before `last` are solved for each suspect. The suspect None changes nothing.
     """
     part = Rows(*(getattr(rows, name)[first:last] for name in Rows.__slots__))
     part = replace(part, steps=part.steps.copy(), hold_end=part.hold_end.copy(), mines=part.mines.copy())

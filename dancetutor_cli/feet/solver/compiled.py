@@ -1,7 +1,7 @@
-"""How the solver's kernels run: compiled, or as the Python that they are; found out without importing numba.
+"""The choice whether the solver's kernels run compiled or as Python, made without importing numba.
 
-Compiling takes ten to twenty seconds, once. The kernels' own Python, which is the same code, solves a chart or two
-sooner. So compiling is worth the wait only for more work, now or in runs like this one.
+Compiling takes ten to twenty seconds, once. The same code as Python solves one or two charts sooner than that. So
+compiling is worth the wait only for more charts, in this run or in later ones.
 """
 
 from __future__ import annotations
@@ -17,27 +17,27 @@ from dancetutor_cli.run.kernels import native
 from dancetutor_cli.run.kernels.store import StoredCode, kernel_folder
 from dancetutor_cli.run.trust import read_file, use_folder, write_file
 
-VARIABLE = "DANCETUTOR_KERNELS"  # "python" or "compiled"; what it says holds for worker processes, too
+VARIABLE = "DANCETUTOR_KERNELS"  # "python" or "compiled"; worker processes inherit it
 _HERE = Path(__file__).parent
-_TINY = 12_000  # bytes of chart files that Python solves at once: nothing is ever compiled for these
-_SMALL = 120_000  # bytes of chart files that Python solves in less than half the time that compiling takes
-_OFTEN = 1_000_000  # bytes that Python has solved in all, after which compiling would have paid
+_TINY = 12_000  # bytes of note data that Python solves immediately, so that nothing is compiled
+_SMALL = 120_000  # bytes of note data that Python solves in less than half of the time that compiling takes
+_OFTEN = 1_000_000  # bytes that Python has solved in all runs, after which compiling saves time
 
 
 def is_compiled(preset: Preset) -> bool:
-    """Whether a solve with this preset need not compile first; True where that cannot be known."""
+    """Whether a solve with this preset does not have to compile first; True if this cannot be known."""
     return StoredCode(_HERE / "solvers.py", f"solve_{preset.model}").is_there()
 
 
 def is_interpreted() -> bool:
-    """Whether this process runs kernels as Python, as `interpret` has decided."""
+    """Whether this process runs kernels as Python, by the decision of `interpret`."""
     return os.environ.get(VARIABLE) == "python"
 
 
 def interpret(presets: Iterable[Preset], size: Callable[[], int]) -> bool:
-    """Decide whether this process and its workers run kernels as Python; to be asked before one is imported.
+    """Decide whether this process and its workers run kernels as Python; call this before a kernel is imported.
 
-    size : gives the bytes of the note data to be solved; only asked for where nothing is compiled yet
+    size : returns the bytes of note data to solve; called only if not all presets are compiled yet
     """
     if VARIABLE in os.environ:
         return is_interpreted()
@@ -60,22 +60,24 @@ def interpret(presets: Iterable[Preset], size: Callable[[], int]) -> bool:
     return True
 
 
-# The kernels themselves, which are made as their modules are imported: after `interpret` has been asked. Compiled ones
-# are called by `run.kernels.native`, so that what is kept runs without numba.
+# Kernels are made when their modules are imported, so `interpret` must be called before. `run.kernels.native` calls the
+# compiled kernels, so that stored ones run without numba.
 
 
 def runs_as_python() -> bool:
-    """Whether kernels are the functions that they are made of; so they are where numba's compiler is switched off."""
+    """Whether kernels are plain Python functions: by the decision of `interpret`, or because numba's compiler is
+    switched off.
+    """
     return is_interpreted() or os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 
 
 def inner_kernel(function: Any = None, **options: Any) -> Any:
-    """A kernel that kernels call. Python may, too: for it the function stays what it is."""
+    """Make a kernel that other kernels call. Python can call it as a plain function."""
     if function is None:
         return lambda later: native.inner_kernel(later, **options)
     return native.inner_kernel(function, **options)
 
 
 def kernel(function: Any, results: int = 0) -> Callable[..., Any]:
-    """A kernel that Python calls. results : how many whole numbers it gives"""
+    """Make a kernel that Python calls. results : number of integers that it returns"""
     return function if runs_as_python() else native.Kernel(function, results)

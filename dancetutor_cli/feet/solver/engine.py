@@ -1,4 +1,4 @@
-"""Holds the transition tables of one pad and preset, and runs the kernel over rows; costs as curves over time."""
+"""The engine, which has the transition tables of a pad and preset and runs the kernel; cost curves over time."""
 
 from __future__ import annotations
 
@@ -28,23 +28,23 @@ from dancetutor_cli.feet.solver.tables import (
 from dancetutor_cli.feet.solver.techniques import limits, long_ways
 from dancetutor_cli.feet.solver.vocabulary import MODELS, MOST_MS
 
-# Costs over time: a curve of a preset at every millisecond, in whole numbers, so that every machine finds the same.
+# Costs over time: the curves of a preset at every millisecond, in integers, so that every machine finds the same play.
 
 
 def curve_table(preset: Preset) -> NDArray[np.int64]:
-    """Every curve of a preset at every millisecond from 0 on, (curves, MOST_MS + 1)."""
+    """The costs of every curve of a preset at every millisecond from 0 on, (curves, MOST_MS + 1)."""
     every = np.arange(MOST_MS + 1)
     return np.array([cost_at(curve, every) for _, curve in preset.curves], dtype=np.int64).reshape(-1, len(every))
 
 
 @lru_cache(maxsize=16)
 def whole_curve(curve: Curve) -> NDArray[np.int64]:
-    """What a curve costs at 0, 1, 2 ... up to its last knot, beyond which it is level."""
+    """The costs of a curve at 0, 1, 2 ... up to its last knot; beyond it, the curve is level."""
     return cost_at(curve, np.arange(max(int(curve[-1][0]), 0) + 1))
 
 
 def cost_at(curve: Curve, milliseconds: NDArray[np.int64]) -> NDArray[np.int64]:
-    """What a curve costs at some times: straight between its knots, rounded down, and level beyond them."""
+    """The costs of a curve at some times: linear between its knots, rounded down, and level beyond them."""
     knots = np.array(curve, dtype=np.int64)
     after = np.minimum(np.searchsorted(knots[:, 0], milliseconds, side="right").clip(min=1), len(knots) - 1)
     before = np.maximum(after - 1, 0)
@@ -54,15 +54,15 @@ def cost_at(curve: Curve, milliseconds: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 _SOLVERS = {"thesis": solve_thesis, "itg": solve_itg}
-_NODES_KEPT = 1 << 16  # room for the nodes of a usual chart, kept between charts
-_NODES_A_ROW = 5  # and one for each column: so many nodes a long chart is first given room for
-_MOST_MOVES_KEPT = 2_000_000  # then the tables start again, so that a long run does not fill the memory
-_MOST_EDGES_KEPT = 2_000_000  # the same
+_NODES_KEPT = 1 << 16  # words for the nodes of a usual chart, reused between charts
+_NODES_A_ROW = 5  # words per row that a long chart is first given, in addition to one word per column
+_MOST_MOVES_KEPT = 2_000_000  # limit after which the tables start again, so that a long run does not fill the memory
+_MOST_EDGES_KEPT = 2_000_000  # limit, as for moves
 _MOST_ENGINES = 8
 
 
 class Engine:
-    """Transition tables of one pad and preset. `engine_for` shares them between charts; not for use by two threads."""
+    """The transition tables of one pad and preset, which `engine_for` shares between charts. Not thread-safe."""
 
     def __init__(self, pad: Pad, preset: Preset) -> None:
         self.pad, self.preset = pad, preset
@@ -89,24 +89,25 @@ class Engine:
     def cheapest(
         self, rows: Rows, forced: NDArray[np.int64] | None = None, margins: bool = False, *, details: bool = False
     ) -> SolverPath:
-        """The cheapest way through rows.
+        """Find the cheapest way through rows.
 
         Parameters
         ----------
-        forced : limb codes of overrides for each row (n,), 3 bits for each column, 0 none
-        margins : whether to look for the best way with other limbs, too
-        details : whether to say what each row costs and what happens in it
+        forced : limb codes of the overrides of each row (n,), 3 bits for each column, 0: no override
+        margins : whether to find the cost of the best way with other limbs in each row, too
+        details : whether to find the costs, the events, the feet and the facing of each row
         """
         arrays, (n, c) = _arrays(rows, forced), rows.steps.shape
         found, at_once = self._empty_path(n, c, margins=margins), details and _nodes_of(n, c) <= _NODES_KEPT
         found = self._with_detail_arrays(found) if at_once else found
-        self._run(arrays, found)  # of a long chart the nodes are gone before there is room for what it costs
+        self._run(arrays, found)  # for a long chart, the nodes are freed before the detail arrays are made
         return self.with_details(rows, found) if details and not at_once else found
 
     def first_without(self, rows: Rows, edits: NDArray[np.int64]) -> int:
-        """Which of some edits is the first after which the cheapest way has no doublestep in a row; else their number.
+        """Return the index of the first edit after which the cheapest way has no doublestep in its row, or the number
+        of edits.
 
-        rows : edited in place meanwhile; edits : int64 (k, 6), see `store.EDIT_ROW`; each is tried alone
+        rows : changed in place and restored; edits : int64 (k, 6), see `store.EDIT_ROW`; each edit is tried alone
         """
         self._start_anew_if_full()
         (n, c), arrays = rows.steps.shape, _arrays(rows, None)
@@ -114,13 +115,15 @@ class Engine:
         return self._run_to_end(0, arrays, nodes, found)
 
     def cost_and_events(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> tuple[int, NDArray[np.int64]]:
-        """What the cheapest way through rows costs, and what happens in each row, (n,) bits of `vocabulary.EVENTS`."""
+        """Return the cost of the cheapest way through rows, and the events of each row, (n,) bits of
+        `vocabulary.EVENTS`.
+        """
         arrays, path = _arrays(rows, forced), self._empty_path(*rows.steps.shape, margins=False)
         nodes = self._run(arrays, path)
         return int(nodes.row[len(rows), store.BASE]), self.tables.wide[path.move, store.WIDE_EVENTS] & store.EVENT_BITS
 
     def layers(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> Layers:
-        """Every state that the rows can end in, for a look at other ways than the cheapest."""
+        """Return every state that the rows can end in, from which ways other than the cheapest are found."""
         arrays = _arrays(rows, forced)
         nodes = self._run(arrays, self._empty_path(*rows.steps.shape, margins=False))
         t = self.tables
@@ -130,7 +133,7 @@ class Engine:
         return Layers([states[number] for number in numbers], arrays.elapsed.tolist(), arrays.pattern.tolist(), t.pair)
 
     def path_along(self, path: list[int]) -> SolverPath:
-        """A way through rows, given by its moves; without margins."""
+        """Return the way through rows with these moves, without margins."""
         move = np.array(path, dtype=np.int32)
         columns, action = np.arange(len(self.pad)), self.tables.wide[move, store.WIDE_ACTION][:, None]
         code, nothing = action >> 3 * columns & 7, np.empty(0, dtype=np.int64)
@@ -144,7 +147,7 @@ class Engine:
         )
 
     def with_details(self, rows: Rows, found: SolverPath) -> SolverPath:
-        """A way, and what it costs and what happens in each row."""
+        """Return a way with the costs, the events, the feet and the facing of each row."""
         details = self._with_detail_arrays(found)
         self._call(_arrays(rows, None), EXPLAIN, _nodes(0, self._node), details)
         return details
@@ -192,7 +195,9 @@ class Engine:
         )
 
     def _run_to_end(self, start: int, arrays: RowArrays, nodes: RowStates, found: SolverPath) -> int:
-        """Run the kernel from a row, or an edit, on, and give it what it asks for; where it has ended."""
+        """Run the kernel from a row or an edit on, with more memory whenever it asks for it; return where the kernel
+        ended.
+        """
         wanted = -1
         while wanted != store.DONE:
             start, wanted = self._call(arrays, start, nodes, found)
@@ -207,7 +212,7 @@ class Engine:
 
 
 def _wrapping() -> AbstractContextManager[object]:
-    """Whole numbers of hash functions wrap round, as compiled ones do; numpy would warn of it."""
+    """Suppress numpy's warnings about integers of hash functions that overflow, as they do in compiled code."""
     return np.errstate(over="ignore") if runs_as_python() else nullcontext()
 
 
@@ -222,7 +227,7 @@ def _arrays(rows: Rows, forced: NDArray[np.int64] | None) -> RowArrays:
 
 
 def _nodes_of(rows: int, columns: int) -> int:
-    """How many words for nodes a chart is first given room for."""
+    """The number of words for nodes that a chart is first given."""
     return rows * (_NODES_A_ROW + columns) + 2 * MOST_MOVES
 
 
@@ -231,9 +236,9 @@ def _nodes(rows: int, node: NDArray[np.int64]) -> RowStates:
 
 
 def _make_room(nodes: RowStates, row: int) -> None:
-    """Room for as many nodes as the rest of the rows will need if it goes on like this, at most twice as many.
+    """Make room for the nodes that the other rows will need at the present rate, at most twice the room.
 
-    The array grows where it is, so that old and new are not in memory together.
+    The array is resized in place, so that the memory does not have to hold the old and the new array together.
     """
     used, room = int(nodes.row[row + 1, store.FIRST]), len(nodes.node)
     like_this = used * len(nodes.transition) // max(row, 1) * 21 // 20 + 2 * MOST_MOVES
@@ -242,9 +247,9 @@ def _make_room(nodes: RowStates, row: int) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Layers:
-    """The states that n rows can end in, and the moves between them, by their numbers in the engine's tables.
+    """The states that n rows can end in, and the moves between them, as indices into the engine's tables.
 
-    states : n + 1 lists, before each row and after the last; elapsed, pattern : see `RowArrays`, as lists
+    states : n + 1 lists, before each row and after the last row; elapsed, pattern : lists, see `RowArrays`
     pair : `Tables.pair`
     """
 
@@ -254,7 +259,7 @@ class Layers:
     pair: NDArray[np.int64]
 
     def moves(self, row: int, state: int) -> range:
-        """Numbers of the moves of a state in a row."""
+        """The indices of the moves of a state in a row."""
         key, size = self.pattern[row] << 32 | state, len(self.pair)
         at = (key * store.GOLDEN & (1 << 64) - 1) >> 32 & size - 1
         while self.pair[at, 0] != key:
@@ -269,7 +274,7 @@ def _engine_pool(steps_type: str, preset: Preset, shape: bytes) -> list[Engine]:
 
 
 def engine_for(pad: Pad, preset: Preset) -> Engine:
-    """The engine of a pad and preset; the same one for the same again, so that its tables serve many charts."""
+    """Return the engine of a pad and preset; the same pad and preset share one engine and its tables."""
     last = _last.get(id(pad))
     if last is not None and last[0] is pad and last[1] is preset:
         return last[2]
@@ -279,7 +284,7 @@ def engine_for(pad: Pad, preset: Preset) -> Engine:
     return _last[id(pad)][2]
 
 
-# The last engine of each pad, by the objects themselves: to hash a preset takes as long as a few hundred rows.
+# The last engine of each pad, by object identity, because hashing a preset takes as long as solving a few hundred rows.
 _last: dict[int, tuple[Pad, Preset, Engine]] = {}
 
 

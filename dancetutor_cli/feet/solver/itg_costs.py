@@ -1,8 +1,8 @@
-"""What it costs to play a row in preset `itg`, by the state before and after. Kernel code.
+"""The cost of playing a row in the model `itg`, from the states before and after the row. Kernel code.
 
-Names of weights and times are in `vocabulary`, what they mean is in the preset. What depends on the time since the row
-before is packed into facts, which `charge_time` prices. Large functions are inlined by numba, because it compiles each
-function again with all that it calls.
+The names of weights and curves are in `vocabulary`, their meanings in the preset file. Costs that depend on the time
+since the row before are packed as facts, which `charge_time` prices. Numba inlines large functions, because it compiles
+each function again together with every function that it calls.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ _BIT = {name: 1 << bit for bit, name in enumerate(EVENTS)}
         "forced-doublestep", "jump-footswitch", "hand", "jump", "unplayable", "bracket", "holdswitch",
     )
 )  # fmt: skip
-_SWITCH = tuple(  # by the arrow of the panel
+_SWITCH = tuple(  # in the order of `UP`, `DOWN`, `LEFT`, `RIGHT`, `MIDDLE`
     _BIT[name] for name in ("footswitch-up", "footswitch-down", "sideswitch-left", "sideswitch-right", "footswitch")
 )
 
-# facts that cost by time, packed: distance in 1/20 panels 0..1023, then a bit for each curve
+# Packed facts, whose costs depend on time: distance in 1/20 panels 0..1023, then one bit for each curve.
 _DISTANCE_BITS = 10
 _WEIGHTS, _CURVES = len(MODELS["itg"].weights), len(MODELS["itg"].curves)
 (
@@ -51,7 +51,7 @@ _WIDE = 40  # 1/20 panels: feet farther apart than this are stretched
 
 @inner_kernel
 def reserved_panels(s, foot, panels):  # type: ignore[no-untyped-def]
-    """Panels that a foot is reserved for, as bits. panels : of `Geometry`"""
+    """The panels that a foot holds, as bits. panels : `Geometry.panels`"""
     held, place = s[LEFT_HELD + foot], s[foot]
     mask = 1 << panels[place, foot, 0] if held & 1 else 0
     return mask | 1 << panels[place, foot, 1] if held & 2 else mask
@@ -59,7 +59,7 @@ def reserved_panels(s, foot, panels):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def charge_hand(s, panel, terms, rules):  # type: ignore[no-untyped-def]
-    """What it costs that a hand presses a panel, once the feet are where they are after the row."""
+    """Add the costs of a hand that presses a panel, from the places of the feet after the row."""
     g, w = rules.geometry, rules.weights
     x = g.left[panel, 0] - (g.left[s[LEFT_AT], 0] + g.right[s[RIGHT_AT], 0]) / 2
     y = g.left[panel, 1] - (g.left[s[LEFT_AT], 1] + g.right[s[RIGHT_AT], 1]) / 2
@@ -71,10 +71,10 @@ def charge_hand(s, panel, terms, rules):  # type: ignore[no-untyped-def]
 
 @inner_kernel(inline="always")
 def charge_feet(before, s, pressed, ended, terms, rules):  # type: ignore[no-untyped-def]
-    """What the feet of a row cost, not counting the pose. Facts and events.
+    """Add the costs of the steps of a row without those of the pose; return facts and events.
 
-    pressed : bits of left and right; ended : bits of panels whose holds ended just now, since the last row, and in the
-        very moment of the last row
+    pressed : bits of the panels of the left and right foot; ended : bits of the panels whose holds ended just now,
+    since the last row, and exactly at the last row
     """
     g, w = rules.geometry, rules.weights
     left, right = pressed[0], pressed[1]
@@ -132,9 +132,9 @@ def charge_feet(before, s, pressed, ended, terms, rules):  # type: ignore[no-unt
 
 @inner_kernel
 def _charge_direction(s, foot, split, terms, rules):  # type: ignore[no-untyped-def]
-    """Where a foot on two panels points: outward in front, as it likes best, costs nothing.
+    """Add the cost of the direction of a foot on two panels; pointing outward in front costs nothing.
 
-    split : whether the other foot presses, too: a row of three panels or four
+    split : whether the other foot presses too, in a row of three or four panels
     """
     g, w = rules.geometry, rules.weights
     heel, toe = g.panels[s[foot], foot, 0], g.panels[s[foot], foot, 1]
@@ -155,7 +155,7 @@ def _charge_direction(s, foot, split, terms, rules):  # type: ignore[no-untyped-
 
 @inner_kernel(inline="always")
 def _charge_step(before, foot, pressed, ended, terms, rules):  # type: ignore[no-untyped-def]
-    """One foot steps, on one panel or two: jack, switch, doublestep, or the first step after a jump."""
+    """Add the costs of one foot's step on one or two panels; return facts and events."""
     g, w = rules.geometry, rules.weights
     facts = events = 0
     stands, other = g.mask[before[foot]], g.mask[before[1 - foot]]
@@ -166,7 +166,7 @@ def _charge_step(before, foot, pressed, ended, terms, rules):  # type: ignore[no
         facts |= _F_AFTER_JUMP
     if pressed & other and not pressed & reserved_panels(before, 1 - foot, g.panels):
         kind = _F_FOOTSWITCH
-        for panel in range(len(g.arrow)):  # a bracket may take over two
+        for panel in range(len(g.arrow)):  # a bracket may take over two panels
             if pressed & other & 1 << panel:
                 kind = _F_MIDDLE_SWITCH if g.arrow[panel] == MIDDLE else kind
                 events |= _SWITCH[g.arrow[panel]]
@@ -185,11 +185,13 @@ def _charge_step(before, foot, pressed, ended, terms, rules):  # type: ignore[no
 
 @inner_kernel
 def _charge_doublestep(before, foot, pressed, ended, terms, rules):  # type: ignore[no-untyped-def]
-    """A foot steps again, on another panel: by what the other foot was doing, and where it goes."""
+    """Return the fact and the event of a foot that steps again on another panel, and add the costs of a marked
+    doublestep.
+    """
     g, w = rules.geometry, rules.weights
     stands, other = g.mask[before[foot]], g.mask[before[1 - foot]]
     if before[LEFT_HELD + foot]:
-        return _F_HELD_AGAIN, EVENT_FORCED  # a bracket on what it holds
+        return _F_HELD_AGAIN, EVENT_FORCED  # a bracket with a panel that the foot holds
     if before[LEFT_HELD + 1 - foot]:
         return _F_FORCED_DOUBLESTEP, EVENT_FORCED
     if ended[0] & other:
@@ -208,7 +210,7 @@ def _charge_doublestep(before, foot, pressed, ended, terms, rules):  # type: ign
 
 @inner_kernel(inline="always")
 def charge_pose(before, s, pressed, terms, rules):  # type: ignore[no-untyped-def]
-    """What facing and stance after the row cost. Facts and events."""
+    """Add the costs of the facing and the stance after the row; return facts and events."""
     g, w = rules.geometry, rules.weights
     facts = events = 0
     angle = g.angle[s[0], s[1]]
@@ -252,7 +254,7 @@ def charge_pose(before, s, pressed, terms, rules):  # type: ignore[no-untyped-de
 
 @inner_kernel(inline="always")
 def charge_mines(before, s, pressed, mines, terms, rules):  # type: ignore[no-untyped-def]
-    """A foot that stays on a mine has to get off it, and is lifted from then on; a foot that presses is down again."""
+    """Add the costs of feet on mines. A foot that stays on a mine is lifted until it presses a panel again."""
     g, w = rules.geometry, rules.weights
     for foot in range(2):
         if pressed[foot]:
@@ -267,7 +269,7 @@ def charge_mines(before, s, pressed, mines, terms, rules):  # type: ignore[no-un
 
 @inner_kernel
 def charge_time(facts, ms, curves, terms):  # type: ignore[no-untyped-def]
-    """Write what packed facts cost when the row before was so many milliseconds ago; returns the sum.
+    """Add the costs of packed facts after `ms` milliseconds to `terms`; return their sum.
 
     curves : int64 (c, MOST_MS + 1), cost of each curve by milliseconds
     """

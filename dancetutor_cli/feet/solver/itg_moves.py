@@ -1,8 +1,9 @@
-"""The rules of preset `itg`: every way in which dance-pad players really play a row. Kernel code.
+"""The rules of the model `itg`: every way in which dance-pad players really play a row. Kernel code.
 
-One foot may press two neighbouring panels, the feet may change places on a panel, rolls are held or tapped, hands come
-only when feet cannot. Limb codes of actions: 0 none, 1 left foot, 2 right foot, 3 left hand, 4 right hand, 5 unplayed.
-Large functions are inlined by numba, because it compiles each function again with all that it calls.
+One foot may press two neighbouring panels, the feet may change places on a panel, and rolls are held or tapped. Hands
+press only the steps that the feet cannot press. Limb codes of actions: 0 none, 1 left foot, 2 right foot, 3 left hand,
+4 right hand, 5 unplayed. Numba inlines large functions, because it compiles each function again together with every
+function that it calls.
 """
 
 from __future__ import annotations
@@ -51,13 +52,13 @@ _FORCED = (1 << 3 * COLUMN_BITS) - 1
 BEFORE, AFTER, PRESS, PANELS, LEFT_WAYS, RIGHT_WAYS, LEFT_TO, RIGHT_TO = range(8)  # rows of `Moves.scratch`
 
 
-Whole = int | np.int64  # what Python and numba call a whole number
+Whole = int | np.int64  # the integers of Python and of numba
 
 
 class _ItgRow(NamedTuple):
-    """What a row asks for.
+    """The steps of a row and its overrides.
 
-    row : its packed masks; steps : panels to press; kept : those of them that are pressed by keeping them down
+    row : packed masks of the row; steps : bits of the panels to press; kept : bits of the panels that stay pressed
     forced : limb codes of overrides, and holds that ended in the last row
     """
 
@@ -69,20 +70,23 @@ class _ItgRow(NamedTuple):
 
 @inner_kernel
 def start_itg(home):  # type: ignore[no-untyped-def]
-    """Left and right foot on the panels of the starting stance, no last leg."""
+    """The packed starting state: both feet on their home panels, no last leg."""
     return home[0] | home[1] << 5
 
 
 @inner_kernel
 def _hold(s, foot, mask, panels):  # type: ignore[no-untyped-def]
-    """Reserve the parts of a foot that stand on the panels of `mask`. panels : of `Geometry`"""
+    """Mark the parts of a foot that stand on the panels of `mask` as holding. panels : `Geometry.panels`"""
     heel, toe = panels[s[foot], foot, 0], panels[s[foot], foot, 1]
     s[LEFT_HELD + foot] = mask >> heel & 1 | (mask >> toe & 1) << 1 if toe >= 0 else mask >> heel & 1
 
 
 @inner_kernel(inline="always")
 def _ways_of_foot(out, foot, steps, brackets, g):  # type: ignore[no-untyped-def]
-    """What a foot can press of `steps`: panels, and its place then, into `out.scratch`. Returns in how many ways."""
+    """Write the ways of a foot to press panels of `steps`, with its place after each, into `out.scratch`.
+
+    Returns their number.
+    """
     s, ways, to = out.scratch[BEFORE], out.scratch[LEFT_WAYS + foot], out.scratch[LEFT_TO + foot]
     held = reserved_panels(s, foot, g.panels)
     ways[0], to[0] = 0, s[foot]
@@ -118,9 +122,9 @@ def _bits(mask):  # type: ignore[no-untyped-def]
 def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-def]
     """Write one way to play a row.
 
-    holders : feet that keep a roll down; switched : panel on which the feet change during a hold, or -1
-    The new places of the feet are in scratch `AFTER`; in `PRESS` stand the bits of the panels that left foot, right
-    foot, left hand and right hand press, and there is room behind them.
+    holders : bits of the feet that keep a roll down; switched : panel on which the feet change during a hold, or -1 The
+    new places of the feet are in scratch `AFTER`; `PRESS` has the bits of the panels that the left foot, right foot,
+    left hand and right hand press, and free room after them.
     """
     g, w, row, steps, kept = rules.geometry, rules.weights, asked.row, asked.steps, asked.kept
     before, s, pressed, terms = out.scratch[BEFORE], out.scratch[AFTER], out.scratch[PRESS], out.terms[m]
@@ -153,7 +157,7 @@ def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-d
         s[LAST] = 1 if left else 2
     charge_mines(before, s, feet, row >> MINES & _MASK, terms, rules)
     if switched >= 0:
-        near = g.near[before[LEFT_AT if pressed[1] else RIGHT_AT]] >> switched & 1  # where the foot that takes over was
+        near = g.near[before[LEFT_AT if pressed[1] else RIGHT_AT]] >> switched & 1  # near the foot that takes over
         terms[NEAR_HOLDSWITCH if near else HOLDSWITCH] = w[NEAR_HOLDSWITCH if near else HOLDSWITCH]
         events |= EVENT_HOLDSWITCH
     action = part = 0
@@ -185,7 +189,7 @@ def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-d
 
 @inner_kernel
 def _fits(pressed, forced, c):  # type: ignore[no-untyped-def]
-    """Whether limbs press what overrides ask for (3 bits for each column, 0: any limb)."""
+    """Whether the limbs press the panels of the overrides (3 bits for each column, 0: any limb)."""
     for p in range(c):
         want = forced >> 3 * p & 7
         if want and not pressed[want - 1] >> p & 1:
@@ -195,7 +199,7 @@ def _fits(pressed, forced, c):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _outermost(mask, places, side):  # type: ignore[no-untyped-def]
-    """The panel of a mask that is furthest to the left, `side` -1, or right, 1; of two, the one further back; or -1."""
+    """The leftmost (`side` -1) or rightmost (1) panel of a mask, or -1; of two equal ones, the one further back."""
     found = -1
     for p in range(COLUMN_BITS):
         if mask >> p & 1:
@@ -207,17 +211,17 @@ def _outermost(mask, places, side):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _with_hands(out, m, asked, switched, rules):  # type: ignore[no-untyped-def]
-    """Give the steps that no foot presses to free hands, every way; and rolls to be kept down or only tapped.
+    """Write every way to give the steps that no foot presses to free hands, and to keep rolls down or only tap them.
 
-    Of more steps than free hands the left hand takes the one furthest to the left, the right hand that to the right:
-    nobody can play such a row, and to list every choice would take very long where there are ten steps.
+    If there are more steps than free hands, the left hand takes the leftmost step, and the right hand the rightmost
+    step. Nobody can play such a row, and listing every choice for ten steps would take very long.
     """
     g, forced = rules.geometry, asked.forced
     before, pressed = out.scratch[BEFORE], out.scratch[PRESS]
     c = g.place.shape[0]
     rest = asked.steps & ~(pressed[0] | pressed[1])
     left_free, right_free = before[LEFT_HOLDS] == 0, before[LEFT_HOLDS + 1] == 0
-    hands = min(_bits(rest), int(left_free) + int(right_free))  # as Python, the sum of two of its flags is a flag
+    hands = min(_bits(rest), int(left_free) + int(right_free))  # run as Python, the sum of two numpy flags is a flag
     crowded = _bits(rest) > hands and not forced & _FORCED
     leftmost = rightmost = -1
     if crowded and hands:
@@ -245,7 +249,10 @@ def _with_hands(out, m, asked, switched, rules):  # type: ignore[no-untyped-def]
 
 @inner_kernel(inline="always")
 def _feet(out, asked, brackets, rules):  # type: ignore[no-untyped-def]
-    """Every way to share a row between the feet that leaves the fewest steps to hands."""
+    """Write every way to divide a row between the feet that leaves the fewest steps to the hands.
+
+    Returns their number.
+    """
     steps, kept, after, pressed = asked.steps, asked.kept, out.scratch[AFTER], out.scratch[PRESS]
     keepers = out.scratch[PANELS]
     left_ways, right_ways = out.scratch[LEFT_WAYS], out.scratch[RIGHT_WAYS]
@@ -271,7 +278,7 @@ def _feet(out, asked, brackets, rules):  # type: ignore[no-untyped-def]
 
 @inner_kernel(inline="always")
 def _holdswitches(out, m, asked, rules):  # type: ignore[no-untyped-def]
-    """One step while one foot holds: the free foot may take over the hold, and the other one steps."""
+    """Write the ways to play one step in which the free foot takes over a hold and the other foot steps."""
     g, before, after, pressed = rules.geometry, out.scratch[BEFORE], out.scratch[AFTER], out.scratch[PRESS]
     step = 0
     while not asked.steps >> step & 1:
@@ -288,7 +295,7 @@ def _holdswitches(out, m, asked, rules):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def expand_itg(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
-    """All ways to play a row from a state, into `out`; returns their number, at least 1.
+    """Write all ways to play a row from a state into `out`; returns their number, at least 1.
 
     row : packed masks of the row; forced : limb codes of overrides
     """
@@ -306,9 +313,9 @@ def expand_itg(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
     kept = steps & row >> ROLL_TAPS & (keepers[0] | keepers[1])  # virtual taps of rolls that a foot keeps down
     brackets, m = switches[0], 0
     for attempt in range(3):
-        if attempt == 1:  # overrides against the rules: they win, even over holds
+        if attempt == 1:  # overrides that break the rules have priority, even over holds
             brackets, kept, before[LEFT_HELD], before[LEFT_HELD + 1] = True, np.int64(0), 0, 0
-        elif attempt == 2:  # overrides nobody can follow
+        elif attempt == 2:  # overrides that nobody can follow are ignored
             brackets, forced = switches[0], forced & ~_FORCED
         if m == 0:
             m = _feet(out, _ItgRow(row, steps, kept, forced), brackets, rules)

@@ -1,17 +1,18 @@
 """The dynamic programme: the cheapest way through the rows, over the transition tables that `explore` fills.
 
-With m a move of row r from state a to state b, cost(m) what it costs by weights, time(f, e) what its facts f cost by
-curves e milliseconds after the last row with steps, the cheapest way to each state costs
+Let m be a move of row r from state a to state b, and cost(m) its cost by weights. Let time(f, e) be the cost by curves
+of its facts f, e milliseconds after the last row with steps. Then the cheapest way to each state costs
 
     C(0, start) = 0
     C(r, b) = min over moves m: a -> b of row r of  C(r - 1, a) + cost(m) + time(facts(m), e(r))
 
-and the play is what leads to the least C(n, b) of the last row n (Bellman 1957; Viterbi 1967). `margins` has the same
+and the play is the way to the least C(n, b) of the last row n (Bellman 1957; Viterbi 1967). `margins` computes the same
 from the end, D(n, b) = 0, D(r - 1, a) = min over m of  cost(m) + time(facts(m), e(r)) + D(r, b): a row's margin is the
 least C(r - 1, a) + cost(m) + time(facts(m), e(r)) + D(r, b) among moves with other limbs, minus the play's cost.
 
-For each layer of states and pattern of a row the edges to the next layer are known, so the loop only adds costs. Costs
-of a row are kept relative to the row's cheapest state. Of several ways as cheap, the first in order of edges is taken.
+For each layer of states and pattern of a row, the edges to the next layer are known, so the loop only adds costs. The
+costs of a row are relative to its cheapest state. Of several ways with the same cost, the first in the order of edges
+is chosen.
 """
 
 from __future__ import annotations
@@ -71,7 +72,8 @@ _PLACE = (1 << PLACE_BITS) - 1
 _ROLL, _ROLL_TAP = int(StepKind.ROLL), int(StepKind.ROLL_TAP)
 _LEFT_OVER = int(Limb.UNPLAYED)
 _NEVER = np.int64(1 << 60)
-# what a cell of `Rows.steps` is in a packed row, in its first column: with rolls as taps, and with taps of rolls apart
+# The bits of each kind of step in the first column of a packed row: with all rolls as taps, and with taps of rolls
+# apart.
 _KINDS = np.array(
     [[0, 1, 1, 1 << columns.HOLDS, 1, 1], [0, 1, 1, 1 << columns.HOLDS, 1, 1 << columns.ROLL_TAPS]], dtype=np.int64
 )
@@ -79,7 +81,7 @@ _KINDS = np.array(
 
 @inner_kernel
 def _pattern(row, more, patterns, numbers, counts):  # type: ignore[no-untyped-def]
-    """Number of a packed row, which takes two words."""
+    """Return the index of a packed row of two words; a new row is entered."""
     at = slot_of(row ^ more * 31, len(numbers))
     while numbers[at] >= 0:
         number = numbers[at]
@@ -95,7 +97,7 @@ def _pattern(row, more, patterns, numbers, counts):  # type: ignore[no-untyped-d
 
 @inner_kernel
 def _any_from(cells, least):  # type: ignore[no-untyped-def]
-    """Whether some cell (n, c) is at least so much."""
+    """Whether any cell (n, c) is at least `least`."""
     n, c = cells.shape
     found = False
     for r in range(n):
@@ -106,7 +108,9 @@ def _any_from(cells, least):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _rolls_on(steps, out):  # type: ignore[no-untyped-def]
-    """Bits of the columns in which a roll goes on after each row (n,): the next step there is a virtual tap."""
+    """Write the bits of the columns in which a roll goes on after each row (n,), so that the next step is a virtual
+    tap.
+    """
     n, c = steps.shape
     coming = 0
     for r in range(n - 1, -1, -1):
@@ -120,7 +124,7 @@ def _rolls_on(steps, out):  # type: ignore[no-untyped-def]
 
 @inner_kernel(inline="always")
 def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
-    """Pack every row and number it; False if the tables have no room for as many patterns."""
+    """Pack and number every row; return False if the tables do not have room for the patterns."""
     steps, hold_end, mines, tick, forced = rows.steps, rows.hold_end, rows.mines, rows.tick, rows.forced
     patterns, numbers, counts = t.pattern, t.pattern_hash, t.counts
     pattern, ends = rows.pattern, rows.ends
@@ -130,7 +134,7 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
     kinds = _KINDS[1 if keep_rolls else 0]
     rolled, mined = keep_rolls and _any_from(steps, _ROLL), _any_from(mines, 1)
     if rolled:
-        _rolls_on(steps, pattern)  # each is read before the number of its row takes its place
+        _rolls_on(steps, pattern)  # `pattern` is scratch until the number of each row replaces it
     for p in range(c):
         ends[p] = -1
     held, last, latest = 0, np.int64(-1), np.int64(-1)
@@ -169,7 +173,7 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def wait(rows):  # type: ignore[no-untyped-def]
-    """Milliseconds since the last row with steps, for every row."""
+    """Write the milliseconds since the last row with steps into `rows.elapsed`, for every row."""
     steps, milliseconds, elapsed = rows.steps, rows.milliseconds, rows.elapsed
     waited = MOST_MS
     for r in range(len(elapsed)):
@@ -182,7 +186,7 @@ def wait(rows):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _row_of_time(ms, t):  # type: ignore[no-untyped-def]
-    """The row of `timed_cost` for so many milliseconds; a new time is entered. -1 if there is no room for it."""
+    """Return the row of `timed_cost` for `ms` milliseconds; a new time is entered. Returns -1 if there is no room."""
     row = np.int64(t.timed_row[ms])
     if row < 0 and t.counts[TIMES] < len(t.timed_cost):
         row = t.counts[TIMES]
@@ -193,7 +197,7 @@ def _row_of_time(ms, t):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _time_cost(facts, ms, timed_key, costs, curves, terms):  # type: ignore[no-untyped-def]
-    """1 + what facts cost after so many milliseconds; computed when first asked for.
+    """Compute and store 1 + the cost of facts after `ms` milliseconds.
 
     costs : the row of `timed_cost` for `ms`; terms : scratch
     """
@@ -203,9 +207,10 @@ def _time_cost(facts, ms, timed_key, costs, curves, terms):  # type: ignore[no-u
 
 @inner_kernel(inline="always")
 def advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
-    """Costs of the nodes after row r and all after it. Returns the row reached and DONE, or what there is no room for.
+    """Compute the costs of the nodes after row r and all later rows. Returns the row reached, and DONE or the missing
+    room.
 
-    Arrays are taken out of their tuples once, and tuples are not handed on inside the loop: each would be counted.
+    Arrays are taken out of their tuples once, and the loop passes no tuples on, because numba would count references.
     """
     pattern, elapsed, first, node, chosen = rows.pattern, rows.elapsed, nodes.row, nodes.node, nodes.transition
     layer, edge, transition = t.layer, t.edge, t.transition
@@ -254,7 +259,7 @@ def advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
 
 @inner_kernel(inline="always")
 def trace(t, nodes, found):  # type: ignore[no-untyped-def]
-    """Walk back from the cheapest last node: the moves of the rows, and who presses what."""
+    """Write the moves, limbs and parts of the rows, walking back from the cheapest last node."""
     first, node, edge, wide = nodes.row, nodes.node, t.edge, t.wide
     limb, part, path = found.limb, found.part, found.move
     n, c = limb.shape
@@ -274,7 +279,7 @@ def trace(t, nodes, found):  # type: ignore[no-untyped-def]
 
 @inner_kernel(inline="always")
 def explain_path(t, rows, rules, found):  # type: ignore[no-untyped-def]
-    """Cost of every row of a path by term, what happens in it, and how the dancer stands after it."""
+    """Write the cost of every row of a path by term, its events, and the feet and the facing after it."""
     moves, wide, terms, timed_key, keys, elapsed = t.move, t.wide, t.terms, t.timed_key, t.state_key, rows.elapsed
     path, cost, events, feet, facing = found.move, found.cost, found.events, found.feet, found.facing
     panels, angle = rules.geometry.panels, rules.geometry.angle
@@ -289,17 +294,18 @@ def explain_path(t, rows, rules, found):  # type: ignore[no-untyped-def]
         key = keys[moves[move, NEXT]]
         left, right = key & _PLACE, key >> PLACE_BITS & _PLACE
         feet[r, 0], feet[r, 1] = panels[left, 0, 0], panels[right, 1, 0]
-        by_right = angle[left, right] > 179.0 and key >> 2 * PLACE_BITS & 3 == 2  # reached by turning right
+        # the dancer reached this facing by turning right
+        by_right = angle[left, right] > 179.0 and key >> 2 * PLACE_BITS & 3 == 2
         facing[r] = -180.0 if by_right else angle[left, right]
     name_neighbours(rows, found, rules)
 
 
 @inner_kernel(inline="always")
 def margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
-    """For each row, how much more the best path costs in which it is stepped with other limbs; -1 if there is none.
+    """Write for each row how much more the best path with other limbs in it costs; -1 if there is no such path.
 
-    Where that is 0, `ambiguity` says whether such a path may step all later rows with the same limbs, 1, or not, 2.
-    Returns what there is no room for, or DONE.
+    If a margin is 0, `ambiguity` is 1 if such a path can step all later rows with the same limbs, else 2. Returns DONE,
+    or the missing room.
     """
     first, node, chosen, elapsed = nodes.row, nodes.node, nodes.transition, rows.elapsed
     edge, edge_limbs, transition = t.edge, t.edge_limbs, t.transition
@@ -343,13 +349,13 @@ def margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def begin(rows, t, nodes, rules):  # type: ignore[no-untyped-def]
-    """Get rows ready for the programme; False if the tables have no room for as many patterns."""
+    """Prepare rows for the dynamic programme; return False if the tables do not have room for the patterns."""
     if t.counts[MOVES] == 0:  # move 0, state 0 and layer 0 are the start of every play
         key = start_thesis(rules.geometry) if rules.model == 0 else start_itg(rules.home)
         t.move[0, NEXT] = number_of(key, t.state_key, t.state_hash, t.counts, STATES)
         nodes.node[0] = START
         number_of_layer(nodes.node, 1, t)
-        t.counts[MOVES] = t.counts[FACTS_KNOWN] = 1  # and facts 0 are none
+        t.counts[MOVES] = t.counts[FACTS_KNOWN] = 1  # facts 0 are the empty facts
     if not _number_rows(rows, rules.model > 0, t):
         return False
     wait(rows)

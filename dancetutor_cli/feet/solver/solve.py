@@ -21,16 +21,16 @@ from dancetutor_cli.feet.solver.techniques import EventNames
 def solve_rows(
     rows: Rows, pad: Pad, preset: Preset, overrides: Overrides | None = None, *, margins: bool = True
 ) -> Play:
-    """The cheapest way to play rows: the true minimum of the preset's costs; of several, always the same one.
+    """Return the play of the rows with the lowest cost by the preset; of several such plays, always the same one.
 
     Parameters
     ----------
     rows : n rows of the pad's c columns, as `prepare` makes them
-    overrides : limbs that must be kept, even against the rules; those of cells without a step, and those nobody can
-        follow (one foot on two panels that are no bracket), are left out of account
-    margins : whether `Play.margin` and `Play.ambiguity` are wanted; they take about as long again
+    overrides : limbs that the play must keep, even against the rules; overrides of cells without a step, and overrides
+    that nobody can follow (one foot on two panels that are no bracket), are ignored
+    margins : whether to compute `Play.margin` and `Play.ambiguity`, which about doubles the time
 
-    Raises ValueError if rows and pad do not fit.
+    Raises ValueError if the rows and the pad do not have the same number of columns.
     """
     if rows.steps.shape[1] != len(pad):
         raise ValueError(f"rows have {rows.steps.shape[1]} columns, {pad.steps_type} has {len(pad)} panels")
@@ -41,7 +41,7 @@ def solve_rows(
 def solve_chart(
     chart: Chart, preset: Preset, overrides: Overrides | None = None, *, margins: bool = True
 ) -> Play | None:
-    """The cheapest way to play a chart, or None if its steps type has no pad."""
+    """Return the cheapest play of a chart, or None if its steps type has no pad."""
     pad = load_pad(chart.steps_type)
     if pad is None:
         return None
@@ -49,7 +49,7 @@ def solve_chart(
 
 
 def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] | None:
-    """Overrides as the kernel wants them: limb codes 1 to 4 for each row, 3 bits for each column; None without any."""
+    """Return overrides for the kernel: limb codes 1 to 4 for each row, 3 bits for each column; None without overrides."""
     if overrides is None or not len(overrides) or not len(rows):
         return None
     row = np.searchsorted(rows.tick, overrides.ticks).clip(max=len(rows) - 1)
@@ -63,7 +63,7 @@ def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] |
 
 
 def play_of(rows: Rows, engine: Engine, found: SolverPath) -> Play:
-    """The play that a way through the rows is, of which the engine has reported all."""
+    """Make the play of a way through the rows; the way must have its details."""
     return Play(
         rows=rows,
         limb=found.limb,
@@ -82,7 +82,7 @@ def play_of(rows: Rows, engine: Engine, found: SolverPath) -> Play:
 
 
 def _confidence(rows: Rows, preset: Preset, margin: NDArray[np.int64]) -> NDArray[np.float64] | None:
-    """How likely people step each row this way, (n,); None if nobody has measured it for the preset."""
+    """Return how likely the limbs of each row are right, (n,); None if it is not measured for the preset."""
     if not preset.confidence:
         return None
     curve = _shares(preset.confidence)
@@ -94,12 +94,15 @@ def _confidence(rows: Rows, preset: Preset, margin: NDArray[np.int64]) -> NDArra
 
 @lru_cache(maxsize=16)
 def _shares(confidence: Curve) -> NDArray[np.float64]:
-    """A curve of confidence as shares of 1; behind it, so that it is what margin -1 finds, that of the only way: 1."""
+    """Return a curve of confidence as shares of 1.
+
+    Its last value, which index -1 finds, is 1: there is no other way.
+    """
     return np.append(whole_curve(confidence) / 1000, 1.0)
 
 
 def move_tap(rows: Rows, row: int, column: int, to: int) -> Rows:
-    """The rows with the tap of a row and column in another column."""
+    """Return the rows with the tap of a row and column moved to another column."""
     steps = rows.steps.copy()
     steps[row, to], steps[row, column] = steps[row, column], StepKind.NONE
     return replace(rows, steps=steps)

@@ -1,6 +1,6 @@
-"""The solver's kernels, one for each model, so that a command compiles and loads only the rules it needs.
+"""The solver's kernels, one for each model, so that a command compiles and loads only the rules that it needs.
 
-States that rows can end in are met without costs; the moves between them are kept for the dynamic programme.
+The states that rows can end in are explored without costs. The moves between them are stored for the dynamic programme.
 """
 
 from __future__ import annotations
@@ -76,13 +76,13 @@ from dancetutor_cli.feet.solver.tables import MOST_MOVES, MOVE_ACTION, MOVE_EVEN
 from dancetutor_cli.feet.solver.thesis_moves import expand_thesis
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 
-_RANK_SHIFT = 31  # of a state's rank in its layer; its number stands below
+_RANK_SHIFT = 31  # lowest bit of a state's rank in its layer; the number of the state is below
 _PLACE = (1 << PLACE_BITS) - 1
 
 
 @inner_kernel(inline="always")
 def _keep(count, out, t):  # type: ignore[no-untyped-def]
-    """Number and keep the moves in `out`. Returns what `Tables.pair` holds: first move, number of moves."""
+    """Number and store the moves in `out`. Returns first move << 16 | number of moves, as in `Tables.pair`."""
     counts, moves, wide, facts = t.counts, t.move, t.wide, t.timed_key
     keys, numbers, terms, terms_hash = t.state_key, t.state_hash, t.terms, t.terms_hash
     given, given_terms = out.wide, out.terms
@@ -105,7 +105,7 @@ def _keep(count, out, t):  # type: ignore[no-untyped-def]
 
 @inner_kernel(inline="always")
 def _room(t):  # type: ignore[no-untyped-def]
-    """What has no room for the moves of one more pair, or DONE."""
+    """Return which table has no room for the moves of one more pair, or DONE."""
     counts = t.counts
     if counts[STATES] + MOST_MOVES > len(t.state_key):
         return MORE_STATES
@@ -122,8 +122,10 @@ def _room(t):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _rank(key):  # type: ignore[no-untyped-def]
-    """Where a state (packed, int64) stands in its layer, above `_RANK_SHIFT`: of ways as cheap that meet again the one
-    from the first state is taken. As people choose: the left foot has stepped last, and stands further to the left.
+    """Return the rank of a packed state (int64) in its layer, shifted by `_RANK_SHIFT`.
+
+    Of ways with the same cost that meet, the one from the first state is chosen. The rank follows people's choices, by
+    the last leg and the places of the feet.
     """
     left, right, rest = key & _PLACE, key >> PLACE_BITS & _PLACE, key >> 2 * PLACE_BITS
     return ((rest >> 2 & 3) << 28 | left << 23 | (_PLACE - right) << 18 | rest) << _RANK_SHIFT
@@ -131,7 +133,7 @@ def _rank(key):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _sort(values, count):  # type: ignore[no-untyped-def]
-    """Put the first `count` numbers in order (Shell's sort: a layer has ten of them, rarely hundreds)."""
+    """Sort the first `count` numbers (by Shell's sort: a layer has about ten numbers, rarely hundreds)."""
     gap = 1
     while 9 * gap < count:
         gap = 3 * gap + 1
@@ -147,10 +149,11 @@ def _sort(values, count):  # type: ignore[no-untyped-def]
 
 @inner_kernel(inline="always")
 def _connect(key, total, found, out, t):  # type: ignore[no-untyped-def]
-    """Keep the transition to the states that the moves of a layer lead to. Returns what has no room, or DONE.
+    """Store the transition to the states that the moves of a layer lead to. Returns which table has no room, or DONE.
 
-    key : layer << 32 | pattern; total : moves of the layer
-    `out.packed` : of each state of the layer, what `Tables.pair` says; `out.reached` : rank and number of each of the
+    key : layer << 32 | pattern; total : number of moves of the layer
+    `out.packed` : first move and number of moves of each state of the layer, as in `Tables.pair`; `out.reached` : rank
+    and number of each of the
         `found` next states, in any order; becomes scratch
     """
     counts, moves, edge, transition, met = t.counts, t.move, t.edge, t.transition, t.met
@@ -195,16 +198,16 @@ def _connect(key, total, found, out, t):  # type: ignore[no-untyped-def]
     return DONE
 
 
-expand: Any = None  # a global of each explorer's own; see `explorer`
+expand: Any = None  # each explorer has its own global of this name; see `explorer`
 
 
 def explorer(rules: Any) -> Any:
-    """An explorer for the rules of one model, whose `expand` is a global: what is compiled finds kernels there."""
+    """Return the explorer of one model's rules. Its `expand` is a global, because compiled code finds kernels there."""
 
     def explore(row, pattern, chosen, t, rules, out):  # type: ignore[no-untyped-def]
-        """From `row` to the last row: meet every state, keep all moves. Returns what has no room.
+        """Find every state and store all moves from `row` to the last row. Returns which table has no room, or DONE.
 
-        chosen : the number of each row's transition, known up to `row`, is written here
+        chosen : number of each row's transition; known before `row`, and written from there on
         """
         counts, pairs, keys, met, moves, states = t.counts, t.pair, t.state_key, t.met, t.move, t.layer_state
         packed, reached = out.packed, out.reached
@@ -257,17 +260,17 @@ def explorer(rules: Any) -> Any:
     return inner_kernel(FunctionType(explore.__code__, {**globals(), "expand": rules}, "explore"))
 
 
-EXPLAIN = -1  # instead of a row to start from
+EXPLAIN = -1  # a `start` that only explains a path
 DOUBLESTEP = 1 << EVENTS.index("doublestep")
-explore: Any = None  # globals of each model's own; see `_way_finder` and `_solver`
+explore: Any = None  # each model has its own globals of these names; see `_way_finder` and `_solver`
 find_way: Any = None
 
 
 def _way_finder(rules_of_model: Any) -> Any:
-    """What finds the cheapest way by the rules of one model."""
+    """Return the function that finds the cheapest way by the rules of one model."""
 
     def find_way(rows, start_row, t, nodes, making, found):  # type: ignore[no-untyped-def]
-        """Go on from `start_row` to the end of the rows. Returns the row reached and what has no room, or DONE."""
+        """Continue from `start_row` to the last row. Returns the row reached, and which table has no room, or DONE."""
         rules, out = making.rules, making.moves
         if start_row == 0 and not begin(rows, t, nodes, rules):
             return start_row, MORE_PATTERNS
@@ -289,7 +292,7 @@ def _way_finder(rules_of_model: Any) -> Any:
 
 @inner_kernel
 def _exchange(rows, edit):  # type: ignore[no-untyped-def]
-    """Put what an edit says into its cell, and what was there into the edit."""
+    """Exchange the contents of a cell and of its edit."""
     r, p = edit[EDIT_ROW], edit[EDIT_COLUMN]
     step, end, mine = rows.steps[r, p], rows.hold_end[r, p], rows.mines[r, p]
     rows.steps[r, p], rows.hold_end[r, p], rows.mines[r, p] = edit[EDIT_STEP], edit[EDIT_END], edit[EDIT_MINE] != 0
@@ -297,14 +300,17 @@ def _exchange(rows, edit):  # type: ignore[no-untyped-def]
 
 
 def _solver(name: str, rules_of_model: Any) -> Any:
-    """A solver for the rules of one model. It does all in one call, which takes as long as some hundred rows."""
+    """Return the solver of one model's rules.
+
+    It does everything in one call, because a call takes as long as a few hundred rows.
+    """
 
     def solve(rows, start, t, nodes, making, found):  # type: ignore[no-untyped-def]
-        """Go on from the row `start` to the end of the rows. Returns the row reached and what has no room, or DONE.
+        """Continue from the row `start` to the last row. Returns the row reached, and which table has no room, or DONE.
 
-        From `EXPLAIN`: solve nothing, only write what the rows of `found.move` cost, and what happens in them.
-        With edits: each is tried alone, from the `start`-th on; returns the first after which no doublestep is left in
-        its row, or their number.
+        If `start` is `EXPLAIN`, only the costs and the events of the rows of `found.move` are written. With edits, each
+        edit from index `start` on is tried alone. Returns the index of the first edit after which its row has no
+        doublestep, or the number of edits.
         """
         if len(found.edit):
             for number in range(start, len(found.edit)):

@@ -1,4 +1,4 @@
-"""Where the solver keeps what it has met, by number: states, row patterns, moves, layers, nodes. Kernel code."""
+"""The solver's tables of the states, row patterns, moves, layers and nodes found so far, by number. Kernel code."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from dancetutor_cli.feet.solver.compiled import inner_kernel, kernel
 from dancetutor_cli.feet.solver.tables import MOST_MOVES
 from dancetutor_cli.feet.solver.vocabulary import MOST_MS as MOST_MS
 
-# A layer is all states that a row can end in. Which they are depends only on the layer before and on the row's pattern,
-# so charts share layers, and what leads from one to the next: a transition, of one edge for each state and move.
+# A layer is all states that a row can end in. It depends only on the layer before and on the row's pattern, so charts
+# share layers. They also share the transitions between layers, which have one edge for each state and move.
 
-# places in `counts`; a drawing of the words that are packed is in `tables`
+# places in `counts`; the bits of packed words are drawn in `tables`
 (
     STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN, TERMS_KNOWN, LAYERS, LAYER_STATES, TRANSITIONS, EDGES, TRIED,
     TIMES,
@@ -24,49 +24,51 @@ WIDE_ACTION, WIDE_EVENTS = range(2)  # columns of `Tables.wide`
 LAYER_FIRST, LAYER_SIZE = range(2)  # columns of `Tables.layer`
 TO_LAYER, FIRST_EDGE, EDGE_COUNT = range(3)  # columns of `Tables.transition`
 MET_IN, MET_PLACE = range(2)  # columns of `Tables.met`
-# in `Tables.edge`, from the lowest bit: place of its state in the layer before; whether it is the last that leads to
-# its state in the layer after; number of its facts; its cost without time
+# Bits of `Tables.edge`, from the lowest: the place of the edge's state in the layer before; whether it is the last edge
+# to its state in the layer after; the number of its facts; its cost without time.
 PLACE_MASK = (1 << 18) - 1
 LAST_BIT, FACTS_SHIFT, EDGE_COST_SHIFT = 18, 19, 35
 FACTS_MASK = (1 << EDGE_COST_SHIFT - FACTS_SHIFT) - 1
-COST_SHIFT = 32  # in `RowStates.node`: an edge below, the cost from here on; the least is the cheapest, then the first
+COST_SHIFT = 32  # in `RowStates.node`: the edge is below, the cost from this bit on, so the least node is the cheapest
 EDGE_MASK = (1 << COST_SHIFT) - 1
 FIRST, BASE = range(2)  # columns of `RowStates.row`
-# columns of `SolverPath.edit`: a cell, what must be in it instead, and the row in which a doublestep is looked for
+# columns of `SolverPath.edit`: a cell, its new contents, and the row that is checked for a doublestep
 EDIT_ROW, EDIT_COLUMN, EDIT_STEP, EDIT_END, EDIT_MINE, EDIT_OF = range(6)
 START = 0  # number of the layer and the state before the first row
-# what a kernel wants before it can go on
+# what a kernel needs before it can continue
 (
     DONE, MORE_STATES, MORE_PATTERNS, MORE_MOVES, MORE_PAIRS, MORE_NODES, MORE_FACTS, MORE_TERMS, MORE_TIMED,
     MORE_LAYERS, MORE_LAYER_STATES, MORE_TRANSITIONS, MORE_EDGES, MORE_SCRATCH, UNEXPLORED,
 ) = range(15)  # fmt: skip
-UNEXPANDED = -1  # in `Tables.pair`, where no pair stands
-UNKNOWN = 0  # in `Tables.timed_cost`, so that most of it is never touched
+UNEXPANDED = -1  # empty slots of `Tables.pair`
+UNKNOWN = 0  # in `Tables.timed_cost`; zero, so that unused memory is never touched
 PART_SHIFT = 32  # in `WIDE_ACTION`: 3 bits for each column below, 2 bits for each column from here on
 LIMB_CODES = (1 << PART_SHIFT) - 1
 TERMS_SHIFT = 32  # in `WIDE_EVENTS`: bits of events below, number of the costs by term from here on
 EVENT_BITS = (1 << TERMS_SHIFT) - 1
-_FIRST_FACTOR, _NEXT_FACTOR = 1000003, 2097593  # of the costs by term, which they mix into one number
-GOLDEN = 0x9E3779B97F4A7C15  # spreads numbers over a hash table
+_FIRST_FACTOR, _NEXT_FACTOR = 1000003, 2097593  # factors that mix the costs by term into one number
+GOLDEN = 0x9E3779B97F4A7C15  # a multiplier that spreads numbers over a hash table
 
 
 class Tables(NamedTuple):
-    """All states, row patterns and moves met so far with one pad and preset; they outlive a chart.
+    """All states, row patterns and moves found so far with one pad and preset; charts share them.
 
-    counts : int64, how much of each is used; and how many transitions have been tried
+    counts : int64, used length of each table, and the number of transitions tried
     state_key : int64; state_hash : int32, number of the state or -1; lengths of hash tables are powers of two
-    met : int32 (, 2), by state, scratch: the last transition, of those tried, that led there; its place among those
+    met : int32 (, 2), by state, scratch: number of the last tried transition that led to it; its place in that
+    transition's layer
     pattern : int64 (, 2), packed row and overrides; pattern_hash : int32
     pair : int64 (, 2), pattern << 32 | state or -1, and first move << 16 | number of moves
-    move : int32 (, 4), state it leads to, cost without time, number of its facts about time, limb codes
+    move : int32 (, 4), next state, cost without time, number of its facts about time, limb codes
     wide : int64 (, 2), limb codes with parts above `PART_SHIFT`; events with a number of `terms` above `TERMS_SHIFT`
-    terms : int32 (, w), cost by weight: few, which many moves share; terms_hash : int32
+    terms : int32 (, w), cost by weight, which many moves share; terms_hash : int32
     timed_key : int64, packed facts; timed_hash : int32
-    timed_cost : int32 (, ), 1 + cost of facts by number, UNKNOWN where not computed yet: a row for each time met so far
-    timed_row : int32 (MOST_MS + 1,), by milliseconds, the row of `timed_cost`, or -1
-    layer : int32 (, 2), where its states start in `layer_state`, and their number; in the order of `explore`
+    timed_cost : int32 (, ), 1 + cost of facts by number, UNKNOWN if not computed yet; one row for each time found so
+    far
+    timed_row : int32 (MOST_MS + 1,), row of `timed_cost` by milliseconds, or -1
+    layer : int32 (, 2), first place of its states in `layer_state`, and their number; in the order of `explore`
     layer_key : int64, hash of the states; layer_hash : int32
-    transition : int32 (, 3), layer it leads to, first edge, number of edges
+    transition : int32 (, 3), next layer, first edge, number of edges
     transition_key : int64, layer << 32 | pattern; transition_hash : int32
     edge : int64, from where, facts and cost, see `PLACE_MASK`; edges are in the order of the states that they lead to,
         those to one state in the order of those they come from; edge_move : int32, its move; edge_limbs : int32, limb
@@ -101,12 +103,12 @@ class Tables(NamedTuple):
 
 
 class RowStates(NamedTuple):
-    """The states each row can end in. Row r has nodes row[r + 1, FIRST] to row[r + 2, FIRST]; before it is the start.
+    """The states that each row can end in. Row r has the nodes row[r + 1, FIRST] to row[r + 2, FIRST]; node 0 is the
+    start.
 
     row : int64 (n + 2, 2), first node, and cost of the cheapest node before each row
-    node : int64, how much costlier a node is than the cheapest of its row, and the edge that led there; see
-    `COST_SHIFT`
-    transition : int32 (n,), number of the transition that each row is, -1 as long as nobody has looked for it
+    node : int64, extra cost of a node over the cheapest node of its row, and the edge to it; see `COST_SHIFT`
+    transition : int32 (n,), number of each row's transition, -1 if not found yet
     """
 
     row: NDArray[np.int64]
@@ -115,9 +117,9 @@ class RowStates(NamedTuple):
 
 
 class RowArrays(NamedTuple):
-    """`Rows` for the kernels, n rows and c columns, and what is made of them.
+    """`Rows` for the kernels, n rows and c columns, and the arrays that kernels compute from them.
 
-    forced : int64 (n,), limb codes that overrides ask for, 3 bits for each column, or of length 0 if there are none
+    forced : int64 (n,), limb codes of overrides, 3 bits for each column; of length 0 if there are no overrides
     pattern : int32 (n,), number of the row's pattern
     elapsed : int32 (n,), milliseconds since the last row with steps, at most MOST_MS
     ends : int64 (c,), scratch: when the last hold of each column ends; second : float64 (n,)
@@ -136,11 +138,11 @@ class RowArrays(NamedTuple):
 
 
 class SolverPath(NamedTuple):
-    """The cheapest way, to be filled in. move : int32 (n,); limb : int8, part : uint8 (n, c)
+    """The cheapest way, which kernels fill in. move : int32 (n,); limb : int8, part : uint8 (n, c)
 
-    margin : int64, -1 no other way; ambiguity : uint8, see `Play`; (n,), or of length 0 if nobody wants to know
-    cost : int32 (n + 1, t), of each row by term; the last is scratch, and the only one where nobody wants to know
-    edit : int64 (k, 6), see `EDIT_ROW`; none but to try what the rows are without something
+    margin : int64, -1 no other way; ambiguity : uint8, see `Play`; (n,), or of length 0 if not needed
+    cost : int32 (n + 1, t), cost of each row by term; the last row is scratch, and the only one if costs are not needed
+    edit : int64 (k, 6), see `EDIT_ROW`; of length 0 unless edits are tried
     events : int32 (n,), bits of `vocabulary.EVENTS`; feet : int16 (n, 2), facing : float64 (n,), see `Play`; all three
         are written with the cost
     """
@@ -159,13 +161,13 @@ class SolverPath(NamedTuple):
 
 @inner_kernel
 def slot_of(value, size):  # type: ignore[no-untyped-def]
-    """Where the search for a number in a hash table of a power of two starts."""
+    """Return the slot at which the search for a number starts, in a hash table whose length is a power of two."""
     return np.int64((np.uint64(value) * np.uint64(GOLDEN)) >> np.uint64(32)) & (size - 1)
 
 
 @inner_kernel
 def find(key, keys, numbers):  # type: ignore[no-untyped-def]
-    """Number of a key; if it is not known, ~ the slot for it."""
+    """Return the number of a key, or ~ its free slot if the key is not known."""
     at = slot_of(key, len(numbers))
     while numbers[at] >= 0:
         if keys[numbers[at]] == key:
@@ -176,7 +178,7 @@ def find(key, keys, numbers):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def number_of(key, keys, numbers, counts, kind):  # type: ignore[no-untyped-def]
-    """Number of a key; a new one is entered. kind : place in `counts`"""
+    """Return the number of a key; a new key is entered. kind : place in `counts`"""
     number = find(key, keys, numbers)
     if number < 0:
         at, number = ~number, np.int64(counts[kind])
@@ -188,7 +190,7 @@ def number_of(key, keys, numbers, counts, kind):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def slot_of_pair(key, pairs):  # type: ignore[no-untyped-def]
-    """Where a pair stands in its table, or would."""
+    """Return the slot of a pair in its table, or the free slot for it."""
     at = slot_of(key, len(pairs))
     while pairs[at, 0] >= 0 and pairs[at, 0] != key:
         at = (at + 1) & (len(pairs) - 1)
@@ -197,7 +199,7 @@ def slot_of_pair(key, pairs):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _mixed(terms):  # type: ignore[no-untyped-def]
-    """One number from the costs by term. Products do not wait for each other: this is asked for every move."""
+    """Mix the costs by term into one number; the products are independent, so that this is fast."""
     mixed, factor = np.int64(0), np.int64(_FIRST_FACTOR)
     for term in range(len(terms)):
         mixed += terms[term] * factor
@@ -207,7 +209,7 @@ def _mixed(terms):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def number_of_terms(terms, known, numbers, counts):  # type: ignore[no-untyped-def]
-    """Number of costs by term (t,); new ones are entered."""
+    """Return the number of the costs by term (t,); new costs are entered."""
     at = slot_of(_mixed(terms), len(numbers))
     while numbers[at] >= 0:
         number = numbers[at]
@@ -227,7 +229,7 @@ def number_of_terms(terms, known, numbers, counts):  # type: ignore[no-untyped-d
 
 @inner_kernel
 def number_of_layer(states, count, t):  # type: ignore[no-untyped-def]
-    """Number of the layer of the first `count` of some states in order; a new one is entered."""
+    """Return the number of the layer with the first `count` states in this order; a new layer is entered."""
     layer, kept, keys, numbers, counts = t.layer, t.layer_state, t.layer_key, t.layer_hash, t.counts
     mixed = np.int64(count)
     for i in range(count):
@@ -254,7 +256,7 @@ def number_of_layer(states, count, t):  # type: ignore[no-untyped-def]
 
 @kernel
 def fill_numbers(keys, table):  # type: ignore[no-untyped-def]
-    """Enter the numbers of keys (n,), of which none comes twice, into an empty hash table."""
+    """Enter the numbers of distinct keys (n,) into an empty hash table."""
     for number in range(len(keys)):
         at = slot_of(keys[number], len(table))
         while table[at] >= 0:
@@ -272,17 +274,19 @@ def fill_pairs(old, new):  # type: ignore[no-untyped-def]
 
 
 def _filled(keys: NDArray[np.int64], size: int) -> NDArray[np.int32]:
-    """A hash table of the numbers of keys."""
+    """Return a hash table of the numbers of keys."""
     table = np.full(size, -1, dtype=np.int32)
     fill_numbers(keys, table)
     return table
 
 
-# Room in the solver's tables: what they start with, and more of it where a kernel asks for that.
+# The first size of the solver's tables, and their growth when a kernel asks for it.
 
 
 def empty_tables(weights: int) -> Tables:
-    """Room for what a few hundred charts need: what is not touched takes no memory, and to grow copies all there is."""
+    """Return tables with room for a few hundred charts: untouched room takes no memory, and growth copies a whole
+    table.
+    """
     states, patterns, moves, pairs, costs, layers = 1 << 14, 1 << 12, 1 << 18, 1 << 18, 1 << 13, 1 << 15
     edges, facts, times = 1 << 21, 1 << 10, 1 << 8
     whole, small = np.int64, np.int32
@@ -316,7 +320,7 @@ def empty_tables(weights: int) -> Tables:
 
 
 def grown(t: Tables, wanted: int, rows: int) -> Tables:
-    """The tables with more room for what is wanted."""
+    """Return the tables with more room in the table that `wanted` names."""
     counts = t.counts
     if wanted == MORE_STATES:
         table = _filled(t.state_key[: counts[STATES]], 2 * len(t.state_hash))
@@ -359,7 +363,7 @@ def grown(t: Tables, wanted: int, rows: int) -> Tables:
 
 
 def _longer(array: NDArray[Any], least: int = 0) -> NDArray[Any]:
-    """At least twice the room; what is new is not touched, so that it takes no memory before it is used."""
+    """Return a copy of at least twice the length; the new part is untouched, so that it takes no memory before use."""
     longer = np.empty((max(2 * len(array), least), *array.shape[1:]), dtype=array.dtype)
     longer[: len(array)] = array
     return longer

@@ -1,6 +1,7 @@
 """The arrays that the solver's kernels share: a pad's geometry, and the ways to play one row from one state.
 
-They are few and wide, and their columns have names here: numba's time to compile grows with every array handed on.
+The arrays are few and wide, with names for their columns, because numba's time to compile grows with every array
+passed.
 """
 
 from __future__ import annotations
@@ -32,23 +33,23 @@ from dancetutor_cli.run.errors import UsageError
 #                    WIDE_EVENTS: 32 number of the costs by term | 0 events
 #     pair           32 pattern | 0 state; beside it 16 first move | 0 number of moves
 
-MOST_PLACES = 32  # of a foot: panels, home, pairs of neighbours
+MOST_PLACES = 32  # places of a foot: panels, home, pairs of neighbours
 EPSILON = 1e-6  # every comparison of docs/cost-model.md: degrees, panel widths, seconds
-MOST_MOVES = 10 * 9 * 8 * 7 + 8  # ways to put four limbs on a row of ten steps, and some room
-COLUMN_BITS = 10  # a row packs into one integer: so many bits for each of its masks
+MOST_MOVES = 10 * 9 * 8 * 7 + 8  # ways to put four limbs on a row of ten steps, and some spare room
+COLUMN_BITS = 10  # bits of each mask of a packed row
 TAPS, HOLDS, MINES, RELEASED, ROLLS, ROLL_TAPS = (i * COLUMN_BITS for i in range(6))  # where the masks start
-FRESH = 6 * COLUMN_BITS  # bit of a row: its holds have only just been released
-# where limb codes of overrides and holds that ended earlier start in the second word
+FRESH = 6 * COLUMN_BITS  # bit of a row whose holds have just been released
+# first bits in the second word: limb codes of overrides, and holds that ended at the last row with steps
 FORCED, EARLIER = 0, 3 * COLUMN_BITS
-UNPLAYED_CODE = 5  # a limb code: no limb is left for the step
-FRESH_TICKS = 6  # a 32nd: a hold that ended so long ago has just been released
+UNPLAYED_CODE = 5  # the limb code of a step for which no limb is free
+FRESH_TICKS = 6  # a 32nd; a hold that ended at most this long ago has just been released
 DISTANCE_UNIT = 20  # distances are whole numbers of 1/20 panel widths
 
 # columns of `Moves.wide`: packed state after the row; limb codes, 3 bits for each column; `Part`, 2 bits for each
-# column; packed facts that cost by the time since the row before, 0 none; bits of `vocabulary.EVENTS`
+# column; packed facts, whose costs depend on the time since the row before, 0: no facts; bits of `vocabulary.EVENTS`
 MOVE_KEY, MOVE_ACTION, MOVE_PART, MOVE_TIMED, MOVE_EVENTS = range(5)
 UP, DOWN, LEFT, RIGHT, MIDDLE = range(5)
-# places in `Rules.limits`: from which time and length on, or up to it, moves are called what they are
+# places in `Rules.limits`, the limits of time and length of moves
 (
     GALLOP_TICKS, GALLOP_SECONDS, GALLOP_NEIGHBOURS, STREAM_TICKS, STREAM_SECONDS, STREAM_LENGTH, DRILL_TICKS,
     DRILL_SECONDS, DRILL_LENGTH,
@@ -56,15 +57,16 @@ UP, DOWN, LEFT, RIGHT, MIDDLE = range(5)
 
 
 class Geometry(NamedTuple):
-    """A pad with c panels. Places of a foot: 0 to c - 1 one panel, c home, from there on two neighbouring panels.
+    """A pad with c panels. The places of a foot are 0 to c - 1: one panel; c: home; above c: two neighbouring panels.
 
     left, right : float64 (p, 2), middle of a foot on each place; home differs for the two feet
     angle : float64 (p, p), degrees in (-180, 180] of the vector from left foot to right foot; 0 if they are together
     distance : int64 (p, p), between the middles of places, 1/20 panel widths
-    place : int64 (c, c), place of a foot on two panels, -1 if they are no neighbours; of one panel on the diagonal
+    place : int64 (c, c), place of a foot on two panels, -1 if they are not neighbours; the diagonal has the places on
+    one panel
     panels : int64 (p, 2, 2), by place and foot: heel and toe; the toe is -1 on one panel
-    mask : int64 (p,), the panels of a place as bits; near : int64 (p,), these and their neighbours
-    arrow : int64 (c,), where a panel's arrow points: `UP`, `DOWN`, `LEFT`, `RIGHT`, `MIDDLE`; diagonals are up or down
+    mask : int64 (p,), the panels of a place as bits; near : int64 (p,), these panels and their neighbours as bits
+    arrow : int64 (c,), direction of a panel's arrow: `UP`, `DOWN`, `LEFT`, `RIGHT`, `MIDDLE`; diagonals are up or down
     middle : the panel in the middle of the pad, -1 if there is none
     """
 
@@ -81,7 +83,8 @@ class Geometry(NamedTuple):
 
 
 class Rules(NamedTuple):
-    """What rows cost, by the place of a model in `vocabulary.MODELS`, a pad and a preset: names are in the vocabulary.
+    """The rules and costs of a model (its index in `vocabulary.MODELS`), a pad and a preset; see `vocabulary` for
+    names.
 
     weights : int64 (w,); switches : bool (s,); curves : int64 (c, MOST_MS + 1), by milliseconds since the row before
     home : int64 (2,), the panels on which left and right foot start
@@ -101,7 +104,7 @@ class Rules(NamedTuple):
 class Moves(NamedTuple):
     """Every way to play one row from one state: room for `MOST_MOVES`.
 
-    wide : int64 (, 5), see above; terms : int32 (, w), what each weight adds, not counting time
+    wide : int64 (, 5), see above; terms : int32 (, w), cost of each weight, without time
     scratch : int64 (8, 32); packed : int64, by state of a layer; reached : int64, by move of a layer, both scratch
     """
 
@@ -113,14 +116,14 @@ class Moves(NamedTuple):
 
 
 class Making(NamedTuple):
-    """What the ways to play a row are made of: the rules, and room for them."""
+    """The rules, and the arrays for the ways to play a row."""
 
     rules: Rules
     moves: Moves
 
 
 def geometry(pad: Pad) -> Geometry:
-    """The arrays of a pad."""
+    """Return the arrays of a pad."""
     (x, y), c = pad.centre, len(pad)
     pairs = [(a, b) for a in range(c) for b in range(a + 1, c) if pad.neighbours[a, b]]
     if c + 1 + len(pairs) > MOST_PLACES:
@@ -164,7 +167,7 @@ def _arrow(x: float, y: float) -> int:
 
 
 def heel_and_toe(pad: Pad, a: int, b: int, foot: int) -> tuple[int, int]:
-    """Which of two neighbouring panels heel and toe of a foot press: the toe is nearer to the screen, else outside."""
+    """Return the panels of a foot's heel and toe on two neighbours: the toe is nearer to the screen, or else outside."""
     (ax, ay), (bx, by) = pad.panels[a], pad.panels[b]
     if abs(ay - by) > EPSILON:
         return (a, b) if ay < by else (b, a)
@@ -172,7 +175,7 @@ def heel_and_toe(pad: Pad, a: int, b: int, foot: int) -> tuple[int, int]:
 
 
 def moves(weights: int, width: int = 1 << 10) -> Moves:
-    """Empty room for the ways to play one row, and for a layer of so many states."""
+    """Return empty arrays for the ways to play one row, and for a layer of `width` states."""
     return Moves(
         np.zeros((MOST_MOVES, 5), dtype=np.int64),
         np.zeros((MOST_MOVES, weights), dtype=np.int32),

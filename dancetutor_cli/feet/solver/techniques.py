@@ -1,4 +1,4 @@
-"""Names for what happens in a play, from configs/moves.yaml; half turns."""
+"""The names of the events of a play, the limits of moves from configs/moves.yaml, and half turns."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from dancetutor_cli.feet.play import Play
 
 
-# What happens is found by the kernels: in a row by the rules, in its neighbours by `state.name_neighbours`.
+# The kernels find events: the rules those of one row, `state.name_neighbours` those of several rows.
 
 
 class EventNames(Sequence[tuple[str, ...]]):
-    """Per row the names of what happens, sorted; computed when asked for, for most rows of most charts nobody asks.
+    """The sorted names of each row's events, made on demand, because most are never read.
 
     events : (n,) bits of `EVENTS`
     """
@@ -81,7 +81,7 @@ class _Candle:
 
 @dataclass(frozen=True, slots=True)
 class _Moves:
-    """configs/moves.yaml: from which time and length on something is called a move."""
+    """configs/moves.yaml: the limits of time and length of moves."""
 
     candle: _Candle
     gallop: _Gallop
@@ -90,7 +90,7 @@ class _Moves:
 
 
 def limits() -> NDArray[np.float64]:
-    """Thresholds of moves, by `tables.GALLOP_TICKS` and what follows."""
+    """Return the limits of moves, in the order of `tables.GALLOP_TICKS` and the constants after it."""
     moves = _moves()
     gallop = (moves.gallop.beats * TICKS_PER_BEAT, moves.gallop.seconds, moves.gallop.neighbours)
     stream, drill = ((run.beats * TICKS_PER_BEAT, run.seconds, run.length) for run in (moves.stream, moves.drill))
@@ -98,7 +98,7 @@ def limits() -> NDArray[np.float64]:
 
 
 def long_ways(pad: Pad) -> NDArray[np.bool_]:
-    """(c, c), whether a foot that goes from one panel to another passes from back to front or back: a candle."""
+    """Whether a foot that goes from one panel to another crosses the pad between front and back (candles), (c, c)."""
     across = np.abs(pad.panels[:, None] - pad.panels[None])
     return np.asarray((across[..., 0] < EPSILON) & (across[..., 1] >= _moves().candle.depth - EPSILON))
 
@@ -108,21 +108,22 @@ def _moves() -> _Moves:
     return load(config_path("moves.yaml"), _Moves)
 
 
-# Half turns: rows to which the body turns by 180 degrees at once. The linter's rule and the films' words ask here.
+# Half turns: the body turns by 180 degrees from one row to the next. The linter's rule and the films' callouts use
+# them.
 
 AWAY, BACK, ASIDE = "half-turn-away", "half-turn-back", "half-turn"
-HALF_TURNS = (AWAY, BACK, ASIDE)  # the dancer's back to the screen after it, before it, or neither
-_SIDEWAYS = 90.0  # degrees; farther than that from the screen, the dancer's back is to it
+HALF_TURNS = (AWAY, BACK, ASIDE)  # the dancer's back is to the screen after the turn, before it, or neither
+_SIDEWAYS = 90.0  # degrees from the screen, beyond which the dancer's back is to the screen
 
 
 def half_turned(facing: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """(n - 1,) whether the body turns by 180 degrees between rows, facing (n,) degrees from the screen."""
+    """Whether the body turns by 180 degrees between rows, (n - 1,); facing : (n,) degrees from the screen"""
     turn = facing[1:] - facing[:-1]
     return np.asarray(np.abs(np.abs((turn + 180) % 360 - 180) - 180) <= EPSILON)
 
 
 def moves_and_turns(play: Play) -> list[tuple[str, ...]]:
-    """The names of each row (`feet.solver.vocabulary.EVENTS`), a half turn's (`HALF_TURNS`) before them."""
+    """Return the names of each row's events (`feet.solver.vocabulary.EVENTS`), with a half turn (`HALF_TURNS`) first."""
     moves = list(play.moves)
     for row in (np.flatnonzero(half_turned(play.facing)) + 1).tolist():
         moves[row] = (_way(play.facing[row - 1], play.facing[row]), *moves[row])

@@ -1,4 +1,4 @@
-"""The rules of preset `thesis` (docs/cost-model.md): every way to play a row from a state, and its cost. Kernel code.
+"""The rules of the model `thesis` (docs/cost-model.md): every way to play a row, and its cost. Kernel code.
 
 Limb codes of actions: 0 none, 1 left foot, 2 right foot, 3 left hand, 4 right hand, 5 unplayed.
 """
@@ -56,12 +56,12 @@ _HALF, _FULL, _SPIN, _DOUBLESTEP, _FORCED, _JUMP_FOOTSWITCH, _HAND, _JUMP, _UNPL
 _MASK = (1 << COLUMN_BITS) - 1
 
 
-Whole = int | np.int64  # what Python and numba call a whole number
+Whole = int | np.int64  # the integers of Python and of numba
 
 
 class _ThesisRow(NamedTuple):
-    """What a row asks for: panels to press as bits, how many they are, which of them are to be held, and limb codes of
-    overrides (3 bits for each column, 0: any limb). The panels stand in scratch `PANELS`, too.
+    """The steps of a row: bits and number of the panels to press, bits of the panels to hold, and limb codes of
+    overrides (3 bits for each column, 0: any limb). The panels are in scratch `PANELS`, too.
     """
 
     steps: Whole
@@ -71,8 +71,8 @@ class _ThesisRow(NamedTuple):
 
 
 class _Limbs(NamedTuple):
-    """Which limbs may press, as bits, and how many legs and hands have to; jack : foot that stands on the one panel
-    asked for, or -1; doublesteps : whether those that cost are allowed
+    """The limbs that may press, as bits, and how many legs and hands must press. jack : foot that already stands on the
+    row's only panel, or -1; doublesteps : whether unforced doublesteps are allowed
     """
 
     usable: Whole
@@ -90,7 +90,7 @@ def start_thesis(g):  # type: ignore[no-untyped-def]  # both feet at home, facin
 
 @inner_kernel(inline="always")
 def _release_and_flee(s, released, mines, g):  # type: ignore[no-untyped-def]
-    """What comes before the steps of a row: ended holds free their limbs; free legs on mines go home, one turn."""
+    """Apply the events before a row's steps: ended holds free their limbs, and free legs on mines go home in one turn."""
     home = g.place.shape[0]
     for foot in range(2):
         if s[LEFT_HELD + foot] and released >> s[foot] & 1:
@@ -107,7 +107,7 @@ def _release_and_flee(s, released, mines, g):  # type: ignore[no-untyped-def]
 
 @inner_kernel(inline="always")
 def _charge_hand(terms, s, hand, panel, rules):  # type: ignore[no-untyped-def]
-    """What it costs that a hand presses a panel, by the pose after the move."""
+    """Add the costs of a hand that presses a panel, from the pose after the move."""
     g, w = rules.geometry, rules.weights
     x = g.left[panel, 0] - (g.left[s[LEFT_AT], 0] + g.right[s[RIGHT_AT], 0]) / 2
     y = g.left[panel, 1] - (g.left[s[LEFT_AT], 1] + g.right[s[RIGHT_AT], 1]) / 2
@@ -127,7 +127,7 @@ def _charge_hand(terms, s, hand, panel, rules):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _place(s, press, holds):  # type: ignore[no-untyped-def]
-    """The state after limbs pressed their panels (-1: none)."""
+    """Change the state to that after the limbs press their panels (-1: no panel)."""
     for limb in range(4):
         panel = press[limb]
         if panel < 0:
@@ -147,9 +147,9 @@ def _place(s, press, holds):  # type: ignore[no-untyped-def]
 
 @inner_kernel(inline="always")
 def _emit(out, m, asked, doublestep, rules):  # type: ignore[no-untyped-def]
-    """Write one way to play a row: scratch `PRESS` are the panels of the limbs, `BEFORE` the state before, after mines.
+    """Write one way to play a row: scratch `PRESS` has the panels of the limbs, `BEFORE` the state before the steps.
 
-    doublestep : 0 none, 1 forced (the other leg is reserved), 2 one that costs
+    doublestep : 0 no doublestep, 1 a forced one (a leg holds a panel), 2 an unforced one, which costs
     """
     g, w, n = rules.geometry, rules.weights, asked.n
     before, s, press, panels = out.scratch[BEFORE], out.scratch[AFTER], out.scratch[PRESS], out.scratch[PANELS]
@@ -175,7 +175,7 @@ def _emit(out, m, asked, doublestep, rules):  # type: ignore[no-untyped-def]
         terms[CROSSOVER] = w[CROSSOVER]
         events |= _FULL if abs(g.angle[s[0], s[1]]) >= 180.0 - EPSILON else _HALF
         ahead = g.left[s[0], 1] - g.right[s[1], 1]
-        if events & _HALF and (press[0] < 0) != (press[1] < 0):  # one foot moved: before or behind the other
+        if events & _HALF and (press[0] < 0) != (press[1] < 0):  # one foot moved, in front of the other or behind it
             events |= _FRONT if (ahead > 0 if press[0] >= 0 else ahead < 0) else _BACK
     if doublestep == 2:
         terms[DOUBLESTEP] = w[DOUBLESTEP]
@@ -210,7 +210,7 @@ def _emit(out, m, asked, doublestep, rules):  # type: ignore[no-untyped-def]
 
 @inner_kernel(inline="always")
 def _fits(out, n, forced):  # type: ignore[no-untyped-def]
-    """Whether the panels of the limbs are those that overrides ask for (3 bits for each column, 0: any limb)."""
+    """Whether the limbs press the panels of the overrides (3 bits for each column, 0: any limb)."""
     press, panels = out.scratch[PRESS], out.scratch[PANELS]
     for i in range(n):
         want = forced >> 3 * panels[i] & 7
@@ -221,7 +221,7 @@ def _fits(out, n, forced):  # type: ignore[no-untyped-def]
 
 @inner_kernel(inline="always")
 def _assign(out, asked, limbs, rules):  # type: ignore[no-untyped-def]
-    """Every way to give exactly so many legs and hands different panels of the row, as far as overrides allow."""
+    """Write every way to give exactly `legs` legs and `hands` hands different panels of the row, as overrides allow."""
     m, n = 0, asked.n
     usable, legs, jack = limbs.usable, limbs.legs, limbs.jack
     before, press, panels = out.scratch[BEFORE], out.scratch[PRESS], out.scratch[PANELS]
@@ -257,7 +257,7 @@ def _assign(out, asked, limbs, rules):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _forced_limbs(forced, n, panels):  # type: ignore[no-untyped-def]
-    """Limbs that overrides name, as bits, and how many steps they name a hand for."""
+    """Return the limbs of overrides, as bits, and the number of steps whose override is a hand."""
     limbs = hands = 0
     for i in range(n):
         want = forced >> 3 * panels[i] & 7
@@ -269,7 +269,7 @@ def _forced_limbs(forced, n, panels):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def expand_thesis(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
-    """All ways to play a row from a state, into `out`; returns their number, at least 1.
+    """Write all ways to play a row from a state into `out`; returns their number, at least 1.
 
     row : packed masks of the row; forced : limb codes of overrides
     """
@@ -302,13 +302,13 @@ def expand_thesis(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
     hands = min((usable >> 2 & 1) + (usable >> 3 & 1), n - legs)
     allow, m = rules.switches[0], 0
     for attempt in range(3):
-        if attempt == 1:  # overrides against the rules: they win, even over holds and the jack rule
+        if attempt == 1:  # overrides that break the rules have priority, even over holds and the jack rule
             limbs, forced_hands = _forced_limbs(forced, n, panels)
             usable |= limbs
             legs = min((usable & 1) + (usable >> 1 & 1), n - forced_hands)
             hands = min((usable >> 2 & 1) + (usable >> 3 & 1), n - legs)
             allow, jack = True, np.int64(-1)
-        elif attempt == 2:  # overrides nobody can follow, such as one foot on two panels
+        elif attempt == 2:  # overrides that nobody can follow, such as one foot on two panels, are ignored
             forced = np.int64(0)
         if m == 0:
             m = _assign(out, _ThesisRow(steps, n, holds, forced), _Limbs(usable, legs, hands, jack, allow), rules)

@@ -7,12 +7,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-MOST_MS = 2047  # since the last row with steps; longer times cost like this one
+MOST_MS = 2047  # milliseconds since the last row with steps; longer times cost the same
 
 
 @dataclass(frozen=True, slots=True)
 class CostModel:
-    """What a preset of this model has to say. A weight is one number, a curve one for each time since the last row."""
+    """The values of a model's presets.
+
+    A weight is one number; a curve has a number for each time since the last row.
+    """
 
     switches: tuple[str, ...]
     weights: tuple[str, ...]
@@ -35,7 +38,7 @@ _ITG = (
     "turn-135", "turn-180", "facing", "facing-aside", "stretch", "leap", "mine", "lifted", "release", "hand",
     "hand-hold", "hand-behind", "unplayable", "split-in-front", "split-in-back", "split-out-back", "near-holdswitch",
 )  # fmt: skip
-# `distance` comes last: the others happen or do not, it has a size
+# `distance` comes last, because it has a size; the other facts are true or false
 _ITG_CURVES = (
     "doublestep", "near-doublestep", "released-doublestep", "freed-doublestep", "early-freed-doublestep",
     "forced-doublestep", "grown-bracket", "jack", "footswitch", "bracket", "held-bracket", "bracket-jump", "jump",
@@ -49,7 +52,7 @@ MODELS = {
     "itg": CostModel(("brackets", "holdswitches"), _ITG, _ITG_CURVES),
 }
 
-# What may happen in a row, by the names players use; the number of a name is its bit in the kernels' events.
+# The events of a row, by the names that players use; the index of a name is its bit in the kernels' events.
 EVENTS = (
     "crossover-half", "crossover-full", "spin", "doublestep", "forced-doublestep", "jump-footswitch", "hand", "jump",
     "unplayable", "footswitch-up", "footswitch-down", "sideswitch-left", "sideswitch-right", "bracket", "holdswitch",
