@@ -1,4 +1,4 @@
-"""A music file as the games hear it: the data of its header, and its samples, decoded by ffmpeg."""
+"""A music file as the games play it: the data of its header, and its samples, decoded by ffmpeg."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import MEGABYTE, read_bytes, read_ends
 
-# The data of a file's header: kind, sample rate, channels, length. Nothing is decoded for it.
+# The data of a file's header: kind, sample rate, channels and length, found without decoding.
 
-_HEAD, _TAIL = 65_536, 131_072  # bytes that are read of a file; a page of Ogg has at most 65,307
-_MP3_LIMIT = 256 * MEGABYTE  # frames of MP3 are counted, which needs the whole file
-_BITRATES = {  # kbit/s by the index in a frame's head, for (MPEG 1, layer) and (MPEG 2 and 2.5, layer)
+_HEAD, _TAIL = 65_536, 131_072  # bytes read from the start and the end of a file; an Ogg page has at most 65,307 bytes
+_MP3_LIMIT = 256 * MEGABYTE  # limit of an MP3 file, which is read whole, because its frames are counted
+_BITRATES = {  # kbit/s by the index in a frame's header, for (MPEG 1, layer) and (MPEG 2 and 2.5, layer)
     (True, 1): (0, 32, 64, 96, 128, 160, 192, 224, 256, 288, 320, 352, 384, 416, 448),
     (True, 2): (0, 32, 48, 56, 64, 80, 96, 112, 128, 160, 192, 224, 256, 320, 384),
     (True, 3): (0, 32, 40, 48, 56, 64, 80, 96, 112, 128, 160, 192, 224, 256, 320),
@@ -26,16 +26,16 @@ _BITRATES = {  # kbit/s by the index in a frame's head, for (MPEG 1, layer) and 
     (False, 3): (0, 8, 16, 24, 32, 40, 48, 56, 64, 80, 96, 112, 128, 144, 160),
 }
 _RATES = {3: (44100, 48000, 32000), 2: (22050, 24000, 16000), 0: (11025, 12000, 8000)}  # by the bits of the version
-_MOST_GAPS = 1000  # places at which frames are looked for again behind something else; what is longer is no music
-_LEAST_FRAMES = 3  # one after the other, so that it is MP3 and no accident
+_MOST_GAPS = 1000  # limit of gaps between frames; a file with more gaps is read only up to the last one
+_LEAST_FRAMES = 3  # consecutive frames that show that a file is MP3
 
 
 @dataclass(frozen=True, slots=True)
 class AudioHead:
-    """What a music file is. kind : "vorbis", "opus", "mp3", "wav", "flac" or another codec's name
+    """The header of a music file. kind : "vorbis", "opus", "mp3", "wav", "flac" or another codec's name
 
-    rate : samples a second; seconds : length as the games play it; None: the file does not say
-    lead : seconds of silence that the games play before the first sample that is decoded
+    rate : samples per second; seconds : length as the games play it, None if the file does not have it
+    lead : seconds of silence that the games play before the first decoded sample
     """
 
     kind: str
@@ -46,7 +46,7 @@ class AudioHead:
 
 
 def read_head(path: Path) -> AudioHead:
-    """The header of a music file, whatever its name; FileError if it is not music, is empty or cannot be read."""
+    """Read the header of a music file of any name. Raises FileError if it is not music, is empty or cannot be read."""
     head, tail, size = read_ends(path, _HEAD, _TAIL)
     if not size:
         raise FileError(path, "is empty")
@@ -70,7 +70,7 @@ def _head_of(path: Path, head: bytes, tail: bytes, size: int) -> AudioHead | Non
 
 
 def _ogg(head: bytes, tail: bytes) -> AudioHead | None:
-    """The first packet of the first stream; the length is the position at the end of its last page."""
+    """Read the first packet of the first stream; the length is the position of the stream's last page."""
     packet = head[27 + head[26] :]
     serial = head[14:18]
     if packet.startswith(b"\x01vorbis"):
@@ -99,7 +99,7 @@ def _wav(head: bytes, size: int) -> AudioHead | None:
         name, length = head[at : at + 4], struct.unpack_from("<I", head, at + 4)[0]
         if name == b"fmt ":
             form = struct.unpack_from("<HHIIHH", head, at + 8)
-            frames = struct.unpack_from("<H", head, at + 26)[0] if form[0] == _ADPCM else 1  # of a block
+            frames = struct.unpack_from("<H", head, at + 26)[0] if form[0] == _ADPCM else 1  # per block
         elif name == b"data" and form is not None:
             code, channels, rate, _, block, bits = form
             there = min(length, size - at - 8)
@@ -110,7 +110,9 @@ def _wav(head: bytes, size: int) -> AudioHead | None:
 
 
 def _kind_of_wav(code: int, bits: int) -> str:
-    """ "wav" of what StepMania and ITGmania play: whole numbers of 1 to 4 bytes, floats of 4, ADPCM of 4 bits."""
+    """ "wav" for the formats that StepMania and ITGmania play: integers of 1 to 4 bytes, floats of 4 bytes, 4-bit
+    ADPCM.
+    """
     if code == _EXTENSIBLE:
         return "WAV with an extensible head"
     if (code == _PCM and 0 < bits <= 32) or (code == _FLOAT and bits == 32) or (code == _ADPCM and bits == 4):
@@ -119,20 +121,20 @@ def _kind_of_wav(code: int, bits: int) -> str:
 
 
 def _flac(block: bytes) -> AudioHead:
-    """Of its STREAMINFO: 20 bits of rate, 3 of channels less one, 5 of the depth, 36 of samples."""
+    """Read the STREAMINFO: 20 bits of rate, 3 of channels minus one, 5 of the depth, 36 of samples."""
     bits = int.from_bytes(block[10:18], "big")
     rate, channels, samples = bits >> 44, (bits >> 41 & 7) + 1, bits & (1 << 36) - 1
     return AudioHead("flac", rate, channels, samples / rate if samples and rate else None)
 
 
 class _Frame(NamedTuple):
-    """The head of a frame of MP3. length : bytes; samples : that it plays"""
+    """The header of an MP3 frame. length : bytes; samples : number of samples that the frame plays"""
 
     length: int
     samples: int
     rate: int
     channels: int
-    side: int  # bytes between the head and what encoders write into a first frame without music
+    side: int  # bytes between the header and the Xing or Info tag of a first frame without music
 
 
 def _frame(data: bytes, at: int) -> _Frame | None:
@@ -152,7 +154,10 @@ def _frame(data: bytes, at: int) -> _Frame | None:
 
 
 def _mp3(data: bytes) -> AudioHead | None:
-    """Frames counted one by one. Of first frames the games skip one that says Xing, and play Info as silence."""
+    """Count the frames one by one.
+
+    The games skip a first frame with a Xing tag, and play one with an Info tag as silence.
+    """
     at = _after_id3(data)
     start = next((n for n in range(at, min(at + _HEAD, len(data))) if _are_frames(data, n)), None)
     if start is None:
@@ -194,19 +199,19 @@ def _are_frames(data: bytes, at: int) -> bool:
     return True
 
 
-LONGEST = 900.0  # seconds that are decoded at most
-_NATIVE = (44100, 48000)  # Hz; what has another rate is resampled to the first
-_HALVED = 2  # samples whose mean is one of a `Sound`: onsets need no more than half the rate
+LONGEST = 900.0  # seconds; later music is not decoded
+_NATIVE = (44100, 48000)  # Hz; music with another rate is resampled to the first of these
+_HALVED = 2  # samples that are averaged into one of a `Sound`, because half the rate is enough for onsets
 _FULL = 32767
-_READ = 1 << 22  # bytes that are read of ffmpeg at once
-_HEARD = 0.001  # of full scale: below it music is silent
+_READ = 1 << 22  # bytes read from ffmpeg at once
+_HEARD = 0.001  # share of full scale below which music is silent
 
 
 @dataclass(frozen=True, slots=True)
 class Sound:
-    """Music, its channels mixed. samples : float32 (n,), within -1..1; rate : of them, a second
+    """Music with its channels mixed. samples : float32 (n,), within -1..1; rate : samples per second
 
-    start : second at which the first one is heard; clipped : share of the file's own samples that are at full scale
+    start : second at which the first sample is heard; clipped : share of the file's own samples that are at full scale
     """
 
     samples: NDArray[np.float32]
@@ -216,17 +221,17 @@ class Sound:
 
     @property
     def silence(self) -> float:
-        """Seconds before anything can be heard; the whole length if nothing can."""
+        """The seconds before the first audible sample; the whole length if all samples are silent."""
         loud = np.abs(self.samples) > _HEARD
         first = int(loud.argmax()) if loud.any() else len(loud)
         return self.start + first / self.rate
 
 
 def decode(path: Path, head: AudioHead, seconds: float = LONGEST) -> Sound:
-    """The first so many seconds of a music file; EncoderError where ffmpeg cannot. Memory is bounded by `LONGEST`.
+    """Decode the first `seconds` of a music file, at most `LONGEST`. Raises EncoderError if ffmpeg fails.
 
-    ffmpeg removes the samples by which encoders of MP3 delay their music. No game does, so it is set not to
-    (`skip_manual`). A first frame that says Info is silence in the games and nothing in ffmpeg, so the start is later.
+    ffmpeg would remove the samples by which MP3 encoders delay their music; `skip_manual` keeps them, as the games do.
+    A first frame with an Info tag is silence in the games, but ffmpeg drops it, so the start is later.
     """
     from dancetutor_cli.run import ffmpeg
 

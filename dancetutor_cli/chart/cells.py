@@ -13,11 +13,11 @@ from dancetutor_cli.chart.model import Kind, ReadWarning
 
 # Additions of StepF2, a game for Pump charts, to the notation of the other games.
 #
-# `{note|look|fake|0}` is one note of one column, however it looks; a 1 in the third place makes it a fake. X, Y and Z
-# are steps, and x, y and z heads of holds, of the first, second and third player of a chart for several; the game shows
-# each player's in a colour of their own. A chart with steps of the first and the second player and none of a third one
-# is read as one for two. What else stands in it (the third one's holds, plain notes) is for anyone who has that half of
-# the pad. One with steps of all three is for them and more, see `notes_by_player`.
+# `{note|look|fake|0}` is one note of one column with any look; a 1 in the third place makes it a fake. In a chart for
+# several players, X, Y and Z are steps, and x, y and z heads of holds, of the first, second and third player; the game
+# shows each player's notes in a different colour. A chart with steps of the first and the second player, and none of
+# the third, is read as a chart for two. Its other notes (the third player's holds, plain notes) belong to the player on
+# their half of the pads. A chart with steps of all three players is for three or more, see `notes_by_player`.
 
 PLAYERS = b"XYZxyz"
 TEXTS = {
@@ -28,33 +28,35 @@ TEXTS = {
 }
 _SEVERAL = "the chart is for {} players ({} mark their notes, as in StepF2); each has feet of their own"
 _NOTE = re.compile(rb"\{([0-4MLFKXYZxyz])\|[A-Za-z]\|([01])\|[0-9]\}")
-FAKE_HEAD = ord("f")  # head of a fake hold; its end is removed too
+FAKE_HEAD = ord("f")  # head of a fake hold, which is removed together with its end
 MINES_HEAD = ord("m")
-_STEPMANIAX = {b"DL": ord("3"), b"DM": MINES_HEAD}  # two letters that are one note
+_STEPMANIAX = {b"DL": ord("3"), b"DM": MINES_HEAD}  # notes of two letters
 _FAKED = {b"0": "0", b"2": "f", b"3": "3", b"4": "f", b"x": "f", b"y": "f", b"z": "f"}
-_COLUMNS = (5, 6, 10)  # of Pump's pads
+_COLUMNS = (5, 6, 10)  # numbers of columns of Pump's pads
 _BOTH_PADS = 10
 
 
 def letters_of(text: bytes, columns: int) -> bytes:
-    """The letters that mark players' notes, XY or XYZ, in note data without its comments; none for one player."""
+    """Return the letters that mark players' notes, XY or XYZ, in note data without comments; b"" for one player."""
     if columns != _BOTH_PADS or b"X" not in text or b"Y" not in text:
         return b""
     return b"XYZ" if b"Z" in text else b"XY"
 
 
 def for_several(players: int, letters: bytes) -> str:
-    """A sentence that says that a chart is for several players."""
+    """Return the message that a chart is for several players."""
     return _SEVERAL.format("two" if players == 2 else players, "X and Y" if len(letters) == 2 else "X, Y and Z")
 
 
 def player_of(letter: int) -> int:
-    """The player of a letter, from 1; 0 for a letter of no particular player."""
+    """Return the player of a letter, from 1; 0 if the letter does not mark a player."""
     return PLAYERS.find(letter) % 3 + 1 if letter in PLAYERS else 0
 
 
 def note_at(text: bytes, at: int, columns: int) -> tuple[int, int, str] | None:
-    """The letter of a note of StepF2's or StepManiaX's at an offset of a row, where it ends, which of `TEXTS` it is."""
+    """Return the letter of a StepF2 or StepManiaX note at an offset, the offset of its end, and its key in `TEXTS`, or
+    None.
+    """
     if found := _NOTE.match(text, at):
         letter = _FAKED.get(found[1], "F") if found[2] == b"1" else found[1].decode("ascii")
         return ord(letter), found.end(), "{"
@@ -65,14 +67,15 @@ def note_at(text: bytes, at: int, columns: int) -> tuple[int, int, str] | None:
     return None
 
 
-# Cells of the note grid -> notes: of two on one tick the last counts, heads find their tails, the rest is dropped.
+# Cells of the note grid -> notes: the last of several on one tick is kept, heads are paired with tails, others are
+# dropped.
 
-TAIL = 100  # the cell '3', which is no note of its own
-OTHERS_HEAD = 102  # of a hold of another player (StepF2): no note here, nor is its end
-ROW_OF_MINES = 103  # StepManiaX: mines from here to a tail; read as one at either end
+TAIL = 100  # the cell '3', which is the end of a note
+OTHERS_HEAD = 102  # the head of another player's hold (StepF2), which is dropped together with its end
+ROW_OF_MINES = 103  # StepManiaX: mines from here to a tail; read as one mine at each end
 _KEYSOUND, _HOLD, _ROLL = int(Kind.KEYSOUND), int(Kind.HOLD), int(Kind.ROLL)
 _MOST_COLUMNS = 64
-_MOST = 20  # warnings of one sort; the rest is only counted
+_MOST = 20  # limit of warnings of one sort; further ones are only counted
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,19 +95,20 @@ class Cells:
 
     @staticmethod
     def joined(several: Sequence[Cells]) -> Cells:
-        """Cells after cells."""
+        """Concatenate several cells."""
         return Cells(*(np.concatenate([getattr(one, name) for one in several]) for name in Cells.__slots__))
 
     @property
     def lane(self) -> NDArray[np.int16]:
-        """The same number for cells of one part and column, ascending."""
+        """An ascending number of each cell's part and column."""
         return (self.part * _MOST_COLUMNS + self.column).astype(np.int16)
 
 
 def notes_of(cells: Cells, warnings: Sequence[list[ReadWarning]]) -> Cells:
-    """The notes of all parts: no tails, `end` set for holds and rolls; sorted by part, column, then tick.
+    """Return the notes of all parts, sorted by part, column and tick; tails are removed, and `end` is set for holds and
+    rolls.
 
-    cells : those of a part by tick; warnings : for each part those about it, to which is added
+    cells : cells, sorted by tick within a part; warnings : a list for each part, to which warnings are added
 
     A tail belongs to the nearest note before it in its column, if that is an open head; keysounds do not count. So a
     tap or a second head inside a hold deletes the first head. A tail looks only at earlier ticks: on the tick of a
@@ -134,7 +138,7 @@ def notes_of(cells: Cells, warnings: Sequence[list[ReadWarning]]) -> Cells:
         (lone_tail, "unmatched-tail", "the end of a hold or roll has no head and is dropped"),
     ):
         found = cells[acting[which]]
-        for part in np.flatnonzero(np.bincount(found.part)).tolist():  # `np.unique` imports np.ma, for long
+        for part in np.flatnonzero(np.bincount(found.part)).tolist():  # `np.unique` would import np.ma, which is slow
             report(warnings[part], code, text, np.sort(found.line[found.part == part]))
     keep = (cells.kind != TAIL) & (cells.kind != OTHERS_HEAD)
     keep[acting[open_head]] = False
@@ -142,7 +146,7 @@ def notes_of(cells: Cells, warnings: Sequence[list[ReadWarning]]) -> Cells:
 
 
 def _last_of_each(cells: Cells, warnings: Sequence[list[ReadWarning]]) -> Cells:
-    """Of several cells on one tick of a column the last, and the last tail before it; sorted by column, then tick."""
+    """Return the last tail and the last other cell on each tick of a column; sorted by column, then tick."""
     is_tail = cells.kind == TAIL
     cells = cells[np.lexsort((~is_tail, cells.tick, cells.lane))]  # stable: file order within a tick
     is_tail, lane = cells.kind == TAIL, cells.lane
@@ -158,28 +162,28 @@ def _last_of_each(cells: Cells, warnings: Sequence[list[ReadWarning]]) -> Cells:
 
 
 def report(warnings: list[ReadWarning], code: str, text: str, lines: NDArray[np.integer]) -> None:
-    """One warning a line, the first 20; one more says how many others there are."""
+    """Add a warning for each of the first 20 lines, and one more with the number of other lines."""
     warnings.extend(ReadWarning(code, text, line) for line in lines[:_MOST].tolist())
     if len(lines) > _MOST:
         warnings.append(ReadWarning(code, f"{len(lines) - _MOST} more: {text}", int(lines[_MOST])))
 
 
-# The player of a note if letters mark it: the parts of all players whose notes are in the same rows.
+# The parts of players whose notes are in the same rows and are marked by letters.
 
 _STEPS = [Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT]
-_PLAIN = 4  # the colour of plain notes beside three letters
-_LEAST = 0.5  # times as many as a letter that is there least: so many plain notes are a fourth player's
+_PLAIN = 4  # the colour of plain notes in a chart with three letters
+_LEAST = 0.5  # the share of the rarest letter's notes from which on plain notes are a fourth player's
 
 
 def notes_by_player(cells: Cells, marks: Mapping[tuple[int, int], int], columns: int, letters: bytes) -> list[Cells]:
-    """The notes of each player, in the order of their letters, left before right; mines are in all parts.
+    """Return the notes of each player, in the order of letters, left before right; mines are in all parts.
 
     Each of two players has the notes with their own letter, and the notes without a letter on their half of the pads.
     With a third letter, plain notes are a fourth player's, as StepF2 colours them, if there are enough of them;
     otherwise they go to the player who mostly steps that panel. A colour that is mostly on both pads at once belongs to
     two players, one on each. A player with nothing but fakes does not dance.
 
-    marks : (tick, column) -> player whose letter stands there
+    marks : (tick, column) -> player whose letter is in that cell
     """
     places = zip(cells.tick.tolist(), cells.column.tolist(), strict=True)
     owner = np.array([marks.get(place, 0) for place in places], dtype=np.int64)
@@ -201,7 +205,7 @@ def notes_by_player(cells: Cells, marks: Mapping[tuple[int, int], int], columns:
 
 
 def _of_two(colour: NDArray[np.int64], tick: NDArray[np.int64], right: NDArray[np.int64]) -> list[int]:
-    """Colours with steps on both pads in most of their rows: no one is on both at once all the time."""
+    """Return the colours of two players: those with steps on both pads in most of their rows."""
     found = []
     for one in np.unique(colour).tolist():
         left_rows, right_rows = (np.unique(tick[(colour == one) & (right == side)]) for side in (0, 1))

@@ -11,11 +11,11 @@ import numpy as np
 from dancetutor_cli.chart.model import Chart, Kind, Song
 from dancetutor_cli.chart.names import TICKS_PER_MEASURE
 
-MOST_SHOWN = 9999  # beats a minute: what is more says nothing to a reader
+MOST_SHOWN = 9999  # beats per minute; faster tempos are not shown to users
 
 
 def bpm_shares(chart: Chart) -> list[tuple[float, float]]:
-    """(BPM, seconds it lasts) of every stretch of the chart, up to its last note."""
+    """Return the BPM and the length in seconds of every stretch of the chart, up to its last note."""
     last = max(int(chart.notes.tick.max(initial=0)), int(chart.notes.end.max(initial=0)), 1)
     ticks = [tick for tick, _ in chart.timing.bpms if tick < last]
     seconds = chart.timing.seconds(np.array([*ticks, last], dtype=np.int64))
@@ -24,7 +24,9 @@ def bpm_shares(chart: Chart) -> list[tuple[float, float]]:
 
 
 def fastest_bpm(chart: Chart) -> float:
-    """The highest BPM that matters: it lasts at least 2 % of the chart, so bursts of gimmicks do not count."""
+    """Return the highest BPM such that at least 2 % of the chart is at it or faster, so that short gimmicks do not
+    count.
+    """
     shares = sorted(bpm_shares(chart), reverse=True)
     total, heard = sum(length for _, length in shares), 0.0
     for bpm, length in shares:
@@ -43,9 +45,7 @@ def bpm_text(song: Song, chart: Chart) -> str:
 
 
 def _displayed(text: str) -> list[float]:
-    """The tempos of a #DISPLAYBPM, "128" or "90:180"; none for "*", which hides them, or for a text that is not a
-    tempo.
-    """
+    """Return the tempos of a #DISPLAYBPM, "128" or "90:180"; none for "*", which hides them, or for other text."""
     try:
         found = [float(part) for part in text.split(":")]
     except ValueError:
@@ -53,18 +53,18 @@ def _displayed(text: str) -> list[float]:
     return found if len(found) <= 2 and all(1 <= bpm <= MOST_SHOWN for bpm in found) else []
 
 
-_SHORTEST = 0.12  # seconds: a measure that warps or gimmicks leave less of has no speed anyone could play
+_SHORTEST = 0.12  # seconds; a measure that warps or gimmicks make shorter than this has no meaningful speed
 _IS_STEP = np.zeros(256, dtype=bool)
 _IS_STEP[[Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT]] = True
 
 
 @dataclass(frozen=True, slots=True)
 class Density:
-    """Rows with a step, counted as the games' "notes per second" do: a jump is one.
+    """The density of rows with a step; a jump counts once, as in the games' "notes per second".
 
-    mean : rows per second from the first to the last step; peak : of the densest measure that lasts
+    mean : rows per second from the first to the last step; peak : rows per second of the densest measure
     breakdown : "32 (4) 16": measures of stream, breaks between them in brackets; "" without a stream
-    stream_measures : measures of stream in all
+    stream_measures : total number of measures of stream
     per_measure : rows with a step in every measure, up to the last step
     """
 
@@ -99,7 +99,7 @@ def density(chart: Chart, stream_rows: int) -> Density:
 
 
 def breakdown(stream: Sequence[bool]) -> str:
-    """Runs of stream measures as numbers, the breaks between them in brackets; no break at the start or the end."""
+    """Return runs of stream measures as numbers, with the breaks between them in parentheses."""
     if not any(stream):
         return ""
     runs = [(is_stream, len(list(group))) for is_stream, group in groupby(stream)]

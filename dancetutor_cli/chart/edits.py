@@ -1,4 +1,4 @@
-"""A chart file changed in places: bytes replaced, their diff, and whether every reader still sees the same song."""
+"""Edits of a chart file: replaced bytes, their diff, and the check that readers still see the same song."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from dancetutor_cli.run.errors import FileError
 
 @dataclass(frozen=True, slots=True, order=True)
 class Splice:
-    """Put `text` in place of `data[start:end]`."""
+    """A replacement of `data[start:end]` by `text`."""
 
     start: int
     end: int
@@ -26,7 +26,7 @@ class Splice:
 
 
 def apply(data: bytes, splices: Iterable[Splice]) -> bytes:
-    """`data` with all replacements made. They must not overlap."""
+    """Return `data` with all replacements made. They must not overlap."""
     out: list[bytes] = []
     at = 0
     for splice in sorted(splices):
@@ -38,15 +38,15 @@ def apply(data: bytes, splices: Iterable[Splice]) -> bytes:
     return b"".join(out)
 
 
-# A unified diff of two versions of a file that differ in some lines and in what is added at the end.
+# A unified diff of two versions of a file that differ in some lines and in lines added at the end.
 #
-# Markers never add a line in the middle of a file, so lines are compared one to one: exact and quick on any size.
+# Markers never add a line in the middle of a file, so lines are compared one to one, which is exact and fast.
 
 CONTEXT = 3
 
 
 def unified(name: str, old: bytes | None, new: bytes | None) -> Iterator[str]:
-    """The lines of the diff, without line ends; nothing if both are the same."""
+    """Yield the lines of the diff, without line breaks; none if both versions are the same."""
     pairs = list(zip_longest(_lines(old), _lines(new)))
     different = [i for i, (a, b) in enumerate(pairs) if a != b]
     if not different:
@@ -103,22 +103,22 @@ _BPMS = re.compile(rb"#BPMS:([^;]*)", re.IGNORECASE)
 
 
 class HarmError(FileError):
-    """A change would alter what a game reads; it is not written. A fault of the program, or a very odd file."""
+    """An edit that would change what a game reads, and so is not written: a bug of the program, or a very odd file."""
 
 
 def unchanged(
     before: Song, after: bytes, ours: Callable[[Chart], bool] = lambda chart: False, free: Collection[str] = ()
 ) -> Song:
-    """Read `after` back and compare it with the song it was made from.
+    """Read `after` and compare it with the song from which it was made.
 
     Parameters
     ----------
     before : the song as it was read
-    after : the bytes to be written in its place
-    ours : which charts the program itself has added, and which therefore do not count
-    free : the song's tags that may differ
+    after : the bytes that will replace the file
+    ours : whether a chart was added by the program, and so is not compared
+    free : names of the song's tags that may differ
 
-    Returns the song as read from `after`. Raises `HarmError` naming the first difference.
+    Returns the song read from `after`. Raises `HarmError` with the first difference.
     """
     try:
         song = parse(after, before.path)
@@ -165,10 +165,10 @@ def _same_rows(a: RowTable, b: RowTable) -> bool:
 
 
 def hash_input(data: bytes, chart: Chart) -> bytes:
-    """The part of a chart's note data that the Simply Love theme hashes, before it shortens the measures.
+    """Return the part of a chart's note data that the Simply Love theme hashes, before it shortens the measures.
 
-    It looks for the field by cutting at every `:` and `;`, also those in comments, and only then drops comments and
-    blanks. So a `:` that got into a comment would cut the notes short here, as it does there.
+    The theme splits the text at every `:` and `;`, even in comments, and only then drops comments and blanks. So a `:`
+    in a comment ends the notes here, as it does in the theme.
     """
     start, end = chart.notes_span
     text = re.split(rb"[:;]", data[start:end], maxsplit=1)[0].replace(b"\r\n", b"\n").replace(b"\r", b"\n")

@@ -25,14 +25,14 @@ _KIND = np.full(256, _UNKNOWN, dtype=np.uint8)
 _KIND[list(b"01234MLFK")] = (
     Kind.EMPTY, Kind.TAP, Kind.HOLD, TAIL, Kind.ROLL, Kind.MINE, Kind.LIFT, Kind.FAKE, Kind.KEYSOUND,
 )  # fmt: skip
-# As what the letters of several players are read: in most charts as nobody's notes, in one for them as theirs.
+# How the letters of several players are read: in a chart for several players as notes, in other charts as no notes.
 _NOBODYS = {letter: int(Kind.EMPTY) if chr(letter).isupper() else OTHERS_HEAD for letter in stepf2.PLAYERS}
 _NOBODYS |= {stepf2.FAKE_HEAD: OTHERS_HEAD, stepf2.MINES_HEAD: ROW_OF_MINES}
 _OF_PLAYERS = _NOBODYS | {letter: int(Kind.TAP if chr(letter).isupper() else Kind.HOLD) for letter in stepf2.PLAYERS}
 
 
 class LineIndex:
-    """Byte offset -> 1-based line of a file."""
+    """The 1-based line of each byte offset in a file."""
 
     def __init__(self, data: bytes) -> None:
         self._breaks = np.flatnonzero(np.frombuffer(data, dtype=np.uint8) == _LF)
@@ -41,7 +41,7 @@ class LineIndex:
         return int(self._breaks.searchsorted(offset)) + 1
 
     def many(self, offsets: NDArray[np.int64]) -> NDArray[np.int32]:
-        """The lines of some offsets."""
+        """Return the lines of several offsets."""
         return (self._breaks.searchsorted(offsets) + 1).astype(np.int32)
 
 
@@ -49,9 +49,10 @@ class LineIndex:
 class NoteSpan:
     """The note data of a chart, or of one of its players, in the text of the file.
 
-    start, end : span; begin : offset before which a `,` ends no measure
-    of_players : whether letters mark whose a note is; where not, notes with such letters are nobody's
-    marks : (tick, column) -> player whose letter stands there, filled in as rows are read; warnings : likewise
+    start, end : the span; begin : offset before which a `,` does not end a measure
+    of_players : whether letters mark the player of a note; if not, notes with players' letters are not read
+    marks : (tick, column) -> player whose letter is in that cell; both this and `warnings` are filled while rows are
+    read
     """
 
     start: int
@@ -64,13 +65,13 @@ class NoteSpan:
 
     @property
     def letters(self) -> Mapping[int, int]:
-        """As what letters of players are read."""
+        """The kind of cell for each letter of a player."""
         return _OF_PLAYERS if self.of_players else _NOBODYS
 
 
 @dataclass(frozen=True, slots=True)
 class NoteText:
-    """The bytes of a file without its comments and its escaping backslashes, which stood at `escapes`."""
+    """The bytes of a file with comments and escaping backslashes as blanks; `escapes` : offsets of the backslashes"""
 
     value: bytes
     escapes: frozenset[int]
@@ -78,7 +79,7 @@ class NoteText:
 
 
 class Grid:
-    """Measures and rows of some parts, in file order; `first` and `last` are the spans of the trimmed rows."""
+    """The measures and rows of several parts, in file order; `first` and `last` are the spans of the trimmed rows."""
 
     def __init__(self, text: NoteText, parts: Sequence[NoteSpan]) -> None:
         self._text, self._parts = text, parts
@@ -89,7 +90,7 @@ class Grid:
         of_row, opens, closes = _pieces(cuts, spans)
         self.first, self.last, self._of_row = _trimmed(view, opens, closes, of_row)
         of_measure, opens, closes = _pieces(cuts[view[cuts] == _COMMA], spans)
-        real = closes > opens  # zero bytes between two commas are no measure
+        real = closes > opens  # two adjacent commas have no measure between them
         first = of_measure.searchsorted(np.arange(len(parts)))
         real[first] &= closes[first] > [part.begin for part in parts]
         self._anchor, of_measure = opens[real], of_measure[real]
@@ -109,20 +110,20 @@ class Grid:
         self._opened = text.lines.many(self._anchor - 1)
 
     def row_table(self, part: int) -> RowTable:
-        """The rows of a part."""
+        """Return the rows of a part."""
         here = slice(self._rows[part], self._rows[part + 1])
         return RowTable(
             self.first[here], self.last[here], self._line[here], self._tick[here], self._measure[here],
         )  # fmt: skip
 
     def measure_table(self, part: int) -> MeasureTable:
-        """The measures of a part."""
+        """Return the measures of a part."""
         here = slice(self._measures[part], self._measures[part + 1])
         first = (self._row_first[here] - self._rows[part]).astype(np.int32)
         return MeasureTable(self._anchor[here], self._opened[here], first, self._row_count[here].astype(np.int32))
 
     def cells(self) -> Cells:
-        """The non-empty cells of all parts; those of a part in file order."""
+        """Return the non-empty cells of all parts; within a part, they are in file order."""
         columns = np.array([part.columns for part in self._parts])
         irregular = self._of_row[self.last - self.first != columns[self._of_row]]
         escaped = (number for number, part in enumerate(self._parts) if len(self._escapes_in(part)))
@@ -145,7 +146,7 @@ class Grid:
         return found[0] if len(found) == 1 else Cells.joined(found)
 
     def _cells_of(self, rows: NDArray[np.int64], kinds: NDArray[np.uint8]) -> Cells:
-        """The cells of some rows that hold something."""
+        """Return the non-empty cells of some rows."""
         cell = np.flatnonzero(kinds)
         row, column = np.divmod(cell, max(kinds.shape[1], 1))
         row = rows[row]
@@ -153,12 +154,12 @@ class Grid:
         return Cells(self._of_row[row], self._tick[row], column, kinds.ravel()[cell], self._line[row], end)
 
     def _escapes_in(self, part: NoteSpan) -> NDArray[np.int64]:
-        """Where in a part a backslash stood."""
+        """Return the offsets of the backslashes of a part."""
         first, after = self._escapes.searchsorted((part.start, part.end)).tolist()
         return self._escapes[first:after]
 
     def _odd_kinds(self, number: int) -> NDArray[np.uint8]:
-        """The kinds of a part in which some row is odd; these are read character by character, as in the games."""
+        """Return the kinds of a part with odd rows, which are read character by character, as in the games."""
         part, value, view = self._parts[number], self._text.value, self._view
         here = slice(self._rows[number], self._rows[number + 1])
         first, last, line, tick = self.first[here], self.last[here], self._line[here], self._tick[here]
@@ -203,7 +204,7 @@ class Grid:
 def _pieces(
     cuts: NDArray[np.int64], spans: Sequence[tuple[int, int]]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Into what cuts part some spans: number of the span, start and end of every piece."""
+    """Split spans at the cuts; return the index of the span, the start and the end of every piece."""
     bounds = cuts.searchsorted(spans).tolist()
     counts = [after - first + 1 for first, after in bounds]
     opens, closes = np.empty(sum(counts), dtype=np.int64), np.empty(sum(counts), dtype=np.int64)
@@ -218,7 +219,7 @@ def _pieces(
 def _trimmed(
     view: NDArray[np.uint8], first: NDArray[np.int64], last: NDArray[np.int64], of: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Start and end without blanks, and the part, of the rows: of pieces that are not blank."""
+    """Return the start and the end without blanks, and the part, of each piece that is not blank."""
     full = last > first
     first, last, of = first[full], last[full], of[full]
     last -= view[last - 1] == _CR
@@ -240,9 +241,10 @@ def _trimmed(
 def odd_row(
     text: bytes, columns: int, letters: Mapping[int, int]
 ) -> tuple[list[int], list[tuple[str, str]], dict[int, tuple[int, str]]]:
-    """The cells of one row, character by character, as the games go; and what is odd about it: code, message.
+    """Read the cells of one row character by character, as the games do.
 
-    And by column what is StepF2's: the letter, and which of `cells.TEXTS` it is.
+    Returns the kinds of the cells, the code and message of each oddity, and for each column with a StepF2 or StepManiaX
+    note its letter and its key in `cells.TEXTS`.
     """
     cells: list[int] = []
     found: dict[tuple[str, str], None] = {}

@@ -1,13 +1,13 @@
-"""The hash by which GrooveStats, ITL and other leaderboards know a chart, computed from its file.
+"""The hash by which GrooveStats, ITL and other leaderboards identify a chart, computed from its file.
 
     hash = first 16 hexadecimal digits of SHA-1(minimised rows + normalised BPMs)
 
-Only notes and BPMs count. A chart that is mirrored, or plays at another tempo, is another chart; titles, offset, stops,
-comments, blanks and line ends change nothing.
+The hash depends only on notes and BPMs: a mirrored chart, or a chart at another tempo, has another hash. Titles,
+offset, stops, comments, blanks and line breaks do not change it.
 
 Source: chart hash version 3, as themes for StepMania 5 and ITGmania compute it from the text of a file. Newer releases
-of ITGmania compute it in the engine from the parsed notes and BPMs; whether that is the same for each file is not
-known.
+of ITGmania compute it in the engine from the parsed notes and BPMs; whether the hash is then the same for every file is
+not known.
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.run.errors import DancetutorError
 
-DIGITS = 16  # of the hash, hexadecimal
+DIGITS = 16  # number of hexadecimal digits of the hash
 _COMMENT = re.compile(rb"//[^\n]*")
 _BLANKS = b" \t\r\f\v"
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
 class HashError(DancetutorError):
-    """There is nothing to make a hash of."""
+    """A chart that cannot be hashed."""
 
 
 def chart_hash(song: Song, chart: Chart) -> str | None:
-    """The hash of a chart of a song, in lower case; None for lights, and where its file says no BPM.
+    """Return the hash of a chart, in lower case; None for lights, and if its file has no BPM.
 
-    Of a chart for several, each player's part has the hash of the whole.
+    In a chart for several players, each player's part has the hash of the whole chart.
     """
     whole = chart.written or chart
     bpms = normalised_bpms(whole.tags.get("BPMS", "")) or normalised_bpms(song.tags.get("BPMS", ""))
@@ -45,15 +45,15 @@ def chart_hash(song: Song, chart: Chart) -> str | None:
 
 
 def hash_of(note_data: bytes, columns: int, bpms: str) -> str:
-    """The hash of note data as it stands in the file, between `:` and `;`. bpms : as `normalised_bpms` gives them"""
+    """Return the hash of note data as written in the file, between `:` and `;`. bpms : from `normalised_bpms`"""
     text = minimised(note_data, columns) + bpms.encode("ascii")
     return hashlib.sha1(text, usedforsecurity=False).hexdigest()[:DIGITS]
 
 
 def minimised(note_data: bytes, columns: int) -> bytes:
-    """The rows, each measure in as few as hold its notes, and a `,` between measures; a line each.
+    """Return each measure in the fewest rows that hold its notes, one row per line, with a line `,` between measures.
 
-    Rows are cut to the columns of the pad; what is shorter is no row. Measures without notes stay, at the end too.
+    Rows are cut to the columns of the pad; shorter lines are not rows. Measures without notes stay, even at the end.
     """
     if columns < 1:
         raise HashError(f"{columns} columns: a chart has at least one")
@@ -66,7 +66,10 @@ def minimised(note_data: bytes, columns: int) -> bytes:
 
 
 def _measures(note_data: bytes, columns: int) -> Iterator[list[bytes]]:
-    """The rows of each measure. A line that begins with `,` ends a measure, one with `;` the chart."""
+    """Yield the rows of each measure.
+
+    A line that begins with `,` ends a measure; a line that begins with `;` ends the chart.
+    """
     text = note_data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     if b"//" in text:
         text = _COMMENT.sub(b"", text)
@@ -83,7 +86,7 @@ def _measures(note_data: bytes, columns: int) -> Iterator[list[bytes]]:
 
 
 def _fewest(rows: list[bytes], empty: bytes) -> list[bytes]:
-    """The rows without every second one, as long as their number is even and each of these is empty."""
+    """Drop every second row, as long as the number of rows is even and all of the dropped rows are empty."""
     while rows and len(rows) % 2 == 0 and set(rows[1::2]) == {empty}:
         rows = rows[::2]
     return rows
@@ -91,14 +94,16 @@ def _fewest(rows: list[bytes], empty: bytes) -> list[bytes]:
 
 @lru_cache(maxsize=64)
 def normalised_bpms(text: str) -> str:
-    """The pairs of a #BPMS, beat and BPM with three decimals: "0.000=120.000,4.000=60.500"; others are left out."""
+    """Return the valid pairs of a #BPMS, beat and BPM with three decimals: "0.000=120.000,4.000=60.500"."""
     pairs = (entry.partition("=") for entry in text.split(","))
     numbers = ((_decimals(beat), _decimals(bpm)) for beat, _, bpm in pairs)
     return ",".join(f"{beat}={bpm}" for beat, bpm in numbers if beat and bpm)
 
 
 def _decimals(text: str) -> str:
-    """A number with three decimals, halves up (where `%.3f` has them to even); "" if it is none."""
+    """Return a number with three decimals, with halves rounded up (not to even, as by `%.3f`); "" if it is not a
+    number.
+    """
     plain = "".join(c for c in text if c.isprintable()).strip()
     thousandths = float(plain) * 1000 + 0.5 if _NUMBER.fullmatch(plain) else math.inf
     if not math.isfinite(thousandths):

@@ -1,7 +1,7 @@
-"""The contents of a chart file: plain frozen data, made by the reader, used by every other package.
+"""The contents of a chart file: frozen data classes, made by the reader and used by every other package.
 
-Positions are kept for every row, so that findings can point and markers can be spliced in. Beats are counted in
-ticks of 1/48 beat (`names.TICKS_PER_BEAT`), the grid of the games.
+The position of every row is kept, for findings and for markers. Beats are counted in ticks of 1/48 beat
+(`names.TICKS_PER_BEAT`), the grid of the games.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Kind(IntEnum):
-    """What stands in a cell of the note grid."""
+    """The kind of note in a cell of the note grid."""
 
     EMPTY = 0
     TAP = 1
@@ -40,7 +40,7 @@ class NoteTable:
     kind : uint8, `Kind`, never EMPTY
     end : int64, tick of the tail for HOLD and ROLL, else -1
     line : int32, 1-based line of the note's row in the file
-    judged : bool, False for fakes, keysounds and whatever lies in a warp or a fake segment
+    judged : bool, False for fakes, keysounds and notes in a warp or a fake segment
     """
 
     tick: NDArray[np.int64]
@@ -58,7 +58,7 @@ class NoteTable:
 class RowTable:
     """Every row of the note data as written, also the empty ones, in file order; arrays of one length.
 
-    Of routine charts (`&`) these are the first player's; `Chart.players` has both.
+    For routine charts (`&`), these are the rows of the first player; `Chart.players` has the rows of both.
 
     start, end : int64, byte span of the trimmed row text in `Song.data` (comment not included)
     line : int32, 1-based
@@ -79,7 +79,7 @@ class MeasureTable:
 
     anchor : int64, byte offset directly after the `:` or `,` that opens the measure
     line : int32, 1-based line of that `:` or `,`
-    first_row, row_count : int32, its rows in the `RowTable`
+    first_row, row_count : int32, first row and number of rows in the `RowTable`
     """
 
     anchor: NDArray[np.int64]
@@ -90,7 +90,7 @@ class MeasureTable:
 
 @dataclass(frozen=True, slots=True)
 class ReadWarning:
-    """Something odd that was read around. `code` is a short stable name such as "short-row"."""
+    """An oddity that the reader ignored or corrected. `code` is a short stable name such as "short-row"."""
 
     code: str
     message: str
@@ -109,11 +109,12 @@ class Chart:
     columns : number of columns of the steps type; 0 if the type is unknown
     notes_span : byte span of the note data value in `Song.data`, after `:` up to before `;`
     tags : the chart's own tags, upper-case name -> decoded value (the first value only)
-    players : of a chart for several what each of them steps, see `chart.note_data`; else empty
-    player : of such a part whose it is, from 1, else 0; written : the chart that it is a part of, without `players`;
+    players : the part of each player of a chart for several players, see `chart.note_data`; else empty
+    player : for a player's part, the number of the player, from 1, else 0; written : the chart of the part, without
+    `players`;
         first_column : its first column there
-    marked : letters of rows are more than steps: they mark whose a note is (StepF2; of such a chart and of its
-        parts), or are those of a .ucs
+    marked : whether the letters of rows are not plain notation: they mark players (StepF2), or are the letters of a
+    .ucs file
     """
 
     index: int
@@ -138,23 +139,24 @@ class Chart:
 
     @property
     def written_type(self) -> str:
-        """The steps type in the file: for what a player of a couple steps "dance-couple", though on a single pad."""
+        """The steps type in the file; for a player of a couple chart "dance-couple", although the pad is single."""
         return self.steps_type if self.written is None else self.written.steps_type
 
     @property
     def label(self) -> str:
-        """For people: "dance-single Hard 8", of one of two players "dance-couple Hard 8 P2"."""
+        """The chart's name in messages: "dance-single Hard 8", or for one of two players "dance-couple Hard 8 P2"."""
         whose = f" P{self.player}" if self.player else ""
         return f"{self.written_type} {self.difficulty} {self.meter}{whose}"
 
 
 @dataclass(frozen=True, slots=True)
 class Song:
-    """One .sm, .ssc or .ucs file. `data` are its bytes; everything else was read from them.
+    """One .sm, .ssc or .ucs file. `data` has its bytes, from which everything else is read.
 
     encoding : "ascii", "utf-8", "utf-8-sig", or a guess: "cp932", "cp949", "cp1252"
     title, subtitle, artist, music : on one line and safe to print (no control characters, no terminal escapes)
-    tags : upper-case name -> first value, decoded, safe to print but for line ends; of equal names the last
+    tags : upper-case name -> first value, decoded, safe to print apart from line breaks; of several tags with the same
+    name, the last
     """
 
     path: Path
@@ -166,6 +168,6 @@ class Song:
     artist: str
     music: str
     tags: dict[str, str]
-    timing: Timing  # the song's own, without split timing
+    timing: Timing  # the timing of the song, without split timing
     charts: tuple[Chart, ...]
     warnings: tuple[ReadWarning, ...]

@@ -6,9 +6,10 @@ import re
 import unicodedata
 from dataclasses import dataclass
 
-# Each branch begins with a letter of its own, so that the search for the next one skips the rest quickly.
+# Each branch begins with a different letter, so that the search for the next token is fast.
 _TOKEN = re.compile(rb"//[^\n]*|\\.?|##*|:|;", re.DOTALL)
-_MOST_VALUES = 4096  # of one tag; games read the first few; of more only the last is kept
+# limit of values of one tag; games read only the first few, and of further values only the last is kept
+_MOST_VALUES = 4096
 _COMMENT_OR_ESCAPE = re.compile(rb"//[^\n]*|\\(.?)", re.DOTALL)
 
 
@@ -22,9 +23,9 @@ class Tag:
 
 
 def scan(data: bytes) -> list[Tag]:
-    """All tags of a file in order. A missing `;` is made up for where the games do; text between tags is dropped.
+    """Return all tags of a file in order. A missing `;` is tolerated as in the games; text between tags is dropped.
 
-    So is a tag with neither name nor value: a file may hold millions of them.
+    A tag with neither name nor value is dropped too, because a file may have millions of them.
     """
     tags: list[Tag] = []
     params: list[tuple[int, int]] = []
@@ -34,7 +35,7 @@ def scan(data: bytes) -> list[Tag]:
         at = match.start()
         token = data[at]
         if token == 35:  # '#'
-            # Of several in a row each ends the tag of the one before, which has no name; where none counts, none does.
+            # Several `#` in a row count as their last one.
             if begin < 0:
                 begin, start = match.end() - 1, match.end()
             elif _first_on_line(data, start, at):
@@ -53,7 +54,7 @@ def scan(data: bytes) -> list[Tag]:
 
 
 def _end(tags: list[Tag], data: bytes, begin: int, params: list[tuple[int, int]], last: tuple[int, int]) -> None:
-    """Add the tag that ends with the value `last`, if there is anything in it."""
+    """Add the tag that ends with the value `last`, unless it is empty."""
     (a, b), *values = (*params, last)
     name = plain(data[a:b]).decode("latin-1").upper()
     if values or name.strip():
@@ -61,7 +62,7 @@ def _end(tags: list[Tag], data: bytes, begin: int, params: list[tuple[int, int]]
 
 
 def _first_on_line(data: bytes, start: int, at: int) -> bool:
-    """Whether only blanks stand between the `#` at an offset and the start of its line or of the open value."""
+    """Whether there are only blanks between the start of the line or value and the `#` at an offset."""
     j = at
     while j > start and data[j - 1] in b" \t":
         j -= 1
@@ -69,16 +70,16 @@ def _first_on_line(data: bytes, start: int, at: int) -> bool:
 
 
 def plain(value: bytes) -> bytes:
-    """The value as the games see it: `//` comments dropped (their LF stays), `\\` escapes resolved."""
+    """Return the value as the games read it: `//` comments dropped (their LF stays), `\\` escapes resolved."""
     if b"//" in value or b"\\" in value:
         return _COMMENT_OR_ESCAPE.sub(lambda match: match[1] or b"", value)
     return value
 
 
 def blanked(value: bytes) -> tuple[bytes, frozenset[int]]:
-    """The value at its length: comments and escaping `\\` as blanks; and the offsets of those `\\`.
+    """Return the value at its full length, with comments and escaping `\\` as blanks, and the offsets of these `\\`.
 
-    A `\\` is no character of its row: anyone who looks at single characters must leave out these offsets.
+    An escaping `\\` is not a character of its row: code that reads single characters must skip these offsets.
     """
     if b"//" not in value and b"\\" not in value:
         return value, frozenset()
@@ -93,7 +94,7 @@ def blanked(value: bytes) -> tuple[bytes, frozenset[int]]:
     return _COMMENT_OR_ESCAPE.sub(blank, value), frozenset(escapes)
 
 
-# Text of chart files for people: which encoding it is in, and no character that harms a terminal.
+# Text of chart files for people: its encoding, and the removal of characters that harm a terminal.
 
 _HIGH = re.compile(rb"[\x80-\xff]")
 _PAIR = re.compile(rb"[\x81-\xfe][\x80-\xff]")
@@ -104,10 +105,10 @@ _DROPPED = frozenset({"Cc", "Cf", "Cs", "Cn", "Co", "Zl", "Zp"})
 
 
 def encoding_of(data: bytes) -> str:
-    """The encoding of a file, by Python's name: "ascii", "utf-8", "utf-8-sig", "cp932", "cp949" or "cp1252".
+    """Return the encoding of a file, by Python's name: "ascii", "utf-8", "utf-8-sig", "cp932", "cp949" or "cp1252".
 
-    The old encodings can only be guessed: Asian letters are pairs of high bytes (of Shift-JIS often a high and a low
-    one), high bytes of Western text stand alone.
+    The old encodings can only be guessed: Asian letters are pairs of high bytes (in Shift-JIS often a high and a low
+    byte), and high bytes of Western text are single.
     """
     if data.isascii():
         return "ascii"
@@ -127,13 +128,13 @@ def encoding_of(data: bytes) -> str:
 
 
 def _fits(data: bytes, encoding: str) -> bool:
-    """Whether nearly all of the data is valid: one wrong byte does not make Japanese Western."""
+    """Whether nearly all of the data is valid in an encoding; a few wrong bytes are tolerated."""
     wrong = data.decode(encoding, errors="replace").count("\ufffd")
     return wrong * 20 <= len(_HIGH.findall(data))
 
 
 def decode(value: bytes, encoding: str) -> str:
-    """A value as text, safe to print: bytes that do not fit become U+FFFD, line ends and tabs stay."""
+    """Return a value as text that is safe to print: invalid bytes become U+FFFD; line breaks and tabs stay."""
     text = value.decode("utf-8" if encoding == "utf-8-sig" else encoding, errors="replace")
     if _is_plain(text):
         return text
@@ -148,10 +149,10 @@ def _is_plain(text: str) -> bool:
 
 
 def one_line(text: str) -> str:
-    """The text on one line, for titles and names."""
+    """Return the text on one line, for titles and names."""
     return " ".join(text.split())
 
 
 def quote(text: str) -> str:
-    """The start of a text on one line, safe to print, for messages; what cannot be seen by its number: "12<0x08>5"."""
+    """Return the start of a text on one line for messages; unprintable characters become numbers: "12<0x08>5"."""
     return "".join(c if c.isprintable() else f"<{ord(c):#04x}>" for c in one_line(text)[:60])

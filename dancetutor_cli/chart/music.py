@@ -1,4 +1,4 @@
-"""The song's music: a file inside the song's folder, and nothing else."""
+"""The song's music, which must be a file inside the song's folder."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ SUFFIXES = (".ogg", ".oga", ".mp3", ".wav", ".flac", ".opus")
 
 
 def music_file(song: Song, chart: Chart | None = None) -> Path:
-    """The music of a song, or of one of its charts that names its own.
+    """Return the music of a song, or of a chart with music of its own.
 
-    A name is found in any case, as by the games on Windows. With an empty tag, the only audio file in the folder is the
-    music; that of a .ucs has the file's name.
+    The case of the name is ignored, as by the games on Windows. If the tag is empty, the music is the only audio file
+    in the folder; the music of a .ucs file has the name of that file.
 
     Raises
     ------
     FileError : the name leaves the song's folder (absolute, `..`, a network name, a link), looks like an option or a
-        protocol, or is no kind of audio file
-    MissingFileError : there is no such file
+        protocol, or does not have the suffix of an audio file
+    MissingFileError : the file does not exist
     """
     folder = song.path.parent.resolve()
     name = ((chart.tags.get("MUSIC") if chart else None) or song.music).strip()
@@ -41,7 +41,10 @@ def music_file(song: Song, chart: Chart | None = None) -> Path:
 
 
 def find_music(song: Song, chart: Chart) -> tuple[Path | None, str | None]:
-    """The chart's own or the song's music; None and a line for people if it is missing. FileError as `music_file`."""
+    """Return the music of a chart or its song, or None and a message if it is missing.
+
+    Raises FileError as `music_file`.
+    """
     try:
         return music_file(song, chart), None
     except MissingFileError as error:
@@ -49,7 +52,7 @@ def find_music(song: Song, chart: Chart) -> tuple[Path | None, str | None]:
 
 
 def named_file(folder: Path, name: str) -> Path:
-    """The file that a tag of a song in a folder names, whatever the case of its letters; there or not."""
+    """Return the path of the file that a tag names, ignoring case; the file need not exist."""
     current = folder
     for part in name.replace("\\", "/").split("/"):
         if part not in ("", "."):
@@ -58,7 +61,7 @@ def named_file(folder: Path, name: str) -> Path:
 
 
 def other_case(folder: Path, name: str) -> str | None:
-    """The real name of a file, with its path, if a tag names it with other capitals; None if it is as named."""
+    """Return the real relative path of a file if the tag's name differs in case; None if it does not differ."""
     current, parts = folder, []
     for part in name.replace("\\", "/").split("/"):
         names = _names(current) if part not in ("", ".", "..") else [part]
@@ -72,7 +75,9 @@ def other_case(folder: Path, name: str) -> str | None:
 
 
 def _of_same_name(song: Song, folder: Path) -> Path:
-    """The audio file that is called like a file that has no tags, "CS001.mp3"; else the only one there."""
+    """Return the audio file with the stem of the chart file, such as "CS001.mp3", else the only audio file in the
+    folder.
+    """
     wanted = _plain(song.path.stem)
     audio = [name for name in _names(folder) if name.lower().endswith(SUFFIXES) and _plain(Path(name).stem) == wanted]
     return _inside(song, folder / min(audio), folder) if audio else _only_audio_file(song, folder)

@@ -13,7 +13,7 @@ COLUMNS = {
     "maniax-single": 4, "maniax-double": 8, "techno-single4": 4, "techno-single5": 5, "techno-single8": 8,
     "techno-double4": 8, "techno-double5": 10, "techno-double8": 16, "pnm-five": 5, "pnm-nine": 9, "lights-cabinet": 6,
     "kickbox-human": 4, "kickbox-quadarm": 4, "kickbox-insect": 6, "kickbox-arachnid": 8,
-    # of StepManiaX and SMEditor; the other games know them as unknown
+    # of StepManiaX and SMEditor; other games do not know these types
     "smx-beginner": 3, "smx-single": 5, "smx-double6": 6, "smx-double10": 10, "smx-team": 10,
     "dance-solodouble": 12, "dance-threedouble": 6,
 }  # fmt: skip
@@ -36,7 +36,7 @@ _OLD_DIFFICULTIES = _BY_NAME | {
 
 
 def steps_type(text: str) -> str:
-    """The steps type in lower case; old names and several names for one thing become the name that is used here."""
+    """Return the steps type in lower case; old and alternative names become the name used in this program."""
     name = text.strip().lower()
     return _OTHER_NAMES.get(name, name)
 
@@ -52,10 +52,10 @@ def is_lights(steps_type: str) -> bool:
 
 
 def difficulty(text: str, description: str, meter: int, old: bool) -> tuple[str, bool]:
-    """The difficulty as StepMania 5 and ITGmania show it, and whether the tag itself says so.
+    """Return the difficulty that StepMania 5 and ITGmania show, and whether the tag itself is a known name.
 
-    With `old` (.sm) the names of old files are known ("Basic", "Oni", ...), and a Hard described as "smaniac" or
-    "challenge" is Challenge. A name that is none is looked for in the description, then made up from the meter.
+    With `old` (.sm), old names ("Basic", "Oni", ...) are known, and a Hard described as "smaniac" or "challenge" is
+    Challenge. If the name is unknown, the description is tried, and then the meter gives the difficulty.
     """
     described = description.strip().lower()
     name = (_OLD_DIFFICULTIES if old else _BY_NAME).get(text.strip().lower())

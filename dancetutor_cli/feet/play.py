@@ -218,7 +218,7 @@ def _roll_taps(
 
 
 def roll_gap(bpm: float, window: float) -> int:
-    """The ticks between the virtual taps of a roll that starts at `bpm`: the longest gap of at most `window` seconds."""
+    """The ticks between virtual taps of a roll that starts at `bpm`: the longest gap of at most `window` seconds."""
     for gap in _ROLL_GAPS:
         if gap / TICKS_PER_BEAT * 60.0 / bpm <= window + _EPSILON:
             return gap

@@ -156,9 +156,10 @@ def _terms(play: Play, row: int) -> str:
     return f'"cost": {json.dumps(costs)}, "margin": '
 
 
-# Plays from the JSON of `analyze --format json`, so that any program can drive the dancer.  The rows come from the
-# chart; the file has the limb of each step, and the places of the feet and the facing after each row. It is an error if
-# a step has no limb, or if the chart does not have a row of the file.
+# Plays from the JSON of `analyze --format json`, so that any program can drive the dancer.
+#
+# The rows come from the chart; the file has the limb of each step, and the places of the feet and the facing after each
+# row. It is an error if a step has no limb, or if the chart does not have a row of the file.
 
 SCHEMA = 1
 _LIMB_NUMBERS = {limb.name.lower(): int(limb) for limb in Limb if limb >= 0}

@@ -202,7 +202,7 @@ def _base(source: MarkedYaml, name: str, seen: tuple[Path, ...], confined: bool)
 def _values(
     source: MarkedYaml, group: str, given: Mapping[str, Any], model: str, base: Preset | None
 ) -> tuple[tuple[str, Any], ...]:
-    """The switches, weights or curves in the order of the model: the given values, else those of the extended preset."""
+    """The switches, weights or curves in the model's order: the given values, else those of the extended preset."""
     known: tuple[str, ...] = getattr(MODELS[model], group)
     source.check_names((group,), given, known)
     values = {**dict(getattr(base, group) if base else ()), **given}
@@ -212,8 +212,9 @@ def _values(
     return tuple((name, values[name]) for name in known)
 
 
-# The choice of the cost preset with which a chart is solved, for every command.  Neither numpy nor numba is imported,
-# because a cached result is reported without them.
+# The choice of the cost preset with which a chart is solved, for every command.
+#
+# Neither numpy nor numba is imported, because a cached result is reported without them.
 
 
 @dataclass(frozen=True, slots=True)

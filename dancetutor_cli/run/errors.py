@@ -1,4 +1,4 @@
-"""The one base of all errors that a user may see: one line each, saying what, where and what to do."""
+"""The base classes of all errors that a user may see. Each is one line with what happened, where, and what to do."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ class DancetutorError(Exception):
 
 
 class UsageError(DancetutorError):
-    """The command line, a preset or a configuration asks for something that does not exist; names what does."""
+    """The command line, a preset or a configuration names something that does not exist; the message has the valid
+    names.
+    """
 
 
 class FileError(DancetutorError):
@@ -28,7 +30,7 @@ class FileError(DancetutorError):
     """
 
     def __init__(self, path: Path | str, message: str, line: int | None = None, column: int | None = None) -> None:
-        message = " ".join(message.splitlines())  # what it quotes of a file may have several
+        message = " ".join(message.splitlines())  # a quoted part of a file may have several lines
         super().__init__(path, message, line, column)  # all arguments, so that the error survives pickling
         self.path = Path(path)
         self.message = message
@@ -41,7 +43,7 @@ class FileError(DancetutorError):
 
 
 class MissingFileError(FileError):
-    """A file that another one names is not there; anyone who can do without it may go on."""
+    """A file that another file names does not exist; callers that do not need it may continue."""
 
 
 class ChartError(FileError):
@@ -49,18 +51,18 @@ class ChartError(FileError):
 
 
 class NoChartsError(ChartError):
-    """A file of a song that nobody meant to be danced, such as the music of a menu: it has tags, but no notes."""
+    """A song's file with tags but without notes, such as the music of a menu."""
 
 
 class UnavailableError(DancetutorError):
     """Something outside the project is missing: OpenGL, an encoder, disk space. Says how to repair it."""
 
 
-_MANY = 12  # names that a message does not list if it knows the one that was meant
+_MANY = 12  # a message does not list more names than this if one name is near
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """To be put behind a wrong word in a message: " (did you mean NAME?)" with the nearest name, "" if none is near."""
+    """Return " (did you mean NAME?)" with the known name nearest to a wrong word, or "" if no name is near."""
     from difflib import get_close_matches
 
     names = {name.lower(): name for name in known}
@@ -69,9 +71,9 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
 
 def choice(word: str, known: Iterable[str], *others: str) -> str:
-    """To be put behind a wrong word: " (did you mean NAME?); choose A, B, or a .yaml file".
+    """Return the text to put after a wrong word: " (did you mean NAME?); choose A, B, or a .yaml file".
 
-    Of many names only the nearest one is said, if one is near. others : what may be written besides the names
+    If there are many names and one is near, only that name is listed. others : alternatives to the names
     """
     names = list(known)
     near = did_you_mean(word, names)
@@ -82,10 +84,10 @@ def choice(word: str, known: Iterable[str], *others: str) -> str:
     return f"{near}; choose {', '.join([*names, *(f'or {other}' for other in others)])}"
 
 
-# Large parts that not everybody needs are extras: the packages of each, and the message if they are missing.
+# Extras are large parts that not every user needs: their packages, and the command that installs them.
 #
-# A message names the packages themselves: `pip install NAME` works in whatever way dancetutor itself was installed, and
-# fetches no stranger's package that happens to be called dancetutor.
+# The command names the packages themselves: `pip install NAME` works however dancetutor was installed, and cannot fetch
+# an unrelated package called dancetutor.
 
 Extra = Literal["physics", "gl", "ffmpeg", "cluster"]
 PACKAGES: Mapping[Extra, str] = {
@@ -97,10 +99,10 @@ PACKAGES: Mapping[Extra, str] = {
 
 
 def install_command(extra: Extra) -> str:
-    """The command that adds an extra, for the end of a message."""
+    """Return the command that installs an extra, for the end of a message."""
     return f"pip install {PACKAGES[extra]}"
 
 
 def plural(count: int, noun: str) -> str:
-    """A count for people: "1 chart", "2 charts"."""
+    """Return a count with its noun: "1 chart", "2 charts"."""
     return f"{count} {noun}{'' if count == 1 else 's'}"

@@ -1,4 +1,4 @@
-"""Running ffmpeg: which one, its messages in a file, its failures in one line; no name of a chart becomes an option."""
+"""How ffmpeg is found and run: messages go to a file, failures are one line, and no file name can become an option."""
 
 from __future__ import annotations
 
@@ -19,11 +19,10 @@ from dancetutor_cli.run.files import write_atomic
 from dancetutor_cli.run.reading import MEGABYTE, read_json
 from dancetutor_cli.run.trust import kept_folder, programs
 
-# Which ffmpeg is run: the system's where it can all that films need, else the one of the package imageio-ffmpeg.
+# The choice of ffmpeg: the system's if it has everything that films need, else the one in the package imageio-ffmpeg.
 #
-# `IMAGEIO_FFMPEG_EXE` names another one. What the system's can is asked once and kept in the user's cache, until the
-# file changes. A folder of PATH that is not absolute is passed over: a pack of songs may hold a program called ffmpeg,
-# too.
+# `IMAGEIO_FFMPEG_EXE` names another one. The abilities of the system's ffmpeg are cached until its file changes.
+# Relative folders in PATH are skipped, because a pack of songs may contain a program called ffmpeg.
 
 VARIABLE = "IMAGEIO_FFMPEG_EXE"
 NAME = "ffmpeg.exe" if os.name == "nt" else "ffmpeg"
@@ -34,7 +33,7 @@ _PATIENCE = 20.0  # seconds for an answer
 
 
 def executable() -> str:
-    """Path of the ffmpeg to run. Raises UnavailableError, one line, if there is none."""
+    """Return the path of the ffmpeg to run. Raises UnavailableError if there is none."""
     return _find_executable(os.environ.get(VARIABLE), os.environ.get("PATH", os.defpath))
 
 
@@ -51,12 +50,12 @@ def _find_executable(named: str | None, path: str) -> str:
 
         return str(imageio_ffmpeg.get_ffmpeg_exe())
     if systems:
-        return str(systems[0])  # better than none: what it cannot do, it says itself
+        return str(systems[0])  # ffmpeg itself reports what it cannot do
     raise UnavailableError(f"no ffmpeg found; {MEND}")
 
 
 def missing_abilities(program: Path) -> list[str]:
-    """What films need and an ffmpeg cannot: names of encoders and filters; kept in the user's cache."""
+    """Return the names of the encoders and filters for films that an ffmpeg does not have; cached for the user."""
     kept, key = _capability_file(), _fingerprint(program)
     with suppress(DancetutorError):
         found = read_json(kept, MEGABYTE) if kept else None
@@ -90,7 +89,7 @@ def _ask(program: Path) -> list[str]:
 
 
 def _listed(program: Path, option: str) -> set[str]:
-    """The names in ffmpeg's table of encoders or filters: flags, the name, what it is."""
+    """Return the names in ffmpeg's table of encoders or filters (each line has flags, a name and a description)."""
     command = [str(program), "-nostdin", "-hide_banner", option]
     try:
         done = subprocess.run(
@@ -102,37 +101,37 @@ def _listed(program: Path, option: str) -> set[str]:
     return {words[1] for words in map(str.split, done.stdout.splitlines()) if len(words) > 1}
 
 
-# Only local files and pipes, whatever a file's content or name asks for.
+# Only local files and pipes are opened, whatever the content or the name of a file.
 INPUT_GUARD = ("-protocol_whitelist", "file,pipe")
-# What a song's music may be, whatever its name: a playlist in disguise would make ffmpeg open other files.
+# The formats of music, whatever the file's name: a disguised playlist would make ffmpeg open other files.
 _MUSIC_ONLY = ("-format_whitelist", "ogg,mp3,wav,w64,flac,aiff")
-PIPE = 1 << 20  # bytes that a pipe to ffmpeg must hold
+PIPE = 1 << 20  # size of a pipe to ffmpeg, bytes
 _START = ("-nostdin", "-hide_banner", "-loglevel", "error")
 
 
 def music_input(path: Path, *options: str) -> tuple[str, ...]:
-    """The arguments of ffmpeg for a music file that it reads. options : what goes before its name"""
+    """Return ffmpeg's arguments for reading a music file. options : arguments before the file's name"""
     return (*INPUT_GUARD, *_MUSIC_ONLY, *options, "-i", local(path))
 
 
 class EncoderError(UnavailableError):
-    """ffmpeg ended before its work was done; carries its own last message."""
+    """ffmpeg ended before its work was done; the message has ffmpeg's last message."""
 
 
 def local(path: Path) -> str:
-    """A path as ffmpeg takes it without reading a protocol or an option out of the name."""
+    """Return a path in a form in which ffmpeg cannot mistake the name for a protocol or an option."""
     return f"file:{path.resolve()}"
 
 
 def _options() -> dict[str, object]:
-    """Keep Ctrl-C from reaching ffmpeg: the program decides when its children end."""
+    """Return options that keep Ctrl-C from reaching ffmpeg, because the program decides when its children end."""
     if os.name == "nt":
         return {"creationflags": getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0) | 0x08000000}  # no window
     return {"start_new_session": True}
 
 
 def _widen(pipe: IO[bytes]) -> None:
-    """Let a pipe hold more, where the system allows it: both ends wait less often for each other."""
+    """Enlarge a pipe if the system allows it, so that both ends wait less often for each other."""
     with suppress(ImportError, AttributeError, OSError):
         import fcntl
 
@@ -146,11 +145,11 @@ def _last_words(log: IO[bytes]) -> str:
     telling = [line for line in lines if "No space left" in line or "Permission denied" in line]
     if telling or not lines:
         return telling[0] if telling else "it printed no message"
-    return lines[0] if lines[0] == lines[-1] else f"{lines[0]}; {lines[-1]}"  # the cause, and what came of it
+    return lines[0] if lines[0] == lines[-1] else f"{lines[0]}; {lines[-1]}"  # the cause and its consequence
 
 
 class Process:
-    """An ffmpeg that reads its input from us, or writes its output to us. Use as a context manager."""
+    """A running ffmpeg whose input or output is a pipe to this program. Use it as a context manager."""
 
     def __init__(self, arguments: Sequence[str], what: str, write: bool = False, read: bool = False) -> None:
         self.what = what
@@ -171,19 +170,19 @@ class Process:
             _widen(self.process.stdin)
 
     def write(self, data: object) -> None:
-        """Give ffmpeg bytes; EncoderError with its own message if it has died."""
+        """Write bytes to ffmpeg. Raises EncoderError with ffmpeg's message if it has died."""
         try:
             self.process.stdin.write(data)
         except (BrokenPipeError, OSError) as error:
             raise self._failure() from error
 
     def read(self, size: int = -1) -> bytes:
-        """Everything ffmpeg writes, or the next so many bytes of it; fewer only at its end."""
+        """Return the next `size` bytes of ffmpeg's output, fewer only at its end; by default all of it."""
         data: bytes = self.process.stdout.read(size)
         return data
 
     def finish(self) -> None:
-        """Wait for the end; EncoderError if it was not a good one."""
+        """Wait for the end of ffmpeg. Raises EncoderError if it failed."""
         try:
             if self.process.stdin is not None:
                 self.process.stdin.close()
@@ -209,12 +208,12 @@ class Process:
             self.process.wait()
         for pipe in (self.process.stdin, self.process.stdout):
             if pipe is not None:
-                with suppress(OSError):  # what it still wanted to flush has no reader any more
+                with suppress(OSError):  # unflushed data has no reader any more
                     pipe.close()
         self.log.close()
 
 
 def run(arguments: Sequence[str], what: str) -> None:
-    """Run ffmpeg to its end; EncoderError with its own message if it fails."""
+    """Run ffmpeg to its end. Raises EncoderError with ffmpeg's message if it fails."""
     with Process(arguments, what) as process:
         process.finish()

@@ -1,4 +1,4 @@
-"""Files written whole or not at all, where results go, and what the files of charts are called."""
+"""Atomic writing of files, checks of output paths, and the suffixes of chart files."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from typing import BinaryIO
 
 from dancetutor_cli.run.errors import FileError, UsageError
 
-# What the files of charts are called, in lower case.
+# The suffixes of chart files, in lower case.
 
 SONG_SUFFIXES = (".sm", ".ssc")
-UCS_SUFFIX = ".ucs"  # of Pump: one chart, without a song's tags
+UCS_SUFFIX = ".ucs"  # Pump's format: one chart, without the tags of a song
 CHART_SUFFIXES = (*SONG_SUFFIXES, UCS_SUFFIX)
-EDIT_SUFFIX = ".edit"  # either form; its charts are Edits, whatever it says
+EDIT_SUFFIX = ".edit"  # in .sm or .ssc form; the difficulty of its charts is always Edit
 
 
 # Write a file whole or not at all, in a way that another process, a crash or a full disk cannot spoil.
 #
 # The new bytes go to a temporary file beside the old one, reach the disk, and take its place by a rename. The temporary
-# file has a name made from the file's own, and is locked while it is written: so it is the lock between two processes,
-# and what a killed process left behind is found, seen to be nobody's, and removed by the next one.
+# file has a name made from the file's own, and is locked while it is written: so it is the lock between two processes.
+# The next process finds a temporary file that a killed process has left, sees that it is not locked, and removes it.
 
 try:
     import fcntl
@@ -39,7 +39,7 @@ SUFFIX = ".dancetutor.tmp"
 _LONGEST_NAME = 255 - len(SUFFIX) - 1  # bytes; a longer file name is hashed
 _NO_LINK = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 PATIENCE = 10.0  # seconds to wait for another process that writes the same file
-_ABANDONED = 600.0  # seconds after which a leftover is nobody's, on file systems that have no locks to say
+_ABANDONED = 600.0  # seconds after which a leftover counts as abandoned, on file systems without locks
 
 
 class BusyError(FileError):
@@ -47,7 +47,7 @@ class BusyError(FileError):
 
 
 class ChangedError(FileError):
-    """The file is no longer what it was when the new content was made from it."""
+    """The file has changed since the new content was made from it."""
 
 
 def write_atomic(path: Path, data: bytes | Callable[[BinaryIO], object], *, expect: bytes | None = None) -> None:
@@ -57,12 +57,13 @@ def write_atomic(path: Path, data: bytes | Callable[[BinaryIO], object], *, expe
     ----------
     path : the file; a symbolic link is written through to the file that it names
     data : the new bytes, or a function that writes them to the open file it is given
-    expect : what the file must still hold; if it does not, somebody else has changed it and it is left alone
+    expect : the required content of the file; if it differs, another program has changed the file, and it is not
+    written
 
     Raises
     ------
     ChangedError : the file does not hold `expect`; BusyError : another process is writing it
-    FileError : in one line why nothing was written; in every case the file is as it was
+    FileError : nothing was written, for the reason in the message; in every case the file is unchanged
     """
     target = _target(path)
     old = _status(path, target)
@@ -80,18 +81,18 @@ def write_atomic(path: Path, data: bytes | Callable[[BinaryIO], object], *, expe
                 path, "was changed by another program in the meantime; nothing was written, run it again"
             )
         if fcntl is None:
-            file.close()  # Windows renames no open file
+            file.close()  # Windows cannot rename an open file
         temporary.replace(target)
     _sync_folder(target.parent)
 
 
 def encoded(text: str) -> bytes:
-    """JSON text in UTF-8. A file name that is no text stands in it as \\udcXX, and is the same name when it is read."""
+    """Encode JSON text in UTF-8. Undecodable bytes of a file name are written as \\udcXX, which reading restores."""
     return _LONE.sub(lambda found: f"\\u{ord(found[0]):04x}", text).encode("utf-8")
 
 
 def back_up(path: Path) -> Path:
-    """Copy a file beside itself as NAME.bak, NAME.bak2, ...; an earlier copy of the same bytes will do. Returns it."""
+    """Copy a file beside itself as NAME.bak, NAME.bak2, ..., unless such a copy exists; return the path of the copy."""
     data = path.read_bytes()
     number = 1
     while True:
@@ -107,9 +108,9 @@ def back_up(path: Path) -> Path:
 
 
 def remove_leftovers(folder: Path) -> int:
-    """Remove the temporary files that killed processes have left in a folder (not below it); how many there were.
+    """Remove the temporary files that killed processes have left in a folder (not below it); return their number.
 
-    One that a living process is writing stays.
+    A temporary file that a living process is writing stays.
     """
     try:
         found = [entry for entry in folder.iterdir() if entry.name.startswith(".") and entry.name.endswith(SUFFIX)]
@@ -123,7 +124,7 @@ def remove_leftovers(folder: Path) -> int:
 
 
 def temporary_name(target: Path) -> Path:
-    """Where the new content of `target` is written before it takes its place."""
+    """Return the path of the temporary file for the new content of `target`."""
     name = target.name
     if len(os.fsencode(name)) > _LONGEST_NAME:
         name = hashlib.sha256(os.fsencode(name)).hexdigest()
@@ -131,14 +132,17 @@ def temporary_name(target: Path) -> Path:
 
 
 def place_of(path: Path) -> Path:
-    """The place where `path` is really written, links followed. FileError for what must not be replaced."""
+    """Return the file that writing to `path` changes, with links resolved.
+
+    Raises FileError if it must not be replaced.
+    """
     target = _target(path)
     _status(path, target)
     return target
 
 
 def _target(path: Path) -> Path:
-    """The file itself, links followed."""
+    """Return the file itself, with links resolved."""
     try:
         return path.resolve(strict=True) if path.is_symlink() else path
     except FileNotFoundError:
@@ -150,7 +154,7 @@ def _target(path: Path) -> Path:
 
 
 def _status(path: Path, target: Path) -> os.stat_result | None:
-    """The status of the file now, None if it is not there; refuses what must not be replaced."""
+    """Return the status of the file, or None if it does not exist. Raises FileError if it must not be replaced."""
     try:
         status = target.stat()
     except FileNotFoundError:
@@ -161,7 +165,7 @@ def _status(path: Path, target: Path) -> os.stat_result | None:
         raise FileError(path, f"cannot be written: {error.strerror}") from error
     if not stat.S_ISREG(status.st_mode):
         raise FileError(path, "is a folder" if stat.S_ISDIR(status.st_mode) else "is not a regular file")
-    # A rename asks only the folder; the mark "read-only" of the file is the author's word, for root too.
+    # A rename checks only the folder's permissions; a read-only file is respected, even for root.
     if not status.st_mode & 0o222 or not os.access(target, os.W_OK):
         raise FileError(path, "is read-only; nothing was written")
     return status
@@ -169,7 +173,7 @@ def _status(path: Path, target: Path) -> os.stat_result | None:
 
 @contextlib.contextmanager
 def _explained(path: Path, is_there: bool) -> Iterator[None]:
-    """Turn what the system says into one line about the file that was meant, and about what is there of it."""
+    """Turn errors of the system into FileError with one line about the file and its state."""
     unchanged = "; the old file is unchanged" if is_there else ""
     try:
         yield
@@ -181,7 +185,7 @@ def _explained(path: Path, is_there: bool) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _locked_temporary(path: Path, target: Path) -> Iterator[tuple[Path, BinaryIO]]:
-    """The temporary file of `target`, new, empty, open and ours alone; gone at the end if it was not renamed."""
+    """Yield a new, open and locked temporary file for `target`; it is removed at the end if it was not renamed."""
     temporary = temporary_name(target)
     descriptor = _claim(path, temporary)
     renamed = False
@@ -197,7 +201,7 @@ def _locked_temporary(path: Path, target: Path) -> Iterator[tuple[Path, BinaryIO
 
 
 def _claim(path: Path, temporary: Path) -> int:
-    """Create the temporary file and lock it; wait for a process that has it, remove one that nobody has."""
+    """Create and lock the temporary file; wait while another process holds it, and remove an abandoned one."""
     deadline = time.monotonic() + PATIENCE
     while True:
         try:
@@ -210,12 +214,12 @@ def _claim(path: Path, temporary: Path) -> int:
             continue
         if _lock(descriptor) is not False and _is_at(descriptor, temporary):
             return descriptor
-        os.close(descriptor)  # between its creation and the lock another process took it for a leftover
+        os.close(descriptor)  # another process took the file for a leftover before it was locked
 
 
 def _discard(temporary: Path) -> bool:
-    """Remove a temporary file that no living process holds; False if one does, True if the file is gone."""
-    if fcntl is None:  # Windows removes no file that is open
+    """Remove a temporary file unless a living process holds it; return whether it was removed."""
+    if fcntl is None:  # Windows does not remove open files
         try:
             temporary.unlink(missing_ok=True)
         except PermissionError:
@@ -239,7 +243,7 @@ def _discard(temporary: Path) -> bool:
 
 
 def _lock(descriptor: int) -> bool | None:
-    """Whether the open file is ours alone now; None where the file system has no locks."""
+    """Lock an open file; return whether this succeeded, or None if the file system has no locks."""
     if fcntl is None:
         return None
     try:
@@ -247,12 +251,12 @@ def _lock(descriptor: int) -> bool | None:
     except BlockingIOError:
         return False
     except OSError:
-        return None  # then `expect` alone tells two writers apart
+        return None  # then only `expect` detects a second writer
     return True
 
 
 def _is_at(descriptor: int, path: Path) -> bool:
-    """Whether the open file is still the one of that name."""
+    """Whether the open file still has this path."""
     if fcntl is None:
         return True
     try:
@@ -278,7 +282,7 @@ def _keep_owner_and_mode(path: Path, target: Path, descriptor: int, old: os.stat
 
 
 def _attributes(target: Path) -> list[str]:
-    """Extended attributes, access lists among them; only Linux has them in Python."""
+    """Return the names of a file's extended attributes, including access lists; Python supports them only on Linux."""
     try:
         return list(os.listxattr(target))  # type: ignore[attr-defined,unused-ignore]
     except (AttributeError, OSError):
@@ -293,7 +297,7 @@ def _content(target: Path) -> bytes | None:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Make the rename itself last; not every system can, and the file is whole either way."""
+    """Write a rename to the disk; not every system can, but the file is complete in any case."""
     if os.name == "nt":
         return
     with contextlib.suppress(OSError):
@@ -304,16 +308,17 @@ def _sync_folder(folder: Path) -> None:
             os.close(descriptor)
 
 
-# The places of results, checked before the work: the folder of a file must exist, a folder is made with those above.
+# Checks of output paths before the work: the folder of a file must exist, but an output folder is made with its
+# parents.
 
 _DENIED = os.strerror(errno.EACCES)
 
 
 def check_file(path: Path, suffixes: Sequence[str] = (), *, or_device: bool = False) -> None:
-    """Raise what in the end would keep a file from being written here; nothing is made.
+    """Raise the error that writing a file here would raise; nothing is created.
 
-    suffixes : how its name may end, in lower case; none: anyhow
-    or_device : or it may be a device or a pipe, whatever that is called
+    suffixes : allowed suffixes, in lower case; empty: any suffix
+    or_device : whether the path may also be a device or a pipe of any name
     """
     suffix = path.suffix.lower()
     if suffix in (*CHART_SUFFIXES, EDIT_SUFFIX):
@@ -325,7 +330,7 @@ def check_file(path: Path, suffixes: Sequence[str] = (), *, or_device: bool = Fa
         raise FileError(path, "is a folder; give a file name")
     if not path.parent.is_dir():
         raise FileError(path, f"its folder '{path.parent}' does not exist; make it first")
-    if path.is_file() or not path.exists():  # a device or a pipe is written where it is
+    if path.is_file() or not path.exists():  # a device or a pipe is written directly
         folder = (path.resolve() if path.is_symlink() else path).parent
         if folder.is_dir() and not _can_be_written(folder):
             raise FileError(path, f"its folder '{folder}' cannot be written: {_DENIED}")
@@ -336,20 +341,22 @@ def _can_be_written(folder: Path) -> bool:
 
 
 def one_of(names: Iterable[str]) -> str:
-    """ ".svg or .png" for people."""
+    """Join names for a message: ".svg or .png"."""
     *most, last = names
     return f"{', '.join(most)} or {last}" if most else last
 
 
 def plain_name(text: str) -> str:
-    """A name for a file, of any text: lower case, with "_" for whatever a file system might refuse; may be empty."""
+    """Make a file name from any text: in lower case, with "_" for characters that file systems may refuse; may be
+    empty.
+    """
     return re.sub(r"[^\w.-]+", "_", text.lower()).strip("._")[:120]
 
 
 def check_folder(path: Path) -> None:
-    """Raise if no folder can be here or be filled: a file is in its place or above it, or nobody may write there.
+    """Raise if this cannot be a writable folder: a file has this path or that of a parent, or writing is not allowed.
 
-    Nothing is made.
+    Nothing is created.
     """
     for one in (path, *path.parents):
         if one.exists():
@@ -361,7 +368,7 @@ def check_folder(path: Path) -> None:
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder and those above it, as far as they are not there."""
+    """Make a folder and its missing parents."""
     check_folder(path)
     try:
         path.mkdir(parents=True, exist_ok=True)

@@ -1,6 +1,6 @@
-"""Hashes of what results depend on: of all fields of a request, so that none can be forgotten, and of the program.
+"""Hashes of all inputs of a result: every field of a request, so that no field can be forgotten, and the program.
 
-The same hash, the same result. A file counts by its content, whatever it is called.
+The same hash means the same result. A file is hashed by its content, not by its name.
 """
 
 from __future__ import annotations
@@ -19,15 +19,16 @@ from dancetutor_cli.run.reading import PACKAGE, config_path
 if TYPE_CHECKING:
     from hashlib import _Hash
 
-# Metadata of a field whose value is a name or else a file. A folder of configs/ (a string) or a collection has the
-# names, of which the hash takes the text; of a file it takes the bytes. A function gives what is hashed in its place.
+# Metadata key of a field whose value is a name or else a file. Its value is a folder of configs/ (a string) or a
+# collection with the names: a name is hashed as text, a file by its bytes. It may also be a function that returns the
+# value to hash.
 NAMED = "named"
-_PARTS = (".py", ".glb", ".yaml", ".glsl", ".vert", ".frag")  # files of the program that make results
+_PARTS = (".py", ".glb", ".yaml", ".glsl", ".vert", ".frag")  # suffixes of the program's files that affect results
 _TEXT = "utf-8", "surrogateescape"
 
 
 def fingerprint(*values: Any) -> str:
-    """Hash (hex) of values: dataclasses with all of their fields, tuples, dictionaries, arrays, files, text."""
+    """Return a hash (hex) of values: dataclasses with all fields, tuples, dictionaries, arrays, files, text."""
     digest = hashlib.sha256()
     for value in values:
         _add(digest, value)
@@ -61,24 +62,24 @@ def _add(digest: _Hash, value: Any) -> None:
 
 @cache
 def _fields(kind: type) -> tuple[tuple[str, Any], ...]:
-    """Names of a dataclass' fields, each with what `NAMED` says of it."""
+    """Return the names of a dataclass's fields, each with its metadata `NAMED`."""
     return tuple((field.name, field.metadata.get(NAMED)) for field in fields(kind))
 
 
 def _names(named: str | Collection[str]) -> Collection[str]:
-    """Values of a field that are names of parts of the program."""
+    """Return the values of a field that are names."""
     return {path.stem for path in config_path(named).glob("*.yaml")} if isinstance(named, str) else named
 
 
 def file_hash(path: Path) -> str:
-    """SHA-256 of a file's content."""
+    """Return the SHA-256 of a file's content."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 @cache
 def program_hash() -> str:
-    """Hash of the program's own sources, models and configuration: what it makes may change with any of them."""
+    """Return a hash of the program's sources, models and configuration, any of which may change a result."""
     out = hashlib.sha256()
     for root in (PACKAGE, config_path("")):
         for path, _ in _files(str(root)):
@@ -88,7 +89,7 @@ def program_hash() -> str:
 
 @cache
 def program_stamp() -> str:
-    """The same by sizes and times of the files, which is quick: for what is kept on this machine only."""
+    """Return a faster hash of the program, from sizes and times of its files, for caches of this machine only."""
     parts = [dancetutor_cli.__version__]
     for root in (PACKAGE, config_path("")):
         parts += [f"{path}{stat.st_size}{stat.st_mtime_ns}" for path, stat in _files(str(root))]

@@ -1,4 +1,4 @@
-"""Text of other people in a spreadsheet and in the log of a CI job: never a formula, never a command."""
+"""Escaping of other people's text, so that it is not a formula in a spreadsheet or a command in a CI log."""
 
 from __future__ import annotations
 
@@ -6,19 +6,20 @@ import io
 import re
 from typing import IO
 
-# Cells of a CSV file that a spreadsheet takes for text, whatever they begin with, and how they are read back.
+# Cells of a CSV file that a spreadsheet reads as text, whatever they begin with, and their conversion back.
 
-# With these a spreadsheet takes a cell for a formula, says OWASP; some of them know the wide forms, too.
+# A cell that begins with one of these is a formula in a spreadsheet (OWASP); some spreadsheets accept the wide forms,
+# too.
 _FORMULA = ("=", "+", "-", "@", "\t", "\r", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 
 
 def as_text(cell: str) -> str:
-    """A text of other people as a cell: what would be a formula begins with an apostrophe, also behind blanks."""
+    """Return text as a cell; an apostrophe is put before text that would be a formula, even after blanks."""
     return f"'{cell}" if _is_formula(cell) else cell
 
 
 def text_of(cell: str) -> str:
-    """The text of which `as_text` has made a cell."""
+    """Return the text from which `as_text` made a cell."""
     return cell[1:] if cell.startswith("'") and _is_formula(cell[1:]) else cell
 
 
@@ -26,21 +27,21 @@ def _is_formula(cell: str) -> bool:
     return cell.lstrip(" ").startswith(_FORMULA)
 
 
-# Keeps text of other people from being read as a command by the log of a CI job.
+# Escaping of commands in the log of a CI job.
 #
-# GitHub's runner takes a line for a command that begins with "::", after blanks, and one that holds "##[" anywhere. A
-# file that is called "::error::gone" would so make an annotation, or end the masking of secrets.
+# GitHub's runner reads a line as a command if it begins with "::" after blanks, or has "##[" anywhere. So a file called
+# "::error::gone" would make an annotation, and other names could end the masking of secrets.
 
 _OLD = "##["
-_ENDS = "\n\r\v\f\x1c-\x1e\x85\u2028\u2029"  # of lines, for anyone who reads a log
+_ENDS = "\n\r\v\f\x1c-\x1e\x85\u2028\u2029"  # line breaks of any log reader
 _AT_START = re.compile(rf"(^|[{_ENDS}])(\s*):(?=:)")
 _END_CHARACTERS = "\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029"
 
 
 def without_commands(text: str, *, from_start: bool = True) -> str:
-    """Text in which no line is a command: a blank stands within "::" and "##[".
+    """Return text in which no line is a command, by a blank inside "::" and "##[".
 
-    from_start : whether the text begins a line, or goes on in one that holds nothing but blanks
+    from_start : whether the text begins a line, or continues a line of blanks only
     """
     if _OLD in text:
         text = text.replace(_OLD, "# #[")
@@ -50,19 +51,19 @@ def without_commands(text: str, *, from_start: bool = True) -> str:
 
 
 def json_without_commands(text: str) -> str:
-    """JSON of the same meaning without "##["; no line of JSON begins with a colon."""
+    """Return equivalent JSON without "##["; no line of JSON begins with a colon."""
     return text.replace(_OLD, "\\u0023#[") if _OLD in text else text
 
 
 def xml_without_commands(text: str) -> str:
-    """XML of the same meaning in which no line is a command, if these characters are only in its texts."""
+    """Return equivalent XML in which no line is a command; these characters must occur only in its texts."""
     return _AT_START.sub(r"\1\2&#58;", text.replace(_OLD, "&#35;#["))
 
 
 class GuardedText(io.TextIOWrapper):
-    """A stream of text on which no line is a command."""
+    """A text stream in which no line is a command."""
 
-    _blank = True  # whether the line so far is empty but for blanks
+    _blank = True  # whether the line so far has only blanks
 
     def write(self, text: str, /) -> int:
         """Write text; returns its length."""
@@ -71,7 +72,7 @@ class GuardedText(io.TextIOWrapper):
         return len(text)
 
     def write_command(self, text: str) -> None:
-        """Write lines that are meant to be commands."""
+        """Write lines that are intended as commands."""
         super().write(text)
         self._remember(text)
 
@@ -81,7 +82,7 @@ class GuardedText(io.TextIOWrapper):
 
 
 def write_command(stream: IO[str], text: str) -> None:
-    """Write lines that are meant to be commands, whether the stream is guarded or not."""
+    """Write lines that are intended as commands to a guarded or plain stream."""
     if isinstance(stream, GuardedText):
         stream.write_command(text)
     else:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from html import escape
 
-# The policy of a page without script; what people wrote is text in it, and its elements may have styles of their own.
+# The policy of a page without scripts, whose elements may have inline styles.
 NO_SCRIPT = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
 
 
 def page(policy: str, title: str, style: str, body: str, *, language: str = "en", head: str = "") -> str:
-    """A whole page.
+    """Return a whole HTML page.
 
-    policy : its Content-Security-Policy; title : text; style : CSS; body : markup; head : more of the page's head
+    policy : the Content-Security-Policy; title : text; style : CSS; body : markup; head : additional markup for the
+    head
     """
     return f"""<!DOCTYPE html>
 <html lang="{language}">

@@ -1,4 +1,4 @@
-"""What players read in films, practice pages and sheets, by language: one file of configs/languages for each."""
+"""The texts of films, practice pages and sheets, with one file in configs/languages for each language."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from dancetutor_cli.run.reading import named_file
 if TYPE_CHECKING:
     from dancetutor_cli.run.schema import MarkedYaml
 
-ENGLISH = "en"  # says which labels there are; a language without one of them has the English words there
+ENGLISH = "en"  # the language that has all labels; a label that another language does not have is English
 _PLACE = re.compile(r"\{(\w+)\}")
 
 
@@ -20,12 +20,13 @@ _PLACE = re.compile(r"\{(\w+)\}")
 class Language:
     """configs/languages/*.yaml: label -> words, in which {places} are filled in.
 
-    language : its own name for itself
-    limbs, panels : of a dancer and a pad; "left-foot-short" stands where there is no room for "left-foot"
-    moves : what a move is called in films and subtitles, with {who} and {places}
-    calls : what a film's calls say besides: which foot, where it crosses, and why; "-tag" stands beside the notes
+    language : the language's own name
+    limbs, panels : names of limbs and panels; "left-foot-short" is used if there is no room for "left-foot"
+    moves : the names of moves in films and subtitles, with {who} and {places}
+    calls : other texts of a film's callouts: the foot, where it crosses, and why; labels with "-tag" are shown beside
+    the notes
     findings : code of a rule -> its name, ": ", and what it means
-    film, sheet, page : what else stands in these
+    film, sheet, page : the other texts of these outputs
     """
 
     language: str
@@ -43,7 +44,7 @@ class Language:
         return self.findings.get(rule, otherwise).partition(": ")[0]
 
     def film_texts(self) -> list[str]:
-        """All words that a film may draw."""
+        """Return all texts that a film may draw."""
         names = [self.finding_name(rule, "") for rule in self.findings]
         parts = (self.limbs, self.panels, self.moves, self.calls, self.film)
         return [*names, *(text for part in parts for text in part.values())]
@@ -51,7 +52,7 @@ class Language:
 
 @cache
 def load_language(name: str = ENGLISH) -> Language:
-    """The words of a language; UsageError for an unknown name, FileError for a file that is wrong."""
+    """Load the texts of a language. Raises UsageError for an unknown name, and FileError if the file is wrong."""
     from dancetutor_cli.run.schema import convert
     from dancetutor_cli.run.yaml_files import read
 
@@ -68,7 +69,7 @@ def load_language(name: str = ENGLISH) -> Language:
 
 
 def _check(source: MarkedYaml, section: str, words: dict[str, str], english: dict[str, str]) -> None:
-    """Raise FileError for a label that English has not, and for words with other {places} than the English ones."""
+    """Raise FileError if a label is not in English, or if its text has other {places} than the English text."""
     if section in source.data:
         source.check_names((section,), words, english)
     for label, text in words.items():

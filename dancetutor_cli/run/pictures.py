@@ -1,6 +1,6 @@
-"""Pictures, GIF and WebP are written here, by `imageio.v3`: single ones, and moving ones frame by frame.
+"""Writers of single pictures, and of GIF and WebP animations frame by frame, by `imageio.v3`.
 
-imageio is imported when something is written: a command that draws nothing does not wait for it.
+imageio is imported when a picture is written, so that other commands do not wait for it.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ UNCHANGED = 255  # the colour of a GIF's palette that shows the frame before
 
 
 def texture_bytes(pixels: Pixels, suffix: Literal[".png", ".webp"] = ".png", **options: Any) -> bytes:
-    """A texture (h, w, 3) or (h, w, 4) as bytes inside of another file. options : Pillow's for the format
+    """Return a texture (h, w, 3) or (h, w, 4) as bytes for a part of another file. options : Pillow's for the format
 
-    Of Pillow alone: importing imageio takes a fifth of a second, and with a dance no picture is written.
+    Only Pillow is used: importing imageio takes 0.2 s, and a dance in a file needs no other picture.
     """
     from PIL import Image
 
@@ -34,7 +34,7 @@ def texture_bytes(pixels: Pixels, suffix: Literal[".png", ".webp"] = ".png", **o
 
 
 def picture_bytes(pixels: Pixels, suffix: Literal[".png", ".webp"] = ".png", **options: Any) -> bytes:
-    """A picture (h, w), (h, w, 3) or (h, w, 4) as a file's bytes. options : Pillow's for the format"""
+    """Return a picture (h, w), (h, w, 3) or (h, w, 4) as the bytes of a file. options : Pillow's for the format"""
     import imageio.v3 as iio
 
     data: bytes = iio.imwrite("<bytes>", pixels, extension=suffix, plugin="pillow", is_batch=False, **options)
@@ -42,21 +42,21 @@ def picture_bytes(pixels: Pixels, suffix: Literal[".png", ".webp"] = ".png", **o
 
 
 def read_palette(path: Path) -> Pixels:
-    """The colours (256, 3) of a picture of them, row by row."""
+    """Read a palette (256, 3) from a picture of its colours, row by row."""
     import imageio.v3 as iio
 
     return np.asarray(iio.imread(path, plugin="pillow", mode="RGB"), dtype=np.uint8).reshape(-1, 3)
 
 
 def write_webp(path: Path, frames: Iterable[Pixels], count: int, fps: int) -> None:
-    """A moving WebP that goes on for ever of `count` frames (h, w, 3); one is in memory at a time."""
+    """Write a looping WebP animation of `count` frames (h, w, 3); one frame is in memory at a time."""
     _write(path, ".webp", _Frames(iter(frames), count), duration=1000.0 / fps, loop=0, quality=72, method=2)
 
 
 def write_gif(path: Path, frames: Iterable[Pixels], palette: Pixels, fps: int) -> None:
-    """A GIF that goes on for ever of frames (h, w) of numbers of colours of a palette (256, 3), the last not used.
+    """Write a looping GIF of frames (h, w) of indices into a palette (256, 3), whose last colour is not used.
 
-    What stays as it was in the frame before is transparent: long runs of one colour, which pack well.
+    Unchanged pixels are transparent: long runs of one colour, which compress well.
     """
     durations: list[int] = []  # GIFs count hundredths of a second: frames of 30 a second last 3, 4, 3 of them
     changes = _changes(frames, durations, fps)
@@ -72,7 +72,7 @@ def write_gif(path: Path, frames: Iterable[Pixels], palette: Pixels, fps: int) -
 
 
 def _changes(frames: Iterable[Pixels], durations: list[int], fps: int) -> Iterator[Pixels]:
-    """Each frame without what is as before; its duration in milliseconds goes onto the list."""
+    """Yield each frame with unchanged pixels as `UNCHANGED`; append its duration in milliseconds to the list."""
     frames = iter(frames)
     first = next(frames)
     for number, (before, now) in enumerate(pairwise(chain([first, first], frames))):
@@ -81,7 +81,7 @@ def _changes(frames: Iterable[Pixels], durations: list[int], fps: int) -> Iterat
 
 
 class _Frames(NamedTuple):
-    """What a film is written of. total : how many, 0 if not known"""
+    """The frames of an animation. total : number of frames, 0 if not known"""
 
     pixels: Iterator[Pixels]
     total: int = 0
@@ -97,7 +97,7 @@ def _write(path: Path, suffix: str, frames: _Frames, **options: Any) -> None:
 
 
 def _streamed_plugin() -> Any:
-    """imageio's plugin for Pillow, but for films that are read from a stream; its own wants all frames at once."""
+    """Return imageio's Pillow plugin for frames from a stream; imageio's own needs all frames at once."""
     from imageio.plugins.pillow import PillowPlugin
 
     class StreamedPlugin(PillowPlugin):
@@ -111,7 +111,7 @@ def _film_class() -> Any:
     from PIL import Image
 
     class Film(Image.Image):
-        """Frames as Pillow's writers take them: one image, of which `seek` shows the next frame."""
+        """Frames for Pillow's writers: one image, whose `seek` shows the next frame."""
 
         is_animated = True
 
@@ -123,7 +123,7 @@ def _film_class() -> Any:
 
         def seek(self, frame: int) -> None:
             if frame <= self._at:
-                return  # writers go back to the first when all is done
+                return  # writers go back to the first frame at the end
             pixels = next(self._frames.pixels, None)
             if pixels is None:
                 raise EOFError

@@ -1,4 +1,4 @@
-"""Workers: pieces of work in, results out, in any order; in this process, in others, or on a Dask cluster."""
+"""Workers, which do tasks in this process, in other processes, or on a Dask cluster; results come in any order."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Report = Callable[[int], None]
 
 
 class WorkFailedError(DancetutorError):
-    """A piece of work broke in a way nobody foresaw; carries what Python said."""
+    """A task failed with an unexpected exception; the message has Python's error."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,10 +39,10 @@ class FinishedWork:
 
 
 class Workers(Protocol):
-    """What does the work. `submit` may be called at any time, also between the items of `results`."""
+    """The interface of workers. `submit` may be called at any time, also between the items of `results`."""
 
     def at_once(self) -> int:
-        """How many pieces are worked on at a time."""
+        """Return how many tasks are done at the same time."""
 
     def submit(self, task: Task) -> None:
         """Add a piece of work to the end of the queue."""
@@ -55,7 +55,7 @@ class Workers(Protocol):
 
 
 def default_jobs() -> int:
-    """How many workers fit this machine: as many as it lets us use."""
+    """Return the number of workers for this machine: the number of cores that this process may use."""
     try:
         return max(1, len(os.sched_getaffinity(0)))  # type: ignore[attr-defined,unused-ignore]
     except AttributeError:
@@ -63,9 +63,9 @@ def default_jobs() -> int:
 
 
 def open_workers(jobs: int, report: Callable[[Any, int], None], common: str = "") -> Workers:
-    """`jobs` worker processes, or this process alone for 1. report(key, n) is called for what pieces report.
+    """Open `jobs` worker processes, or use this process alone for 1. Reports of tasks call report(key, n).
 
-    common : a module whose import makes what the workers have in common; where the system can, it is imported once
+    common : a module that all workers need; it is imported only once, if the system can share it
     """
     if jobs <= 1:
         return SerialWorkers(report)
@@ -75,9 +75,9 @@ def open_workers(jobs: int, report: Callable[[Any, int], None], common: str = ""
 
 
 def attempt(task: Task, report: Report) -> FinishedWork:
-    """Do a piece of work; whatever it raises becomes an error that can be sent between processes.
+    """Do a task; an exception becomes an error that can be sent between processes.
 
-    KeyboardInterrupt if it failed by a Ctrl-C in the middle of it.
+    Raises KeyboardInterrupt if a Ctrl-C made the task fail.
     """
     try:
         return FinishedWork(task.key, task.function(report, *task.arguments))
@@ -99,7 +99,7 @@ def _sendable(error: Exception) -> DancetutorError:
 
 
 class SerialWorkers:
-    """Does the work in this process, when the results are asked for."""
+    """Workers that do the tasks in this process, when results are requested."""
 
     def __init__(self, report: Callable[[Any, int], None]) -> None:
         self._queue: deque[Task] = deque()
@@ -123,12 +123,12 @@ class SerialWorkers:
 # The work list on a Dask cluster: the same pieces of work, on machines that share a folder with this one.
 
 TIMEOUT = 10  # seconds to find the scheduler
-RETRIES = 3  # how often a piece of work is begun again when its worker is lost
+RETRIES = 3  # how often a task is restarted when its worker is lost
 _INSTALL = f"install it: {install_command('cluster')}"
 
 
 def perform(task: Task) -> FinishedWork:
-    """Do a piece of work on a worker of the cluster; what it reports is summed up in its result."""
+    """Do a task on a worker of the cluster; its reports are dropped."""
     return attempt(task, lambda _count: None)
 
 
@@ -153,7 +153,7 @@ class ClusterWorkers:
         self._tasks: dict[Any, Task] = {}
 
     def at_once(self) -> int:
-        """How many threads the workers have that are there now; one that joins later counts from then on."""
+        """Return the number of threads of the workers that are connected now."""
         threads: dict[str, int] = self._client.nthreads()
         return max(1, sum(threads.values()))
 
@@ -177,12 +177,12 @@ class ClusterWorkers:
     def _result(future: Any, task: Task) -> FinishedWork:
         try:
             result = future.result()
-        except Exception as error:  # whatever the cluster itself ran into
+        except Exception as error:  # errors of the cluster itself
             return FinishedWork(task.key, error=WorkFailedError(f"the cluster gave up a task: {type(error).__name__}"))
         assert isinstance(result, FinishedWork)
         return result
 
     def close(self) -> None:
-        """Cancel what is not done and leave the cluster."""
+        """Cancel unfinished tasks and disconnect from the cluster."""
         self._client.cancel(list(self._running.futures), force=True)
         self._client.close()

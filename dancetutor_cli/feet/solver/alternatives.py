@@ -140,7 +140,7 @@ class _Ways:
     def _splits(
         self, actions: list[int], start: int, barred: frozenset[int]
     ) -> Iterator[tuple[int, tuple[int, ...], frozenset[int]]]:
-        """Yield the cost and the branch of the cheapest ways that differ from a way first in each row from `start` on."""
+        """Yield the cost and branch of the cheapest way that first differs in each row from `start` on."""
         reached: _Reached = {self._layers.states[0][0]: (0, None)}
         for row, action in enumerate(actions):
             if row >= start:

@@ -49,7 +49,7 @@ def solve_chart(
 
 
 def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] | None:
-    """Return overrides for the kernel: limb codes 1 to 4 for each row, 3 bits for each column; None without overrides."""
+    """Return overrides for the kernel: limb codes 1 to 4, 3 bits for each column of a row; None without overrides."""
     if overrides is None or not len(overrides) or not len(rows):
         return None
     row = np.searchsorted(rows.tick, overrides.ticks).clip(max=len(rows) - 1)

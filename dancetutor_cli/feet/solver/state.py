@@ -45,7 +45,7 @@ def unpack(key, s):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def turn(before, side, after):  # type: ignore[no-untyped-def]
-    """Return for a turn between two facings the unsigned degrees, whether it is a spin, and the side of the new facing."""
+    """Return for a turn between two facings its unsigned degrees, whether it is a spin, and the new side."""
     back = abs(before) >= 180.0 - EPSILON
     start = -180.0 if back and side == 2 else before
     delta = after - start

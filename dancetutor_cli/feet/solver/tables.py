@@ -167,7 +167,7 @@ def _arrow(x: float, y: float) -> int:
 
 
 def heel_and_toe(pad: Pad, a: int, b: int, foot: int) -> tuple[int, int]:
-    """Return the panels of a foot's heel and toe on two neighbours: the toe is nearer to the screen, or else outside."""
+    """Return the panels of a foot's heel and toe on two neighbours: the toe is nearer to the screen, else outside."""
     (ax, ay), (bx, by) = pad.panels[a], pad.panels[b]
     if abs(ay - by) > EPSILON:
         return (a, b) if ay < by else (b, a)

@@ -123,7 +123,7 @@ def half_turned(facing: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def moves_and_turns(play: Play) -> list[tuple[str, ...]]:
-    """Return the names of each row's events (`feet.solver.vocabulary.EVENTS`), with a half turn (`HALF_TURNS`) first."""
+    """Return each row's events (`feet.solver.vocabulary.EVENTS`), with a half turn (`HALF_TURNS`) first."""
     moves = list(play.moves)
     for row in (np.flatnonzero(half_turned(play.facing)) + 1).tolist():
         moves[row] = (_way(play.facing[row - 1], play.facing[row]), *moves[row])

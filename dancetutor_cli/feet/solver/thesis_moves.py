@@ -90,7 +90,7 @@ def start_thesis(g):  # type: ignore[no-untyped-def]  # both feet at home, facin
 
 @inner_kernel(inline="always")
 def _release_and_flee(s, released, mines, g):  # type: ignore[no-untyped-def]
-    """Apply the events before a row's steps: ended holds free their limbs, and free legs on mines go home in one turn."""
+    """Apply the events before a row's steps: ended holds free their limbs, and free legs on mines go home."""
     home = g.place.shape[0]
     for foot in range(2):
         if s[LEFT_HELD + foot] and released >> s[foot] & 1:
