@@ -1,7 +1,7 @@
-"""Imported by the server that worker processes are forked off: what they share, as `run.worker_processes` names it.
+"""The module that the fork server of worker processes imports; it imports the module that `run.worker_processes` names.
 
-Whatever that raises is left for the work that needs it, which says in one line what is wrong: here it would end the
-server with a traceback.
+Exceptions of that import are ignored, because here they would end the server with a traceback. The task that needs the
+module reports them in one line.
 """
 
 from __future__ import annotations

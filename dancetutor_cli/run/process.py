@@ -1,4 +1,4 @@
-"""A process and its surroundings: what it decides as it starts, standard streams, a Ctrl-C at a bad moment."""
+"""Settings of a process at its start, its standard streams, and the handling of Ctrl-C."""
 
 from __future__ import annotations
 
@@ -17,45 +17,47 @@ from typing import Any, NoReturn
 from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.foreign_text import GuardedText
 
-# What a process of the program decides as it starts: when to look for garbage, and that numpy makes no threads.
+# Settings at the start of a process: fewer garbage collections, and no threads of numpy.
 #
-# Imports and kernels make many objects that stay to its end.
+# Imports and kernels make many objects that live until the end.
 
-_SELDOM = 200_000  # new objects between two looks for garbage; Python's own 700 cost a tenth of a second of imports
+_SELDOM = 200_000  # new objects between two garbage collections; Python's default of 700 costs 0.1 s during imports
 
 
 def reduce_garbage_collection() -> None:
-    """Look for garbage in cycles seldom."""
+    """Make collections of cyclic garbage rare."""
     gc.set_threshold(_SELDOM, 10, 10)
 
 
 def forbid_blas_threads() -> None:
-    """numpy makes a thread for each core as it is imported, for products of large matrices, of which there are none.
+    """Keep numpy from making a thread for each core, which only products of large matrices would use.
 
-    To be called before that; holds for worker processes, too. A user who has said another number gets it.
+    Call this before numpy is imported; worker processes inherit it. A number that the user has set is kept.
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def freeze_objects() -> None:
-    """What has been imported and made so far stays to the end: it is not looked through for garbage again."""
-    if not gc.get_freeze_count():  # what is frozen is never freed in cycles, so that happens once
+    """Exclude all present objects from garbage collections."""
+    if not gc.get_freeze_count():  # frozen cycles are never freed, so this happens only once
         gc.freeze()
 
 
 def skip_last_collection() -> None:
-    """The process ends: no last look through every object that numba has made, which takes longer than a chart."""
+    """Skip the garbage collection at the end of the process, which takes longer than a chart because of numba's
+    objects.
+    """
     gc.freeze()
 
 
-# Standard output and standard error as this program needs them: their names in errors, letters that they lack.
+# Standard output and standard error, with their names in errors and escapes for characters that they cannot encode.
 
 OUTPUT = "standard output"
 _FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC), errno.EFBIG)
 
 
 class _NamedOutput(io.FileIO):
-    """Standard output, whose errors say that it is it: Python's own name no file."""
+    """Standard output whose errors have its name as the file name."""
 
     def write(self, data: Any) -> int:
         try:
@@ -65,7 +67,7 @@ class _NamedOutput(io.FileIO):
 
 
 class _Errors(io.FileIO):
-    """Standard error: where nothing can be said (a full disk), the run goes on, and its exit status says."""
+    """Standard error that ignores failures such as a full disk, so that the run continues to its exit status."""
 
     def write(self, data: Any) -> int:
         try:
@@ -77,7 +79,7 @@ class _Errors(io.FileIO):
 
 
 def open_streams() -> bool:
-    """Make both ready; False if standard output is closed."""
+    """Prepare both streams; return False if standard output is closed."""
     if sys.stderr is None:  # closed, as by `2>&-`
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115
     if sys.stdout is None:
@@ -89,7 +91,7 @@ def open_streams() -> bool:
 
 
 def _reopen_as(kind: type[io.FileIO], stream: Any) -> Any:
-    """The same stream on a file of this kind, in which no text of others is a command for CI.
+    """Return the stream on a file of this kind, in which other people's text cannot be a command for CI.
 
     A console of Windows, which is never full, stays as it is.
     """
@@ -106,19 +108,19 @@ def _reopen_as(kind: type[io.FileIO], stream: Any) -> Any:
 
 
 def _escape_missing_letters(stream: object) -> None:
-    """On a console that is not UTF-8, letters that it lacks come as \\uXXXX: a title must not end the run."""
+    """Write characters that the stream's encoding does not have as \\uXXXX, so that a title cannot end the run."""
     encoding = str(getattr(stream, "encoding", None) or "utf-8").lower().replace("_", "-")
     if encoding not in ("utf-8", "utf8", "utf-16") and isinstance(stream, io.TextIOWrapper):
         stream.reconfigure(errors="backslashreplace")
 
 
 def drop_output() -> None:
-    """Nothing more goes to standard output: what is left in its buffer would fail once more as the process ends."""
+    """Discard further standard output, because flushing its buffer at the end of the process would fail again."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def os_error_message(error: OSError) -> str:
-    """The error of the system in one line: where, what, and what to do about a full disk."""
+    """Return a system error in one line, with its file and, for a full disk, what to do."""
     where = f"{error.filename}: " if error.filename else ""
     line = f"{where}{error.strerror or error}"
     if error.filename == OUTPUT and error.errno in _FULL:
@@ -126,22 +128,23 @@ def os_error_message(error: OSError) -> str:
     return line
 
 
-# A Ctrl-C that falls where Python cannot raise it: it comes again a moment later, and what it broke is no fault.
+# A Ctrl-C where Python cannot raise an exception is sent again a moment later, and the errors that it causes are not
+# reported.
 #
-# The compiler calls back into Python, and what is raised there is swallowed; then it misses what the callback should
-# have left, and says so in its own words.
+# The compiler swallows exceptions that are raised in its callbacks into Python, and then fails with an error of its
+# own.
 
 _AGAIN = 0.05  # seconds
 
 
 class _Hook:
-    """What Python calls with an exception that it cannot raise. interrupted : whether one of them was a Ctrl-C"""
+    """The hook for exceptions that Python cannot raise. interrupted : whether one of them was a Ctrl-C"""
 
     def __init__(self) -> None:
         self.interrupted = False
 
     def __call__(self, unraisable: sys.UnraisableHookArgs) -> None:
-        """Other errors here come from clearing away what an interrupt left half made; they change no result."""
+        """Repeat a lost Ctrl-C; other errors come from cleaning up after an interrupt, and are ignored."""
         if not issubclass(unraisable.exc_type, KeyboardInterrupt):
             if os.environ.get("DANCETUTOR_TRACEBACK"):
                 sys.__unraisablehook__(unraisable)
@@ -153,7 +156,7 @@ class _Hook:
 
 
 def _interrupt() -> None:
-    """As the keyboard does; where only Python is notified, code that waits notices it when the wait is over."""
+    """Interrupt the main thread as the keyboard does; on Windows, code that waits notices it only after the wait."""
     if hasattr(signal, "pthread_kill"):
         signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
     else:  # Windows
@@ -161,13 +164,13 @@ def _interrupt() -> None:
 
 
 def catch_lost_interrupts() -> None:
-    """From now on no Ctrl-C is lost in this process."""
+    """Install the hook that repeats each lost Ctrl-C in this process."""
     sys.unraisablehook = _Hook()
 
 
 def end_at_once(status: int) -> NoReturn:
-    """End the process, but leave its memory as it is: to take apart what a Ctrl-C left half made may crash."""
-    with suppress(KeyboardInterrupt):  # one that was lost comes again
+    """End the process without freeing its objects, because freeing objects that a Ctrl-C left half made may crash."""
+    with suppress(KeyboardInterrupt):  # a lost Ctrl-C may come again
         atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):
         with suppress(OSError, KeyboardInterrupt):
@@ -176,13 +179,13 @@ def end_at_once(status: int) -> NoReturn:
 
 
 def is_interruption(error: BaseException) -> bool:
-    """Whether an exception comes from Ctrl-C, which may fall into a callback, or into a kernel as it comes back."""
+    """Whether an exception comes from a Ctrl-C, even in a callback or at the return of a kernel."""
     hook = sys.unraisablehook
     return (isinstance(hook, _Hook) and hook.interrupted) or _came_of_one(error)
 
 
 def _came_of_one(error: BaseException | None) -> bool:
-    """Whether Python reports a fault that came of an interrupt: a kernel gave a result with an exception set."""
+    """Whether the cause of an error is a KeyboardInterrupt, such as of a kernel's result with an exception set."""
     if isinstance(error, SystemError):
         return _came_of_one(error.__cause__) or _came_of_one(error.__context__)
     if isinstance(error, DancetutorError):

@@ -1,4 +1,4 @@
-"""What is read: the program's own configs, and files of strangers, bounded in kind, size and depth."""
+"""Reading of untrusted files, with limits of kind, size and depth, and the paths of the program's own configs."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from typing import Any, BinaryIO
 
 from dancetutor_cli.run.errors import FileError, MissingFileError, UnavailableError, UsageError, choice
 
-# Reads the files of strangers: only regular files, of a bounded size; JSON of a bounded depth, every name once.
+# Reading of untrusted files: only regular files of limited size, and JSON of limited depth with unique names.
 #
-# A folder of songs may hold anything: named pipes that never end, devices, links in circles, and files that somebody
-# has made to break anyone who opens them. What is wrong is one line, which quotes nothing of a file's content.
+# A folder of songs may hold anything: named pipes that never end, devices, circular links, and malicious files. Errors
+# are one line and do not quote a file's content.
 
 MEGABYTE = 1_000_000
-CHART_LIMIT = 64 * MEGABYTE  # the largest charts of real packs have four
+CHART_LIMIT = 64 * MEGABYTE  # the largest charts of real packs have 4 MB
 SETTINGS_LIMIT = MEGABYTE  # presets, layouts, dancetutor.yaml
 JSON_LIMIT = 256 * MEGABYTE  # plays and baselines of whole packs
-FONT_LIMIT = 128 * MEGABYTE  # those of all of East Asia have half of that
-MAX_DEPTH = 48  # mappings and lists inside of each other
+FONT_LIMIT = 128 * MEGABYTE  # fonts for all of East Asia have half of that
+MAX_DEPTH = 48  # levels of nested mappings and lists
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 _KINDS = (
     (stat.S_ISDIR, "is a folder; it cannot be read as a file"),
@@ -37,24 +37,26 @@ _KINDS = (
 
 
 def read_bytes(path: Path, limit: int) -> bytes:
-    """The content of a regular file of at most `limit` bytes.
+    """Return the content of a regular file of at most `limit` bytes.
 
-    Raises MissingFileError if there is none, FileError for a pipe, a device, a folder, a circle of links, too many
-    bytes, or what the system says.
+    Raises MissingFileError if the file does not exist, and FileError for a pipe, a device, a folder, circular links,
+    too many bytes, or an error of the system.
     """
     with _opened(path) as (file, size):
         data = b""
         if size <= limit:
-            data = file.read(size + 1)  # not more: a buffer of the whole limit would be made for it
+            data = file.read(size + 1)  # reading up to the limit would allocate a buffer of that size
             if len(data) > size:
                 data += file.read(limit + 1 - len(data))
-        if max(size, len(data)) > limit:  # it has grown, or has no size, as files of /proc
+        if max(size, len(data)) > limit:  # the file has grown, or reports no size, as files of /proc do
             raise FileError(path, f"is larger than {limit / MEGABYTE:.3g} MB; it is not read")
         return data
 
 
 def read_ends(path: Path, first: int, last: int) -> tuple[bytes, bytes, int]:
-    """At most so many bytes of the start and of the end of a regular file, and its size; errors as `read_bytes`."""
+    """Return up to `first` bytes of the start and `last` of the end of a regular file, and its size; errors as
+    `read_bytes`.
+    """
     with _opened(path) as (file, size):
         head = file.read(first)
         file.seek(max(size - last, 0))
@@ -63,7 +65,7 @@ def read_ends(path: Path, first: int, last: int) -> tuple[bytes, bytes, int]:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[tuple[BinaryIO, int]]:
-    """A regular file, open, with its size; what goes wrong in the block is reported as `read_bytes` does."""
+    """Open a regular file and yield it with its size; errors in the block are raised as by `read_bytes`."""
     try:
         descriptor = os.open(path, _FLAGS)
     except FileNotFoundError:
@@ -87,7 +89,7 @@ def _opened(path: Path) -> Iterator[tuple[BinaryIO, int]]:
 
 
 def is_regular(path: Path) -> bool:
-    """Whether there is a regular file, links followed; never raises."""
+    """Whether a path is a regular file, with links resolved. Never raises."""
     try:
         return stat.S_ISREG(path.stat().st_mode)
     except (OSError, ValueError):
@@ -95,7 +97,7 @@ def is_regular(path: Path) -> bool:
 
 
 def is_outside(path: Path, folder: Path) -> bool:
-    """Whether a path leads out of a folder, by its name or by a link."""
+    """Whether a path is outside a folder, by its name or by a link."""
     try:
         return not path.resolve().is_relative_to(folder.resolve())
     except (OSError, RuntimeError, ValueError):  # RuntimeError: a circle of links, before Python 3.13
@@ -103,12 +105,12 @@ def is_outside(path: Path, folder: Path) -> bool:
 
 
 def read_json(path: Path, limit: int = JSON_LIMIT) -> Any:
-    """What a JSON file says; FileError as `read_bytes` and `parse_json`."""
+    """Read a JSON file. Raises FileError as `read_bytes` and `parse_json`."""
     return parse_json(read_bytes(path, limit), path)
 
 
 def parse_json(data: bytes, path: Path) -> Any:
-    """What JSON says, UTF-8 with or without a mark: depth at most `MAX_DEPTH`, only finite numbers, each name once.
+    """Parse JSON in UTF-8, with or without a BOM: at most `MAX_DEPTH` levels, only finite numbers, unique names.
 
     path : for errors. Raises FileError with the place, never with the content.
     """
@@ -132,7 +134,7 @@ def parse_json(data: bytes, path: Path) -> Any:
 
 
 class _BadValueError(ValueError):
-    """Something that JSON allows and we do not."""
+    """A value that JSON allows but this program does not."""
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -152,7 +154,7 @@ def _finite(text: str) -> float:
 
 
 def _depths(value: Any) -> Iterator[int]:
-    """The depth of every mapping and list, without recursion."""
+    """Yield the depth of every mapping and list, without recursion."""
     open_values = [(value, 1)] if isinstance(value, dict | list) else []
     while open_values:
         one, depth = open_values.pop()
@@ -162,13 +164,13 @@ def _depths(value: Any) -> Iterator[int]:
 
 
 def shown_key(key: object) -> str:
-    """A key of a stranger's file for an error: short, on one line, without what harms a terminal."""
+    """Return a key of an untrusted file for a message: short, on one line, without characters that harm a terminal."""
     text = str(key)
     plain = "".join(c if c.isprintable() else "?" for c in text[:40])
     return plain + ("..." if len(text) > 40 else "")
 
 
-# Where the program's own data is: `configs/` and `charts/`, in a checkout or inside an installed wheel.
+# The paths of the program's own data, `configs/` and `charts/`, in a checkout or in an installed wheel.
 
 PACKAGE = Path(__file__).resolve().parent.parent
 
@@ -183,19 +185,20 @@ def _root(name: str) -> Path:
 
 @lru_cache(maxsize=256)
 def config_path(name: str) -> Path:
-    """Path of a file or folder in `configs/`, for example ``config_path("presets/thesis.yaml")``."""
+    """Return the path of a file or folder in `configs/`, for example ``config_path("presets/thesis.yaml")``."""
     return _root("configs") / name
 
 
 def config_names(folder: str) -> list[str]:
-    """Names of the YAML files in a folder of `configs/`: of the presets, gaits, styles, forms or layouts there are."""
+    """Return the names of the YAML files in a folder of `configs/`, such as the presets or layouts."""
     return sorted(path.stem for path in config_path(folder).glob("*.yaml"))
 
 
 def named_file(folder: str, name: str | Path) -> Path:
-    """The file of `configs/` that a user names, or a file of the user's own.
+    """Return the file in `configs/` with a name, or a file of the user.
 
-    folder : "presets": what is named, but for its last letter. UsageError for an unknown name
+    folder : the folder, such as "presets", whose name without the last letter is the noun in messages. Raises
+    UsageError for an unknown name
     """
     names, path = config_names(folder), Path(name)
     if str(name) in names:
@@ -206,5 +209,5 @@ def named_file(folder: str, name: str | Path) -> Path:
 
 
 def charts_path() -> Path:
-    """The folder of the demo songs."""
+    """Return the folder of the demo songs."""
     return _root("charts")

@@ -1,4 +1,4 @@
-"""The one schema of all YAML: the hints of a dataclass say what a file may hold; light, imports no YAML."""
+"""The schema of all YAML files: the type hints of a dataclass define the allowed content. YAML is not imported here."""
 
 from __future__ import annotations
 
@@ -19,32 +19,32 @@ T = TypeVar("T")
 Keys = tuple[str | int, ...]  # a key path: names in mappings, numbers in lists
 
 
-# What stands beside a type in `Annotated[...]`: plain classes, for a dataclass takes half a millisecond of start-up.
+# Marks of types in `Annotated[...]`. They are plain classes, because each dataclass takes 0.5 ms at start-up.
 
 
 class Bounds:
-    """Of a number. unit : in words, for messages; above : more than `least`, not `least` itself."""
+    """The bounds of a number. unit : unit in messages; above : whether `least` itself is excluded"""
 
     def __init__(self, least: float = -inf, most: float = inf, unit: str = "", *, above: bool = False) -> None:
         self.least, self.most, self.unit, self.above = least, most, unit, above
 
 
 class Entries:
-    """How many a list or a mapping has."""
+    """The allowed number of entries of a list or a mapping."""
 
     def __init__(self, least: int, most: float = inf) -> None:
         self.least, self.most = least, most
 
 
 class Names:
-    """The texts that are possible: of a value, or of the keys of a mapping."""
+    """The allowed texts of a value, or of the keys of a mapping."""
 
     def __init__(self, names: tuple[str, ...]) -> None:
         self.names = names
 
 
 class Meaning:
-    """What a value must be, in words, where its type says too little."""
+    """A description of the value for messages, if its type is not enough."""
 
     def __init__(self, what: str) -> None:
         self.what = what
@@ -53,8 +53,8 @@ class Meaning:
 class Parsed(Meaning):
     """The conversion of a value before its type is checked.
 
-    parse : raises ValueError, with what is wrong if there is more to say than `what`
-    what : in words, what the value must be; empty: what the type says
+    parse : the function; its ValueError may have a message with more detail than `what`
+    what : description of the value for messages; empty: the description of the type
     """
 
     def __init__(self, parse: Callable[[Any], Any], what: str = "") -> None:
@@ -63,13 +63,13 @@ class Parsed(Meaning):
 
 
 class _NotInFiles:
-    """Of a field that the program sets: it has a default, and no file names it."""
+    """The mark of a field that the program sets: it has a default, and files cannot have it."""
 
 
 NOT_IN_FILES = _NotInFiles()
 
 
-# What several files hold.
+# Types that several files use.
 
 
 def _text(value: Any) -> str:
@@ -108,7 +108,7 @@ def _box(value: Any) -> Any:
 
 
 _COLOUR = 'a colour, written as "#rrggbb"'
-Text = Annotated[str, Parsed(_text, "text")]  # a name that YAML may take for a number
+Text = Annotated[str, Parsed(_text, "text")]  # a name that YAML may parse as a number
 SEVERAL = Parsed(_as_list, "one value or a list of them")  # beside a list
 Texts = Annotated[tuple[Text, ...], SEVERAL]
 THREE = Parsed(_three, "one number or three")  # beside a list of three: for the axes, or one for all of them
@@ -124,7 +124,7 @@ Positive = Annotated[float, Bounds(0, above=True)]
 
 @dataclass(frozen=True, slots=True)
 class MarkedYaml:
-    """What a YAML file says.
+    """The content of a YAML file.
 
     path : the file; data : its top mapping
     lines : 1-based line of every key, by its key path, e.g. ("weights", "spin"); items of lists by their number
@@ -135,13 +135,13 @@ class MarkedYaml:
     lines: Mapping[Keys, int]
 
     def error(self, keys: Keys, message: str) -> FileError:
-        """An error at a key, or at the nearest key above it that has a line."""
+        """Return an error at a key, or at the nearest key above it that has a line."""
         while keys and keys not in self.lines:
             keys = keys[:-1]
         return FileError(self.path, message, self.lines.get(keys))
 
     def check_names(self, keys: Keys, names: Iterable[Any], known: Collection[str]) -> None:
-        """Raise FileError unless each of the names in the mapping at `keys` is known; it says what there is."""
+        """Raise FileError, with the known names, unless all names in the mapping at `keys` are known."""
         for name in names:
             if name not in known:
                 where = f" in '{_path(keys)}'" if keys else ""
@@ -149,7 +149,7 @@ class MarkedYaml:
                 raise self.error((*keys, str(name)), message)
 
     def only(self, keys: Keys, known: Collection[str]) -> None:
-        """Raise unless every key of the mapping at `keys` is one of `known`."""
+        """Raise FileError unless every key of the mapping at `keys` is one of `known`."""
         inside: Any = self.data
         for key in keys:
             inside = inside[key]
@@ -159,12 +159,12 @@ class MarkedYaml:
 
 
 def convert(source: MarkedYaml, kind: type[T], keys: Keys = (), base: T | None = None) -> T:
-    """The value at a key path, as a dataclass or another type; FileError with the line names what is wrong.
+    """Convert the value at a key path to a dataclass or another type. Raises FileError with the line of a wrong value.
 
-    kind : its fields are the keys that there may be (`HYPHENS = True`: with "-" in place of "_"), its hints what they
-        hold: numbers, text, `bool`, `Literal`, `tuple` for lists, `dict`, dataclasses, `X | None`, all of them with
-        marks in `Annotated`. A key without a default must be there
-    base : what the file leaves out is as in this one, and the names in mappings are added to its names
+    kind : a type whose fields are the allowed keys (`HYPHENS = True`: with "-" in place of "_") and whose hints define
+    the values: numbers, text, `bool`, `Literal`, `tuple` for lists, `dict`, dataclasses, `X | None`, all of them with
+    marks in `Annotated`. A key without a default must be there
+    base : the values of keys that the file leaves out; mappings are merged with those of `base`
     """
     data: Any = source.data
     for key in keys:
@@ -173,7 +173,7 @@ def convert(source: MarkedYaml, kind: type[T], keys: Keys = (), base: T | None =
 
 
 def check_value(source: MarkedYaml, keys: Keys, data: Any, hint: Any) -> None:
-    """Raise FileError unless a value is of the kind that a hint says; for hints that are only known as it is read."""
+    """Raise FileError unless a value fits a hint that is known only while the file is read."""
     _value(source, keys, data, hint)
 
 
@@ -208,7 +208,7 @@ def _value(source: MarkedYaml, keys: Keys, data: Any, hint: Any, base: Any = Non
 
 
 def _marks(hint: Any) -> tuple[Any, tuple[Any, ...]]:
-    """A type, and what stands beside it."""
+    """Return a type and its marks."""
     if get_origin(hint) is not Annotated:
         return hint, ()
     kind, *marks = get_args(hint)
@@ -216,7 +216,7 @@ def _marks(hint: Any) -> tuple[Any, tuple[Any, ...]]:
 
 
 def _first(inner: tuple[Any, ...]) -> Any:
-    """The type in `X | None`."""
+    """Return the type X of `X | None`."""
     return next(one for one in inner if one is not types.NoneType)
 
 
@@ -225,7 +225,7 @@ def _bounds(marks: tuple[Any, ...]) -> Bounds:
 
 
 def _names(hint: Any) -> tuple[str, ...]:
-    """The names that a hint allows; empty: any."""
+    """Return the names that a hint allows; empty: any."""
     return _names_of(*_marks(hint))
 
 
@@ -243,9 +243,10 @@ def _fits(data: Any, kind: Any, bounds: Bounds) -> bool:
 
 
 class _Key(NamedTuple):
-    """A key that a dataclass has.
+    """A key of a dataclass.
 
-    field : its name; is_needed : without a default; may_be_empty : "key:" alone says nothing
+    field : name of the field; is_needed : whether it has no default; may_be_empty : whether "key:" without a value is
+    allowed
     """
 
     field: str
@@ -264,7 +265,7 @@ def _keys_of(kind: Any) -> dict[str, _Key]:
             origin = get_origin(hint)
             is_container = origin in (dict, tuple, Union, types.UnionType) or is_dataclass(hint)
             is_needed = field.default is MISSING and field.default_factory is MISSING
-            name = field.name.removesuffix("_")  # `from_`: Python has the word for itself
+            name = field.name.removesuffix("_")  # `from_`, because `from` is a keyword of Python
             name = name.replace("_", "-") if getattr(kind, "HYPHENS", False) else name
             out[name] = _Key(field.name, hints[field.name], is_needed, is_container)
     return out
@@ -304,9 +305,9 @@ def _list(source: MarkedYaml, keys: Keys, data: Any, hint: Any) -> tuple[Any, ..
     return tuple(_value(source, (*keys, n), *pair) for n, pair in enumerate(zip(data, inner, strict=True)))
 
 
-# What is said of a value that is wrong.
+# Messages about wrong values.
 
-_MOST_NAMED = 16  # keys of a mapping that a message names
+_MOST_NAMED = 16  # limit of the keys that a message lists
 
 
 def _wrong(source: MarkedYaml, keys: Keys, data: Any, hint: Any, why: str = "") -> FileError:
@@ -315,7 +316,7 @@ def _wrong(source: MarkedYaml, keys: Keys, data: Any, hint: Any, why: str = "") 
 
 
 def _description(hint: Any) -> str:
-    """What a value must be: "a number from 0 to 1", "a list, each text"."""
+    """Describe the allowed values: "a number from 0 to 1", "a list of values, each text"."""
     kind, marks = _marks(hint)
     if what := next((mark.what for mark in marks if isinstance(mark, Meaning) and mark.what), ""):
         return what

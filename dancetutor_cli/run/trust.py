@@ -1,9 +1,8 @@
-"""Which folders and files machine code is taken from: those of this user or of root that nobody else can write.
+"""The check of folders and files from which machine code is loaded: only this user or root may be able to write them.
 
-Kept machine code and pickles do as they like once they are loaded, and anyone who can write a file can write its
-checksum. So it matters who owns a file and every folder above it (as for ssh's keys), and that none of them came with
-the songs. Windows gives each user folders that others cannot write, and Python no way to look: there only paths are
-judged.
+Loaded machine code and pickles can do anything, and whoever can write a file can write its checksum. So the owners of a
+file and of every folder above it are checked (as for ssh's keys), and none may be in a folder of songs. On Windows,
+Python cannot check permissions, so only paths are checked.
 """
 
 from __future__ import annotations
@@ -20,24 +19,24 @@ from threading import get_ident
 from dancetutor_cli.run.reading import PACKAGE
 
 CACHE_VARIABLE = "DANCETUTOR_CACHE"  # the user's choice of a folder for kept results
-TREES = "_DANCETUTOR_TREES"  # JSON: the trees that are read; in the environment, so that worker processes know, too
+TREES = "_DANCETUTOR_TREES"  # JSON list of the folders whose charts are read; worker processes inherit it
 _FLAGS = [getattr(os, name, 0) for name in ("O_NOFOLLOW", "O_NONBLOCK", "O_CLOEXEC", "O_BINARY")]
-_TEMPORARY = (Path("/tmp"), Path("/var/tmp"))  # where the environment names no folder for temporary files
+_TEMPORARY = (Path("/tmp"), Path("/var/tmp"))  # if the environment has no folder for temporary files
 _OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 
 def exclude(path: Path) -> None:
-    """Take no code from a folder whose charts are read, or from the folder of such a file."""
+    """Exclude a folder whose charts are read, or the folder of a chart file, as a source of code."""
     try:
         real = os.path.realpath(path)
-    except OSError:  # the current folder is gone, so nothing in it will be read
+    except OSError:  # the current folder has been removed, so no chart in it can be read
         return
     tree = real if os.path.isdir(real) else os.path.dirname(real)  # noqa: PTH112, PTH120
     os.environ[TREES] = json.dumps(sorted({*_trees(), tree}))
 
 
 def fault_of(folder: Path) -> str:
-    """Why nothing is taken from a folder, which need not be there yet, as what its name begins; "" if it may be."""
+    """Return why a folder is not trusted, as a predicate such as "cannot be written", or ""; the folder need not exist."""
     if not folder.is_absolute():
         return "is not an absolute path"
     real = Path(os.path.realpath(folder))
@@ -58,7 +57,7 @@ def fault_of(folder: Path) -> str:
 
 
 def use_folder(folder: Path) -> str:
-    """Make a folder for this user alone, if it is not there, and see that it can be written; as `fault_of`."""
+    """Make a folder for this user alone if it does not exist, and check that it is writable; returns as `fault_of`."""
     if fault := fault_of(folder):
         return fault
     probe = folder / f".dancetutor-{os.getpid()}-{get_ident()}.tmp"
@@ -75,7 +74,10 @@ def use_folder(folder: Path) -> str:
 
 
 def read_file(path: Path) -> bytes:
-    """The content of a regular file that nobody else can write. OSError for all others: no link, pipe or device."""
+    """Return the content of a regular file that nobody else can write.
+
+    Raises OSError for links, pipes and other files.
+    """
     descriptor = os.open(path, os.O_RDONLY | sum(_FLAGS))
     with open(descriptor, "rb") as file:  # noqa: PTH123
         status = os.fstat(descriptor)
@@ -85,7 +87,7 @@ def read_file(path: Path) -> bytes:
 
 
 def write_file(path: Path, data: bytes) -> None:
-    """Put a file that only this user can write where whatever has its name is now. OSError where that fails."""
+    """Write or replace a file that only this user can write. Raises OSError."""
     beside = path.with_name(f"{path.name}.{os.getpid()}-{get_ident()}.tmp")
     try:
         with suppress(FileNotFoundError):
@@ -100,7 +102,7 @@ def write_file(path: Path, data: bytes) -> None:
 
 
 def users_folder(name: str) -> Path | None:
-    """Where this system keeps a user's caches; None for a user without a home, as in a container."""
+    """Return a folder in the system's place for the user's caches; None for a user without a home, as in a container."""
     try:
         if sys.platform == "win32":
             folder = _absolute("LOCALAPPDATA") or Path.home() / "AppData" / "Local"
@@ -114,7 +116,9 @@ def users_folder(name: str) -> Path | None:
 
 
 def results_folder() -> tuple[Path | None, str]:
-    """Where results are kept, DANCETUTOR_CACHE or the user's cache; or None and why, "" where there is no home."""
+    """Return the folder of cached results (DANCETUTOR_CACHE or the user's cache), or None and the reason, "" without a
+    home.
+    """
     named = os.environ.get(CACHE_VARIABLE)
     folder = Path(named) if named else users_folder("dancetutor")
     fault = "" if folder is None else fault_of(folder)
@@ -122,13 +126,13 @@ def results_folder() -> tuple[Path | None, str]:
 
 
 def kept_folder(name: str) -> Path | None:
-    """The folder of that name in `results_folder`, made if it is not there; None where there can be none."""
+    """Return a folder in `results_folder`, made if it does not exist; None if it cannot be used."""
     folder, _ = results_folder()
     return None if folder is None or use_folder(folder / name) else folder / name
 
 
 def temporary_folder(name: str) -> Path | None:
-    """A folder for temporary files of this user alone, made if there is none; never in the current folder."""
+    """Return a folder for temporary files of this user alone, made if needed; it is never in the current folder."""
     if sys.platform == "win32":
         from tempfile import gettempdir
 
@@ -150,7 +154,7 @@ def temporary_folder(name: str) -> Path | None:
 
 
 def _absolute(variable: str) -> Path | None:
-    """A folder that the environment names. A relative one is ignored, as the XDG specification says."""
+    """Return the folder in an environment variable, or None; relative paths are ignored, as in the XDG specification."""
     folder = Path(os.environ.get(variable, ""))
     return folder if folder.is_absolute() else None
 
@@ -161,8 +165,8 @@ def _trees() -> list[str]:
 
 
 def _fault(status: os.stat_result, *, may_be_shared: bool = False) -> str:
-    """The other users who can change a file or folder; "" if there are none. may_be_shared : each with files of their
-    own, as in /tmp.
+    """Return how other users can change a file or folder, or "". may_be_shared : whether a sticky folder such as /tmp
+    is allowed
     """
     if not hasattr(os, "geteuid"):
         return ""
@@ -176,7 +180,7 @@ def _fault(status: os.stat_result, *, may_be_shared: bool = False) -> str:
 
 
 def _is_private_group(number: int) -> bool:
-    """Whether this user, not root, is alone in a group, which has the user's name: so Debian and others do it."""
+    """Whether a group has this user (not root) as its only member and the user's name, as on Debian."""
     try:
         import grp
         import pwd
@@ -189,7 +193,9 @@ def _is_private_group(number: int) -> bool:
 
 
 def programs(name: str, path: str) -> Iterator[Path]:
-    """Programs of a name in the folders of PATH, in order; not in one that is not absolute, where a pack may lie."""
+    """Yield programs of a name in the folders of PATH, in order; relative folders are skipped, because they may be
+    packs.
+    """
     for folder in path.split(os.pathsep):
         program = Path(folder) / name
         with suppress(OSError, ValueError):

@@ -1,7 +1,7 @@
 """Worker processes, which do the work of `pool`; Ctrl-C ends all of them at once.
 
-Processes are spawned (OpenGL, numba and Windows want it so); on Linux they may be forked off a server that has done
-nothing but import.
+Processes are spawned, as OpenGL, numba and Windows require. On Linux they may be forked from a server that has only
+imported modules.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from dancetutor_cli.run.errors import UnavailableError
 from dancetutor_cli.run.pool import FinishedWork, Task, WorkFailedError, attempt
 from dancetutor_cli.run.process import reduce_garbage_collection, skip_last_collection
 
-SHARED = "DANCETUTOR_WORKERS_SHARE"  # names the module to the server that workers are forked off
+SHARED = "DANCETUTOR_WORKERS_SHARE"  # the module that the fork server imports
 _SAFE_PATH = "PYTHONSAFEPATH"
 
 
 def _leave(_number: int, _frame: object) -> None:
-    """End; what breaks on the way out, as callbacks do that end in the middle, has nobody to report to."""
+    """End the worker without reporting errors on the way, such as those of interrupted callbacks."""
     with contextlib.suppress(OSError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     sys.exit(1)
@@ -36,9 +36,9 @@ def _leave(_number: int, _frame: object) -> None:
 
 @contextlib.contextmanager
 def _uninterrupted() -> Iterator[None]:
-    """A process started in here never hears of Ctrl-C: while it imports, it would print a traceback.
+    """Processes started in this context do not receive Ctrl-C, so that they print no traceback during imports.
 
-    Who starts it does, once it has left here.
+    The calling process receives a pending Ctrl-C after the context.
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield
@@ -57,7 +57,7 @@ def _uninterrupted() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _with_environment(name: str, value: str) -> Iterator[None]:
-    """A process started in here has this in its environment."""
+    """Processes started in this context have the variable in their environment."""
     before = os.environ.get(name)
     os.environ[name] = value
     try:
@@ -70,14 +70,14 @@ def _with_environment(name: str, value: str) -> Iterator[None]:
 
 
 def _without_current_folder() -> contextlib.AbstractContextManager[None]:
-    """A process started in here takes no module from the folder it is started in, which may be a stranger's pack."""
+    """Processes started in this context import no modules from the current folder, which may be an untrusted pack."""
     return _with_environment(_SAFE_PATH, "1")
 
 
 def _server(common: str) -> Any:
-    """What makes processes that have imported `common` already; None where the system has no such thing.
+    """Return the context of a fork server that has imported `common`; None if the system does not support it.
 
-    It begins to import while the caller goes on. With macOS its own libraries do not survive a fork.
+    The server imports while the caller continues. On macOS, the system's libraries do not survive a fork.
     """
     if sys.platform != "linux":
         return None
@@ -88,7 +88,7 @@ def _server(common: str) -> Any:
     try:
         with _without_current_folder(), _with_environment(SHARED, common), _uninterrupted():
             forkserver.ensure_running()
-    except OSError:  # it needs a place for a socket
+    except OSError:  # the server needs a place for a socket
         return None
     return context
 
@@ -98,7 +98,7 @@ def _worker(connection: Connection, common: str) -> None:
     reduce_garbage_collection()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if common:
-        with contextlib.suppress(Exception):  # the work that needs it will say what is wrong
+        with contextlib.suppress(Exception):  # the task that needs the module reports the error
             import_module(common)
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
@@ -128,9 +128,9 @@ class _Worker:
 
 @dataclass
 class ProcessWorkers:
-    """Processes, started at once so that they import while the caller prepares the work.
+    """Worker processes, started immediately so that they import while the caller prepares the work.
 
-    With something in common the server that makes them is started at once, and they are with the first work.
+    If `common` is set, the fork server is started immediately, and the workers with the first task.
     """
 
     jobs: int
@@ -179,7 +179,7 @@ class ProcessWorkers:
         for worker in self._workers:
             if worker.task is None and self._queue:
                 worker.task = self._queue.popleft()
-                with contextlib.suppress(OSError):  # a dead worker is noticed where results are read
+                with contextlib.suppress(OSError):  # a dead worker is noticed when results are read
                     worker.connection.send_bytes(pickle.dumps(worker.task))
 
     def results(self) -> Iterator[FinishedWork]:
@@ -205,7 +205,7 @@ class ProcessWorkers:
         return None
 
     def _bury(self, worker: _Worker) -> FinishedWork | None:
-        """A worker died. Its work goes to a new one, once; then it is given up."""
+        """Replace a dead worker. Its task is retried once; the second time, it fails."""
         worker.process.join(5)
         self._workers.remove(worker)
         self._start()

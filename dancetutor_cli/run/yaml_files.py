@@ -1,4 +1,4 @@
-"""YAML files, read with the line of every key, into frozen dataclasses by `run/schema.py`."""
+"""YAML files, read with the line of every key and converted to dataclasses by `run/schema.py`."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import MAX_DEPTH, SETTINGS_LIMIT, read_bytes, shown_key
 from dancetutor_cli.run.schema import Keys, MarkedYaml, T, convert
 
-# A YAML mapping with the line of every key, so that an error can say where in the file it is.
+# Parsing of YAML with the line of every key, for errors.
 #
-# The file may be a stranger's, and made to break anyone who reads it: its size, its depth and the length of a value are
-# bounded before anything is built of it, aliases are refused, every key stands once, and numbers are finite.
+# The file may be malicious: its size, its depth and the length of values are limited before objects are built. Aliases
+# and repeated keys are refused, and numbers must be finite.
 
-_Base: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml where the wheel has it: ten times faster
+_Base: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml is ten times faster, if the wheel has it
 _LONGEST = 10_000  # characters of one value
 
 
 def read(path: Path) -> MarkedYaml:
-    """Read a file whose top is a mapping. FileError says what is wrong and where."""
+    """Read a file whose top level is a mapping. Raises FileError with the line."""
     data, lines = _parsed(read_bytes(path, SETTINGS_LIMIT), path)
     if data is None:
         data = {}
@@ -32,12 +32,12 @@ def read(path: Path) -> MarkedYaml:
 
 
 def load(path: Path, kind: type[T], base: T | None = None) -> T:
-    """Read `path` as the dataclass `kind`, see `schema.convert`. FileError says which key is wrong, and where."""
+    """Read `path` as the dataclass `kind`, see `schema.convert`. Raises FileError with the wrong key and its line."""
     return convert(read(path), kind, (), base)
 
 
 def parse_value(text: str, where: str) -> Any:
-    """A value of the command line in YAML; FileError at `where` if it is none."""
+    """Parse a value of the command line as YAML. Raises FileError at `where`."""
     return _parsed(text.encode("utf-8", "surrogateescape"), Path(where))[0]
 
 
@@ -68,7 +68,7 @@ def _parsed(content: bytes, path: Path) -> tuple[Any, dict[Keys, int]]:
 
 
 class _Loader(_Base):  # type: ignore[misc]
-    """Bounds what a file may make us do; libyaml calls the `..._resolver` methods for every node on its way down."""
+    """A loader with limits; libyaml calls the `..._resolver` methods for every node during its descent."""
 
     _depth = 0
 
@@ -84,7 +84,7 @@ class _Loader(_Base):  # type: ignore[misc]
         super().ascend_resolver()
 
     def flatten_mapping(self, node: Any) -> None:
-        """`<<` merges what an alias names, and there are no aliases."""
+        """Do nothing: `<<` merges the mapping of an alias, and aliases are refused."""
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
         mapping: dict[Any, Any] = super().construct_mapping(node, deep)
@@ -116,15 +116,15 @@ _Loader.add_constructor("tag:yaml.org,2002:int", _Loader.construct_yaml_int)
 
 
 def _without_tag(problem: str) -> str:
-    """What libyaml says, without the name of a tag: that may be anything."""
+    """Return libyaml's message without the name of a tag, which may be any text."""
     head, found, _ = problem.partition("could not determine a constructor for the tag")
     return f"{head}has a tag (!...), which is not supported" if found else problem
 
 
 def _mark(node: Any, keys: Keys, lines: dict[Keys, int], met: set[int]) -> None:
-    """Note the line of every key, and refuse what stands at several places or is too long."""
+    """Record the line of every key, and refuse aliases and values that are too long."""
     if id(node) in met:
-        # The node has the place of its anchor; that of the alias is not known any more.
+        # The node has the line of its anchor; the line of the alias is not known.
         problem = "aliases (*name) are not read; write out what they stand for"
         raise yaml.MarkedYAMLError(problem=problem, problem_mark=node.start_mark)
     met.add(id(node))
