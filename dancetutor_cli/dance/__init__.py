@@ -1,34 +1,36 @@
-"""How a play becomes a motion: five stages, each takes one type and returns one. All of them know the `Context`.
+"""How a play becomes a motion, in five stages. Each takes one type and returns one; all know the `Context`.
 
-In this package "she" is the dancer, whatever character is drawn.
+In this package "she" is the dancer, whatever character the user draws.
 
-    feet.play.Play                  who steps what, from the solver
-      |   feet.play                   without the notes that no person plays
+    feet.play.Play                  the feet that step each note, from the solver
+      |   feet.play                   removes the notes that cannot be played
       |   footwork.planner            rules: step, jump, gallop, hold, bracket, mine, sidestep, walk, shake
     plan.Plan                       when each foot leaves and lands, where, how; turns; palms; walks; contacts
       |   foot_path.both_feet         where a foot is at any time
-      |   trajectory.posture          balance, height, facing, reach, counter-rotation, beat bounce
-    trajectory.posture.Trajectory   the body over the feet at even times
-      |   ik.targets.ik_targets       where pelvis, shoulders, hands and feet must be
+      |   trajectory.posture          computes balance, height, facing, reach, counter-rotation, beat bounce
+    trajectory.posture.Trajectory   the path and posture of the body over the feet, at even times
+      |   ik.targets.ik_targets       computes where pelvis, shoulders, hands and feet must be
     ik.full_body.Targets
-      |   ik.full_body.solve          all joints at once
+      |   ik.full_body.solve          solves all joints at once
     ik.full_body.Poses              local rotations and root
-      |   layers                      gaze, glances, breath, blinks, wrists, hands
-    motion.Motion                   what files, films and the quality report get
+      |   layers                      adds gaze, glances, breath, blinks, wrists, hands
+    motion.Motion                   the input of files, films and the quality report
 
-No stage calls a later one. `settle` repeats trajectory and inverse kinematics until both fit, and returns how well they
-do (its residuals). `grips` places hands on the bar after a rough bake. Hair (`physics.hair`) comes last.
+No stage calls a later one. `settle` repeats trajectory and inverse kinematics until the two agree, and returns the
+remaining differences (its residuals). `grips` places hands on the bar after a rough bake. Hair (`physics.hair`) comes
+last.
 
-    units, context, settings      types; panels, bar and skeleton around the dancer; numbers of `configs/motion.yaml`,
-                                  a class for each section: settings_feet, settings_body, settings_arms
+    units, context, settings      types; panels, bar and skeleton around the dancer; the numbers of
+                                  `configs/motion.yaml`, a class for each section: settings_feet, settings_body,
+                                  settings_arms
     changes                       numbers that change over a song
-    clearance, gait               a foot's path in the air, for `foot_path`; how the body goes with steps of a walk
-    waits, face                   what she does while she waits; lids, smiles and eyes
-    request, two, performance     what the user wants; two on one pad; who dances a chart, and how
-    pieces, bake, kept, ends      songs in pieces; the order of work of a piece; the store of baked pieces; where a
-                                  cut begins and ends
+    clearance, gait               a foot's path in the air, for `foot_path`; how the body moves with the steps of a walk
+    waits, face                   the dancer's movements while she waits; lids, smiles and eyes
+    request, two, performance     the user's options; two dancers on one pad; the dancers of a chart and their dance
+    pieces, bake, kept, ends      the pieces of a song; the order of work for a piece; the store of baked pieces; the
+                                  beginning and the end of a cut
     smoothing                     paths over time
-    quadratic, nonnegative        least squares in bands, with limits, and without negative unknowns
+    quadratic, nonnegative        banded least squares with limits; least squares with non-negative unknowns
 
 The mirror image of a play gives the mirror image of the motion: where both sides are equal, the leading foot decides
 (`Plan.lead`). Numbers are in `configs/motion.yaml` (`settings`) and `configs/gaits` (`gait`), or follow from the rig.

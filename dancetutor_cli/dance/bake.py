@@ -1,4 +1,4 @@
-"""The one place that orders the work of a bake: plan, trajectory, inverse kinematics, layers, ragdoll, hair."""
+"""The order of the work of a bake: plan, trajectory, inverse kinematics, layers, ragdoll, hair."""
 
 from __future__ import annotations
 
@@ -58,11 +58,13 @@ REFINEMENTS = 2  # rounds of adding keys half-way between others
 class Manner(TypedDict, total=False):
     """How a play is danced.
 
-    settings : numbers of the motion, those of `configs/motion.yaml` unless given; or what they are over the song
-    bar : whether she holds the bar behind the pad; gait : how she walks on and off, a name or file as for `load_gait`
-    sides : from which she comes and to which she goes, 0 left or 1 right, where another one dances beside her
+    settings : the numbers of the motion, or how they change over the song; by default the numbers of
+    `configs/motion.yaml`
+    bar : whether the dancer holds the bar behind the pad; gait : the way she walks on and off, as for `load_gait`
+    sides : the side from which she comes and the side to which she goes, 0 left or 1 right, if another dancer is beside
+    her
     person : as in `Context`
-    let_go : the reason for each note that is not played because no limb is free, if the caller has decided it
+    let_go : the notes that are not played because no limb is free, with reasons, if the caller has decided it
     """
 
     settings: MotionSettings | SettingsCourse | None
@@ -86,16 +88,16 @@ def bake(
 
     Parameters
     ----------
-    timing : gives the times of beats; play : who steps what; pad : where the panels are. Timing and play are those of
-        the music as it is heard (`Timing.at_rate`), so jumps keep real gravity
-    fps : frames per second of the result, which gets extra keys at every contact
-    section : (start, end) in seconds of the music; None: from before the first step to after the last. It is cut out
-        of the dance of the whole chart
+    timing : gives the times of beats; play : the feet of the chart; pad : where the panels are. Timing and play are
+        at seconds of the music as it is heard (`Timing.at_rate`), so jumps keep real gravity
+    fps : frames per second of the result, which has extra keys at every contact
+    section : (start, end) in seconds of the music, cut out of the dance of the whole chart; None:
+        from before the first step to after the last one
     manner : as in `Manner`
 
     Returns
     -------
-    Motion whose feet and palms touch their panels at the notes' times.
+    A Motion whose feet and palms touch their panels at the times of the notes.
 
     Raises
     ------
@@ -106,12 +108,12 @@ def bake(
 
 
 def plan_of(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> Plan:
-    """Only the moves of a play, without a body: what moves when, from where to where. Arguments as in `bake`."""
+    """Return only the moves of a play, without a body: when and where each limb moves. Arguments as in `bake`."""
     return planned(timing, play, pad, **manner)[0]
 
 
 def planned(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> tuple[Plan, Context]:
-    """The plan of a play, with the context that it is danced in. Arguments as in `bake`."""
+    """Return the plan of a play, and the context in which it is danced. Arguments as in `bake`."""
     given, bar = manner.get("settings") or default_settings(), manner.get("bar", False)
     course = given if isinstance(given, SettingsCourse) else SettingsCourse((given,), ())
     rail = bar_of(pad, course.states[0].bar) if bar else None
@@ -134,13 +136,13 @@ def planned(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> t
 
 
 def _standing(plan: Plan, walk: WalkSettings) -> tuple[float, float]:
-    """When she has arrived and when she leaves, seconds."""
+    """Return the second at which the dancer has arrived and the second at which she leaves."""
     arrived = max((w.end for w in plan.walks if w.end < plan.first), default=plan.first - walk.lead_in)
     return arrived, min((w.start for w in plan.walks if w.start > plan.last), default=plan.last + walk.lead_out)
 
 
 def mines_of(play: Play, pad: Pad) -> Array:
-    """Second and place (x, z) in the world of every mine of a play, (m, 3), for the quality report."""
+    """Return the second and the place (x, z) in the world of every mine of a play, (m, 3), for the quality report."""
     row, column = np.nonzero(play.rows.mines)
     return np.column_stack((play.rows.second[row], panels_on_ground(pad)[column]))
 
@@ -148,16 +150,16 @@ def mines_of(play: Play, pad: Pad) -> Array:
 def bake_plan(
     plan: Plan, context: Context, fps: float, section: Span | None = None, run: PieceRunner = in_turn
 ) -> Motion:
-    """Bake a plan, or what is within a section of it, seconds; the work behind `bake`. Arguments as there.
+    """Bake a plan, or the section of it between two seconds. Arguments as in `bake`.
 
-    run : does the pieces of a long song, in turn or in several processes; the result is the same
+    run : bakes the pieces of a long song, in turn or in several processes; the result is the same
     """
     pieces = pieces_of(plan, context, fps)
     return cut(pieces, section or (pieces[0].kept_span[0], pieces[-1].kept_span[1]), run).motion
 
 
 def cut(pieces: list[Piece], section: Span, run: PieceRunner = in_turn) -> BakedPiece:
-    """A section, seconds, of the dance that all these pieces make; only those that it needs are baked."""
+    """Bake a section (seconds) of the dance of all these pieces. Only the pieces that it needs are baked."""
     start, end = section
     if not start < end:
         raise DancetutorError(
@@ -168,7 +170,7 @@ def cut(pieces: list[Piece], section: Span, run: PieceRunner = in_turn) -> Baked
 
 
 def bake_piece(piece: Piece) -> BakedPiece:
-    """One piece of work; may run in any process."""
+    """Bake one piece of work, in any process."""
     plan, context = piece.plan, piece.context
     skeleton, settings = context.skeleton, context.settings
     rate = settings.sampling.work_rate
@@ -180,7 +182,7 @@ def bake_piece(piece: Piece) -> BakedPiece:
         from dancetutor_cli.dance.changes import mean_body
 
         body = mean_body(bodies, changes)
-    # all keys ask for free hands, and each round of more keys
+    # hands are free in all keys, and in each round of more keys
     bodies_by_state = tuple((replace(body, hands=free_hands(plan, body, one)), one) for one in states)
     at = key_times(plan, piece.fps, *piece.baked)
     keys = (at, *_posed_in(plan, bodies_by_state, at, changes))
@@ -206,10 +208,10 @@ def _motion(piece: Piece, keys: Keys, notes: tuple[str, ...]) -> Motion:
 
 
 def _followed(motion: Motion, piece: Piece, ragdoll: RagdollStyle) -> BakedPiece:
-    """The motion that the ragdoll makes of it, with the braid once more, because its head now moves differently.
+    """Return the motion of the ragdoll that follows `motion`, with a new braid, because the head moves differently.
 
-    A push or trip near the end of a piece is reported by the piece in which it happens; the other piece sees less of
-    it.
+    A push or trip near the end of a piece is reported by the piece in which it happens. The neighbouring piece has only
+    a part of it.
     """
     from dancetutor_cli.dance.physics.pipeline import through_ragdoll
 
@@ -223,7 +225,7 @@ def _followed(motion: Motion, piece: Piece, ragdoll: RagdollStyle) -> BakedPiece
 
 
 def _posed_in(plan: Plan, bodies: Sequence[tuple[Trajectory, Context]], at: Array, changes: Sequence[Span]) -> Poses:
-    """The body at times `at` (f,). Each state has its context, and states turn into each other as `changes` says."""
+    """Return the poses at times `at` (f,). Each state has its context, and states turn into each other in `changes`."""
     feet = [both_feet(plan.feet, at, context.settings) for _, context in bodies]
     if len(bodies) == 1:
         return posed(plan, bodies[0][0], (at, feet[0]), bodies[0][1])
@@ -236,9 +238,9 @@ def _posed_in(plan: Plan, bodies: Sequence[tuple[Trajectory, Context]], at: Arra
 
 
 def posed(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Context) -> Poses:
-    """Solve the body at times (f,), and move it so that its centre of mass, with the head, is where it must be.
+    """Solve the body at times (f,), and move it until its centre of mass, with the head, is on its path.
 
-    sampled : the times, and the feet at them
+    sampled : the times, and the feet at these times
     """
     skeleton, settings, reach = context.skeleton, context.settings, context.settings.body.reach
     at, feet = sampled
@@ -276,7 +278,7 @@ def posed(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Co
 
 
 def _beats(timing: Timing, play: Play) -> tuple[float, ...]:
-    """Seconds of all beats from the first measure to a while after the last row."""
+    """Return the seconds of all beats from the first measure until `BEATS_AFTER` beats after the last row."""
     if not len(play.rows):
         return ()
     ticks = np.arange(0, int(play.rows.tick[-1]) + BEATS_AFTER * TICKS_PER_BEAT, TICKS_PER_BEAT, dtype=np.int64)

@@ -1,8 +1,8 @@
-"""The ends of a cut in which the dancer does not play: she waits for its first step, and comes to rest after its last.
+"""The ends of a cut, in which the dancer does not play: she waits for its first step, and comes to rest after its last.
 
 Each end is a small dance of its own. The feet step as in the dance itself, but without the steps before the first one
-or after the last; instead they go home if there is time. Within a second, one motion turns into the other. The feet are
-the same in both and stay where they are while the body moves over.
+or after the last one; instead they step home if there is time. One motion turns into the other within a second. The
+feet are the same in both motions and stay in place during the blend.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array, Flags
 
 CROSSING = 1.0  # seconds of the blend between an end and the dance
-OWN_FEET = 0.8  # below this share of the dance, the feet are those of the end
+OWN_FEET = 0.8  # below this share of the dance, the feet are the feet of the end
 SAME_PLACE = 0.002  # metres
-LONG_AGO = 60.0  # events before a cut get this many seconds before it
+LONG_AGO = 60.0  # seconds before a cut to which earlier events are moved
 NOW = 1e-6  # seconds
 SOON = 0.001  # seconds after a walk, when it is over
 
 
 def on_the_pad(plan: Plan, cut: Cut) -> Cut:
-    """The cut, in which she stands before her first step if nobody is to see how she walks there."""
+    """Return the cut. If it does not show her walk, the dancer stands before her first step."""
     arrivals = [walk.end for walk in plan.walks if walk.end <= plan.first and not cut.walks_on]
     return replace(cut, steps_from=max([cut.steps_from, *(second + SOON for second in arrivals)]))
 
 
 def entrance_of(plan: Plan, cut: Cut) -> Plan | None:
-    """The plan of a dancer who stands until the first step of a cut; None if the dance itself begins that way."""
+    """Return the plan of a dancer who stands until a cut's first step; None if the dance itself begins that way."""
     begin = cut.steps_from
     spans = [(one.start, one.end) for one in plan.touches]
     spans += [(walk.start, walk.end) for walk in plan.walks if not cut.walks_on]
@@ -70,7 +70,7 @@ def _from(track: FootTrack, second: float) -> FootTrack:
 
 
 def rest_from(plan: Plan, cut: Cut) -> float | None:
-    """The second from which on the dancer comes to rest at the end of a cut; None if she dances on to its end."""
+    """Return the second at which the dancer comes to rest at the end of a cut; None if she dances until its end."""
     walks = [walk.start for walk in plan.walks if walk.start > plan.last and not cut.walks_off]
     until = min([cut.steps_until, *walks])
     starts = [*(touch.start for touch in plan.touches), *(walk.start for walk in plan.walks)]
@@ -78,7 +78,7 @@ def rest_from(plan: Plan, cut: Cut) -> float | None:
 
 
 def exit_of(plan: Plan, span: Span, context: Context) -> Plan:
-    """The plan of a dancer who makes no step of the chart in a span, seconds, but goes home in it if there is time."""
+    """Return the plan of a dancer who makes no step in a span (seconds), but steps home if there is time."""
     until = span[0]
     touches = tuple(one for one in plan.touches if one.start < until - NOW)
     left, right = (
@@ -103,19 +103,19 @@ def exit_of(plan: Plan, span: Span, context: Context) -> Plan:
 
 
 def entrance_piece(plan: Plan, context: Context, fps: float, cut: Cut, ragdoll: RagdollStyle | None) -> Piece:
-    """The piece of an entrance: the dancer stands before the cut, and then the piece turns into the dance."""
+    """Return the piece of an entrance: the dancer stands before the cut, and then the piece turns into the dance."""
     baked = (cut.start - MARGIN, min(cut.steps_from + CROSSING, cut.end) + MARGIN)
     return piece_of(plan, context, fps, (baked, baked, OVERLAP), ragdoll)
 
 
 def exit_piece(plan: Plan, context: Context, fps: float, span: Span, ragdoll: RagdollStyle | None = None) -> Piece:
-    """The piece of an exit. span : the exit begins at its first second; it ends at the end of the cut"""
+    """Return the piece of an exit. span : from the beginning of the exit to the end of the cut, seconds"""
     baked = (span[0] - CROSSING - OVERLAP, span[1])
     return piece_of(plan, replace(context, stays=True), fps, (baked, baked, MARGIN), ragdoll)
 
 
 def with_entrance(dance: Motion, entrance: Motion, cut: Cut) -> Motion:
-    """The dance with an entrance before its first step."""
+    """Return the dance with an entrance before its first step."""
     begin, end = cut.steps_from, min(cut.steps_from + CROSSING, cut.end)
     after, before = dance.times >= begin, (entrance.times >= cut.start - NOW) & (entrance.times < begin)
     share = smooth((dance.times[after] - begin) / max(end - begin, NOW))
@@ -126,7 +126,7 @@ def with_entrance(dance: Motion, entrance: Motion, cut: Cut) -> Motion:
 
 
 def with_exit(dance: Motion, rest: Motion, until: float, cut: Cut) -> Motion:
-    """The dance with an exit from second `until` on, before which its last step is."""
+    """Return the dance with an exit from second `until` on; its last step is before that second."""
     begin = max(until - CROSSING, cut.start)
     before, after = dance.times < until, (rest.times >= until) & (rest.times <= cut.end + NOW)
     share = 1.0 - smooth((dance.times[before] - begin) / max(until - begin, NOW))
@@ -144,7 +144,7 @@ def _merge_keys(first: Keys, second: Keys, motion: Motion) -> Motion:
 
 
 def _crossing(dance: Motion, which: Flags, other: Motion, share: Array) -> Keys:
-    """Some keys of the dance; a share (f,) of each is the dance, and the rest is another motion of the same feet."""
+    """Return some keys of the dance, each mixed by its share (f,) of the dance with another motion of the same feet."""
     times, rotations, root = _keys(dance, which)
     mixed = share < 1.0
     if mixed.any():
@@ -154,13 +154,13 @@ def _crossing(dance: Motion, which: Flags, other: Motion, share: Array) -> Keys:
 
 
 def _mixed(dance: Motion, poses: Sequence[Array], others: Sequence[Array], share: Array) -> tuple[Array, Array]:
-    """Poses that mix the dance, by its share, with other poses. Their feet are those of the other poses: the two differ
-    only where a foot is on its way to a step that is left out, and a foot that was on its way already turns back.
+    """Mix poses of the dance, by its share, with other poses. The feet are the feet of the other poses. The two motions
+    differ only where a foot is on its way to a step that is left out; such a foot turns back.
     """
     skeleton = dance.skeleton
     mine, theirs = feet_of(skeleton, poses[0], poses[1]), feet_of(skeleton, others[0], others[1])
     own = smooth((share - OWN_FEET) / (1.0 - OWN_FEET))
-    beside = int(np.argmax(share))  # beside the key of the dance: there the feet differ only on a long way
+    beside = int(np.argmax(share))  # the key next to the dance: its feet differ only where a foot is on a long way
     away = np.linalg.norm(mine.places[beside] - theirs.places[beside], axis=1) > SAME_PLACE
     own = own[:, None] * away
     feet = AnkleTracks(

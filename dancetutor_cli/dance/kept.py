@@ -1,7 +1,7 @@
-"""Pieces of dances that were baked once, kept for this user, so that the next cut costs nothing.
+"""The store of baked pieces of this user, so that a later cut of the same dance needs no bake.
 
-Each is a file of numpy arrays. Its name is the hash of all that it is made of (`fingerprint`): the piece of work,
-and the program. The oldest go when there are too many.
+Each piece is a file of numpy arrays. Its name is a hash (`fingerprint`) of the piece of work and of the program. If the
+store is too large, the oldest files are deleted.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from dancetutor_cli.dance.pieces import BakedPiece, Piece, PieceRunner
 from dancetutor_cli.run.fingerprint import fingerprint, program_stamp
 from dancetutor_cli.run.trust import kept_folder, write_file
 
-LARGEST = 512_000_000  # bytes of all that is kept; the oldest go first
+LARGEST = 512_000_000  # bytes of the store; above it, the oldest files are deleted
 _ARRAYS = ("times", "rotations", "root")
 Function = Callable[[Piece], BakedPiece]
 
 
 def with_store(run: PieceRunner) -> PieceRunner:
-    """Does pieces of work as `run` does, except those that are kept already; keeps the others."""
+    """Return a runner that reads the kept pieces, bakes the others with `run` and keeps them."""
     folder = kept_folder("dances")
     return run if folder is None else partial(_run_or_read, folder, run)
 
@@ -46,7 +46,7 @@ def _run_or_read(folder: Path, run: PieceRunner, function: Function, pieces: Seq
 
 
 def _read(path: Path, piece: Piece) -> BakedPiece | None:
-    """A piece that is kept; None for one that is not, or that cannot be read."""
+    """Read a kept piece; None if the file does not exist or cannot be read."""
     try:
         with np.load(path, allow_pickle=False) as file:
             data = {name: file[name] for name in file.files}
@@ -67,7 +67,7 @@ def _read(path: Path, piece: Piece) -> BakedPiece | None:
 
 
 def _write(path: Path, one: BakedPiece, piece: Piece) -> None:
-    """Keep a piece; if that is not possible, it is made again the next time."""
+    """Keep a piece. If that fails, the piece is baked again the next time."""
     motion, distances = one.motion, one.distances
     still = set(motion.contacts)
     words: dict[str, Any] = {
@@ -86,7 +86,7 @@ def _write(path: Path, one: BakedPiece, piece: Piece) -> None:
 
 
 def _prune(folder: Path) -> None:
-    """Remove the oldest pieces until what is left is not too large."""
+    """Delete the oldest files until the store is at most `LARGEST` bytes."""
     files = sorted(((entry.stat(), entry.path) for entry in os.scandir(folder)), key=lambda one: -one[0].st_mtime)
     size = 0
     for status, path in files:

@@ -1,4 +1,4 @@
-"""The baked motion: joint rotations per frame and the contacts they must keep; the motion at any times."""
+"""The baked motion: joint rotations per frame, the contacts that they must keep, and samples at any times."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Bar:
 class Grip:
     """A hand that rests on the bar from `start` to `end` seconds, its palm over `x`; side 0 left, 1 right.
 
-    across : it has come there in front of her, because she is turned with its side away from the bar
+    across : whether the hand has crossed over in front of the dancer, because her side faces away from the bar
     """
 
     start: float
@@ -68,11 +68,11 @@ class Ground:
     drop: float
 
     def level(self, x: float, z: float) -> float:
-        """Height of the ground at a place, metres."""
+        """Return the height of the ground at a place, metres."""
         return 0.0 if self.low[0] <= x <= self.high[0] and self.low[1] <= z <= self.high[1] else -self.drop
 
     def levels(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Height of the ground (...) under points (..., 3)."""
+        """Return the height of the ground (...) under points (..., 3)."""
         over = places[..., [0, 2]]
         on = ((over >= np.array(self.low) - 1e-6) & (over <= np.array(self.high) + 1e-6)).all(axis=-1)
         return np.where(on, 0.0, -self.drop)
@@ -86,8 +86,8 @@ class Motion:
     rotations : float64 (f, j, 4), local unit quaternions (w, x, y, z)
     root : float64 (f, 3), position of joint 0 in the world, metres
     fps : nominal frames per second; contacts : sorted by start
-    bar : what she holds on to, None for no bar; grips : when and where she does, sorted by start
-    notes : remarks on the bake, for people: where limits of the body had to give way
+    bar : the bar that the dancer holds, None for no bar; grips : when and where she holds it, sorted by start
+    notes : remarks on the bake for the user: where limits of the body were exceeded
     ground : pad and floor, None if the dancer stays on the pad and the ground has the height 0 everywhere
     let_go : notes that the dancer does not play, sorted by second
     """
@@ -109,9 +109,10 @@ class Motion:
 class Cut:
     """A part of a dance, from `start` to `end`, seconds of the music as it is heard.
 
-    steps_from : she stands before this second, as she will begin; steps_until : from this one on she comes to rest
-    walks_on, walks_off : whether she may be seen to come before the first note, and to leave after the last one; else
-    she stands on the pad
+    steps_from : the dancer stands still before this second; steps_until : from this second on she comes to rest
+    walks_on, walks_off : whether the cut may show her walk onto the pad before the first note, and off it after the
+    last;
+    otherwise she stands on the pad
     """
 
     start: float
@@ -123,7 +124,7 @@ class Cut:
 
 
 def shifted(motion: Motion, x: float, z: float) -> Motion:
-    """A motion, and everything with a place in it, moved along the ground, metres."""
+    """Return the motion, with its contacts, grips, bar and ground, moved along the ground by x and z metres."""
     if x == z == 0.0:
         return motion
     bar, ground = motion.bar, motion.ground
@@ -138,9 +139,7 @@ def shifted(motion: Motion, x: float, z: float) -> Motion:
 
 
 def padded_from(motion: Motion, second: float) -> Motion:
-    """A motion that begins at this second of the music, if it begins later: until then the dancer stands in its first
-    pose.
-    """
+    """A motion that begins at `second` of the music or earlier; the dancer stands in its first pose until it begins."""
     if second >= motion.times[0]:
         return motion
     return replace(
@@ -157,7 +156,7 @@ def _plus(place: tuple[float, float], x: float, z: float) -> tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Distances:
-    """How far a ragdoll is from what it follows: of p retargeting points, without the extra ones, over f moments.
+    """The distances of a ragdoll from the motion that it follows: of p retargeting points, over f moments.
 
     names : (p,); times : (f,) seconds; values : (f, p) centimetres between input and ragdoll
     """
@@ -167,7 +166,7 @@ class Distances:
     values: NDArray[np.float64]
 
     def table(self) -> dict[str, tuple[float, float, float, float]]:
-        """Minimum, maximum, mean and standard deviation of every point, centimetres."""
+        """Return the minimum, maximum, mean and standard deviation of every point, centimetres."""
         v = self.values
         columns = zip(v.min(axis=0), v.max(axis=0), v.mean(axis=0), v.std(axis=0), strict=True)
         return {
@@ -176,16 +175,16 @@ class Distances:
 
     @property
     def worst(self) -> tuple[float, float, float]:
-        """Largest mean, standard deviation and distance of any point, centimetres: what the goals are about."""
+        """The largest mean, standard deviation and distance of any point, centimetres; the goals limit them."""
         v = self.values
         return float(v.mean(axis=0).max()), float(v.std(axis=0).max()), float(v.max())
 
 
-# A motion at any times: rotations slerped and the root moved straight between keys, as every viewer of a file does.
+# The motion at any times: between keys, rotations are slerped and the root moves straight, as in every viewer.
 
 
 def sample(motion: Motion, times: Array) -> tuple[Array, Array]:
-    """Local rotations (f, j, 4) and root (f, 3) at `times` (f,), seconds; held beyond the first and last key."""
+    """Return local rotations (f, j, 4) and root (f, 3) at `times` (f,), seconds; constant before and after the keys."""
     at = np.clip(times, motion.times[0], motion.times[-1])
     after = np.clip(np.searchsorted(motion.times, at, side="right"), 1, len(motion.times) - 1)
     before = after - 1

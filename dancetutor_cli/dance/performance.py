@@ -1,4 +1,4 @@
-"""The performance of a chart: who dances it, and how. Every section, film, page and file is a part of the same one."""
+"""The performance of a chart: its dancers and how they dance. Every section, film, page and file shows a part of it."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Performer:
-    """One of the dancers: the part that she plays, and her motion on her own pad.
+    """One of the dancers: her part of the chart, and her motion on her own pad.
 
-    play, plan : at seconds of the music as it is heard, without notes that nobody plays
-    place : where the middle of her pad is from that of all, (x, z) in metres
+    play, plan : at seconds of the music as it is heard, without the notes that nobody plays
+    place : the middle of her pad from the middle of the pad of all dancers, (x, z) in metres
     """
 
     solved: Solved
@@ -56,9 +56,10 @@ class Performer:
 
 @dataclass(frozen=True, slots=True)
 class Performance:
-    """How a chart is danced at one rate of its music. One dancer is a tuple of length one.
+    """The dance of a chart at one rate of its music. For a single dancer, `dancers` has length one.
 
-    pad : under all; timing : of the music as it is heard; blend : the styles in which a ragdoll follows, None: none
+    pad : under all dancers; timing : of the music as it is heard
+    blend : the styles in which a ragdoll follows the dancers; None: no ragdoll
     """
 
     request: DanceRequest
@@ -70,17 +71,17 @@ class Performance:
 
     @property
     def span(self) -> tuple[float, float]:
-        """First and last second, of the music as it is heard."""
+        """The first and last second, of the music as it is heard."""
         spans = [whole_span(one.plan, one.context) for one in self.dancers]
         return min(start for start, _ in spans), max(end for _, end in spans)
 
     def motions(self, wanted: Cut | None = None, run: PieceRunner = in_turn) -> list[BakedPiece]:
-        """What each dancer does on her own pad; `place` says where that is.
+        """Bake the motion of each dancer on her own pad; `place` is the position of that pad.
 
         Parameters
         ----------
-        wanted : the part that is wanted, None: all of it
-        run : does pieces of work, in turn or in several processes
+        wanted : the part of the performance to bake; None: all of it
+        run : bakes the pieces, in turn or in several processes
         """
         wanted = wanted or Cut(*self.span)
         ragdoll = self._ragdoll(wanted)
@@ -118,9 +119,9 @@ def _one(run: PieceRunner, piece: Piece) -> Motion:
 
 
 def solve(request: DanceRequest, chart: ChartChoice | None = None) -> tuple[Solved, ...]:
-    """The feet of each dancer. Raises a DancetutorError of one line for everything that is wrong with the request.
+    """Solve the feet of each dancer. Raises a DancetutorError of one line for each error in the request.
 
-    chart : of the request, where it has been read
+    chart : the chart of the request, if the caller has read it
     """
     if chart is None:
         check_request(request)
@@ -140,7 +141,7 @@ def solve(request: DanceRequest, chart: ChartChoice | None = None) -> tuple[Solv
 
 
 def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) -> Performance:
-    """How all dancers dance at one of the request's rates. DancetutorError if a chart has no steps."""
+    """Plan the dance of all dancers at one of the request's rates. Raises DancetutorError if a chart has no steps."""
     timing = solved[0].chart.timing.at_rate(rate)
     parts = [one.chart for one in solved]
     pad = pad_of(solved)
@@ -171,33 +172,33 @@ def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) 
 
 
 def pad_of(solved: Sequence[Solved]) -> Pad:
-    """The pad under all dancers."""
+    """Return the pad under all dancers."""
     pad = solved[0].pad if len(solved) == 1 else pad_of_both(solved[0].chart.written_type)
     assert pad is not None
     return pad
 
 
 def play_of_all(solved: Sequence[Solved], plays: Sequence[Play]) -> Play:
-    """The steps of all dancers as one play, on the pad under all. plays : of each"""
+    """Return the steps of all dancers as one play, on the pad under all of them. plays : the play of each dancer"""
     if len(solved) == 1:
         return plays[0]
     return merge_plays(solved[0].song.charts[solved[0].chart.index], plays, pad_of(solved))
 
 
 def playable(one: Solved, rates: Iterable[float]) -> Play:
-    """A play without the notes that nobody plays at the fastest of some rates; its seconds are those of the song."""
+    """Return a play without the notes that nobody plays at the fastest rate; its seconds are seconds of the song."""
     assert one.play is not None and one.pad is not None
     fastest, _ = without_unplayable(as_heard(one.play, one.chart.timing.at_rate(max(rates))), one.pad)
     return replace(fastest, rows=one.play.rows)
 
 
 def as_heard(play: Play, timing: Timing) -> Play:
-    """A play whose seconds are those of a timing: of the music as it is heard."""
+    """Return a play whose seconds are seconds of `timing`, the music as it is heard."""
     return replace(play, rows=replace(play.rows, second=timing.seconds(play.rows.tick)))
 
 
 def pooled(jobs: int = 1) -> PieceRunner:
-    """Does pieces of work in up to so many processes, except kept pieces; results come in the order of the pieces."""
+    """Return a runner that bakes pieces in up to `jobs` processes, in order, and reads kept pieces from the store."""
     return with_store(in_turn if jobs <= 1 else partial(_pooled, jobs))
 
 

@@ -1,4 +1,4 @@
-"""Long songs in pieces that meet where the dancer stands, and the keys of a bake."""
+"""The pieces of a long song, which meet where the dancer stands, and the keys of a bake."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.physics.pipeline import Wishes
 
 
-# The keys of a bake: which times get one, so that every contact is right in what a viewer draws between them, too.
+# The keys of a bake. Their times are chosen so that contacts are also right where a viewer interpolates between keys.
 
 Keys = tuple[Array, Array, Array]  # times (f,), local rotations (f, j, 4), root (f, 3)
-SHORTEST_GAP = 0.002  # seconds between keys that are not divided further
-NEAR_GROUND = 0.006  # metres; higher up nobody sees half a millimetre
-SWAYING = 0.006  # metres between keys that a root goes at least where a hand might leave the bar between them
-KEY_TOLERANCE = 0.0003  # metres that a standing sole may be off between keys
+SHORTEST_GAP = 0.002  # seconds; keys as close as this are not divided further
+NEAR_GROUND = 0.006  # metres; above this height, half a millimetre is not visible
+SWAYING = 0.006  # metres that the root moves between two keys, from which on a hand might leave the bar between them
+KEY_TOLERANCE = 0.0003  # metres; largest error of a standing sole between keys
 
 
 def key_times(plan: Plan, fps: float, start: float, end: float) -> Array:
-    """Regular times at `fps`, counted from second 0 of the music, plus the moments at which feet lift and land.
+    """Return regular times at `fps`, counted from second 0 of the music, and the moments at which feet lift and land.
 
-    It also has the middles of swings that are so short that a foot might seem to have stood all the time. A stretch too
-    short for two keys has its own start and end.
+    The result also has the middle of each swing that is so short that the foot might appear to stand all the time. A
+    stretch too short for two keys has its own start and end.
     """
     regular = np.arange(np.ceil(start * fps - 1e-9), np.floor(end * fps + 1e-9) + 1) / fps
     extra = [t for foot in plan.feet for m in foot.moves for t in (m.lift, m.land)]
@@ -49,7 +49,7 @@ def key_times(plan: Plan, fps: float, start: float, end: float) -> Array:
     kind = np.concatenate((np.zeros(len(special)), np.ones(len(regular))))
     order = np.lexsort((kind, times))
     times, kind = times[order], kind[order]
-    keep = np.ones(len(times), dtype=bool)  # keys closer than 10 microseconds are one; the contact's own time stays
+    keep = np.ones(len(times), dtype=bool)  # keys closer than 10 microseconds become one; the contact's own time stays
     last = -np.inf
     for k, t in enumerate(times):
         if t - last < 1e-5:
@@ -60,7 +60,7 @@ def key_times(plan: Plan, fps: float, start: float, end: float) -> Array:
 
 
 def _hidden(move: Move, fps: float) -> bool:
-    """Whether a foot is up and down again between two regular times, about."""
+    """Whether a foot lifts and lands within about one interval of regular times."""
     return isinstance(move, Swing) and move.land - move.lift < 1.5 / fps
 
 
@@ -69,7 +69,7 @@ def _limb_points(skeleton: Skeleton) -> tuple[tuple[BodyPoint, ...], ...]:
 
 
 def doubtful(skeleton: Skeleton, keys: Keys, grips: tuple[Grip, ...] = ()) -> Array:
-    """Times half-way between keys that have a foot or palm near the ground which moves between them."""
+    """Return the times half-way between keys where a foot or palm near the ground moves between the two keys."""
     times, rotations, root = keys
     transforms = world_transforms(skeleton, rotations, root)
     doubt = np.zeros(len(times) - 1, dtype=bool)
@@ -85,7 +85,7 @@ def doubtful(skeleton: Skeleton, keys: Keys, grips: tuple[Grip, ...] = ()) -> Ar
 
 
 def _on_bar(grips: tuple[Grip, ...], times: Array) -> NDArray[np.bool_]:
-    """Whether each hand (f, 2) is at rest on the bar."""
+    """Whether each hand (f, 2) rests on the bar."""
     out = np.zeros((len(times), 2), dtype=bool)
     for grip in grips:
         out[np.searchsorted(times, grip.start) : np.searchsorted(times, grip.end, "right"), grip.side] = True
@@ -93,10 +93,10 @@ def _on_bar(grips: tuple[Grip, ...], times: Array) -> NDArray[np.bool_]:
 
 
 def refined(skeleton: Skeleton, keys: Keys, between: Keys, grips: tuple[Grip, ...] = ()) -> Keys:
-    """Keys plus those of the frames `between` them that interpolation would miss.
+    """Return the keys and, in addition, those frames `between` them that interpolation would miss.
 
-    A viewer turns joints at even speed between keys; where that would push a standing sole into the ground or lift
-    it, a landing for example, or move a hand off the bar, the frame between becomes a key.
+    A viewer turns joints at even speed between keys. A frame becomes a key if interpolation there would push a standing
+    sole into the ground, lift it (at a landing, for example), or move a hand off the bar.
     """
     times, rotations, root = keys
     after = np.searchsorted(times, between[0])
@@ -117,26 +117,25 @@ def refined(skeleton: Skeleton, keys: Keys, between: Keys, grips: tuple[Grip, ..
     return merged[0], merged[1], merged[2]
 
 
-# The dance of a chart in pieces: always the same ones, whichever part of it is wanted, so every cut shows the same
-# dance.
+# The dance of a chart in pieces. The pieces do not depend on the requested part, so every cut shows the same dance.
 #
-# A piece knows nothing of other pieces. It is planned and baked beyond both ends, as far as the past affects the
-# dancer. Where two pieces meet, the earlier one turns into the later one. Memory and time per second stay as they are
-# in a short song.
+# A piece does not depend on other pieces. It is planned and baked beyond both ends, as far as the past affects the
+# dancer. Where two pieces meet, the earlier one turns into the later one. Memory and time per second stay as low as for
+# a short song.
 
 Span = tuple[float, float]  # first and last second
-LENGTH = 90.0  # seconds of a piece, about
-LONGEST = 135.0  # a song up to so long is one piece
-AFTER = 1.0  # seconds; heels rise for swings that begin so soon
-WITHIN = 20.0  # seconds around a piece's even end in which the best place to end it is looked for
+LENGTH = 90.0  # seconds of a piece, approximately
+LONGEST = 135.0  # seconds; a song up to this length is one piece
+AFTER = 1.0  # seconds; heels rise for swings that begin within this time
+WITHIN = 20.0  # seconds around the even end of a piece in which the best end is searched
 MARGIN = 1.0  # seconds beyond both ends of the baked part that are planned and smoothed
-OVERLAP = 5.0  # seconds beyond its ends for which a piece is planned and baked: differences have died away there
+OVERLAP = 5.0  # seconds beyond its ends that a piece is planned and baked; differences are gone by then
 BLEND = 0.5  # seconds before a piece's end in which it turns into the next one
 
 
 @dataclass(frozen=True, slots=True)
 class RagdollStyle:
-    """The style or styles in which a ragdoll follows the dancer, and what befalls her."""
+    """The styles in which a ragdoll follows the dancer, and the pushes and trips that she gets."""
 
     blend: Blend
     wishes: Wishes
@@ -144,11 +143,12 @@ class RagdollStyle:
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """One piece of work; pickles.
+    """One piece of work. It can be pickled.
 
-    plan : what matters of the plan; contacts : those that begin while it is baked; ground : as in `Motion`
-    baked : gets keys; kept_span : the part of them that goes into the song; span : the body's path is planned over it
-    ragdoll : None for the dancer as she is
+    plan : the relevant part of the plan; contacts : the contacts that begin in the baked part; ground : as in `Motion`
+    baked : the part that gets keys; kept_span : the part of it that goes into the song; span : the part in which the
+    body's path is planned
+    ragdoll : None: the motion stays without a ragdoll
     """
 
     plan: Plan
@@ -164,7 +164,7 @@ class Piece:
 
 @dataclass(frozen=True, slots=True)
 class BakedPiece:
-    """The result of a piece of work, with its overlap; distances : of the ragdoll from what it followed, if any."""
+    """The result of a piece of work, with its overlap. distances : between the ragdoll and the followed motion"""
 
     motion: Motion
     distances: Distances | None = None
@@ -174,12 +174,12 @@ PieceRunner = Callable[[Callable[[Piece], BakedPiece], Sequence[Piece]], Iterabl
 
 
 def in_turn(function: Callable[[Piece], BakedPiece], pieces: Sequence[Piece]) -> Iterable[BakedPiece]:
-    """Do one piece after the other in this process."""
+    """Bake one piece after the other in this process."""
     return map(function, pieces)
 
 
 def whole_span(plan: Plan, context: Context) -> Span:
-    """First and last second of a dance: from the song's beginning, or before the first step, to after the last one."""
+    """Return the first and last second of a dance. It begins with the song, or earlier, before the first step."""
     walk = context.settings.walk
     left = max((route.end for route in plan.walks), default=-np.inf) + walk.gone
     return min(0.0, plan.first - walk.lead_in), max(plan.last + walk.lead_out, left)
@@ -189,7 +189,7 @@ def pieces_of(plan: Plan, context: Context, fps: float, ragdoll: RagdollStyle | 
     """All pieces of a dance, in order of time."""
     start, end = whole_span(plan, context)
     pieces = []
-    plan = replace(plan, touches=plan.contacts)  # each move lasts until the foot leaves, in all pieces alike
+    plan = replace(plan, touches=plan.contacts)  # each contact lasts until the foot leaves, in all pieces alike
     for first, last in pairwise(piece_ends(plan, start, end)):
         before, after = (first if first == start else first - OVERLAP), (MARGIN if last == end else OVERLAP)
         pieces.append(piece_of(plan, context, fps, ((before, last), (first, last), after), ragdoll))
@@ -199,7 +199,7 @@ def pieces_of(plan: Plan, context: Context, fps: float, ragdoll: RagdollStyle | 
 def piece_of(
     plan: Plan, context: Context, fps: float, times: tuple[Span, Span, float], ragdoll: RagdollStyle | None = None
 ) -> Piece:
-    """One piece. times : what is baked, what of that is kept, and seconds that are planned beyond its end"""
+    """Return one piece. times : the baked part, the kept part of it, and the seconds that are planned beyond its end"""
     (before, last), kept, after = times
     part = trimmed(plan, before - MARGIN, last + after)
     span = (float(np.floor(4 * (before - MARGIN)) / 4), last + after)
@@ -209,7 +209,7 @@ def piece_of(
 
 
 def piece_ends(plan: Plan, start: float, end: float) -> list[float]:
-    """Where pieces begin and end, from `start` to `end`: in the middle of the longest stand near each regular time."""
+    """Return the ends of the pieces from `start` to `end`: the middle of the longest stand near each regular time."""
     if end - start <= LONGEST:
         return [start, end]
     moving = sorted((m.lift, m.land) for track in plan.feet for m in track.moves)
@@ -224,7 +224,7 @@ def piece_ends(plan: Plan, start: float, end: float) -> list[float]:
 
 
 def _longest_stand(lands: Array, lifts: Array, around: float) -> float:
-    """The middle of the longest stretch within reach of `around` in which nothing moves, seconds."""
+    """Return the middle of the longest stretch near `around` in which nothing moves, in seconds."""
     low, high = around - WITHIN, around + WITHIN
     begin, end = np.clip(lands, low, high), np.clip(lifts, low, high)
     k = int(np.argmax(end - begin))
@@ -232,7 +232,7 @@ def _longest_stand(lands: Array, lifts: Array, around: float) -> float:
 
 
 def trimmed(plan: Plan, start: float, end: float) -> Plan:
-    """The plan with only what matters between two seconds, where it is the same as the whole plan."""
+    """Return the part of the plan that matters between two seconds; there it is the same as the whole plan."""
     turns = plan.turns
     first = max(int(np.searchsorted([t.start for t in turns], start)) - 2, 0)
     return replace(
@@ -253,7 +253,7 @@ def _track(track: FootTrack, start: float, end: float) -> FootTrack:
 
 
 def track_from(track: FootTrack, first: int, moves: Sequence[object]) -> FootTrack:
-    """A track that begins where the foot stands before its move number `first`, with other moves from there on."""
+    """Return a track that begins where the foot stands before its move `first`, with `moves` from there on."""
     kept = tuple(moves)
     if first == 0:
         return replace(track, moves=kept)  # type: ignore[arg-type]
@@ -263,7 +263,7 @@ def track_from(track: FootTrack, first: int, moves: Sequence[object]) -> FootTra
 
 
 def needed(pieces: Sequence[Piece], start: float, end: float) -> slice:
-    """Which pieces a cut from `start` to `end` (seconds) is made of."""
+    """Return the indices of the pieces that a cut from `start` to `end` (seconds) needs."""
     last = len(pieces) - 1
     touched = [
         k
@@ -274,7 +274,7 @@ def needed(pieces: Sequence[Piece], start: float, end: float) -> slice:
 
 
 def joined(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, end: float) -> BakedPiece:
-    """Neighbouring pieces as one motion from `start` to `end`, seconds; rotations never jump to their negative."""
+    """Join neighbouring pieces into one motion from `start` to `end`, seconds. Quaternions never change their sign."""
     parts: list[tuple[Array, Array, Array]] = []
     for k, (piece, one) in enumerate(zip(pieces, done, strict=True)):
         times, last = one.motion.times, k + 1 == len(pieces)
@@ -304,7 +304,7 @@ def joined(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, en
 
 
 def _between(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, end: float) -> Motion:
-    """The first piece's motion with everything between two seconds except the keys."""
+    """Return the first piece's motion with contacts, grips and notes between two seconds; its keys are not changed."""
     gone = tuple(one for one in pieces[0].plan.let_go if start <= one.second <= end)
     notes = dict.fromkeys(note for one in done for note in one.motion.notes)
     grips = dict.fromkeys(g for one in done for g in one.motion.grips if g.end > start and g.start < end)

@@ -1,4 +1,4 @@
-"""What the dancer will do, before any joint is turned: moves of feet, hands, turns, and the plan of a song."""
+"""The dancer's moves, before any joint is turned: moves of feet and hands, turns, and the plan of a song."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from dancetutor_cli.dance.motion import Contact, Grip
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.play import DroppedNote
 
-# What a foot does, one type for each kind of move; each carries only what it needs.
+# The moves of a foot. Each kind of move is a type, and has only the fields that it needs.
 
 Place = tuple[float, float]
 
 
 class Bulge(NamedTuple):
-    """How a way goes around the other foot. x, z : metres added at its middle
+    """How the path of a foot goes around the other foot. x, z : metres added at the middle of the path
 
-    late : part of the straight way by which the foot is behind at a quarter and ahead at three quarters: first aside,
-    then past, then in
+    late : part of the straight path by which the foot is behind at a quarter of the time and ahead at three quarters.
+    The foot moves aside first, then past, then in
     """
 
     x: float = 0.0
@@ -34,10 +34,10 @@ STRAIGHT = Bulge()
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """One foot moves from `lift` to `land` (seconds), and stands at `target` then.
+    """One foot moves from `lift` to `land` (seconds), and then stands at `target`.
 
     target : (x, z) of the ball of the foot at landing; yaw : radians at landing, positive left
-    pitches : heel up, radians, at lift, at most, at landing, then standing
+    pitches : how far the heel is up, radians: at lift, the most in the air, at landing, then standing
     """
 
     lift: float
@@ -49,14 +49,14 @@ class Move:
 
 @dataclass(frozen=True, slots=True)
 class Pivot(Move):
-    """A standing foot turns on its ball, which stays down."""
+    """A turn of a standing foot on its ball, which stays down."""
 
 
 @dataclass(frozen=True, slots=True)
 class Swing(Move):
-    """The foot leaves the ground. height : peak of the sole, metres
+    """A move in which the foot leaves the ground. height : peak of the sole, metres
 
-    bulge : around the other foot
+    bulge : how the path goes around the other foot
     """
 
     height: float
@@ -65,30 +65,30 @@ class Swing(Move):
 
 @dataclass(frozen=True, slots=True)
 class Step(Swing):
-    """To a note while the other foot stands."""
+    """A step to a note while the other foot stands."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sidestep(Swing):
-    """In a wait, towards the other pad."""
+    """A step in a wait, towards the other pad."""
 
 
 @dataclass(frozen=True, slots=True)
 class Hover(Swing):
-    """Over a mine: up soon and down late."""
+    """A swing over a mine: the foot rises soon and lands late."""
 
 
 @dataclass(frozen=True, slots=True)
 class Gallop(Swing):
-    """The second foot of a gallop, which lands later: it stays up as over a mine."""
+    """The step of the second foot of a gallop. It lands later than the first foot, and stays up as over a mine."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shake(Swing):
-    """In a wait, and back to its place: for a while the foot is up behind the dancer, loosely shaken.
+    """A shake of a foot in a wait: the foot is in the air behind the dancer for a while, and returns to its place.
 
-    behind : metres that the foot goes back; hangs : radians that it hangs with its toes down meanwhile
-    rate : per second; far : metres to and fro along `heading` (radians), and half as far up and down
+    behind : metres that the foot goes back; hangs : radians by which its toes hang down meanwhile
+    rate : shakes per second; far : metres to and fro along `heading` (radians), and half as far up and down
     flap : radians that the foot flaps
     """
 
@@ -102,17 +102,17 @@ class Shake(Swing):
 
 @dataclass(frozen=True, slots=True)
 class Walk(Swing):
-    """A step of a walk. level : height of the ground where it lands, metres"""
+    """A step of a walk. level : height of the ground at the landing, metres"""
 
     level: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Jump(Swing):
-    """With the other foot, off the ground at once: the sole rises and falls as the body does.
+    """The move of one foot in a jump with both feet: the sole rises and falls as the body does.
 
-    tuck : metres that the foot is pulled up more; middles : (x, z) between the feet before and after
-    line_turn : radians that the line between the feet turns; round : the part of the way that goes round that middle,
+    tuck : metres that the foot is pulled up in addition; middles : (x, z) between the feet before and after the jump
+    line_turn : radians that the line between the feet turns; round : the part of the path that goes around the middle;
     the rest is straight
     """
 
@@ -122,13 +122,14 @@ class Jump(Swing):
     round: float = 0.5
 
 
-# seconds, a frame of a film: in streams feet leave so long before the other one lands, and nobody sees that as a flight
+# seconds, one frame of a film: in streams feet leave this long before the other foot lands, which is not a visible
+# flight
 LEAST_FLIGHT = 0.0166
 
 
 @dataclass(frozen=True, slots=True)
 class FootTrack:
-    """All moves of a foot in order of time, never overlapping; where it stood before the first, and on what level."""
+    """All moves of a foot in order of time, never overlapping; its place and level before the first move."""
 
     start: tuple[float, float]
     start_yaw: float
@@ -138,7 +139,7 @@ class FootTrack:
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """The body turns from where it was to `yaw` (radians, unwrapped) between `start` and `end` (seconds)."""
+    """A turn of the body from its yaw before to `yaw` (radians, unwrapped) between `start` and `end` (seconds)."""
 
     start: float
     end: float
@@ -149,7 +150,7 @@ class Turn:
 class Press:
     """A palm is on a panel from `start` to `end`; side 0 left, 1 right; target (x, z).
 
-    turn : radians that the body turns to the hand's side for it, because the panel lies behind; positive left
+    turn : radians that the body turns to the side of the hand, because the panel lies behind it; positive left
     lead : seconds that the hand has for the way down, after its last panel
     """
 
@@ -163,9 +164,9 @@ class Press:
 
 @dataclass(frozen=True, slots=True)
 class Route:
-    """A walk from `start` to `end`, seconds, with the landings in between, the first one of foot `first`.
+    """A walk from `start` to `end`, seconds, with the landings in between. The first landing is by foot `first`.
 
-    gait : "flat" or "heels"; share : 0 to 1, how much of its quick form is in it
+    gait : "flat" or "heels"; share : 0 to 1, how much of the quick form of the gait the walk has
     """
 
     start: float
@@ -177,17 +178,17 @@ class Route:
 
 
 def chance_of(*numbers: int) -> np.random.Generator:
-    """Random numbers that are always the same for the same whole numbers, some of which may be negative."""
+    """Return a random generator that is always the same for the same whole numbers, which may be negative."""
     return np.random.default_rng([number & 0xFFFFFFFF for number in numbers])
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Everything that the chart asks of the dancer.
+    """The plan of a dance: everything that the chart asks of the dancer.
 
-    touches : what presses which panel from when on, and until when at the latest, in order
+    touches : the limb on each panel, its first second and its latest last second, in order
     first, last : seconds at which the first contact of the song begins and the last one ends
-    grips : when her hands rest on the bar behind her, as in `Motion`; walks : in order of time
+    grips : when the dancer's hands rest on the bar behind her, as in `Motion`; walks : in order of time
     lead : the foot that leads, 0 left or 1 right. It decides where both sides are equal, so that the mirror image of a
     play is danced as the mirror image
     let_go : notes that the dancer does not play, in order of time
@@ -206,28 +207,28 @@ class Plan:
 
     @property
     def song(self) -> tuple[int, int]:
-        """Milliseconds of the first and the last contact: they identify a song for random choices, mirrored or in
-        pieces.
+        """Milliseconds of the first and the last contact: the seed of random choices for a song, mirrored
+        or in pieces.
         """
         return round(1000 * self.first), round(1000 * self.last)
 
     @property
     def hand(self) -> float:
-        """1 for a plan that the left foot leads, -1 for its mirror image: the handedness, not a hand of the dancer's.
+        """1 for a plan that the left foot leads, -1 for its mirror image: the handedness of the plan, not a hand.
 
-        What chance chooses (to sway left or right) is multiplied by it, so that a mirrored play is danced mirrored.
+        Random choices (to sway left or right) are multiplied by it, so that a mirrored play is danced mirrored.
         """
         return 1.0 - 2.0 * self.lead
 
     @property
     def contacts(self) -> tuple[Contact, ...]:
-        """What presses which panel, and how long: until the foot leaves, or at the latest until its touch ends."""
+        """The limb on each panel, and how long: until the foot leaves, or at the latest until its touch ends."""
         lifts = [[move.lift for move in track.moves if isinstance(move, Swing)] for track in self.feet]
         return tuple(_ended(touch, lifts[touch.limb]) if touch.limb < len(lifts) else touch for touch in self.touches)
 
     @property
     def flights(self) -> Array:
-        """Intervals (n, 2) of seconds in which neither foot is on the ground, in order."""
+        """The intervals (n, 2) of seconds in which neither foot is on the ground, in order."""
         return airborne(self.feet)
 
 
@@ -237,7 +238,7 @@ def _ended(touch: Contact, lifts: list[float]) -> Contact:
 
 
 def airborne(feet: tuple[FootTrack, FootTrack]) -> Array:
-    """Intervals (n, 2) of seconds in which neither foot is on the ground, in order."""
+    """Return the intervals (n, 2) of seconds in which neither foot is on the ground, in order."""
     out = []
     left, right = ([m for m in f.moves if isinstance(m, Swing)] for f in feet)
     i = j = 0

@@ -1,4 +1,4 @@
-"""The dance that the user wants, and its chart: read and checked before anything slow is done."""
+"""The dance that the user requests, and its chart: read and checked before the slow work begins."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.feet.preset import Preset
 
-FPS = 60.0  # frames per second that a dance is baked at, unless a file with others is wanted
+FPS = 60.0  # frames per second of a baked dance, unless a file with another rate is requested
 
 
 def _style_sources(style: str) -> object:
@@ -30,19 +30,20 @@ def _style_sources(style: str) -> object:
 
 @dataclass(frozen=True, slots=True)
 class DanceRequest:
-    """The dance that the user wants. Pickles, so that another process can do it.
+    """The dance that the user requests. It can be pickled, so that another process can bake it.
 
-    path : the chart file; selection : which chart
-    preset : name or file of the solver's costs, None: what `feet.preset` finds for the chart
-    play : a JSON file of analyze whose feet replace the solver's
-    rates : speeds of the music, 1 is its own; notes that nobody plays at the fastest one are not danced at any
+    path : the chart file; selection : the chart in it
+    preset : name or file of the solver's costs; None: the preset that `feet.preset` finds for the chart
+    play : a JSON file of analyze whose feet replace the feet of the solver
+    rates : speeds of the music, 1 is the original; a note that is not played at the fastest rate is not danced at any
+    rate
     fps : regular keys per second
-    bar : the dancer holds the bar behind the pad; gait : name or file of how she walks on and off
-    form : name or file of how she stands and turns
-    motion : file with numbers that replace those of configs/motion.yaml
+    bar : whether the dancer holds the bar behind the pad; gait : name or file of the way she walks on and off
+    form : name or file of the way she stands and turns
+    motion : file with numbers that replace numbers of configs/motion.yaml
     style : name or file of the style in which a ragdoll follows the dancer, or a blend, as
     `dance.physics.blend.load_choice` takes it; None: no ragdoll
-    push, trip : what disturbs her, as `dance.physics.pushes.parse_push` takes it, and seconds of the song; only with a
+    push, trip : disturbances, as `dance.physics.pushes.parse_push` takes them, and seconds of the song; only with a
     style
     """
 
@@ -63,9 +64,9 @@ class DanceRequest:
 
 @dataclass(frozen=True, slots=True)
 class ChartChoice:
-    """The chart of a request. chart : as it is written; parts : what each dancer plays, one part for most charts
+    """The chart of a request. chart : as it is written; parts : the part of each dancer; most charts have one part
 
-    presets : the solver's costs, for each part; warnings : lines for people, of other pads than a preset's
+    presets : the solver's costs, for each part; warnings : lines for the user about pads that do not fit a preset
     """
 
     song: Song
@@ -76,14 +77,14 @@ class ChartChoice:
 
     @property
     def dancer_chart(self) -> Chart:
-        """The part of the one dancer; for two dancers, the chart as it is written."""
+        """The part of a single dancer; for two dancers, the chart as it is written."""
         return self.parts[0] if len(self.parts) == 1 else self.chart
 
 
 def check_request(request: DanceRequest) -> None:
-    """Check the files and names of a request: FileError or UsageError, before the work.
+    """Check the files and names of a request before the slow work. Raises FileError or UsageError.
 
-    UnavailableError if a style is wanted and there is no engine for it.
+    Raises UnavailableError if a style is requested and its engine is not installed.
     """
     from dancetutor_cli.dance.gait import load_gait
 
@@ -103,12 +104,12 @@ def check_request(request: DanceRequest) -> None:
 
 
 def with_style(request: DanceRequest) -> DanceRequest:
-    """The request with the style `neutral` if it names no style but has a push or trip."""
+    """Return the request with the style `neutral` if it has a push or trip but names no style."""
     return replace(request, style="neutral") if request.style is None and (request.push or request.trip) else request
 
 
 def choice_for(path: Path, given: str | None) -> PresetChoice:
-    """The presets of the charts of a file, with the nearest dancetutor.yaml up the tree."""
+    """Return the presets for the charts of a file, with the nearest dancetutor.yaml up the folder tree."""
     if given is not None:
         return choice_of(given)
     settings = find_settings_file(path.absolute().parent)
@@ -120,9 +121,9 @@ def choice_for(path: Path, given: str | None) -> PresetChoice:
 
 
 def read_chart(request: DanceRequest, section: str | None = None) -> ChartChoice:
-    """Read the file and choose the chart. DancetutorError of one line for everything that is wrong with the request.
+    """Read the file and choose the chart. Raises a DancetutorError of one line for each error in the request.
 
-    section : checked here, so that a slip is reported before a chart is read
+    section : checked here, so that an error in it is reported before a chart is read
     """
     from dancetutor_cli.dance.two import check_alone
 
@@ -143,12 +144,12 @@ def read_chart(request: DanceRequest, section: str | None = None) -> ChartChoice
 
 
 def section_of(chart: ChartChoice, section: str, end: float) -> tuple[float, float]:
-    """First and last second of the song of a section as the user wrote it; `end` is the last one that there may be."""
+    """Return the first and last second of a section that the user wrote. `end` is the largest allowed second."""
     return part_of(section, chart.song, chart.parts[0], chart.presets[0], end)
 
 
 def no_pad(request: DanceRequest, chart: Chart) -> UsageError:
-    """The error of a steps type on whose pad nobody can dance."""
+    """Return the error for a steps type without a known pad."""
     return UsageError(
         f"{request.path}: no pad is known for steps type '{chart.steps_type}', so there is nobody to bake"
     )

@@ -1,8 +1,8 @@
-"""The fixed point of a bake: the path of the body depends on how the body is bent, and that depends on the path.
+"""The fixed point of a bake: the path of the body depends on how the body is bent, and the bend depends on the path.
 
-Each round bakes roughly, measures where the centre of mass is over the root, how far pinned palms pulled it down and
-which ankles bend too far, and plans the path again. Without palms two rounds are enough; the rest is corrected frame by
-frame (`dance.bake`).
+Each round bakes roughly, measures three things and plans the path again: where the centre of mass is over the root, how
+far pinned palms pulled it down, and which ankles bend too far. Without palms two rounds are enough; the rest is
+corrected frame by frame (`dance.bake`).
 """
 
 from __future__ import annotations
@@ -29,19 +29,19 @@ from dancetutor_cli.dance.units import Array
 from dancetutor_cli.dance.waits import waiting_at
 from dancetutor_cli.feet.limbs import Limb, Part
 
-ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # rounds of rough baking before the path of the body is final
-TIGHTENED = 3  # rounds of tightening the limits of balance in the last of those
-COARSE = 4  # a round bakes only every so many samples of the path
-OFFSET_SMOOTH = 0.010  # seconds over which the centre of mass is smoothed as seen from the pelvis
-GIVES_SPAN = 0.12  # seconds over which a knee turns for its ankle's sake
-AROUND_PRESS = 0.05  # seconds around a press in which its palm may draw the root
+ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # rounds of rough baking until the path of the body is final
+TIGHTENED = 3  # rounds of tightening the limits of balance in the last of these rounds
+COARSE = 4  # a round bakes only one of this many samples of the path
+OFFSET_SMOOTH = 0.010  # seconds over which the path of the centre of mass from the pelvis is smoothed
+GIVES_SPAN = 0.12  # seconds in which a knee turns to keep its ankle within limits
+AROUND_PRESS = 0.05  # seconds around a press in which its palm may pull the root
 
 
 @dataclass(frozen=True, slots=True)
 class SettledTrajectory:
-    """The trajectory that is final, after `rounds` of rough baking.
+    """The final trajectory, after `rounds` of rough baking.
 
-    residuals : metres, for each round how far the centre of mass was at most from where its path took it to be
+    residuals : metres, for each round the largest distance of the centre of mass from its planned place
     """
 
     trajectory: Trajectory
@@ -49,12 +49,12 @@ class SettledTrajectory:
 
     @property
     def rounds(self) -> int:
-        """How often it was baked roughly."""
+        """The number of rough bakes."""
         return len(self.residuals)
 
 
 def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> SettledTrajectory:
-    """Bake roughly, measure what the path did not know, and plan it again; times (n,) even, feet sampled there."""
+    """Bake roughly, measure the pose, and plan the path again; times (n,) are even, and `feet` is sampled there."""
     settings, rate = context.settings, context.settings.sampling.work_rate
     body = body_trajectory(plan, times, feet, context)
     coarse, ones = times[::COARSE], np.ones(len(times))
@@ -90,7 +90,7 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> SettledTra
 
 
 def _around(coarse: Array, gives: Array, times: Array) -> Array:
-    """How far (n, 2) knees turn at `times` (n,), softly before and after they must by (f, 2) radians at `coarse`."""
+    """Return how far (n, 2) knees turn at `times` (n,), radians: softly around the turns (f, 2) at `coarse` (f,)."""
     out = np.zeros((len(times), 2))
     for side, sign in product((0, 1), (1.0, -1.0)):
         if (sign * gives[:, side]).max() > 0.0:
@@ -106,20 +106,18 @@ def targets_at(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], contex
 
 
 def mass_of(skeleton: Skeleton, poses: Poses) -> Array:
-    """Centre of mass (f, 3) of solved frames."""
+    """Return the centre of mass (f, 3) of solved frames."""
     return centre_of_mass(skeleton, *world_transforms(skeleton, poses.rotations, poses.root))
 
 
 def hips_of(skeleton: Skeleton, poses: Poses) -> Array:
-    """From the root to each hip (f, 2, 3) of solved frames."""
+    """Return the vectors from the root to each hip (f, 2, 3) of solved frames."""
     pelvis = poses.rotations[:, 0]
     return np.stack([quat.rotate(pelvis, skeleton.offsets[skeleton.index(f"{s}_hip")]) for s in SIDES], axis=1)
 
 
 def _deeper(plan: Plan, deeper: Array, at: Array, drawn: Array, context: Context) -> Array:
-    """How much deeper (p,) the body bends for each press, after palms have pulled the root by (f,) metres at times
-    `at`.
-    """
+    """How much deeper (p,) the body bends for each press, after palms have pulled the root by `drawn` (f,) metres."""
     out, most = deeper.copy(), max(context.settings.hands.pelvis - context.settings.hands.lowest, 0.0)
     for k, press in enumerate(plan.presses):
         near = (at >= press.start - AROUND_PRESS) & (at <= press.end + AROUND_PRESS)
@@ -129,7 +127,7 @@ def _deeper(plan: Plan, deeper: Array, at: Array, drawn: Array, context: Context
 
 
 def _heels_up(rotations: Array, context: Context) -> tuple[Array, Array]:
-    """How far (f,) each heel must rise so that its ankle stays within its limits, radians."""
+    """Return how far (f,) each heel must rise so that its ankle stays within its limits, radians."""
     limit, most = np.radians((context.settings.step.ankle_limit, context.settings.step.ankle_most))
     out = []
     for side in "lr":
@@ -140,9 +138,9 @@ def _heels_up(rotations: Array, context: Context) -> tuple[Array, Array]:
 
 
 def heels_may_rise(plan: Plan, times: Array, down: float) -> Array:
-    """How much (n, 2) each heel may rise for its ankle's sake, 0 to 1: not while it presses a panel.
+    """Return how much (n, 2) each heel may rise for the ankle, 0 to 1; 0 while the heel presses a panel.
 
-    down : seconds in which it comes down for that
+    down : seconds in which the heel comes down before a press
     """
     out = np.ones((len(times), 2))
     for contact in (c for c in plan.contacts if c.limb < Limb.LEFT_HAND and c.part == Part.HEEL):

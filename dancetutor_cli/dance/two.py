@@ -1,4 +1,4 @@
-"""Charts for two dancers: the pad under both, and where on it each of them stands."""
+"""Charts for two dancers: the pad under both, and the place of each dancer on it."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.request import DanceRequest
     from dancetutor_cli.feet.pads import Pad
 
-SIDE_NOTES = 8  # notes at either end that show where a player stands
-# Steps type as written -> the pad on which both stand: in couple charts each has half of it. Otherwise its own pad.
+SIDE_NOTES = 8  # notes at either end that decide where a player stands
+# Steps type as written -> the pad under both dancers. In couple charts each has half of it; otherwise her own pad.
 _WHOLE = {**ONE_PAD, **{kind: f"{kind.partition('-')[0]}-double" for kind in OWN_PADS}}
 
 
 def check_alone(request: DanceRequest, chart: Chart) -> None:
-    """UsageError if a request cannot be met for all dancers of a chart: each of them can dance alone.
+    """Raise UsageError if a request cannot be met for all dancers of a chart. Each of them can dance alone.
 
-    No picture has a third dancer, and what a request sets for one dancer does not hold for two.
+    A picture has room for two dancers, and some options of a request are only for one dancer.
     """
     count = len(chart.players)
     if count > 2:
@@ -41,25 +41,25 @@ def check_alone(request: DanceRequest, chart: Chart) -> None:
 
 
 def pad_of_both(steps_type: str) -> Pad:
-    """The pad under both dancers of a chart for two. steps_type : as the chart is written"""
+    """Return the pad under both dancers of a chart for two. steps_type : as the chart is written"""
     pad = load_pad(_WHOLE.get(steps_type, steps_type))
     assert pad is not None
     return pad
 
 
 def place_on(whole: Pad, part: Chart, pad: Pad) -> tuple[float, float]:
-    """The place of a player's own pad from the middle of the pad of both: (x, z) in metres of the world.
+    """Return the place of a player's own pad from the middle of the pad of both: (x, z) in metres of the world.
 
-    Panels' x goes to her right, the world's to her left.
+    The x of panels goes to the player's right, the x of the world to her left.
     """
     away = whole.panels[part.first_column] - pad.panels[0] + np.array(pad.centre) - np.array(whole.centre)
     return float(-away[0] * PANEL), float(away[1] * PANEL)
 
 
 def sides_of(parts: Sequence[Chart]) -> tuple[tuple[int, int], ...]:
-    """From which side each dancer comes and to which each goes, 0 left or 1 right: the outer ones.
+    """Return the side from which each dancer comes and the side to which she goes, 0 left or 1 right: the outer sides.
 
-    On one pad they may change places; then each goes to the other side, so that nobody walks through another.
+    On one pad the dancers may change places. Then each goes to the other side, so that their ways do not cross.
 
     parts : the players' parts of a chart, in their order
     """
@@ -70,13 +70,13 @@ def sides_of(parts: Sequence[Chart]) -> tuple[tuple[int, int], ...]:
 
 
 def persons_of(plays: Sequence[tuple[Play, Pad]]) -> tuple[int, ...]:
-    """The person of each dancer, as `Context.person`: 0 alone, otherwise 0 and 1.
+    """Return the person of each dancer, as `Context.person`: 0 for a single dancer, otherwise 0 and 1.
 
-    In the mirror image of a chart each stays who she was. Side and leading foot decide who is who; both change in the
-    mirror. If they do not decide, the times of notes and how far ahead they are do; these do not change. Only if two
-    plays are each other's mirror image is the left one first, so that the two are not twins.
+    In the mirror image of a chart, each dancer stays the same person. Side and leading foot decide the persons; both
+    change in the mirror image. If they do not decide, the times of notes and their distance ahead decide; these do not
+    change. Only if two plays are each other's mirror image, the left dancer comes first, so that the two are not twins.
 
-    plays : of each, from the left, with her own pad
+    plays : of each dancer, from the left, with her own pad
     """
     if len(plays) < 2:
         return (0,)
@@ -87,7 +87,7 @@ def persons_of(plays: Sequence[tuple[Play, Pad]]) -> tuple[int, ...]:
 
 
 def _ahead(one: tuple[Play, Pad], other: tuple[Play, Pad]) -> int:
-    """Which of two plays comes first, -1 or 1, by what is the same for mirror images; 0 for mirror images."""
+    """Return which of two plays comes first, -1 or 1, by properties that mirror images share; 0 for mirror images."""
     keys = []
     for play, pad in (one, other):
         row, column = np.nonzero(play.limb >= 0)
@@ -97,7 +97,9 @@ def _ahead(one: tuple[Play, Pad], other: tuple[Play, Pad]) -> int:
 
 
 def _on_the_right(parts: Sequence[Chart], whole: Pad, ends: slice) -> list[int]:
-    """The player who stands on the right, 1, by some of their notes: the latter half of them, from the left one on."""
+    """Return 1 for each player on the right, otherwise 0. Some of the notes decide, and the right half of the players
+    gets 1.
+    """
     columns = [part.first_column + part.notes.column[ends] for part in parts]
     places = [float(whole.panels[own, 0].mean()) if len(own) else 0.0 for own in columns]
     ranks = np.argsort(np.argsort(places, kind="stable"))
@@ -105,7 +107,7 @@ def _on_the_right(parts: Sequence[Chart], whole: Pad, ends: slice) -> list[int]:
 
 
 def merge_plays(chart: Chart, plays: Sequence[Play], whole: Pad) -> Play:
-    """The steps of both as one play of the chart as it is written: who steps what, and what happens; no costs."""
+    """Return the steps of both dancers as one play of the chart as it is written: limbs and moves, without costs."""
     rows = prepare(chart, whole)
     limb = np.full(rows.steps.shape, int(Limb.NONE), dtype=np.int8)
     part = np.zeros(rows.steps.shape, dtype=np.uint8)

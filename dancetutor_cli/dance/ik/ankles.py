@@ -1,4 +1,4 @@
-"""Ankles within their limits, and soles that roll if an ankle would bend too far."""
+"""Ankles within their limits, and soles that roll where an ankle would otherwise bend too far."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Part
 from dancetutor_cli.feet.play import runs
 
-# Ankles within their limits: feet in the air follow their shanks, and over feet that stand the knees turn.
+# Ankles within their limits: feet in the air follow their shanks, and the knees over standing feet turn.
 
 MARGIN = 0.5  # degrees inside the limit
-# angles of a knee that are tried
+# angles of a knee, in the order in which they are tried
 GIVES = np.radians([0.0, 4.0, -4.0, 8.0, -8.0, 12.0, -12.0, 16.0, -16.0, 20.0, -20.0, 24.0, -24.0])
-NEAR, ROOM = 2.0, 1.0  # degrees from its limit at which an ankle is checked, and that it keeps afterwards
-UNDER, HALVINGS = 2e-4, 6  # metres under the ground that a turning sole may be; halvings to find how far it turns
+NEAR, ROOM = 2.0, 1.0  # degrees from its limit at which an ankle is checked; degrees kept to the limit afterwards
+UNDER, HALVINGS = 2e-4, 6  # metres that a turning sole may be under the ground; halvings to find how far it turns
 UP_FROM, UP_TO = 0.004, 0.030  # metres over the ground between which a foot becomes free to turn: lower, it would touch
 
 
 def ease_ankles(skeleton: Skeleton, poses: Poses, feet: tuple[FootPath, FootPath]) -> None:
     """Turn feet back in place, as far as their soles stay over the ground; `feet` at the times of the poses.
 
-    Ankles stay where they are.
+    Ankles stay in their places.
     """
     for side, foot in enumerate(feet):
         name = f"{'lr'[side]}_talocrural"
@@ -61,23 +61,24 @@ def ease_ankles(skeleton: Skeleton, poses: Poses, feet: tuple[FootPath, FootPath
 
 
 def _lowest(skeleton: Skeleton, poses: Poses, side: int) -> Array:
-    """How high (f,) the lowest point of a sole is, metres."""
+    """Return the height (f,) of the lowest point of a sole, metres."""
     points = points_in_world(skeleton, sole_points(skeleton)[side], *poses)
     return np.asarray(points[..., 1].min(axis=1))
 
 
 def freedom(foot: FootPath) -> Array:
-    """How free (f,) a foot is to turn with its shank, 0 to 1: not on the ground, nor where it would touch it."""
+    """Return how free (f,) a foot is to turn with its shank: 0 on the ground or close to it, 1 in the air."""
     up = np.clip((foot.ball[:, 1] - UP_FROM) / (UP_TO - UP_FROM), 0.0, 1.0)
     return np.where(foot.down, 0.0, up)
 
 
 def giving_knees(skeleton: Skeleton, poses: Poses, around: int) -> Array:
-    """How far (f, 2) knees have to turn outward about the lines from hips to ankles, radians, so that ankles of feet
-    that stand, or nearly stand, are within their limits. The turn is as small as possible, and the same in each stretch
-    of frames.
+    """Return the turns (f, 2) of knees outward about hip-ankle lines, radians, that keep ankles within their limits.
 
-    around : frames before and after a stretch in which they turn and turn back; it must do no harm there either
+    This is for feet that stand, or nearly stand. The turn is as small as possible, and the same in each stretch of
+    frames.
+
+    around : frames before and after a stretch in which the knees turn and turn back; they must do no harm there either
     """
     out = np.zeros((len(poses.root), 2))
     for side, name in enumerate("lr"):
@@ -93,8 +94,10 @@ def giving_knees(skeleton: Skeleton, poses: Poses, around: int) -> Array:
 
 
 def _least_give(skeleton: Skeleton, poses: Poses, inside: NDArray[np.bool_], name: str) -> float:
-    """How far one knee turns outward. It is 0 if no turn brings ankle and hip within their limits in the frames
-    `inside`, in which the foot is low, without making any other frame worse.
+    """Return how far one knee turns outward: the smallest turn that brings ankle and hip within their limits.
+
+    It is measured in the frames `inside` in which the foot is low, and must make no other frame worse. If there is no
+    such turn, the result is 0.
     """
     hip, knee, ankle, ball = (skeleton.index(f"{name}_{n}") for n in ("hip", "knee", "talocrural", "metatarsal"))
     places, world = world_transforms(skeleton, poses.rotations, poses.root)
@@ -117,19 +120,19 @@ def _least_give(skeleton: Skeleton, poses: Poses, inside: NDArray[np.bool_], nam
     return float(GIVES[int(np.argmax(worst <= least))]) if least <= ROOM else 0.0
 
 
-# Soles that roll: a foot whose ankle would bend too far comes down on an edge, or with its heel up, and lies flat as
+# Soles that roll: where its ankle would bend too far, a foot lands on an edge, or with its heel up, and becomes flat as
 # the body comes over it.
 
 ROUNDS = 4  # rounds of turning a sole and checking the result
-MOST = np.radians((18.0, 20.0))  # that a sole rolls, and that its heel rises
+MOST = np.radians((18.0, 20.0))  # radians that a sole rolls at most, and that its heel rises at most
 PRESSED, FADE = 0.006, 0.04  # seconds around a note in which a sole does not roll off its panel, and in which it begins
 
 
 @dataclass(frozen=True, slots=True)
 class Edges:
-    """The edges, at smaller and at larger x, of a sole that lies flat, as seen from the joint of its ball.
+    """The two edges, at smaller and at larger x, of a sole that lies flat, as seen from the joint of its ball.
 
-    balls : (2, 3) where they are beside the ball; lines : (2, 3) unit vectors along them; ankle : (3,)
+    balls : (2, 3) places of the edges beside the ball; lines : (2, 3) unit vectors along them; ankle : (3,)
     """
 
     balls: Array
@@ -139,9 +142,9 @@ class Edges:
 
 @dataclass(frozen=True, slots=True)
 class RollingSole:
-    """A foot in m frames, world rotations (m, 4): of its shank, of itself, and of a flat foot with the same yaw.
+    """A foot in m frames. World rotations (m, 4): of its shank, of the foot, and of a flat foot with the same yaw.
 
-    give : (m, 2) how much it may roll and its heel rise, 0 to 1
+    give : (m, 2) how much the foot may roll and its heel may rise, 0 to 1
     """
 
     name: str
@@ -152,7 +155,7 @@ class RollingSole:
 
 
 def edges_of(skeleton: Skeleton, side: int) -> Edges:
-    """The edges of the left (0) or the right sole."""
+    """Return the edges of the left (0) or the right sole."""
     name, points = "lr"[side], sole_points(skeleton)[side]
     ball = skeleton.rest[skeleton.index(f"{name}_metatarsal")]
     places = np.array([skeleton.rest[p.joint] + p.offset - ball for p in points[:4]])
@@ -164,9 +167,9 @@ def edges_of(skeleton: Skeleton, side: int) -> Edges:
 def rolled_soles(
     skeleton: Skeleton, plan: Plan, posed: tuple[Array, Feet, Targets, Poses], rises: Array
 ) -> Targets | None:
-    """Targets with which the ankles of feet on the ground, or a little over it, are within their limits.
+    """Return targets with which the ankles of feet on the ground, or a little over it, are within their limits.
 
-    A foot that touches the ground, or would touch it, stays. None if nothing has to change.
+    A foot that touches the ground, or would touch it, keeps its place. Returns None if no target changes.
 
     posed : times (f,), feet, targets and poses there; rises : (f, 2) how much heels may rise, 0 to 1
     """
@@ -194,9 +197,9 @@ def rolled_soles(
 
 
 def may_roll(plan: Plan, side: int, at: Array) -> Array:
-    """How much (f,) a foot may roll at times `at` (f,), 0 to 1.
+    """Return how much (f,) a foot may roll at times `at` (f,), 0 to 1.
 
-    Not while it stands and turns on its ball, which would slide.
+    It may not roll in a stand in which it turns on its ball, because it would slide.
     """
     out = np.ones(len(at))
     swings = [move for move in plan.feet[side].moves if isinstance(move, Swing)]
@@ -209,8 +212,9 @@ def may_roll(plan: Plan, side: int, at: Array) -> Array:
 
 
 def _pressing(plan: Plan, side: int, edge: Array, at: Array) -> Array:
-    """How much (f,) a sole may roll onto an edge that is at (f, 3), 0 to 1. It may not while it presses a panel beside
-    that edge, or two panels.
+    """Return how much (f,) a sole may roll onto an edge that is at (f, 3), 0 to 1.
+
+    It is 0 while the sole presses a panel beside that edge, or two panels.
     """
     out = np.ones(len(at))
     for contact in (c for c in plan.contacts if c.limb == side):
@@ -222,12 +226,12 @@ def _pressing(plan: Plan, side: int, edge: Array, at: Array) -> Array:
 
 
 def _down(angles: Array) -> NDArray[np.int64]:
-    """Which edge (m,) of a sole that rolls stays on the ground."""
+    """Return which edge (m,) of a rolling sole stays on the ground."""
     return np.asarray(angles[:, 0] < 0.0, dtype=np.int64)
 
 
 def _turns(angles: Array, straight: Array, edges: Edges) -> tuple[Array, Array]:
-    """World rotations (m, 4) of toes and of the foot. The rise of the heel turns the foot before it rolls.
+    """Return the world rotations (m, 4) of toes and foot. The rise of the heel turns the foot before it rolls.
 
     angles : (m, 2) radians that the sole rolls, its larger x up, and that its heel rises
     """
@@ -237,7 +241,7 @@ def _turns(angles: Array, straight: Array, edges: Edges) -> tuple[Array, Array]:
 
 
 def _angles(skeleton: Skeleton, sole: RollingSole, edges: Edges) -> Array:
-    """How far (m, 2) a sole rolls and its heel rises, as in `_turns`, for its ankle to be within its limits."""
+    """Return how far (m, 2) a sole rolls and its heel rises, as in `_turns`, so that its ankle is within its limits."""
     axes = [quat.rotate(sole.straight, np.array(axis)) for axis in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0))]
     angles, least, most = np.zeros((len(sole.turn), 2)), [-MOST[0], 0.0], MOST
     for _ in range(ROUNDS):

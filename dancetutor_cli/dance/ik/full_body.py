@@ -33,9 +33,9 @@ from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
 # The kernels of the full-body inverse kinematics, on plain arrays, grouped by subject.
 
-ARM_REACH = 0.990  # part of the arm's length that a hand is led to at most
+ARM_REACH = 0.990  # the longest reach of a hand, as a part of the arm's length
 LOW, HIGH = SPINE_SHARES
-ROUNDING = 0.03  # metres that the spine's middle is bent backward before it is solved
+ROUNDING = 0.03  # metres that the middle of the spine is bent backward before the solver starts
 PULL_LEGS = 60  # rounds of pulling the root until both legs reach
 PULL_ROUNDS = 24  # rounds of pulling the body after a pinned palm
 
@@ -46,14 +46,14 @@ NAMES = (
     "l_sternoclavicular", "l_shoulder", "l_elbow", "l_radiocarpal",
     "r_sternoclavicular", "r_shoulder", "r_elbow", "r_radiocarpal",
 )  # fmt: skip
-# places of the names above in the index array; the legs are one after the other, and so are the arms
+# indices in `NAMES`; each leg and each arm has four joints, left before right
 VL5, VT10, VT4, LEG, ARM = (NAMES.index(n) for n in ("vl5", "vt10", "vt4", "l_hip", "l_sternoclavicular"))
 
 
 class Rig(NamedTuple):
-    """What the kernels know of a skeleton: offsets (j, 3), indices of `NAMES`, axes (2, 3) of the elbows.
+    """The data of a skeleton for the kernels: offsets (j, 3), indices of `NAMES`, axes (2, 3) of the elbows.
 
-    arm : its length; reach, follow : as in `solve`
+    arm : length of the arm; reach, follow : as in `solve`
     """
 
     offsets: Array
@@ -65,7 +65,7 @@ class Rig(NamedTuple):
 
 
 class Trunk(NamedTuple):
-    """The part of `Targets` between pelvis and shoulders; the root is moved in place."""
+    """The part of `Targets` for the trunk, from pelvis to shoulders. The root is moved in place."""
 
     root: Array
     pelvis: Array
@@ -74,7 +74,7 @@ class Trunk(NamedTuple):
 
 
 class ArmTargets(NamedTuple):
-    """The part of `Targets` that is about hands."""
+    """The part of `Targets` for hands."""
 
     wrists: Array
     rotation: Array
@@ -84,7 +84,7 @@ class ArmTargets(NamedTuple):
 
 
 class LegTargets(NamedTuple):
-    """The part of `Targets` that is about legs."""
+    """The part of `Targets` for legs."""
 
     ankles: Array
     soles: Array
@@ -93,7 +93,7 @@ class LegTargets(NamedTuple):
 
 
 class ArmGoal(NamedTuple):
-    """Where one arm begins and its pinned hand must be, in f cases.
+    """The shoulder of one arm and the target of its pinned hand, in f cases.
 
     shoulders, wrists : (f, 3) places; chest, hands : (f, 4) world rotations; elbows : (f, 3) directions
     """
@@ -112,7 +112,7 @@ def rig_of(skeleton: Skeleton, reach: float = 0.0, follow: float = 0.0) -> Rig:
 
 
 def _hinges(skeleton: Skeleton, joints: NDArray[np.int64]) -> Array:
-    """Axes (2, 3) of the elbows, which bend forward: square to the arm and to the front."""
+    """Return the axes (2, 3) of the elbows, which bend forward: square to the arm and to the front."""
     out = np.zeros((2, 3))
     for side in (0, 1):
         arm = skeleton.offsets[joints[ARM + 4 * side + 2]]
@@ -144,7 +144,7 @@ def _pull_root(root: Vec, pelvis: Quat, hips: tuple[Vec, Vec], ankles: tuple[Vec
         far_a, far_b = length(a) - reach, length(b) - reach
         if far_a < 1e-6 and far_b < 1e-6:
             break
-        # if both legs are too short each pulls half: neither comes first
+        # if both legs are too short, each pulls half, so neither has precedence
         share = 0.5 if far_a > 0.0 and far_b > 0.0 else 1.0
         if far_a > 0.0:
             root = add(root, scale(a, share * far_a / length(a)))
@@ -173,7 +173,7 @@ def _chain(start: Vec, between: tuple[Vec, Vec], end: Vec, lengths: tuple[float,
 
 @inner_kernel
 def _chest(up: Vec, across: Vec, rest_up: Vec) -> Quat:
-    """Chest rotation from where its middle line and its shoulder line point."""
+    """Return the chest rotation from the directions of its middle line and of its shoulder line."""
     x = unit(sub(across, scale(up, dot(across, up))))
     rest_x = (1.0, 0.0, 0.0)
     return qmul(qframe(x, up, cross(x, up)), qconj(qframe(rest_x, rest_up, cross(rest_x, rest_up))))
@@ -183,7 +183,7 @@ def _chest(up: Vec, across: Vec, rest_up: Vec) -> Quat:
 def _torso(
     root: Vec, pelvis: Quat, chest: Quat, shoulders: tuple[Vec, Vec], rig: Rig
 ) -> tuple[Quat, Quat, Quat, Vec, Vec]:
-    """Rotations of vl5, vt10, vt4 (world) and the shoulders' positions for wanted shoulder positions."""
+    """Return the world rotations of vl5, vt10, vt4 and the shoulders' positions, for wanted shoulder positions."""
     offsets, joints = rig.offsets, rig.joints
     left, right = shoulders
     o10, o4 = _vec(offsets[joints[2]]), _vec(offsets[joints[3]])
@@ -205,7 +205,7 @@ def _torso(
 
 @inner_kernel
 def _aim(q: Quat, bone: Vec, direction: Vec) -> Quat:
-    """q, swung by as little as needed so that the bone points in the direction."""
+    """Return q, swung by as little as needed so that the bone points in the direction."""
     return qmul(qbetween(unit(qrot(q, bone)), unit(direction)), q)
 
 
@@ -244,7 +244,7 @@ def solve_frames(rig: Rig, trunk: Trunk, hands: ArmTargets, legs: LegTargets, ro
 
 @inner_kernel
 def _excess(shoulder: Vec, wrist: Vec, most: float, weight: float) -> Vec:
-    """How far a shoulder is from where its arm could reach the wrist's target."""
+    """Return the vector by which an arm misses its wrist's target, times the squared weight."""
     v = sub(wrist, shoulder)
     d = length(v)
     return scale(v, weight * weight * max(0.0, d - most) / max(d, 1e-9))
@@ -252,7 +252,7 @@ def _excess(shoulder: Vec, wrist: Vec, most: float, weight: float) -> Vec:
 
 @inner_kernel
 def _arm(at: tuple[int, int], shoulder: Vec, chest: Quat, rig: Rig, hands: ArmTargets, out: Array) -> None:
-    """One arm; at : frame and side."""
+    """Solve one arm. at : frame and side"""
     f, side = at
     offsets, joints, base = rig.offsets, rig.joints, ARM + 4 * side
     upper, lower = _vec(offsets[joints[base + 2]]), _vec(offsets[joints[base + 3]])
@@ -270,8 +270,10 @@ def _arm(at: tuple[int, int], shoulder: Vec, chest: Quat, rig: Rig, hands: ArmTa
 
 @inner_kernel
 def _turned_share(half_cosine: float, pinned: float) -> float:
-    """How far a hand that is partly pinned has turned from its forearm to lie as it must. It turns less if it would
-    have to turn by more than 106 degrees, because at 180 it would have to jump from one way round to the other.
+    """Return the share of a partly pinned hand's turn from its forearm to its wanted rotation.
+
+    The share is smaller if that turn is more than 106 degrees, because at 180 degrees the hand would jump from one way
+    round to the other.
     """
     near = min(abs(half_cosine) / 0.6, 1.0)
     return pinned * (1.0 - (1.0 - pinned**4) * (1.0 - near * near * (3.0 - 2.0 * near)))
@@ -279,7 +281,7 @@ def _turned_share(half_cosine: float, pinned: float) -> float:
 
 @inner_kernel
 def _leg(at: tuple[int, int], hip: Vec, pelvis: Quat, rig: Rig, legs: LegTargets, out: Array) -> None:
-    """One leg; at : frame and side."""
+    """Solve one leg. at : frame and side"""
     f, side = at
     offsets, joints, base = rig.offsets, rig.joints, LEG + 4 * side
     upper, lower = _vec(offsets[joints[base + 1]]), _vec(offsets[joints[base + 2]])
@@ -302,21 +304,21 @@ def one_arm(rig: Rig, side: int, goal: ArmGoal, out: Array) -> None:
         _arm((0, side), _vec(goal.shoulders[f]), _quat(goal.chest[f]), rig, hands, out[f])
 
 
-# Order of work in a frame (docs/motion.md): the root is pulled until both legs reach their feet; FABRIK (Aristidou and
-# Lasenby 2011) bends the torso, a chain that forks into two shoulders; shoulders whose pinned palm is out of reach are
-# pulled after it; then rotations of the torso, and closed-form limbs with a pole and a knee that stays soft.
+# Order of work in a frame (docs/motion.md): the root is pulled until both legs reach their feet. FABRIK (Aristidou and
+# Lasenby 2011) bends the torso, a chain that forks into two shoulders. Shoulders whose pinned palm is out of reach are
+# pulled after it. Then come the rotations of the torso, and closed-form limbs with a pole and a knee that stays soft.
 
 
 @dataclass(frozen=True, slots=True)
 class Targets:
-    """What the body must reach in f frames; the second axis of pairs is left, right. World, metres, unit quaternions.
+    """The targets of the body in f frames; the second axis of pairs is left, right. World, metres, unit quaternions.
 
-    pelvis : (f, 3) position of the root joint; pelvis_rotation : (f, 4); chest : (f, 4) its rotation
+    pelvis : (f, 3) position of the root joint; pelvis_rotation : (f, 4); chest : (f, 4) rotation of the chest
     shoulders : (f, 2, 3); wrists : (f, 2, 3); hand_rotation : (f, 2, 4) of a pinned hand
-    pinned : (f, 2), 0 for a free hand to 1 for a palm that must be where `wrists` says, with that rotation
+    pinned : (f, 2), from 0 for a free hand to 1 for a palm that must be at `wrists` with `hand_rotation`
     elbows : (f, 2, 3) directions; ankles : (f, 2, 3); soles, toes : (f, 2, 4) rotations
     knees : (f, 2, 3) directions
-    pull : (f, 2), 0 to 1, how much of a pinned hand's missing distance the body goes; None: as `pinned`
+    pull : (f, 2), 0 to 1, the part of a pinned hand's missing distance that the body moves; None: as `pinned`
     """
 
     pelvis: Array
@@ -335,7 +337,7 @@ class Targets:
 
 
 class Poses(NamedTuple):
-    """f solved frames: local rotations (f, j, 4), unit quaternions, and the root's place (f, 3), metres."""
+    """The f solved frames: local rotations (f, j, 4), unit quaternions, and the root's place (f, 3), metres."""
 
     rotations: Array
     root: Array
@@ -375,7 +377,7 @@ def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.
 
 
 def arm_rotations(skeleton: Skeleton, side: int, goal: ArmGoal) -> tuple[Array, Array, Array]:
-    """Only one arm whose hand is pinned: local rotations (f, 4) of its shoulder, elbow and wrist."""
+    """Solve only one arm whose hand is pinned: local rotations (f, 4) of its shoulder, elbow and wrist."""
     rig = rig_of(skeleton)
     out = np.zeros((len(goal.shoulders), len(skeleton.names), 4))
     one_arm(rig, side, goal, out)

@@ -18,7 +18,7 @@ from dancetutor_cli.dance.settings_arms import ArmSettings, BarSettings
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array, Flags
 
-# Targets of the hands, and the upper body that they hang from.
+# Targets of the hands, and the upper body from which the arms hang.
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Torso:
 class HandTargets:
     """Targets of both hands at f times, as in `full_body.Targets`; the second axis is left, right.
 
-    Arrays are changed in place by what leads a hand elsewhere: the bar first, then panels.
+    The arrays are changed in place when a hand goes elsewhere: to the bar first, then to panels.
     """
 
     wrists: Array
@@ -43,15 +43,15 @@ class HandTargets:
     elbows: Array
 
 
-# Which way a hand is turned if its palm lies on a panel, or on the rail behind the dancer.
+# The rotation of a hand whose palm lies on a panel, or on the rail behind the dancer.
 
-BACKWARD = np.array([[0.57, 0.0, -0.8216], [-0.57, 0.0, -0.8216]])  # where the fingers of a hand on the bar point
-STRAIGHT_BACK = np.array([0.0, 0.0, -1.0])  # and those of one that has crossed over before her
-ACROSS = np.array([[0.4, -0.55, 0.7], [-0.4, -0.55, 0.7]])  # where its elbow points: outward, down, ahead of the chest
+BACKWARD = np.array([[0.57, 0.0, -0.8216], [-0.57, 0.0, -0.8216]])  # directions of the fingers of a hand on the bar
+STRAIGHT_BACK = np.array([0.0, 0.0, -1.0])  # direction of the fingers of a hand that has crossed over in front of her
+ACROSS = np.array([[0.4, -0.55, 0.7], [-0.4, -0.55, 0.7]])  # directions of its elbow: outward, down, ahead of the chest
 
 
 def palm_down(skeleton: Skeleton, side: int, fingers: Array) -> Array:
-    """World rotation (4,) of a hand whose palm faces the ground, fingers along the horizontal unit vector (3,)."""
+    """The world rotation (4,) of a hand whose palm faces the ground, fingers along the horizontal unit vector (3,)."""
     along, normal = hand_direction(skeleton, SIDES[side]), palm_normal(skeleton, SIDES[side])
     down = np.array([0.0, -1.0, 0.0])
     rest = np.column_stack((along, normal, np.cross(along, normal)))
@@ -60,7 +60,7 @@ def palm_down(skeleton: Skeleton, side: int, fingers: Array) -> Array:
 
 
 def _from_matrix(m: Array) -> Array:
-    """Quaternion of a rotation matrix, by its largest component."""
+    """Return the quaternion of a rotation matrix, by the largest eigenvalue."""
     k = np.array([
         [m[0, 0] + m[1, 1] + m[2, 2], m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]],
         [0, m[0, 0] - m[1, 1] - m[2, 2], m[1, 0] + m[0, 1], m[0, 2] + m[2, 0]],
@@ -75,20 +75,21 @@ def _from_matrix(m: Array) -> Array:
 def rest_on_bar(
     bar: Bar, side: int, x: float | Array, skeleton: Skeleton, settings: BarSettings, across: bool = False
 ) -> tuple[Array, Array]:
-    """Wrist (3,), or (f, 3) for x (f,), and rotation (4,) of a hand whose palm lies on the rail at x.
+    """Return the wrist (3,), or (f, 3) for x (f,), and the rotation (4,) of a hand whose palm lies on the rail at x.
 
-    The fingers point back, a little outward, and down behind the rail; straight back where it has come `across` her.
+    The fingers point back, a little outward, and down behind the rail. After a hand has crossed over (`across`), they
+    point straight back.
     """
     dip = quat.from_axis_angle(np.array([1.0, 0.0, 0.0]), -np.radians(settings.dip))
     hand = quat.multiply(dip, palm_down(skeleton, side, STRAIGHT_BACK if across else BACKWARD[side]))
-    out = quat.rotate(dip, np.array([0.0, bar.radius, 0.0]))  # from the rail's middle to where the palm lies on it
+    out = quat.rotate(dip, np.array([0.0, bar.radius, 0.0]))  # from the middle of the rail to the palm on it
     along = np.asarray(x)[..., None] * np.array([1.0, 0.0, 0.0])
     over = np.array([0.0, bar.height, bar.behind]) + out - quat.rotate(hand, palm_points(skeleton)[side].offset)
     return along + over, hand
 
 
 def elbows_on_bar(chest: Array, settings: BarSettings) -> Array:
-    """Where elbows of hands on the bar point (f, 2, 3), for chests turned by (f, 4): back, and a little inward.
+    """Return the directions (f, 2, 3) of elbows of hands on the bar, back and a little inward, for chests (f, 4).
 
     Otherwise forearms would turn past their limits.
     """
@@ -98,18 +99,18 @@ def elbows_on_bar(chest: Array, settings: BarSettings) -> Array:
 
 
 def elbows_across(chest: Array) -> Array:
-    """Where elbows of hands point (f, 2, 3) that have crossed over to the bar before a chest turned by (f, 4)."""
+    """The directions (f, 2, 3) of elbows of hands that have crossed over to the bar, for chests turned by (f, 4)."""
     return quat.rotate(quat.swing_twist(chest, UP)[1][:, None], ACROSS)
 
 
-# Hands on the bar behind the dancer, and on their way to it: around the body.
+# Hands on the bar behind the dancer, and their way around the body to the bar.
 
-CLEAR = (0.34, 0.30)  # metres, half axes, aside and ahead, of what a hand on its way keeps clear of: trunk and forearm
-TRUNK = np.array([0.0, -0.30, 0.02])  # its middle as seen from the middle of the shoulders
-INWARD = 0.3  # radians from straight inward within which a hand ahead counts as behind
-LEAST = np.pi / 4  # radians inward from straight outward that the rail is at least for a hand that crosses over
-SOFT, FIRST, LAST = 8.0, 0.4, 2  # how sharply it is pushed out of there; how soon, and how long, as it goes to the rail
-PIN = 2  # power of a hand's share in the rail with which it turns to lie on it: later than the elbow, for the wrist
+CLEAR = (0.34, 0.30)  # metres, half axes, aside and ahead, of the ellipse that a moving hand avoids: trunk and forearm
+TRUNK = np.array([0.0, -0.30, 0.02])  # the middle of the ellipse, from the middle of the shoulders
+INWARD = 0.3  # radians around straight inward in which a hand ahead of the trunk counts as behind it
+LEAST = np.pi / 4  # least bearing of the rail for a hand that crosses over, radians inward from straight outward
+SOFT, FIRST, LAST = 8.0, 0.4, 2  # sharpness of the push out of the ellipse; its begin and end on the way to the rail
+PIN = 2  # power of a hand's share in the rail by which it turns onto it: later than the elbow, to spare the wrist
 
 
 def hold(grips: tuple[Grip, ...], at: Array, hands: HandTargets, torso: Torso, context: Context) -> None:
@@ -135,10 +136,10 @@ def hold(grips: tuple[Grip, ...], at: Array, hands: HandTargets, torso: Torso, c
 
 
 def _around(wrists: Array, goal: Array, weight: Array, torso: Torso, across: Flags) -> Array:
-    """How far (f, 2, 3) wrists have come to the rail, a share `weight` (f, 2) of the way. They go around the trunk,
-    each on its own side, or, where `across` (f, 2), in front of it to the other side.
+    """Return how far (f, 2, 3) wrists have moved towards the rail, after a share `weight` (f, 2) of their way.
 
-    Measured in the ellipse, they go evenly about its middle and outward or inward; both ends are given.
+    They go around the trunk, each on its own side, or, where `across` (f, 2), in front of it to the other side. In
+    coordinates of the ellipse, distance and bearing change evenly; both ends are given.
     """
     going = (weight > 0.0) & (weight < 1.0)
     upright, middle = _trunk_of(torso)
@@ -159,10 +160,9 @@ def _around(wrists: Array, goal: Array, weight: Array, torso: Torso, across: Fla
 
 
 def inward(place: Array, side: int, torso: Torso, across: bool = False) -> Array:
-    """How far (f,) a place (f, 3) for a hand is turned from straight outward of the trunk, radians; pi is straight
-    inward.
+    """Return the bearing (f,) of a place (f, 3) for a hand: radians from straight outward of the trunk, pi for inward.
 
-    across : by the way before her, from `LEAST` on; else by the shorter way
+    across : count in front of the dancer, from `LEAST` on; otherwise the shorter way
     """
     upright, middle = _trunk_of(torso)
     off = quat.rotate(quat.conjugate(upright), place[:, None] - middle)[:, 0]
@@ -171,13 +171,14 @@ def inward(place: Array, side: int, torso: Torso, across: bool = False) -> Array
 
 
 def _distance(off: Array) -> Array:
-    """Of places (f, 2, 3) from an axis, (f, 2)."""
+    """Return the distances (f, 2) of places (f, 2, 3) from an axis."""
     return np.hypot(off[..., 0], off[..., 2])
 
 
 def _bearing(off: Array, across: Flags, least: float) -> Array:
-    """How far (f, 2) places (f, 2, 3) of the left and right hand are turned ahead from straight outward, radians.
-    Straight inward counts as behind the back, except for hands that cross over: for these it counts from `least` on.
+    """Return the bearings (f, 2) of places (f, 2, 3) of the left and right hand: radians ahead from straight outward.
+
+    Straight inward counts as behind the back. For hands that cross over, the bearing counts from `least` on.
     """
     turned = np.arctan2(off[..., 2], off[..., 0] * [1.0, -1.0])
     before = (turned - least) % (2 * np.pi) + least
@@ -185,26 +186,26 @@ def _bearing(off: Array, across: Flags, least: float) -> Array:
 
 
 def _trunk_of(torso: Torso) -> tuple[Array, Array]:
-    """Which way the trunk faces (f, 1, 4), upright, and its middle (f, 1, 3)."""
+    """Return the direction of the trunk (f, 1, 4), upright, and its middle (f, 1, 3)."""
     upright = quat.swing_twist(torso.chest, UP)[1][:, None]
     return upright, torso.shoulders.mean(axis=1, keepdims=True) + quat.rotate(torso.chest, TRUNK)[:, None]
 
 
 def trunk_clearance(wrists: Array, torso: Torso, axes: tuple[float, float]) -> Array:
-    """By how much wrists (f, 2, 3) are pushed out of an upright ellipse about the trunk, softly, (f, 2, 3).
+    """Return how far wrists (f, 2, 3) are pushed out of an upright ellipse about the trunk, softly, (f, 2, 3).
 
-    axes : its half axes aside and ahead, metres
+    axes : half axes of the ellipse, aside and ahead, metres
     """
     upright, middle = _trunk_of(torso)
     off = quat.rotate(quat.conjugate(upright), wrists - middle) * [1.0 / axes[0], 0.0, 1.0 / axes[1]]
     far = np.maximum(np.linalg.norm(off, axis=2, keepdims=True), 0.05)
-    beyond = np.logaddexp(0.0, SOFT * (1.0 - far)) / SOFT  # a soft most of 0 and 1 - far
+    beyond = np.logaddexp(0.0, SOFT * (1.0 - far)) / SOFT  # a soft maximum of 0 and 1 - far
     return quat.rotate(upright, off / far * beyond * [axes[0], 0.0, axes[1]])
 
 
-# Hanging hands keep beside the hips: the trunk leans and turns over the hips, and takes the shoulders along.
+# Hanging hands keep beside the hips, because the trunk leans and turns over the hips, and moves the shoulders.
 
-SOFT_AT_HIPS = 0.015  # metres over which a hand comes to its least distance
+SOFT_AT_HIPS = 0.015  # metres over which a hand approaches its least distance
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,8 +217,9 @@ class Hips:
 
 
 def hip_clearance(wrists: Array, hips: Hips, arms: ArmSettings) -> Array:
-    """How wrists (f, 2, 3) give way to the hips, (f, 2, 3), level: softly, away from the nearest place of a line across
-    the hips. A raised hand does not give way.
+    """Return how wrists (f, 2, 3) give way to the hips, (f, 2, 3), horizontally and softly.
+
+    They move away from the nearest place of a line across the hips. A raised hand does not give way.
     """
     upright = quat.swing_twist(hips.rotation, UP)[1][:, None]
     off = quat.rotate(quat.conjugate(upright), wrists - hips.place[:, None])
@@ -230,22 +232,22 @@ def hip_clearance(wrists: Array, hips: Hips, arms: ArmSettings) -> Array:
     return np.asarray(quat.rotate(upright, way * (missing / np.maximum(far, 1e-3))[..., None]))
 
 
-# Hanging hands keep off thighs and knees: in a wide stand these come up and aside to where hands hang.
+# Hanging hands keep off thighs and knees, which in a wide stand come up and aside to the hands.
 
 HAND = 0.10  # metres from the wrist to the end of the hand
-HALF_HAND = 0.026  # metres, half of how thick it is
-SOFT_AT_LEGS = 0.012  # metres over which a hand comes to its least distance
-ROUNDS, LEAST_GIVEN = 2, 1e-4  # rounds of giving way; a hand that gave way by fewer metres is left alone afterwards
+HALF_HAND = 0.026  # metres, half the thickness of the hand
+SOFT_AT_LEGS = 0.012  # metres over which a hand approaches its least distance
+ROUNDS, LEAST_GIVEN = 2, 1e-4  # rounds of giving way; metres, a hand that gave way by less is not checked again
 
 
 def leg_clearance(wrists: Array, shoulders: Array, elbows: Array, legs: Legs, skeleton: Skeleton, room: float) -> Array:
-    """How wrists (f, 2, 3) give way, (f, 2, 3), so that hands come off thighs, softly and with some room.
+    """Return how wrists (f, 2, 3) give way, (f, 2, 3), so that hands come off thighs, softly and with some room.
 
-    shoulders : (f, 2, 3); elbows : (f, 2, 3) where they point
+    shoulders : (f, 2, 3); elbows : (f, 2, 3) directions
     """
     near, out = np.arange(len(wrists)), np.zeros_like(wrists)
     hips, thighs = legs.hips, legs.knees() - legs.hips
-    for _ in range(ROUNDS):  # a forearm that was raised points another way
+    for _ in range(ROUNDS):  # a forearm that was raised points in another direction
         place = (wrists + out)[near]
         given = np.zeros_like(place)
         for points in (_hand_ends(place, shoulders[near], elbows[near], skeleton), place):
@@ -257,7 +259,7 @@ def leg_clearance(wrists: Array, shoulders: Array, elbows: Array, legs: Legs, sk
 
 
 def _hand_ends(wrists: Array, shoulders: Array, elbows: Array, skeleton: Skeleton) -> Array:
-    """Where hands end (f, 2, 3) that continue their forearms; elbows : (f, 2, 3) where they point."""
+    """Return the ends (f, 2, 3) of hands that continue their forearms; elbows : (f, 2, 3) directions."""
     upper, lower = (float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("elbow", "radiocarpal"))
     reach = wrists - shoulders
     forearm = reach - middle_joint(reach, square_to(reach, elbows), (upper, lower))
@@ -265,7 +267,7 @@ def _hand_ends(wrists: Array, shoulders: Array, elbows: Array, skeleton: Skeleto
 
 
 def _off_the_thigh(points: Array, hip: Array, thigh: Array, room: float) -> Array:
-    """Ways (f, 2, 3) by which points (f, 2, 3) of hands come so far off a thigh that begins at a hip, (f, 1, 3)."""
+    """Return vectors (f, 2, 3) that move points (f, 2, 3) of hands off a thigh that begins at a hip, (f, 1, 3)."""
     away = points - hip
     part = np.clip(np.sum(away * thigh, axis=2) / np.sum(thigh * thigh, axis=2), 0.0, 1.0)[..., None]
     way = away - part * thigh

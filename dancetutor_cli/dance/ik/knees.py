@@ -1,4 +1,4 @@
-"""Where knees point, and how pelvis, spine and chest share a lean."""
+"""The directions in which knees point, and how pelvis, spine and chest share a lean."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ from dancetutor_cli.dance.settings_body import BodySettings, KneeSettings
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array
 
-# Where knees point: between the body's front and the toes, and out of each other's way.
+# Knees point between the body's front and the toes, and do not touch each other.
 
-OUTSIDE = 0.002  # metres that a leg which does not lean lies outside its hip
+OUTSIDE = 0.002  # metres outside its hip at which a leg does not lean
 LOOKED = 0.03  # metres; legs farther apart are not changed
 TRIED = np.radians(1.5)  # radians that a knee is turned to measure the effect
 FLAT = 1e-4  # square metres per radian; a knee whose turn has a smaller effect is not turned
-ROUNDS, STEPS = 3, 10  # rounds of giving way, and of measuring how deep legs are in each other
+ROUNDS, STEPS = 3, 10  # rounds of turning knees apart, and steps of measuring how deep legs are in each other
 
 
 @dataclass(frozen=True, slots=True)
 class Hung:
-    """What legs hang from: pelvis (f, 3) and its rotation (f, 4); and where they end: ankles (f, 2, 3)."""
+    """The ends of legs: pelvis (f, 3) and its rotation (f, 4), from which they hang; and ankles (f, 2, 3)."""
 
     pelvis: Array
     rotation: Array
     ankles: Array
 
     def legs(self, skeleton: Skeleton, poles: Array) -> Legs:
-        """The legs, knees pointing as poles (f, 2, 3) say."""
+        """Return the legs, with knees that point along poles (f, 2, 3)."""
         hips = np.stack([skeleton.offsets[skeleton.index(f"{s}_hip")] for s in "lr"])
         hips = self.pelvis[:, None] + quat.rotate(self.rotation[:, None], hips)
         bones = [float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("knee", "talocrural")]
@@ -44,10 +44,10 @@ class Hung:
 
 
 def knee_poles(yaw: Array, feet: Feet, legs: Array, hips: float, knees: KneeSettings) -> Array:
-    """Knees point between the body's front and the toes, a little outward, and no farther aside than hips turn.
+    """Return the poles (f, 2, 3) of knees: between the body's front and the toes, a little outward.
 
     legs : (f, 2, 3) from the pelvis to each ankle; hips : metres from the middle of the pelvis to a hip
-    In a straddle they point farther outward: shanks stay more upright, and ankles bend less aside.
+    In a straddle the knees point farther outward: shanks stay more upright, and ankles bend less aside.
     """
     left = np.column_stack((np.cos(yaw), np.zeros_like(yaw), -np.sin(yaw)))
     out, most_aside = [], np.radians(knees.most)
@@ -67,9 +67,9 @@ def knee_poles(yaw: Array, feet: Feet, legs: Array, hips: float, knees: KneeSett
 
 
 def part_knees(skeleton: Skeleton, hung: Hung, poles: Array, knees: KneeSettings) -> Array:
-    """Poles (f, 2, 3) turned about the lines from hips to ankles, as little as it takes to part legs that meet.
+    """Turn poles (f, 2, 3) about the lines from hips to ankles, as little as necessary to part legs that meet.
 
-    Each frame is handled alone, and smoothly: the result does not depend on the times that are asked for.
+    Each frame is handled alone, and smoothly: the result at one time does not depend on the other times.
     """
     both = hung.legs(skeleton, poles)
     near, most = np.arange(len(poles)), np.radians(knees.give)
@@ -97,32 +97,32 @@ class Legs:
     bones: tuple[float, float]
 
     def some(self, keep: NDArray[np.bool_] | NDArray[np.int64]) -> Legs:
-        """Those of some frames."""
+        """Return the legs of some frames."""
         return Legs(self.hips[keep], self.ankles[keep], self.poles[keep], self.bones)
 
     def knees(self, given: Array | None = None) -> Array:
-        """Where knees are, (f, 2, 3), turned by (f, 2) radians."""
+        """Return the places of the knees, (f, 2, 3), turned by (f, 2) radians."""
         reach = self.ankles - self.hips
         poles = square_to(reach, self.poles) if given is None else _swivelled(reach, self.poles, given)
         return np.asarray(self.hips + middle_joint(reach, poles, self.bones))
 
     def turned(self, given: Array) -> Array:
-        """The poles (f, 2, 3) turned outward about the lines from hips to ankles by (f, 2) radians."""
+        """Return the poles (f, 2, 3) turned outward about the lines from hips to ankles by (f, 2) radians."""
         out, moved = self.poles.copy(), np.abs(given).max(axis=1) > 0.0
         out[moved] = _swivelled((self.ankles - self.hips)[moved], self.poles[moved], given[moved])
         return out
 
     def depth(self, given: Array) -> Array:
-        """How deep (f,) the legs are in each other with knees turned by (f, 2) radians."""
+        """Return how deep (f,) the legs are in each other with knees turned by (f, 2) radians."""
         knees = self.knees(given)
         legs = [leg_capsules(self.hips[:, s], knees[:, s], self.ankles[:, s]) for s in (0, 1)]
         return depth(legs[0], legs[1], STEPS)
 
 
 def middle_joint(reach: Array, poles: Array, bones: tuple[float, float]) -> Array:
-    """Where (..., 3) the joint between two bones of these lengths is, from the first one's root.
+    """Return the place (..., 3) of the joint between two bones of these lengths, from the root of the first bone.
 
-    reach : (..., 3) from there to the end of the second one; poles : (..., 3) unit vectors square to it
+    reach : (..., 3) from that root to the end of the second bone; poles : (..., 3) unit vectors square to it
     """
     first, second = bones
     far = np.linalg.norm(reach, axis=-1, keepdims=True)
@@ -132,7 +132,7 @@ def middle_joint(reach: Array, poles: Array, bones: tuple[float, float]) -> Arra
 
 
 def square_to(reach: Array, poles: Array) -> Array:
-    """Unit vectors (..., 3) square to `reach` that point most as poles (..., 3) do."""
+    """Return the unit vectors (..., 3) square to `reach` that are nearest to poles (..., 3)."""
     line = reach / np.linalg.norm(reach, axis=-1, keepdims=True)
     ahead = poles - np.sum(poles * line, axis=-1, keepdims=True) * line
     return np.asarray(ahead / np.linalg.norm(ahead, axis=-1, keepdims=True))
@@ -145,16 +145,16 @@ def _swivelled(reach: Array, poles: Array, given: Array) -> Array:
     return np.asarray(np.cos(given)[..., None] * ahead + np.sin(given)[..., None] * aside)
 
 
-# How pelvis, spine and chest share a lean, and where that brings the shoulders.
+# How pelvis, spine and chest share a lean, and where the shoulders are then.
 
 SPINE = (0.0, *SPINE_SHARES)  # how far the bones under vl5, vt10 and vt4 are turned from the pelvis to the chest
 
 
 class TrunkPose(NamedTuple):
-    """How a trunk is held in f frames.
+    """The posture of a trunk in f frames.
 
     tilt : (f, 2) radians that the chest leans, as in `quaternion.leaning`; yaw, chest_yaw : (f,) radians
-    listed : (f,) radians that the right hip is lower than the left one for the weight's sake
+    listed : (f,) radians that the right hip is lower than the left one because the weight is on one leg
     """
 
     tilt: Array
@@ -164,7 +164,7 @@ class TrunkPose(NamedTuple):
 
 
 def torso_rotations(trunk: TrunkPose, settings: BodySettings) -> tuple[Array, Array, Array]:
-    """Rotations (f, 4) of pelvis and chest, and how deep (f,) the trunk is bent, 0 to 1."""
+    """Return the rotations (f, 4) of pelvis and chest, and how deep (f,) the trunk is bent, 0 to 1."""
     tilt, yaw = trunk.tilt, trunk.yaw
     bent = smooth(np.linalg.norm(tilt, axis=1) / np.radians(settings.deep_bend))
     share = settings.pelvis_lean + (settings.pelvis_bend - settings.pelvis_lean) * bent
@@ -173,10 +173,10 @@ def torso_rotations(trunk: TrunkPose, settings: BodySettings) -> tuple[Array, Ar
 
 
 def shoulders_over(skeleton: Skeleton, pelvis: Array, pelvis_rotation: Array, chest: Array, bent: Array) -> Array:
-    """Where shoulders must be (f, 2, 3) over a pelvis (f, 3): turned about it with the chest.
+    """Return where shoulders must be (f, 2, 3) over a pelvis (f, 3): turned about it with the chest.
 
-    As far as the trunk is `bent` (f,), the shoulders are where an evenly bent spine brings them; otherwise its lowest
-    joint took the whole bend.
+    For a trunk with `bent` (f,) 1, the shoulders are where an evenly bent spine brings them. With `bent` 0, the lowest
+    joint of the spine has the whole bend.
     """
     place, offset = pelvis, skeleton.offsets
     for name, share in zip(("vl5", "vt10", "vt4"), SPINE, strict=True):

@@ -1,4 +1,4 @@
-"""The body in space: forward kinematics, masses, the points that touch the pad, dimensions that follow from them."""
+"""The body in space: forward kinematics, masses, the points that touch the pad, dimensions derived from them."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton, dancer_skeleton
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.kernels.compiling import njit
 
-# Forward kinematics for all frames at once: local joint rotations to places in the world.
+# Forward kinematics for all frames at once, from local joint rotations to places in the world.
 
 
 def world_transforms(skeleton: Skeleton, rotations: Array, root: Array) -> tuple[Array, Array]:
-    """Where every joint is and how it is turned.
+    """Return the place and the rotation of every joint in the world.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def _forward(
         for j in range(len(parents)):
             p = parents[j]
             if p < 0:
-                for k in range(3):  # not a row at once: numba would compile what it says of wrong shapes
+                for k in range(3):  # not a row at once: numba would compile the error message for wrong shapes
                     positions[f, j, k] = root[f, k]
                 for k in range(4):
                     world[f, j, k] = local[f, j, k]
@@ -80,7 +80,7 @@ def local_rotations(skeleton: Skeleton, world: Array) -> Array:
     return local
 
 
-# How heavy each part of the dancer is, and where her centre of mass lies.
+# The mass of each part of the dancer, and her centre of mass.
 #
 # Masses are fractions of the body and centres lie on the line from a part's own joint to the next one, after the
 # tables of de Leva (1996, adjustments to Zatsiorsky's parameters, female), rounded; the trunk is split over our
@@ -131,7 +131,7 @@ def centre_of_mass(skeleton: Skeleton, positions: Array, world: Array) -> Array:
     return np.asarray(np.einsum("m,fmx->fx", masses, places))
 
 
-# The points of the body that touch the pad: sole corners of each foot, and the palms.
+# The points of the body that touch the pad: the sole corners of each foot, and the palms.
 #
 # Soles are a little wider than the foot: the dancer wears flat shoes. Each point belongs to a joint and is given
 # in the joint's axes, which are the world's in the rest pose. Heel and ball turn with the ankle, the toes with the
@@ -208,20 +208,20 @@ def place(points: tuple[BodyPoint, ...], positions: Array, world: Array) -> Arra
     return np.stack([positions[:, p.joint] + quat.rotate(world[:, p.joint], p.offset) for p in points], axis=1)
 
 
-# Dimensions of the body that follow from the skeleton, its masses and its soles: in one place only.
+# Dimensions of the body that follow from the skeleton, its masses and its soles.
 
-BALL_AHEAD = 0.046  # metres by which the ball of the foot lies before the middle of the sole
+BALL_AHEAD = 0.046  # metres that the ball of the foot lies ahead of the middle of the sole
 HALF_SHOE = 0.083  # metres from the middle of a shoe to the ends of its capsule's line
-SOLE_HALF_WIDTH = 0.022  # metres, of the part of a sole that may carry the whole weight
+SOLE_HALF_WIDTH = 0.022  # metres, of the part of a sole that can carry the whole weight
 SOLE_FRONT, SOLE_BACK_TOES, SOLE_BACK_HEEL = (
     0.065,
     -0.012,
     -0.125,
-)  # its ends before the ball: on toes, with the heel down
-# about the vertical, square metres per mass of the body: pelvis and belly; chest, head and arms
+)  # ends of that part, ahead of the ball: at the front, at the back on toes, at the back with the heel down
+# moments of inertia about the vertical, square metres per mass of the body: pelvis and belly; chest, head and arms
 PELVIS_INERTIA, CHEST_INERTIA = 0.0031, 0.0100
 SPINE_SHARES = (0.34, 0.67)  # how far the bones under vt10 and vt4 are turned from the pelvis to the chest
-# corners of a sole from the ball, and the middles of heel and toes, metres: ahead, aside
+# corners of a sole, and the middles of heel and toes, metres from the ball: ahead, aside
 SHOE_OUTLINE = np.array(
     [(-0.166, 0.032), (-0.166, 0.0), (-0.166, -0.032), (0.0, 0.046), (0.0, -0.046), (0.084, 0.034), (0.084, 0.0),
      (0.084, -0.034)]
@@ -234,27 +234,27 @@ def _place(skeleton: Skeleton, name: str) -> tuple[float, float, float]:
 
 
 def half_hips(skeleton: Skeleton) -> float:
-    """From the middle of the pelvis to a hip, metres."""
+    """Return the distance from the middle of the pelvis to a hip, metres."""
     return _place(skeleton, "l_hip")[0]
 
 
 def ball_to_ankle(skeleton: Skeleton) -> float:
-    """How far the ankle lies behind the ball of the foot, metres."""
+    """Return how far the ankle lies behind the ball of the foot, metres."""
     return _place(skeleton, "l_metatarsal")[2] - _place(skeleton, "l_talocrural")[2]
 
 
 def ball_height(skeleton: Skeleton) -> float:
-    """How high the joint of the ball lies over the sole, metres."""
+    """Return how high the joint of the ball lies over the sole, metres."""
     return _place(skeleton, "l_metatarsal")[1]
 
 
 def heel_to_ball(skeleton: Skeleton) -> float:
-    """How far the heel's edge lies behind the joint of the ball, metres."""
+    """Return how far the edge of the heel lies behind the joint of the ball, metres."""
     return _place(skeleton, "l_metatarsal")[2] - min(point[2] for _, _, point in SOLE)
 
 
 def leg_masses(skeleton: Skeleton) -> tuple[tuple[float, float], ...]:
-    """Parts of a leg: how far from hip (0) to ankle (1) its centre is, at most 1, and its part of the body's mass."""
+    """Return the parts of a leg: place of the centre, from hip (0) to ankle (1), and share of the body's mass."""
     hip, ankle = _place(skeleton, "l_hip")[1], _place(skeleton, "l_talocrural")[1]
     total = sum(mass * (2 if name.startswith("l_") else 1) for name, mass, _ in PARTS)
     legs = ("l_hip", "l_knee", "l_talocrural")

@@ -1,4 +1,4 @@
-"""Limbs: the closed-form two-bone limb for kernels; limbs and torso as capsules, and how deep one is in another."""
+"""Limbs: the closed-form two-bone limb for kernels; limbs and torso as capsules, and how deep they overlap."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def qrot(q: Quat, v: Vec) -> Vec:
 
 @inner_kernel
 def qaxis(axis: Vec, angle: float) -> Quat:
-    """Turn about a unit axis."""
+    """Return the turn about a unit axis."""
     s = math.sin(angle / 2.0)
     return (math.cos(angle / 2.0), axis[0] * s, axis[1] * s, axis[2] * s)
 
@@ -94,7 +94,7 @@ def qunit(q: Quat) -> Quat:
 
 @inner_kernel
 def qlerp(a: Quat, b: Quat, t: float) -> Quat:
-    """Normalised interpolation on the short arc; close to slerp for the small angles of a spine."""
+    """Interpolate on the short arc and normalise; close to slerp for the small angles of a spine."""
     sign = 1.0 if a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] >= 0.0 else -1.0
     u, v = 1.0 - t, t * sign
     return qunit((u * a[0] + v * b[0], u * a[1] + v * b[1], u * a[2] + v * b[2], u * a[3] + v * b[3]))
@@ -102,7 +102,7 @@ def qlerp(a: Quat, b: Quat, t: float) -> Quat:
 
 @inner_kernel
 def qbetween(a: Vec, b: Vec) -> Quat:
-    """Shortest turn from unit vector a to unit vector b."""
+    """Return the shortest turn from unit vector a to unit vector b."""
     w = 1.0 + dot(a, b)
     if w < 1e-9:
         return (0.0, 0.0, 1.0, 0.0)
@@ -112,7 +112,7 @@ def qbetween(a: Vec, b: Vec) -> Quat:
 
 @inner_kernel
 def qframe(x: Vec, y: Vec, z: Vec) -> Quat:
-    """The rotation whose matrix has the orthonormal columns x, y, z."""
+    """Return the rotation whose matrix has the orthonormal columns x, y, z."""
     trace = x[0] + y[1] + z[2]
     if trace > 0.0:
         s = math.sqrt(trace + 1.0) * 2.0
@@ -129,10 +129,10 @@ def qframe(x: Vec, y: Vec, z: Vec) -> Quat:
 
 @inner_kernel
 def limb(upper: Vec, lower: Vec, hinge: Vec, reach: Vec, pole: Vec, most: float) -> tuple[Quat, Quat]:
-    """Closed-form two-bone limb.
+    """Solve a two-bone limb in closed form.
 
-    upper, lower : rest vectors of the two bones, square to the unit vector hinge (their joint's axis)
-    reach : from the limb's root to where its end must be; pole : direction in which the middle joint points
+    upper, lower : rest vectors of the two bones, square to the unit vector hinge (the axis of the joint between them)
+    reach : from the limb's root to the target of its end; pole : direction in which the middle joint points
     most : longest reach; a target beyond it is approached along its line
 
     Returns the world rotation of the upper bone, and the local rotation of the lower one about the hinge.
@@ -145,7 +145,7 @@ def limb(upper: Vec, lower: Vec, hinge: Vec, reach: Vec, pole: Vec, most: float)
     d = min(max(d, abs(a - b) + 1e-4), most)
     c = (d * d - a * a - b * b) / (2.0 * a * b)
     angle = math.acos(min(1.0, max(-1.0, c)))
-    # in the plane of e1, e2: the end of the limb
+    # the end of the limb, in the plane of e1 and e2
     along = unit(add(scale(e1, a + b * math.cos(angle)), scale(e2, b * math.sin(angle))))
     v = unit(reach)
     axis = cross(pole, v)
@@ -156,21 +156,21 @@ def limb(upper: Vec, lower: Vec, hinge: Vec, reach: Vec, pole: Vec, most: float)
     return qmul(world, qconj(rest)), qaxis(hinge, angle - bent)
 
 
-# Limbs as tapered capsules, which is how people see them: how deep one is in another one.
+# Limbs as tapered capsules, close to their visible shape, and how deep one capsule is in another.
 
 THIGH, KNEE, ANKLE = 0.068, 0.048, 0.035  # radii of a leg, metres
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
-STEPS = 16  # of the golden section: to 0.05 % of a limb
+STEPS = 16  # steps of the golden section: to 0.05 % of a limb
 Capsule = tuple[Array, Array, float, float]  # ends (f, 3), and the radius at each
 
 
 def leg_capsules(hip: Array, knee: Array, ankle: Array) -> list[Capsule]:
-    """Thigh and shank of a leg, joints (f, 3)."""
+    """Return the thigh and shank of a leg with joints (f, 3)."""
     return [(hip, knee, THIGH, KNEE), (knee, ankle, KNEE, ANKLE)]
 
 
 def depth(first: list[Capsule], second: list[Capsule], steps: int = STEPS) -> Array:
-    """How deep (f,) any capsule of the first list is in any of the second one, metres; negative apart."""
+    """Return how deep (f,) any capsule of the first list is in any of the second list, metres; negative if apart."""
     out = np.full(len(first[0][0]), -np.inf)
     for (a, b, thick, thin), (c, d, other, end) in product(first, second):
         a, b, c, d = (np.ascontiguousarray(place) for place in (a, b, c, d))
@@ -182,10 +182,10 @@ def depth(first: list[Capsule], second: list[Capsule], steps: int = STEPS) -> Ar
 def _deepest(
     ends: tuple[Array, Array, Array, Array], radii: tuple[float, float, float, float], steps: int, out: Array
 ) -> None:
-    """Raise out (f,) to how deep a round cone is in another one, ends (f, 3) of both.
+    """Raise out (f,) to the depth of a round cone in another one; ends (f, 3) of both cones.
 
-    For a place on the first cone, the nearest place of the second is known in closed form. The remaining function is
-    convex along the first cone, so a golden section finds its minimum.
+    For a place on the first cone, the nearest place of the second cone is known in closed form. The remaining function
+    is convex along the first cone, so a golden section finds its minimum.
     """
     a, b, c, d = ends
     for f in range(len(out)):
@@ -212,7 +212,7 @@ def vec(a: Array) -> Vec:
 
 @inner_kernel
 def _gap(line: tuple[Vec, Vec, Vec, Vec], radii: tuple[float, float, float, float], part: float) -> float:
-    """Room between the sphere that is `part` of the way along the first cone, and the second one."""
+    """Return the gap between the second cone and the sphere that is `part` of the way along the first cone."""
     a, b, c, d = line
     along = sub(d, c)
     away = sub(add(a, scale(sub(b, a), part)), c)
@@ -225,7 +225,7 @@ def _gap(line: tuple[Vec, Vec, Vec, Vec], radii: tuple[float, float, float, floa
     return apart - radii[0] - part * (radii[1] - radii[0]) - radii[2] - on * (radii[3] - radii[2])
 
 
-# The torso as capsules, and how deep a forearm or hand is in it.
+# The torso as capsules, and how deep a forearm or hand is inside it.
 
 LIMB_RADIUS, HAND = 0.032, 0.10  # of forearm and hand; length of the hand beyond the wrist, metres
 # the torso as capsules: joint, half width to both sides, radius
@@ -233,7 +233,7 @@ TORSO = (("HumanoidRoot", 0.055, 0.105), ("vt10", 0.030, 0.100), ("vt4", 0.050, 
 
 
 def arm_in_torso(skeleton: Skeleton, joints: Array, side: str) -> Array:
-    """How deep (f,) the forearm or hand of a side, "l" or "r", is inside the torso, metres; negative outside.
+    """Return how deep (f,) the forearm or hand of a side, "l" or "r", is inside the torso, metres; negative outside.
 
     joints : (f, j, 3) in the world
     """
@@ -251,7 +251,7 @@ def arm_in_torso(skeleton: Skeleton, joints: Array, side: str) -> Array:
 
 
 def segment_distance(a: Array, b: Array, c: Array, d: Array) -> Array:
-    """Least distance (f,) between segments a-b and c-d, each (f, 3) (Ericson, Real-Time Collision Detection, 5.1.9)."""
+    """The least distance (f,) of segments a-b and c-d, each (f, 3) (Ericson, Real-Time Collision Detection, 5.1.9)."""
     u, v, w = b - a, d - c, a - c
     uu, vv, uv = np.sum(u * u, axis=1), np.sum(v * v, axis=1), np.sum(u * v, axis=1)
     uw, vw = np.sum(u * w, axis=1), np.sum(v * w, axis=1)

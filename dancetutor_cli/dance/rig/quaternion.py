@@ -19,7 +19,7 @@ _NOTHING = 1e-150  # a length whose square loses digits
 
 
 def normalize(q: ArrayLike) -> Array:
-    """Unit quaternions of the same directions; zero, and what is too small for its square, becomes the identity."""
+    """Return unit quaternions of the same directions; lengths up to `_NOTHING` become the identity."""
     q = np.asarray(q, dtype=np.float64)
     length = np.linalg.norm(q, axis=-1, keepdims=True)
     return np.where(length > _NOTHING, q / np.where(length > _NOTHING, length, 1.0), IDENTITY)
@@ -42,7 +42,7 @@ def multiply(a: ArrayLike, b: ArrayLike) -> Array:
 
 
 def conjugate(q: ArrayLike) -> Array:
-    """The inverse of unit quaternions."""
+    """Return the inverse of unit quaternions."""
     return np.asarray(np.asarray(q, dtype=np.float64) * np.array([1.0, -1.0, -1.0, -1.0]))
 
 
@@ -58,7 +58,7 @@ def rotate(q: ArrayLike, v: ArrayLike) -> Array:
 
 
 def from_axis_angle(axis: ArrayLike, angle: ArrayLike) -> Array:
-    """Turn by `angle` (radians, shape (...)) about `axis` (..., 3), which need not be of unit length."""
+    """Return the turn by `angle` (radians, shape (...)) about `axis` (..., 3), which need not be of unit length."""
     axis = np.asarray(axis, dtype=np.float64)
     half = np.asarray(angle, dtype=np.float64)[..., None] / 2
     unit = axis / np.linalg.norm(axis, axis=-1, keepdims=True)
@@ -71,9 +71,9 @@ def _join(w: Array, xyz: Array) -> Array:
 
 
 def between(a: ArrayLike, b: ArrayLike) -> Array:
-    """The shortest turn that takes direction a (..., 3) to direction b (..., 3).
+    """Return the shortest turn that takes direction a (..., 3) to direction b (..., 3).
 
-    Opposite directions turn half around about an axis perpendicular to a.
+    Opposite directions give a half turn about an axis perpendicular to a.
     """
     a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
     a = a / np.linalg.norm(a, axis=-1, keepdims=True)
@@ -87,7 +87,7 @@ def between(a: ArrayLike, b: ArrayLike) -> Array:
 
 
 def slerp(a: ArrayLike, b: ArrayLike, t: ArrayLike) -> Array:
-    """Great-circle interpolation on the short arc; t (...) from 0 (a) to 1 (b)."""
+    """Interpolate along the great circle on the short arc; t (...) from 0 (a) to 1 (b)."""
     a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
     t = np.asarray(t, dtype=np.float64)[..., None]
     dot = np.sum(a * b, axis=-1, keepdims=True)
@@ -102,7 +102,7 @@ def slerp(a: ArrayLike, b: ArrayLike, t: ArrayLike) -> Array:
 
 
 def mean(turns: Sequence[Array], weights: Array) -> Array:
-    """The mean (f, ..., 4) of k turns that are near each other, each with its weight, (f, k)."""
+    """Return the mean (f, ..., 4) of k turns that are near each other, with weights (f, k)."""
     shape = (-1,) + (1,) * (turns[0].ndim - 1)
     total = weights[:, 0].reshape(shape) * turns[0]
     for k, other in enumerate(turns[1:], 1):
@@ -112,7 +112,7 @@ def mean(turns: Sequence[Array], weights: Array) -> Array:
 
 
 def to_matrix(q: ArrayLike) -> Array:
-    """Rotation matrices (..., 3, 3) that act on column vectors."""
+    """Return rotation matrices (..., 3, 3) that act on column vectors."""
     w, x, y, z = np.moveaxis(np.asarray(q, dtype=np.float64), -1, 0)
     rows = (
         (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
@@ -123,12 +123,12 @@ def to_matrix(q: ArrayLike) -> Array:
 
 
 def from_matrix(matrix: ArrayLike) -> Array:
-    """The unit quaternion (4,) of a rotation matrix (3, 3); of one that is not quite one, of the nearest that is."""
+    """Return the unit quaternion (4,) of the rotation matrix (3, 3) that is nearest to `matrix`."""
     m = np.asarray(matrix, dtype=np.float64)
     if np.abs(m @ m.T - np.eye(3)).max() > 1e-12:
         left, _, right = np.linalg.svd(m)
         m = left @ right
-    most = int(np.argmax([*np.diagonal(m), np.trace(m)]))  # what is divided by is then at least 1
+    most = int(np.argmax([*np.diagonal(m), np.trace(m)]))  # the divisor is then at least 1
     if most == 3:
         return normalize([1 + np.trace(m), m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]])
     i, j, k = most, (most + 1) % 3, (most + 2) % 3
@@ -139,7 +139,7 @@ def from_matrix(matrix: ArrayLike) -> Array:
 
 
 def angle_between(a: ArrayLike, b: ArrayLike) -> Array:
-    """Angle in radians, 0 to pi, of the turn that leads from a to b."""
+    """Return the angle in radians, 0 to pi, of the turn from a to b."""
     d = multiply(conjugate(a), b)
     return np.asarray(2.0 * np.arctan2(np.linalg.norm(d[..., 1:], axis=-1), np.abs(d[..., 0])))
 
@@ -153,14 +153,14 @@ def swing_twist(q: ArrayLike, axis: ArrayLike) -> tuple[Array, Array]:
 
 
 def continuous(q: Array) -> Array:
-    """The same rotations (f, ..., 4) with signs chosen so that neighbours in time are on the short arc."""
+    """Return the same rotations (f, ..., 4) with signs chosen so that neighbours in time are on the short arc."""
     dot = np.sum(q[1:] * q[:-1], axis=-1, keepdims=True)
     sign = np.concatenate((np.ones_like(q[:1, ..., :1]), np.cumprod(np.where(dot < 0, -1.0, 1.0), axis=0)))
     return np.asarray(q * sign)
 
 
 def to_vector(q: ArrayLike) -> Array:
-    """Rotation vectors (..., 3), radians and at most pi long, of (..., 4); exactly 0 where there is none."""
+    """Return rotation vectors (..., 3), radians, at most pi long, of rotations (..., 4); exactly 0 for the identity."""
     q = np.asarray(q, dtype=np.float64)
     q = np.where(q[..., :1] < 0, -q, q)
     size = np.linalg.norm(q[..., 1:], axis=-1, keepdims=True)
@@ -169,7 +169,7 @@ def to_vector(q: ArrayLike) -> Array:
 
 
 def from_vector(vectors: ArrayLike) -> Array:
-    """Rotations (..., 4) of rotation vectors (..., 3), radians."""
+    """Return the rotations (..., 4) of rotation vectors (..., 3), radians."""
     vectors = np.asarray(vectors, dtype=np.float64)
     size = np.linalg.norm(vectors, axis=-1)
     axis = np.where(size[..., None] > 1e-12, vectors / np.maximum(size, 1e-12)[..., None], [1.0, 0.0, 0.0])
@@ -177,7 +177,7 @@ def from_vector(vectors: ArrayLike) -> Array:
 
 
 def leaning(tilt: Array, yaw: Array) -> Array:
-    """Rotation (f, 4) that turns by yaw and then leans by tilt (f, 2), a horizontal direction times an angle."""
+    """Return the rotation (f, 4) by yaw (f,) and then by tilt (f, 2), a horizontal direction times an angle."""
     angle = np.linalg.norm(tilt, axis=1)
     axis = np.column_stack((tilt[:, 1], np.zeros_like(angle), -tilt[:, 0]))
     axis[angle < 1e-9] = [1.0, 0.0, 0.0]

@@ -1,4 +1,4 @@
-"""The dancer's joints: H-Anim names, hierarchy and rest positions, and how far each of them turns."""
+"""The dancer's joints: H-Anim names, hierarchy, rest positions and limits."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ class Skeleton:
     offsets: NDArray[np.float64]
 
     def index(self, name: str) -> int:
-        """Index of a joint; ValueError if there is none of that name."""
+        """Return the index of a joint. Raises ValueError if no joint has this name."""
         return self.names.index(name)
 
     @property
     def rest(self) -> NDArray[np.float64]:
-        """Rest position of every joint in the world, (j, 3)."""
+        """The rest position of every joint in the world, (j, 3)."""
         out = self.offsets.copy()
         for j, p in enumerate(self.parents):
             if p >= 0:
@@ -88,7 +88,7 @@ ORDER = (
 
 
 def dancer_skeleton() -> Skeleton:
-    """The skeleton of the project's own dancer: 1.70 m tall, 35 joints."""
+    """Return the skeleton of the project's own dancer: 1.70 m tall, 35 joints."""
     world: dict[str, tuple[str | None, tuple[float, float, float]]] = {n: (p, x) for n, p, x in _MIDDLE}
     for name, parent, (x, y, z) in _LEFT_SIDE:
         world[name] = (parent, (x, y, z))
@@ -101,7 +101,7 @@ def dancer_skeleton() -> Skeleton:
     return Skeleton(ORDER, parents, offsets)
 
 
-# How far each joint of a person turns: hinges, and ball joints split into swing and twist about their bone.
+# The limits of each joint of a person: hinges, and ball joints split into swing and twist about their bone.
 #
 # Angles are degrees of the local rotation from the rest pose, for the left side; the right side is its mirror image.
 # +X turns a leg backward and a spine forward, +Z lifts the left leg or arm aside. Ranges are those of a limber adult
@@ -113,9 +113,10 @@ _FREE = (-180.0, 180.0)
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """Ranges in degrees: of the swing about X and about Z, and of the twist about the bone (Y where there is no bone).
+    """The limits of a joint in degrees: of the swing about X and about Z, and of the twist about the bone (Y without a
+    bone).
 
-    cone : largest swing of all, about any axis
+    cone : largest swing about any axis
     """
 
     x: Range = _FREE
@@ -143,7 +144,7 @@ LIMITS: dict[str, Limit] = {
 
 
 def excess(skeleton: Skeleton, rotations: Array) -> dict[str, Array]:
-    """Degrees (f,) by which each limited joint is past its limits, 0 within; rotations (f, j, 4) local."""
+    """Return the degrees (f,) by which each limited joint is past its limits, 0 within; rotations (f, j, 4) local."""
     out = {}
     for joint, name in enumerate(skeleton.names):
         mirrored = name.startswith("r_")
@@ -155,14 +156,14 @@ def excess(skeleton: Skeleton, rotations: Array) -> dict[str, Array]:
 
 
 def beyond(skeleton: Skeleton, name: str, rotations: Array) -> Array:
-    """Degrees (f,) by which one joint, twisted locally by (f, 4), is past its nearest limit; negative within."""
+    """The degrees (f,) by which one joint with local rotations (f, 4) is past its nearest limit; negative within."""
     mirrored = name.startswith("r_")
     limit = LIMITS[name.replace("r_", "l_", 1) if mirrored else name]
     return _past(limit, rotations, _bone(skeleton, skeleton.index(name)), -1.0 if mirrored else 1.0)
 
 
 def within(skeleton: Skeleton, name: str, rotations: Array, margin: float) -> Array:
-    """The rotations (f, 4) of one joint with swings and twist so far that `margin` degrees are left to their limits."""
+    """Return the rotations (f, 4) of one joint, with swing and twist kept `margin` degrees inside their limits."""
     limit, sign = LIMITS[name.replace("r_", "l_", 1)], -1.0 if name.startswith("r_") else 1.0
     bone = _bone(skeleton, skeleton.index(name))
     swing, twist = quat.swing_twist(rotations, bone)
@@ -177,7 +178,7 @@ def within(skeleton: Skeleton, name: str, rotations: Array, margin: float) -> Ar
 
 
 def _bone(skeleton: Skeleton, joint: int) -> Array:
-    """Unit vector about which a joint twists: to its child for arms, else upright."""
+    """Return the unit vector about which a joint twists: along the arm for arm joints, otherwise upright."""
     name = skeleton.names[joint]
     if name.endswith(("shoulder", "elbow", "radiocarpal")):
         side = name[0]

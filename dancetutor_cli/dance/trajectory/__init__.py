@@ -1,8 +1,8 @@
 """From a plan to the body over the feet: its path over the ground, its height, its turns, leans and bends.
 
-posture                       `body_trajectory`: asks the modules below in turn, and adds up what they return
-  |   balance, height           where the centre of mass goes over the ground; how high it is
-  |   legs                      where the body goes over its legs, how high they let it be
-  |   facing, momentum          which way pelvis, chest and head face; what answers legs that swing
-  |   groove                    a give on every beat, a trunk that turns and leans with the music
+posture                       `body_trajectory`: calls the modules below in order, and adds up their results
+  |   balance, height           the path of the centre of mass over the ground; its height
+  |   legs                      where the body can be over its legs, and how high
+  |   facing, momentum          the directions of pelvis, chest and head; the counter-movement to swinging legs
+  |   groove                    a bounce on every beat, a trunk that turns and leans with the music
 """
