@@ -1,5 +1,5 @@
-"""Footsteps from one stand to another, at a pace that arrives in time. Each foot lands on one level and passes the
-other.
+"""Footsteps from one stand to another, at a pace that arrives in time. Each foot lands on one level and goes around the
+other foot.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ class Stand:
 
     @property
     def middle(self) -> Array:
-        """Between the feet, (2,)."""
+        """The middle between the feet, (2,)."""
         left, right = (middle_of(b, float(y)) for b, y in zip(self.balls, self.yaws, strict=True))
         return np.asarray((left + right) / 2)
 
 
 def standing(feet: tuple[FootTrack, FootTrack], time: float, turns: tuple[Turn, ...] = ()) -> Stand:
-    """How she stands at a time: after all that landed before it."""
+    """Return the stand of the dancer at a time, after all landings before it."""
     balls, yaws = [], []
     for track in feet:
         done = bisect_right(track.moves, time, key=lambda s: s.land)
@@ -52,7 +52,7 @@ def standing(feet: tuple[FootTrack, FootTrack], time: float, turns: tuple[Turn, 
 
 
 def stand_at(middle: Array, heading: float, settings: MotionSettings) -> Stand:
-    """Feet side by side around a place."""
+    """Return a stand with the feet side by side around a place."""
     out = np.radians(settings.step.toe_out)
     left = np.array([np.cos(heading), -np.sin(heading)])
     yaws = np.array([heading + out, heading - out])
@@ -63,7 +63,7 @@ def stand_at(middle: Array, heading: float, settings: MotionSettings) -> Stand:
 
 @dataclass(frozen=True, slots=True)
 class WalkSteps:
-    """A walk, ready to be put into a plan. room : least distance between the middle lines of her shoes, metres."""
+    """A walk, ready to be put into a plan. room : least distance between the middle lines of the shoes, metres."""
 
     walk: Route
     swings: tuple[tuple[Walk, ...], tuple[Walk, ...]]
@@ -73,7 +73,7 @@ class WalkSteps:
 
 @dataclass(frozen=True, slots=True)
 class Trip:
-    """From where to where she walks, facing `heading` (radians) on the way, from `start` until `ready`, seconds."""
+    """A way from one stand to another, facing `heading` (radians) on the way, from `start` until `ready`, seconds."""
 
     begin: Stand
     goal: Stand
@@ -83,7 +83,7 @@ class Trip:
 
 
 def footsteps(trip: Trip, gait: str, lead: int, context: Context) -> WalkSteps | None:
-    """Footsteps from one stand to another, at the slowest pace that arrives in time; None if no pace does.
+    """Return footsteps from one stand to another, at the slowest pace that arrives in time; None if no pace does.
 
     lead : the foot that goes first if both have the same room
     """
@@ -106,13 +106,13 @@ def footsteps(trip: Trip, gait: str, lead: int, context: Context) -> WalkSteps |
 
 
 def _steps_to_turn(a: float, b: float, most: float) -> int:
-    """Steps that it takes to turn from one heading to another, at most `most` degrees in each."""
+    """Return the number of steps to turn from one heading to another, at most `most` degrees in each."""
     return int(np.ceil(abs(b - a) / np.radians(most) - 1e-6))
 
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """How quickly she walks: a gait's name, the share of its quick form, and the gait that this makes."""
+    """The pace of a walk: the name of its gait, the share of the quick form, and the resulting gait."""
 
     name: str
     share: float
@@ -121,7 +121,7 @@ class Pace:
 
 @dataclass(frozen=True, slots=True)
 class Footfall:
-    """Where a foot comes down: its ball, its yaw with toe-out, and which way the body then points."""
+    """The landing of a foot: its ball, its yaw with toe-out, and the heading of the body."""
 
     ball: Array
     yaw: float
@@ -129,13 +129,13 @@ class Footfall:
 
 
 def _footfalls(trip: Trip, count: int, first: int, context: Context) -> list[Footfall]:
-    """`count` footfalls, the first of foot `first`; the last two are the goal's."""
+    """Return `count` footfalls, the first by foot `first`; the last two are the feet of the goal."""
     begin, goal, ground, settings = trip.begin, trip.goal, context.ground, context.settings
     out = np.radians(settings.step.toe_out)
     ways = _ways(trip, count, np.radians(settings.walk.turn))
     travel = goal.middle - begin.middle
     along = float(np.arctan2(travel[0], travel[1]))
-    # steps across the way she faces are short, or ankles would bend aside
+    # steps across the direction of the body are short, or ankles would bend aside
     ahead = np.maximum(np.cos(np.array([begin.heading, *ways, goal.heading]) - along), 0.0)
     aside = settings.walk.sidestep
     lengths = np.cumsum(aside + (1.0 - aside) * np.minimum(ahead[1:], ahead[:-1]))
@@ -154,7 +154,7 @@ def _footfalls(trip: Trip, count: int, first: int, context: Context) -> list[Foo
 
 
 def _ways(trip: Trip, count: int, most: float) -> list[float]:
-    """Which way the body points at each footfall but the last two: to `heading` as soon and as long as turns allow."""
+    """Return the headings at all footfalls but the last two: `heading` as soon and as long as turns allow."""
     begin, goal, out = trip.begin, trip.goal, []
     for k in range(1, count - 1):
         way = np.clip(trip.heading, begin.heading - k * most, begin.heading + k * most)
@@ -164,7 +164,7 @@ def _ways(trip: Trip, count: int, most: float) -> list[float]:
 
 
 def _on_one_level(middle: Array, yaw: float, ground: Ground) -> Array:
-    """A place for a foot at which the whole foot is on the pad, or the whole foot is beside it."""
+    """Return a place for a foot at which the whole foot is on the pad, or the whole foot is beside it."""
     need = ALONG * np.abs([np.sin(yaw), np.cos(yaw)]) + ACROSS * np.abs([np.cos(yaw), np.sin(yaw)])
     out = middle.copy()
     inside = np.array(ground.low) - need < out
@@ -179,7 +179,7 @@ def _on_one_level(middle: Array, yaw: float, ground: Ground) -> Array:
 
 
 def room(start: tuple[Array, float], step: Footfall, bulge: Bulge, other: tuple[Array, float]) -> float:
-    """Least distance between a swinging shoe and the standing one, metres."""
+    """Return the least distance between a swinging shoe and the standing one, metres."""
     share = smooth(np.linspace(0.1, 1.0, 10))
     way = (share - bulge.late * lag(share))[:, None] * (step.ball - start[0])
     balls = start[0] + way + bend(share)[:, None] * np.array(bulge[:2])
@@ -197,7 +197,7 @@ def _as_swings(trip: Trip, steps: list[Footfall], first: int, how: Pace, context
         land = trip.start + (1.0 - STANCE) * pace.period + k * pace.period / 2
         lift = land - (1.0 - STANCE) * pace.period
         far = float(np.linalg.norm(step.ball - places[side][0]))
-        share = min(far / (walk.short * pace.stride), 1.0)  # a short step neither pushes off nor lands on its heel
+        share = min(far / (walk.short * pace.stride), 1.0)  # no push-off and heel landing in short steps
         pitches = (walk.push_share * share * push, max(share, 0.3) * push, -share * heel, 0.0)
         (ball, yaw), (other, standing) = places[side], places[1 - side]
         way = Way(ball, yaw, step.ball, step.yaw)
@@ -217,7 +217,7 @@ def _as_swings(trip: Trip, steps: list[Footfall], first: int, how: Pace, context
 
 
 def _joined(turns: list[Turn]) -> list[Turn]:
-    """Turns that follow each other without overlapping."""
+    """Return turns that follow each other without overlapping."""
     out = []
     for k, turn in enumerate(turns):
         end = turns[k + 1].start if k + 1 < len(turns) else turn.end

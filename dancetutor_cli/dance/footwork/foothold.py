@@ -1,4 +1,4 @@
-"""How a foot comes down: where on its panel, how it is turned, how its heel is raised, and around which way."""
+"""How a foot lands: its place on the panel, its turn, the rise of its heel, and its way around the other foot."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from dancetutor_cli.feet.limbs import Part
 Pitches = tuple[float, float, float, float]
 HALF_BALL = float(SHOE_OUTLINE[:, 1].max())  # metres from the middle of a shoe at the ball to its side
 _ACROSS = np.arange(-5, 6) / 5
-PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # of a left ball in its room on a panel
+PLACES = np.stack(np.meshgrid(_ACROSS, _ACROSS), axis=-1).reshape(-1, 2)  # places of a left ball in its room on a panel
 TURNS = np.radians([0.0, -10.0, 10.0, -20.0, 20.0, -32.0, 32.0, -45.0, 45.0])
-LATEST = 4  # last swings of a foot that are checked to find its place
+LATEST = 4  # number of the last swings of a foot that are checked to find its place
 CROSSED_PRICE = 3e3  # weight of a radian by which the legs cross too far
 MIDDLE_PRICE = 1e2  # weight of a metre by which the middle of a shoe is off its panel
 SURELY = 1e-9  # metres; the search stops at this accuracy
-EDGE_PRICE = 4e2  # weight of a metre by which a shoe would reach over the edge of the pad
+EDGE_PRICE = 4e2  # weight of a metre by which a shoe reaches over the edge of the pad
 
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """A foot that stands: its ball (2,), and where its toes point, radians."""
+    """A standing foot: its ball (2,), and the direction of its toes, radians."""
 
     ball: Array
     toes: float
@@ -43,18 +43,18 @@ class Pose:
 
 
 def pose(footing: Footing, foot: FootState) -> Pose:
-    """How a foot stands now."""
+    """Return the present pose of a foot."""
     return Pose(foot.ball, footing.toes(foot))
 
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What a row demands of a foot.
+    """The demands of a row on a foot.
 
-    columns : those that it presses; parts : (c,) which part of a foot presses each column
+    columns : the columns that it presses; parts : (c,) the part of a foot that presses each column
     yaw : wanted, without toe-out; cut : 0 for the panel's centre to 1 for its inner edge
-    following : (2,) the panel that this foot steps on next, None if that is far off
-    haste : 0 to 1, how much faster than fast it is
+    following : (2,) the panel of the foot's next step, None if that step is far off
+    haste : 0 to 1, how much faster than a fast move it is
     """
 
     columns: list[int]
@@ -67,7 +67,7 @@ class Goal:
 
 @dataclass(frozen=True, slots=True)
 class Heel:
-    """How far a heel is raised in a slow move: as the toes leave, at most, at landing, degrees.
+    """The rise of a heel in a slow move, degrees: as the toes leave, at most, at landing.
 
     flat : the parts by which the first two are smaller in fast moves; rest : degrees while the foot stands in fast
     moves
@@ -79,9 +79,7 @@ class Heel:
 
 
 def heel_of_step(step: StepSettings, haste: float = 0.0) -> Heel:
-    """The heel of a step. With haste, 0 to 1 as in `Row`, it rises less, because a foot that rocks would throw the
-    body.
-    """
+    """The heel of a step. With haste, 0 to 1 as in `Row`, it rises less, because a foot that rocks throws the body."""
     land = step.land_pitch + haste * (step.land_hasty - step.land_pitch)
     swing = step.swing_flat + haste * (step.swing_flat_hasty - step.swing_flat)
     rest = step.stream_pitch + haste * (step.stream_pitch_hasty - step.stream_pitch)
@@ -89,17 +87,17 @@ def heel_of_step(step: StepSettings, haste: float = 0.0) -> Heel:
 
 
 def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple[Array, float]:
-    """Where the ball lands and how the foot is turned (without toe-out). other : the other foot then"""
+    """Return where the ball lands and the yaw of the foot (without toe-out). other : the other foot at the landing"""
     step = footing.settings.step
     if len(goal.columns) > 1:
         return _bracket(footing, foot, goal)
     panels, following = footing.context.panels, goal.following
     panel, room = panels[goal.columns[0]], room_on(panels, goal.columns[0], step)
-    # a foot that stays a while stands on the panel's middle
+    # a foot that stays for a while stands on the panel's middle
     hurry = goal.cut * (step.resting if following is None else 1.0)
     far = float(np.linalg.norm(panel - other.middle))
     wide = min(max((far - step.wide) / max(step.wide_most - step.wide, 1e-9), 0.0), 1.0)
-    wide *= far < step.leap + HALF_PANEL  # beyond, the other foot comes along
+    wide *= far < step.leap + HALF_PANEL  # beyond, the other foot follows
     cut = max(hurry, step.edge, wide * step.wide_inward)
     yaw = footing.limited(goal.yaw + foot.outward * wide * np.radians(step.wide_turn), footing.body_yaw())
     toes = footing.toes(foot, yaw)
@@ -108,8 +106,7 @@ def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple
     inside = step.middle_inside + hard * (step.middle_inside_hasty - step.middle_inside)
     spot = Spot(panel, room, np.maximum(room, room + hurry * (HALF_PANEL - inside - room)))
     ball = landing_ball(spot, toes, other.middle, cut, step.edge_margin)
-    # in a stream a foot takes the shortest way: it lands on its panel at the place nearest to its last and its next
-    # panel
+    # in a stream a foot takes the shortest way: it lands on its panel at the place nearest to its last and next panels
     way = (foot.ball + (foot.ball if following is None else following)) / 2
     ball = ball + step.on_the_way * hurry * (on_panel(way, toes, spot) - ball)
     if (np.abs(foot.ball - panel) <= room).all() and following is not None:  # a jack need not move
@@ -118,7 +115,7 @@ def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple
 
 
 def landing_ball(spot: Spot, yaw: float, other: Array, cut: float, edge_margin: float) -> Array:
-    """Where the ball of a foot would like to land on a panel.
+    """Return the preferred landing place of the ball of a foot on a panel.
 
     Parameters
     ----------
@@ -139,9 +136,9 @@ def landing_ball(spot: Spot, yaw: float, other: Array, cut: float, edge_margin: 
 def resolve_overlap(
     footing: Footing, foot: FootState, spot: Spot, ball: Array, yaw: float, other: Pose
 ) -> tuple[Array, float]:
-    """The place on the panel nearest to the wanted one, and the yaw, that leave room for the other shoe.
+    """Return the place on the panel nearest to the wanted one, and the yaw, that leave room for the other shoe.
 
-    At this place the legs do not cross farther than they must.
+    At this place the legs do not cross farther than necessary.
     """
     step, air = footing.settings.step, footing.settings.mines.keep_off
     apart, still = step.apart, other.toes + foot.outward * footing.toe_out
@@ -168,8 +165,8 @@ def resolve_overlap(
 
 
 def beyond_the_edge(ground: Ground, balls: Array) -> Array:
-    """How much nearer (k,) balls (k, 2) are to the edge of the pad than half a shoe, metres; the part beyond the edge
-    carries nothing.
+    """Return how much nearer (k,) balls (k, 2) are to the edge of the pad than half a shoe, metres. The part of a shoe
+    beyond the edge carries nothing.
     """
     near = np.maximum(np.array(ground.low) + HALF_BALL - balls, balls - np.array(ground.high) + HALF_BALL)
     return np.asarray(np.maximum(near, 0.0).sum(axis=1))
@@ -182,9 +179,9 @@ def off_the_middle(spot: Spot, balls: Array, toes: Array) -> Array:
 
 
 def legs_crossed(outward: float, balls: Array, toes: Array, other: Pose, body: float, step: StepSettings) -> Array:
-    """How much farther (k,) the legs cross than they may, radians, if a foot stands at balls (k, 2) with toes (k,).
+    """Return by how much (k,) the legs cross too far, radians, if a foot stands at balls (k, 2) with toes (k,).
 
-    outward : as of the foot; body : yaw of the hips
+    outward : as in `FootState`; body : yaw of the hips
     """
     own = balls - (BALL_AHEAD + ANKLE) * headings(toes)
     line = outward * (own - (other.ball - (BALL_AHEAD + ANKLE) * headings(np.array(other.toes))))
@@ -194,8 +191,8 @@ def legs_crossed(outward: float, balls: Array, toes: Array, other: Pose, body: f
 
 
 def _bracket(footing: Footing, foot: FootState, goal: Goal) -> tuple[Array, float]:
-    """Heel on one panel, toes on the other. A foot that lies across the body turns back a little, as far as the hips
-    need.
+    """Return the landing of a bracket: heel on one panel, toes on the other. A foot that lies across the body turns
+    back a little, as far as the hips need.
     """
     step, body = footing.settings.step, footing.body_yaw()
     panels, parts, columns = footing.context.panels, goal.parts, goal.columns
@@ -214,11 +211,11 @@ def _bracket(footing: Footing, foot: FootState, goal: Goal) -> tuple[Array, floa
 
 
 def heel_up(step: StepSettings, cut: float, heel: Heel, columns: list[int]) -> Pitches:
-    """Pitches of a swing, radians: as the toes leave, at most, at landing and afterwards; fast steps stay flat."""
+    """The pitches of a swing, radians: as the toes leave, at most, at landing, afterwards; fast steps stay flat."""
     lift, most, land = heel.degrees
     rest = heel.rest * cut
     if len(columns) > 1:
-        land = rest = 0.0  # heel and toes of a bracket come down together
+        land = rest = 0.0  # heel and toes of a bracket land together
     out = np.radians(
         [
             lift * (1.0 - heel.flat[0] * cut),
@@ -231,7 +228,7 @@ def heel_up(step: StepSettings, cut: float, heel: Heel, columns: list[int]) -> P
 
 
 def touching(a: Pose, b: Pose, apart: float) -> bool:
-    """Whether the middle lines of two standing shoes are less than so far apart, metres."""
+    """Whether the middle lines of two standing shoes are less than `apart` metres apart."""
     away = a.middle - b.middle
     if np.hypot(away[0], away[1]) > 2 * HALF_SHOE + apart + SURELY:
         return False
@@ -241,7 +238,7 @@ def touching(a: Pose, b: Pose, apart: float) -> bool:
 def around(
     footing: Footing, foot: FootState, span: tuple[float, float], target: Array, yaw: float, other: FootState
 ) -> Bulge:
-    """Sideways detour of a swing, from lift to landing, that keeps clear of the other foot, as planned so far."""
+    """Return the sideways detour of a swing, from lift to landing, around the other foot as planned so far."""
     step = footing.settings.step
     after = footing.turned_to((yaw, other.yaw) if foot.side == 0 else (other.yaw, yaw))
     even = float(evenness(span[1] - span[0], step))

@@ -1,4 +1,4 @@
-"""Both feet while a song is planned row by row: the row as rules see it, holds, and palms on panels."""
+"""The state of both feet while a song is planned row by row: the row for the rules, holds, and palms on panels."""
 
 from __future__ import annotations
 
@@ -16,14 +16,15 @@ from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play
 
-# A row of a play as rules see it, with what comes before and after it.
+# A row of a play for the rules, with the rows before and after it.
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One row of a play. index : of it; time : seconds of the music; pressed : the columns of each limb that steps
+    """One row of a play. index : its number; time : seconds of the music; pressed : the columns of each limb that steps
 
-    duration : seconds since the last move, at most the longest of a move; turned : degrees that the feet normal turns
+    duration : seconds since the last move, at most the longest time of a move; turned : degrees that the feet normal
+    turns
     """
 
     play: Play
@@ -41,7 +42,7 @@ class Row:
 
     @property
     def hands(self) -> bool:
-        """Whether a palm comes down."""
+        """Whether a palm presses a panel at this row."""
         return any(limb >= Limb.LEFT_HAND for limb in self.pressed)
 
     @property
@@ -52,25 +53,25 @@ class Row:
 
     @property
     def jump_cut(self) -> float:
-        """The same for a jump, which counts as quick sooner, because both legs throw the body at once."""
+        """The same as `cut` for a jump, which counts as quick sooner, because both legs throw the body at once."""
         jump = self.context.settings.jump
         missing = (jump.inward_slow - self.duration) / max(jump.inward_slow - jump.inward_quick, 1e-9)
         return max(self.cut, float(np.clip(missing, 0.0, 1.0)))
 
     @property
     def hurry(self) -> float:
-        """How short its time is, from the longest move to a fast one, 0 to 1; `cut` grows as its cube."""
+        """How short the time of the row is, from the longest move to a fast one, 0 to 1; `cut` grows as its cube."""
         step = self.context.settings.step
         return float(np.clip((step.longest - self.duration) / max(step.longest - step.fast, 1e-9), 0.0, 1.0))
 
     @property
     def haste(self) -> float:
-        """How much faster than fast it is, 0 to 1."""
+        """How much faster than a fast move the move is, 0 to 1."""
         step = self.context.settings.step
         return float(np.clip((step.fast - self.duration) / (step.fast - step.hasty), 0.0, 1.0))
 
     def following(self, side: int) -> Array | None:
-        """The place (2,) of the next step of a foot, if it comes soon."""
+        """Return the place (2,) of the next step of a foot, if it comes soon."""
         second, limb = self.play.rows.second, self.play.limb
         soon = second[self.index] + self.context.settings.step.following
         for j in range(self.index + 1, int(np.searchsorted(second, soon))):
@@ -81,16 +82,16 @@ class Row:
 
 
 def pressed_by(play: Play, index: int) -> dict[int, list[int]]:
-    """The columns of each limb that steps at a row."""
+    """Return the columns of each limb that steps at a row."""
     out: dict[int, list[int]] = {}
     for column in np.flatnonzero(play.limb[index] >= 0):
         out.setdefault(int(play.limb[index, column]), []).append(int(column))
     return out
 
 
-# Both feet while a song is planned row by row: where they stand, until when they must stand, which way the body faces.
+# Both feet while a song is planned row by row: where they stand, until when they must stand, the direction of the body.
 #
-# Nothing here changes: a rule makes a new footing from the one that it gets, and the planner uses it or does not.
+# These classes are frozen: a rule makes a new footing from the given one, and the planner uses it or not.
 
 SHORTEST = 0.02  # seconds; the shortest swing
 FREE_WINDOW = 0.001
@@ -98,7 +99,7 @@ FREE_WINDOW = 0.001
 
 @dataclass(frozen=True, slots=True)
 class Evading:
-    """A foot that goes up over mines: seconds of the first and the last one, and where it stood before."""
+    """The state of a foot that rises over mines: seconds of the first and the last mine, and its place before them."""
 
     first: float
     last: float
@@ -108,12 +109,13 @@ class Evading:
 
 @dataclass(frozen=True, slots=True)
 class FootState:
-    """Where a foot is while the plan is made. side 0 is left; ball : (2,), x and z on the ground.
+    """The state of a foot while the plan is made. side 0 is left; ball : (2,), x and z on the ground.
 
-    yaw : without toe-out, radians; start, start_toes : where it stood before the first of `moves`, the newest ones
-    free : it may not leave before; landed : when it came down; turned : when it last ended a pivot, seconds
-    step : the numbers of how it steps
-    holds : columns that it holds, each with until when; evading : until its next step
+    yaw : without toe-out, radians; start, start_toes : its place before the first of `moves`, which are the newest ones
+    free : the foot may leave from this second on; landed : second of its landing; turned : second at which its last
+    pivot ended
+    step : the settings of steps
+    holds : columns that it holds, each with its end; evading : until its next step
     """
 
     side: int
@@ -131,7 +133,7 @@ class FootState:
 
     @property
     def outward(self) -> float:
-        """1 for the left foot, -1 for the right one: which way its toes turn out."""
+        """1 for the left foot, -1 for the right one: the direction in which toes turn out."""
         return 1.0 if self.side == 0 else -1.0
 
     def with_move(self, move: Move, target: Array, yaw: float) -> FootState:
@@ -144,27 +146,27 @@ class FootState:
         )
 
     def with_last_move(self, last: Move) -> FootState:
-        """The foot with another last move."""
+        """Return the foot with another last move."""
         return replace(self, moves=(*self.moves[:-1], last))
 
     def without_last_move(self, evading: Evading) -> FootState:
-        """The foot as if its last move, over a mine, had not begun."""
+        """Return the foot as if its last move, over a mine, had not begun."""
         return replace(self, ball=evading.ball, yaw=evading.yaw, moves=self.moves[:-1], evading=None)
 
     def split_moves(self, newest: int) -> tuple[tuple[Move, ...], FootState]:
-        """Moves that are older than the newest ones, and the foot without them."""
+        """Return the moves that are older than the newest ones, and the foot without them."""
         old = self.moves[:-newest]
         if not old:
             return (), self
         return old, replace(self, moves=self.moves[-newest:], start=old[-1].target, start_toes=old[-1].yaw)
 
     def track(self, newest: int | None = None) -> FootTrack:
-        """The moves of the foot, as far as it knows them, or only its newest ones."""
+        """Return the moves of the foot, as far as it has them, or only its newest ones."""
         foot = self if newest is None else self.split_moves(newest)[1]
         return FootTrack(foot.start, foot.start_toes, foot.moves)
 
     def holding(self, time: float) -> bool:
-        """Whether it is in the middle of a hold."""
+        """Whether the foot is in the middle of a hold."""
         return any(end > time + FREE_WINDOW for _, end in self.holds)
 
     def latest(self, time: float, let_go: float) -> float:
@@ -174,7 +176,7 @@ class FootState:
         return min(early, late) if self.free > early else late
 
     def earliest(self, time: float) -> float:
-        """When the foot may leave for a note: it has come to rest, and no hold needs it."""
+        """Return when the foot may leave for a note: it has come to rest, and no hold needs it."""
         return max(self.free, self.rested(time))
 
     def rested(self, time: float) -> float:
@@ -186,7 +188,7 @@ class FootState:
 
 @dataclass(frozen=True, slots=True)
 class TakeOff:
-    """In a gallop: the row at which a foot comes down, and when it leaves the ground, seconds."""
+    """The take-off of a foot in a gallop: the row at which it lands, and the second at which it leaves the ground."""
 
     row: int
     time: float
@@ -194,14 +196,14 @@ class TakeOff:
 
 @dataclass(frozen=True, slots=True)
 class Footing:
-    """Both feet and the unwrapped feet normal, degrees, and how body and toes follow from them.
+    """Both feet and the unwrapped feet normal, degrees, and the directions of body and toes.
 
-    normal : the feet normal: which way is at a right angle to the line from the left foot's panel to the right foot's,
-    as in `Play.facing`, but whole turns count; 0 faces the screen, positive is left
-    lead : the foot that leads, as in `Plan`; aim : which way the body would face; faced : which way it faced after the
+    normal : the feet normal: the direction at a right angle to the line from the left foot's panel to the right foot's
+    panel, as in `Play.facing`, but whole turns count; 0 faces the screen, positive is left
+    lead : the foot that leads, as in `Plan`; aim : the wanted yaw of the body; faced : the yaw of the body after the
     last row, radians
     resting : feet that stand where the dancer went home, until each steps again
-    mined : (m, 2) panels beside which feet land that mines pass soon; take_offs : of the last gallop, left and right
+    mined : (m, 2) panels that mines pass soon, beside landing feet; take_offs : of the last gallop, left and right
     """
 
     context: Context
@@ -216,12 +218,12 @@ class Footing:
 
     @classmethod
     def at_home(cls, context: Context, lead: int, place: float = 0.0) -> Footing:
-        """Both feet where she waits, facing the screen. place : along x, metres; the pad's middle unless given"""
+        """Both feet where the dancer waits, facing the screen. place : along x, metres; by default the pad's middle"""
         return cls(context, lead, (_at_home(0, place, context.settings), _at_home(1, place, context.settings)))
 
     @property
     def settings(self) -> MotionSettings:
-        """The numbers of her motion."""
+        """The settings of the dancer's motion."""
         return self.context.settings
 
     @property
@@ -235,30 +237,30 @@ class Footing:
         return replace(self, context=context, feet=(left, right))
 
     def other(self, foot: FootState) -> FootState:
-        """The foot that is not this one."""
+        """Return the other foot."""
         return self.feet[1 - foot.side]
 
     def with_foot(self, foot: FootState) -> Footing:
-        """The footing in which one foot has done something."""
+        """Return the footing with a new state of one foot."""
         return replace(self, feet=(foot, self.feet[1]) if foot.side == 0 else (self.feet[0], foot))
 
     def toes(self, foot: FootState, yaw: float | None = None) -> float:
-        """Where the toes of a foot point, at its own yaw or at another one; radians."""
+        """Return the direction of the toes of a foot, at its own yaw or at another one; radians."""
         return float((foot.yaw if yaw is None else yaw) + foot.outward * self.toe_out)
 
     def line(self) -> float:
-        """Which way the line between the feet faces as they stand, degrees; the feet normal goes by panels."""
+        """Return the direction of the line between the feet as they stand, degrees; the feet normal goes by panels."""
         left, right = (middle_of(f.ball, self.toes(f)) for f in self.feet)
         return float(np.degrees(np.arctan2(right[1] - left[1], left[0] - right[0])))
 
     def body_yaw(self) -> float:
-        """The yaw that the body aims at, radians."""
+        """Return the wanted yaw of the body, radians."""
         return self.aim
 
     def turned_to(self, yaws: tuple[float, float] | None = None) -> float:
-        """The yaw that the body turns to for the feet's yaws, those of now or others, radians.
+        """Return the yaw to which the body turns for the yaws of the feet, present or given ones, radians.
 
-        Where both stand, it is no farther from either than hips and ankles turn.
+        If both feet stand, it is no farther from either foot than hips and ankles turn.
         """
         left, right = yaws or (self.feet[0].yaw, self.feet[1].yaw)
         mean, farthest = (left + right) / 2, np.radians(self.settings.step.body_turn)
@@ -269,14 +271,14 @@ class Footing:
         return float(np.clip(wanted, min(low, mean), max(high, mean)))
 
     def limited(self, yaw: float, body: float) -> float:
-        """A foot's yaw, not farther from the body's than hips allow."""
+        """Return a foot's yaw, limited to the angle from the body that hips allow."""
         limit = np.radians(self.settings.step.foot_turn)
         return float(np.clip(yaw, body - limit, body + limit))
 
     def pivot_yaw(self, foot: FootState, body: float, other: Array, other_toes: float) -> float:
-        """How a standing foot is turned after it has followed the body's yaw, as far as the other shoe leaves room.
+        """Return the yaw of a standing foot after it has followed the body's yaw, as far as the other shoe leaves room.
 
-        It does not turn over a panel with a mine, nor for only a few degrees.
+        The foot does not turn over a panel with a mine, nor for only a few degrees.
 
         other, other_toes : ball and toes of the other foot after its step
         """
@@ -288,12 +290,12 @@ class Footing:
         balls, toes = np.tile(foot.ball, (9, 1)), yaws + foot.outward * self.toe_out
         gaps = gaps_at(balls, toes, other, other_toes)
         mined = over(self.mined, balls, toes, self.settings.mines.keep_off)
-        clear = ~mined | mined[-1]  # the last one is how it stands: over a mine already, it may turn
+        clear = ~mined | mined[-1]  # the last one is the present yaw: over a mine already, the foot may turn
         found = float(yaws[np.argmax(clear & (gaps >= min(step.apart, gaps[clear].max())))])
         return found if abs(found - foot.yaw) > np.radians(step.pivot_few) else foot.yaw
 
     def pivoted(self, foot: FootState, yaw: float, start: float, time: float) -> Footing:
-        """The footing in which a standing foot has turned on its ball to a yaw, if there is time for it."""
+        """Return the footing in which a standing foot has turned on its ball to a yaw, if there is time for it."""
         begin = max(start, foot.moves[-1].land + FREE_WINDOW if foot.moves else start)
         if yaw == foot.yaw or begin > time - self.settings.step.pivot_least:
             return self
@@ -307,9 +309,9 @@ class Footing:
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """What a rule proposes: both feet as they would be then.
+    """The proposal of a rule: both feet as they would be afterwards.
 
-    leaves : when a foot leaves the ground for it, seconds; turn : how the body turns for it, if the rule says so
+    leaves : when a foot leaves the ground for it, seconds; turn : the turn of the body, if the rule decides it
     """
 
     footing: Footing
@@ -325,7 +327,7 @@ def _at_home(side: int, place: float, settings: MotionSettings) -> FootState:
 
 
 def pair(v: Array) -> tuple[float, float]:
-    """An array of two as a tuple of floats."""
+    """Return an array of two as a tuple of floats."""
     return float(v[0]), float(v[1])
 
 
@@ -335,7 +337,7 @@ FORGOTTEN = 1.0  # seconds after which a hold that has ended no longer matters
 
 
 def hold(footing: Footing, limb: int, column: int, time: float, end: float) -> Proposal:
-    """A limb holds a column from `time` to `end`, seconds; only feet are bound by it."""
+    """Propose that a limb holds a column from `time` to `end`, seconds. Only feet are bound by a hold."""
     if limb >= Limb.LEFT_HAND:
         return Proposal(footing)
     foot: FootState = footing.feet[limb]
@@ -343,15 +345,15 @@ def hold(footing: Footing, limb: int, column: int, time: float, end: float) -> P
     return Proposal(footing.with_foot(replace(foot, free=max(foot.free, end), holds=tuple(holds.items()))))
 
 
-# Palms that come down on panels: how long they press, and how far the body turns if the panel is not in front of it.
+# Palms on panels: how long they press, and how far the body turns if the panel is not in front of it.
 
 
 def press(
     footing: Footing, side: int, panel: tuple[float, float], span: tuple[float, float], earlier: Sequence[Press]
 ) -> Press:
-    """A palm on a panel.
+    """Return the press of a palm on a panel.
 
-    side : 0 left, 1 right; span : when it comes down, and when a hold ends, infinite for a tap, seconds
+    side : 0 left, 1 right; span : second of the note, and end of a hold, infinite for a tap
     earlier : all presses so far
     """
     hands, (time, end) = footing.settings.hands, span
@@ -362,7 +364,7 @@ def press(
 
 
 def _turn_to_panel(footing: Footing, side: int, panel: tuple[float, float]) -> float:
-    """How far the body turns to the hand's side, radians, for a panel that is not before it."""
+    """Return how far the body turns to the hand's side, radians, for a panel that is not in front of it."""
     hands, feet = footing.settings.hands, footing.feet
     away = np.array(panel) - (feet[0].ball + feet[1].ball) / 2
     off = (np.arctan2(away[0], away[1]) - footing.turned_to() + np.pi) % (2 * np.pi) - np.pi

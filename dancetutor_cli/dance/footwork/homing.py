@@ -1,4 +1,4 @@
-"""What feet do in waits: they step back home, also at the end, and legs are shaken out."""
+"""The movements of feet in waits: they step back home, also at the end, and legs are shaken out."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ from dancetutor_cli.dance.units import Array
 
 # Home: in a long wait the dancer steps back to the middle of the pad, feet at hip width, facing the screen.
 
-Falls = list[tuple[int, Footfall]]  # the foot of each, 0 left
+Falls = list[tuple[int, Footfall]]  # each with its foot, 0 left
 
 
 class _Home(NamedTuple):
-    """A way home. crossed : how far legs cross; room : metres between shoes where they come nearest"""
+    """A way home. crossed : how far legs cross; room : least distance between the shoes, metres"""
 
     crossed: float
     room: float
@@ -41,13 +41,12 @@ class _Home(NamedTuple):
 
 
 class HomeSteps(StepsInWaits):
-    """Proposes the way home before a row that comes after a long wait."""
+    """A rule that proposes the way home before a row that comes after a long wait."""
 
     def before(self, row: Row, presses: Sequence[Press], footing: Footing) -> Proposal | None:
-        """Both feet step home in the wait before a row, and the body turns with them; None if the dancer stays as she
-        stands.
+        """Propose steps of both feet home in the wait before a row, with a turn of the body; None if the dancer stays.
 
-        She stays at the bar, and if she will walk to the other pad. presses : of palms, so far
+        She stays at the bar, and before a walk to the other pad. presses : of palms, so far
         """
         settings, home = self.settings, self.settings.home
         if row.context.bar is not None or row.hands:
@@ -76,7 +75,7 @@ class HomeSteps(StepsInWaits):
         return Proposal(footing, start, turn)
 
     def _walks(self, row: Row, free: float, footing: Footing) -> bool:
-        """Whether she will walk to the other pad in this wait."""
+        """Whether the dancer will walk to the other pad in this wait."""
         if len(self.places) == 1:
             return False
         places = np.full((2, 2), np.nan)
@@ -88,10 +87,9 @@ class HomeSteps(StepsInWaits):
 
 
 def _falls(begin: Stand, goal: Stand, lead: int, following: Sequence[int], settings: MotionSettings) -> Falls:
-    """The fewest steps home in which no foot turns too far or meets the other; none if she is there already or no steps
-    fit.
+    """Return the fewest steps home in which no foot turns too far or meets the other; empty if there are none.
 
-    Of two ways, the one on which legs cross less; then the one that does not end with the foot of the next note.
+    Of two ways, it is the one on which legs cross less; then the one that does not end with the foot of the next note.
 
     lead : the foot that is tried first; following : feet of the next note
     """
@@ -109,7 +107,7 @@ def _falls(begin: Stand, goal: Stand, lead: int, following: Sequence[int], setti
 
 
 def _way(begin: Stand, goal: Stand, count: int, first: int, settings: MotionSettings) -> _Home | None:
-    """So many steps home, a foot first; or None where a foot turns too far or meets the other."""
+    """Return `count` steps home, beginning with foot `first`; None if a foot turns too far or meets the other."""
     apart, most = settings.step.apart, np.radians(settings.home.turn)
     places = [(ball, float(yaw)) for ball, yaw in zip(begin.balls, begin.yaws, strict=True)]
     falls, crossed, least = [], 0.0, np.inf
@@ -131,14 +129,15 @@ def _way(begin: Stand, goal: Stand, count: int, first: int, settings: MotionSett
 
 
 def _bulge(places: list[tuple[Array, float]], side: int, fall: Footfall, step: StepSettings) -> Bulge:
-    """How a foot goes around the other one; places : ball and yaw of both."""
+    """Return the detour of a foot around the other one; places : ball and yaw of both."""
     (ball, yaw), other = places[side], places[1 - side]
     return detour(Way(ball, yaw, fall.ball, fall.yaw), *other, step, 1.0 - 2.0 * side)
 
 
 def _pace(time: float, count: int, home: HomeSettings) -> tuple[float, float]:
-    """How long she stands before so many steps, and how long each step takes, seconds. If there is little `time` she
-    stands less; if there is still less, her steps are quicker.
+    """Return how long the dancer stands before `count` steps, and how long each step takes, seconds.
+
+    With little `time` she stands less; with still less, her steps are quicker.
     """
     pause = float(np.clip(time - count * home.step - home.rest, home.pause_least, home.pause))
     step = float(np.clip((time - pause) / max(count, 1), home.step_least, home.step))
@@ -146,15 +145,15 @@ def _pace(time: float, count: int, home: HomeSettings) -> tuple[float, float]:
 
 
 def _nearest(places: Array, begin: Stand) -> float:
-    """Where along x she waits: the nearest of the places for that."""
+    """Return where along x the dancer waits: the nearest of the places for waiting."""
     return float(places[np.argmin(np.round(np.abs(places - begin.middle[0]), 6))])
 
 
 def homeward(plan: Plan, span: tuple[float, float], context: Context) -> tuple[list[list[Move]], Turn] | None:
-    """Steps home of each foot, with a turn, within a span; the feet stand from its first second on.
+    """Return the steps home of each foot, with a turn, within a span; the feet stand from its first second on.
 
-    Returns the moves of the left and of the right foot, and the turn; None at the bar, where she is at home already, or
-    where there is too little time: she stands `home.settle` before the end.
+    The result is the moves of the left and of the right foot, and the turn. It is None at the bar, if she is at home
+    already, or if time is short: she must stand `home.settle` before the end.
     """
     settings, step = context.settings, context.settings.step
     lands = (move.land for track in plan.feet for move in track.moves[-1:])
@@ -181,8 +180,8 @@ def homeward(plan: Plan, span: tuple[float, float], context: Context) -> tuple[l
 
 
 def faces_as_at_home(row: Row, footing: Footing) -> bool:
-    """Whether a foot steps on its own side of the foot that still rests. The play has that foot on a panel and would
-    turn the dancer without a reason.
+    """Whether a foot steps on its own side of the foot that still rests. The play has the resting foot on a panel, and
+    would turn the dancer without a reason.
     """
     if len(row.feet) != 1 or not footing.resting[1 - row.feet[0]]:
         return False
@@ -193,16 +192,16 @@ def faces_as_at_home(row: Row, footing: Footing) -> bool:
 
 
 # Legs shaken out in waits: for a moment, a foot hangs loosely in the air behind the dancer, with the weight on the
-# other leg. In front of her it would look like a step.
+# other leg. In front of her, it would look like a step.
 
 SEED = 20210423
-LEAST = 0.3  # seconds of a shake, and from one to the next
+LEAST = 0.3  # least seconds of a shake, and from one to the next
 
 
 def leg_shakes(plan: Plan, mines: Array, context: Context) -> list[tuple[int, Shake]]:
-    """Which foot, 0 left, is shaken when and how, in all waits that are long enough; mines : (m,) seconds.
+    """Return the foot, 0 left, and the shake, for all waits that are long enough; mines : (m,) seconds.
 
-    Chance decides, always in the same way for the same song; in its mirror image it is the other foot.
+    Shakes are random, but always the same for the same song; in its mirror image it is the other foot.
     """
     loose, found = context.settings.loose, []
     for number, (free, lift) in enumerate(waits(plan, mines, loose.least)):
@@ -228,7 +227,7 @@ def leg_shakes(plan: Plan, mines: Array, context: Context) -> list[tuple[int, Sh
 
 
 def _shake(foot: int, lift: float, stand: Stand, chance: np.random.Generator, context: Context) -> Shake:
-    """The shake of one leg, from `lift` on: never twice as long, as high or as quick."""
+    """Return the shake of one leg, from `lift` on; shakes differ in duration, height and rate."""
     loose, step = context.settings.loose, context.settings.step
     long = max(loose.up + chance.uniform(loose.shortest, loose.longest), LEAST)
     ball, yaw = stand.balls[foot], float(stand.yaws[foot])
@@ -253,5 +252,5 @@ def _shake(foot: int, lift: float, stand: Stand, chance: np.random.Generator, co
 
 
 def _moves(plan: Plan, start: float, end: float) -> bool:
-    """Whether a foot moves at all between two seconds, if it only turns."""
+    """Whether a foot moves or turns between two seconds."""
     return any(move.lift < end and move.land > start for track in plan.feet for move in track.moves)

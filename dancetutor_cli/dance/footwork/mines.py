@@ -1,6 +1,6 @@
-"""Mines: a foot goes up in time and comes down after they have passed; both feet at once hop (docs/motion.md).
+"""Mines: a foot rises in time and lands after they have passed; both feet at once hop (docs/motion.md).
 
-If the other foot steps at the same time, a foot goes up later and comes down sooner, so that one foot stands as long as
+If the other foot steps at the same time, a foot rises later and lands sooner, so that one foot stands as long as
 possible.
 """
 
@@ -31,10 +31,10 @@ from dancetutor_cli.dance.units import Array
 
 
 def avoid_mines(row: Row, footing: Footing) -> Proposal:
-    """Lift the feet that stand where mines of the row pass, unless they step at that row anyway.
+    """Propose to lift the feet that stand where mines of the row pass, unless they step at that row anyway.
 
-    The plan, not the play, knows where a foot stands: it may reach over a neighbouring panel, and a foot that has gone
-    to the middle of the pad may stay there.
+    The plan, not the play, knows where a foot stands. It may reach over a neighbouring panel, and a foot in the middle
+    of the pad may stay there.
     """
     mined, time = row.context.panels[row.play.rows.mines[row.index]], row.time
     if not len(mined):
@@ -54,7 +54,7 @@ def avoid_mines(row: Row, footing: Footing) -> Proposal:
 
 
 def _hopped(footing: Footing, time: float) -> Footing:
-    """A hop of both feet to the middle of the pad, if there is still time to leave the ground."""
+    """The footing after a hop of both feet to the middle of the pad, if there is still time to leave the ground."""
     half, stand = footing.settings.mines.hop / 2, footing.settings.step.stand
     pushed = min(time - footing.settings.mines.push, max(f.landed for f in footing.feet) + stand)
     take_off = max(time - half, pushed, *(f.earliest(time) for f in footing.feet))
@@ -73,7 +73,7 @@ def _pitches(mines: MineSettings) -> Pitches:
 
 
 def _home(footing: Footing, foot: FootState) -> tuple[Array, float]:
-    """Ball and yaw of a foot that waits in the middle of the pad, or of the nearest pad of two: on no panel."""
+    """Return ball and yaw of a foot that waits in the middle of the pad, or of the nearest pad of two: on no panel."""
     squares = footing.context.squares
     middle = np.mean([f.ball for f in footing.feet], axis=0)
     squares = squares[np.argsort(-squares[:, 0] if footing.lead else squares[:, 0], kind="stable")]
@@ -85,15 +85,15 @@ def _home(footing: Footing, foot: FootState) -> tuple[Array, float]:
 
 
 def _lifted(footing: Footing, foot: FootState, time: float, column: int) -> Footing:
-    """One foot goes up while the other stands, and comes down on the inner edge of its panel.
+    """Return the footing in which one foot rises while the other stands, and lands on the inner edge of its panel.
 
-    If more mines come there, or `column` is -1 and it has none, it goes to the middle of the pad.
+    If more mines come there, or `column` is -1 because the foot has no panel, it goes to the middle of the pad.
     """
     mines = footing.settings.mines
     half, first = mines.before + mines.rise, time
     lift = min(max(time - half, foot.free), max(time - SHORTEST, foot.landed + FREE_WINDOW))
     if foot.evading is not None and foot.landed > time - half and isinstance(foot.moves[-1], Hover):
-        # it stays up from the last mine
+        # the foot stays in the air from the last mine
         first, lift = foot.evading.first, foot.moves[-1].lift
         foot = foot.without_last_move(foot.evading)
         footing = footing.with_foot(foot)
@@ -109,13 +109,13 @@ def _lifted(footing: Footing, foot: FootState, time: float, column: int) -> Foot
 
 
 def _place_clear_of_mines(footing: Footing, foot: FootState, column: int) -> tuple[Array, float]:
-    """Where a foot that is up over a mine comes down, and its yaw; column : of the mine, -1 for none."""
+    """Return where a foot that is up over a mine lands, and its yaw; column : of the mine, -1 for none."""
     panels, other, mines = footing.context.panels, footing.other(foot), footing.settings.mines
     there = panels[column] if column >= 0 else None
     if there is None or (len(footing.mined) and (np.abs(footing.mined - there).max(axis=1) < HALF_PANEL).any()):
         target, yaw = _home(footing, foot)
         spot = Spot(target, np.full(2, mines.roam))
-        if np.linalg.norm(target - foot.ball) > mines.far_home:  # off the mines is enough
+        if np.linalg.norm(target - foot.ball) > mines.far_home:  # to be off the mines is enough
             target, yaw, spot = foot.ball, foot.yaw, Spot(foot.ball, np.full(2, mines.far_home))
     else:
         spot, yaw = Spot(there, room_on(panels, column, footing.settings.step)), foot.yaw
@@ -125,7 +125,7 @@ def _place_clear_of_mines(footing: Footing, foot: FootState, column: int) -> tup
 
 
 def _one_after_the_other(footing: Footing, foot: FootState, other: FootState) -> Footing:
-    """A foot goes up over a mine only when the other one is down from its step or its own mine, if it can wait."""
+    """Return the footing in which a foot rises over a mine only after the other foot has landed, if it can wait."""
     settings = footing.settings
     need = settings.mines.before + settings.mines.steep
     swing, evading = foot.moves[-1], foot.evading
@@ -138,7 +138,7 @@ def _one_after_the_other(footing: Footing, foot: FootState, other: FootState) ->
 
 
 def _hurried(foot: FootState, settings: MotionSettings, lift: float, land: float) -> FootState:
-    """A foot that evades goes up not before `lift` and is down at `land`, as far as its mines allow."""
+    """Return a foot that rises over its mines not before `lift` and has landed at `land`, as far as the mines allow."""
     evading, swing = foot.evading, foot.moves[-1]
     assert evading is not None
     need = settings.mines.before + settings.mines.steep
@@ -151,26 +151,27 @@ def _hurried(foot: FootState, settings: MotionSettings, lift: float, land: float
 def wait_for_other_foot(
     other: FootState, settings: MotionSettings, lift: float, time: float
 ) -> tuple[FootState, float]:
-    """When a foot leaves for its step at `time`, at `lift` or later: when the other foot is down again from a mine.
+    """When a foot leaves for its step at `time`: at `lift`, or later, when the other foot is down again from a mine.
 
-    The result also has what the other foot does for it.
+    The result also has the other foot, which may land sooner.
     """
     if other.evading is None or other.landed <= lift or not isinstance(other.moves[-1], Hover):
         return other, lift
     need = settings.mines.before + settings.mines.steep
-    if other.evading.last + need > time - settings.mines.haste:  # no time: both are in the air for a moment
+    if other.evading.last + need > time - settings.mines.haste:  # no time: both feet are in the air for a moment
         return _hurried(other, settings, other.evading.first - need, time), lift
     sooner = _hurried(other, settings, lift, max(lift, other.evading.last + need))
     return sooner, max(lift, sooner.landed)
 
 
 def resumed(foot: FootState, other: FootState, time: float, settings: MotionSettings) -> tuple[FootState, float | None]:
-    """A step soon after a mine: the foot stays up and goes straight to it, unless the other foot has stepped meanwhile.
+    """Resume a step soon after a mine: the foot stays up and goes straight to it, unless the other foot has stepped
+    meanwhile.
 
-    It also does so if it would be down for no time at all, and if its hop with the other foot would not be over by
+    The foot also does so if it would have no time on the ground, or if its hop with the other foot would not be over by
     then.
 
-    Returns the foot, evading nothing any more, and when it left the ground.
+    Returns the foot, which evades no mine any more, and the second at which it left the ground.
     """
     over = foot.moves and (isinstance(foot.moves[-1], Hover) or foot.landed > time - settings.mines.push)
     evading = foot.evading if over else None
@@ -186,9 +187,10 @@ def _hopping(foot: FootState) -> bool:
 
 
 def flown_on(footing: Footing, time: float) -> tuple[Footing, float]:
-    """A jump at `time` so soon after a hop over a mine that there is no time to push off: both are one flight.
+    """Join a jump at `time` with a hop over a mine so soon before it that there is no time to push off: both are one
+    flight.
 
-    Returns the footing without that hop, and when both feet take off for the jump at the latest.
+    Returns the footing without that hop, and the latest second at which both feet take off for the jump.
     """
     numbers = footing.settings.mines
     left, right = (f.evading if _hopping(f) else None for f in footing.feet)
@@ -203,9 +205,9 @@ def flown_on(footing: Footing, time: float) -> tuple[Footing, float]:
 
 
 def landed_early(foot: FootState, settings: MotionSettings, time: float) -> tuple[FootState, float]:
-    """Before a jump at `time`, a foot that hovers over a mine comes down in time to push off, or flies from there.
+    """Before a jump at `time`, let a foot that hovers over a mine land in time to push off, or fly on from there.
 
-    Returns the foot, and when both take off at the latest.
+    Returns the foot, and the latest second at which both feet take off.
     """
     evading, need = foot.evading, settings.mines.before + settings.mines.steep
     ready = time - settings.mines.haste - settings.mines.push
@@ -220,10 +222,11 @@ def landed_early(foot: FootState, settings: MotionSettings, time: float) -> tupl
 
 
 def stayed_up(before: Footing, after: Footing, until: list[float], take_off: float) -> Footing:
-    """The footing `after` a jump in which a foot stays up and comes down at its note. It must be up over a mine before
-    both feet can take off, because the other foot was up itself.
+    """Return the footing `after` a jump in which a foot stays up and lands at its note.
 
-    until : when each foot must be up at the latest, seconds
+    The foot must be up over a mine before both feet can take off, because the other foot was up over a mine itself.
+
+    until : latest second at which each foot must be up
     """
     for stood, foot, lift in zip(before.feet, after.feet, until, strict=True):
         if lift < take_off - SHORTEST:

@@ -1,4 +1,4 @@
-"""From a play to a plan: rules look at each row, walks and shakes are inserted. Only this module applies proposals."""
+"""From a play to a plan: rules get each row, walks and shakes are inserted. Only this module applies proposals."""
 
 from __future__ import annotations
 
@@ -33,13 +33,15 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.run.errors import DancetutorError
 
-# From a play to moves, row by row. The planner asks the rules for proposals, and only the planner applies them.
+# From a play to moves, row by row. The planner calls the rules for proposals, and only the planner applies them.
 
-NEWEST = 8  # moves of a foot that rules may still look at or change
+NEWEST = 8  # moves of a foot that rules may still read or change
 
 
 class Planner:
-    """Walks through the rows of a play once. `second(tick)` gives the time of a tick in seconds of the music."""
+    """The planner of a play. `second(tick)` gives the time of a tick in seconds of the music. Each planner
+    runs once.
+    """
 
     def __init__(self, play: Play, second: Callable[[int], float], context: Context) -> None:
         self.play, self.second, self.context, self.settings = play, second, context, context.settings
@@ -56,7 +58,7 @@ class Planner:
         self.touches: list[Contact] = []
 
     def run(self) -> Plan:
-        """The plan of the whole song; DancetutorError if the play has no steps."""
+        """Return the plan of the whole song. Raises DancetutorError if the play has no steps."""
         for i in range(len(self.play.rows)):
             self._row(i)
         if not self.touches:
@@ -89,12 +91,14 @@ class Planner:
                 self._touch(row, limb, column)
 
     def _stays(self, i: int, time: float) -> float:
-        """Until when mines matter to the feet that land at row i: for a while, and as long as the feet hold."""
+        """Return until when mines matter to the feet that land at row i: for a while, and as long as the feet hold."""
         held = self.play.rows.hold_end[i][self.play.limb[i] >= 0]
         return max([time + self.settings.mines.ahead, *(self.second(int(tick)) for tick in held if tick >= 0)])
 
     def _feet(self, row: Row) -> None:
-        """One foot steps or both jump, and the body turns with them; before that she may step aside, or home."""
+        """Plan a step of one foot or a jump, with the turn of the body; before it the dancer may step
+        aside, or home.
+        """
         time, longest = row.time, self.settings.step.longest
         aside = None
         if self.previous is not None:
@@ -107,7 +111,7 @@ class Planner:
         turned = 0.0 if faces_as_at_home(row, self.footing) else self.facing.turn(row, self.footing)
         left, right = self.footing.resting
         self.footing = replace(self.footing, resting=(left and 0 not in row.feet, right and 1 not in row.feet))
-        # it is added to the turn so far and subtracted again, so the rest is exactly how far the foot has turned
+        # the turn is added to the normal and subtracted again, so the rest is exactly how far the foot has turned
         before = self.footing.normal
         aim = float(np.radians(self.facing.aim(row, before + turned, self.footing.lead)))
         self.footing = replace(self.footing, normal=before + turned, aim=aim)
@@ -121,7 +125,7 @@ class Planner:
         self.previous = time
 
     def _touch(self, row: Row, limb: int, column: int) -> None:
-        """A limb comes down on a column."""
+        """Add the contact of a limb with a column."""
         kind, panel = int(self.play.rows.steps[row.index, column]), pair(self.context.panels[column])
         end = np.inf
         if kind == StepKind.HOLD:
@@ -135,7 +139,7 @@ class Planner:
         self.touches.append(Contact(row.time, end, limb, column, kind, part, row.index, panel))
 
     def _apply(self, proposal: Proposal) -> None:
-        """Apply a proposal of a rule. Moves that are so old that no rule asks for them are put aside."""
+        """Apply a proposal of a rule. Moves that are too old for the rules are put aside."""
         for done, foot in zip(self.moves, proposal.footing.feet, strict=True):
             if len(foot.moves) > 2 * NEWEST:
                 old, foot = foot.split_moves(NEWEST)
@@ -146,9 +150,7 @@ class Planner:
             self.turns.append(proposal.turn)
 
     def _ended(self, moves: tuple[tuple[Move, ...], tuple[Move, ...]]) -> tuple[Contact, ...]:
-        """All touches, in order, each with the time at which it must end; a foot that is not needed any more stays a
-        while.
-        """
+        """All touches, in order, each with its latest end. A foot that is not needed any more stays for a while."""
         self.touches.sort(key=lambda c: (c.start, c.limb, c.column))
         lifts = [[m.lift for m in of_foot if isinstance(m, Swing)][-1:] for of_foot in moves]
         stays = self.settings.step.longest
@@ -160,7 +162,8 @@ class Planner:
         return tuple(ended(touch) for touch in self.touches)
 
 
-# Walks in a plan: what follows a walk starts from where the dancer has walked to, around where the other foot is now.
+# Walks in a plan: the moves after a walk start from the place where it ended, around the present place of the other
+# foot.
 
 
 def with_walks(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
@@ -172,7 +175,7 @@ def with_walks(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
 
 
 def with_shakes(plan: Plan, shakes: list[tuple[int, Shake]]) -> Plan:
-    """The plan with feet (0 left) that are shaken out where they stand."""
+    """Return the plan with feet (0 left) that are shaken out where they stand."""
     if not shakes:
         return plan
     both = ([shake for foot, shake in shakes if foot == side] for side in (0, 1))
@@ -184,10 +187,10 @@ def with_shakes(plan: Plan, shakes: list[tuple[int, Shake]]) -> Plan:
 
 
 def inserted(plan: Plan, walk: WalkProposal | None, context: Context) -> Plan:
-    """The plan with a walk in it, if one was proposed.
+    """Return the plan with a walk in it, if one was proposed.
 
-    Until both feet have stepped after it, one foot is not where the play has it, so the dancer keeps the direction in
-    which she arrived.
+    Until both feet have stepped after the walk, one foot is not where the play has it. So the dancer keeps the
+    direction in which she arrived.
     """
     if walk is None:
         return plan
@@ -216,13 +219,13 @@ def inserted(plan: Plan, walk: WalkProposal | None, context: Context) -> Plan:
 
 
 def _begun(track: FootTrack, begin: Stand, side: int, level: float) -> FootTrack:
-    """A foot's track with another beginning."""
+    """Return a foot's track with another beginning."""
     x, z = begin.balls[side]
     return replace(track, start=(float(x), float(z)), start_yaw=float(begin.yaws[side]), start_level=level)
 
 
 def _from_there(moves: tuple[Move, ...], goal: Stand, side: int, context: Context) -> tuple[Move, ...]:
-    """What a foot does after a walk, planned from its new place: its pivots and its first step are new."""
+    """Return the moves of a foot after a walk, planned from its new place: its pivots and its first step are new."""
     step = context.settings.step
     most = np.radians(step.foot_turn + step.toe_out)
     here = (float(goal.balls[side][0]), float(goal.balls[side][1]))
@@ -242,8 +245,8 @@ def _from_there(moves: tuple[Move, ...], goal: Stand, side: int, context: Contex
 
 
 def _gone_around(feet: tuple[FootTrack, FootTrack], walked: float, context: Context) -> tuple[FootTrack, FootTrack]:
-    """Both feet after a walk, which ends at another place: until both have stepped, their steps go around where the
-    other foot is now.
+    """Return both feet after a walk, which ends at another place. Until both have stepped, their steps go around the
+    present place of the other foot.
     """
     firsts = [next_step(track, walked) for track in feet]
     until = max((s.land for s in firsts if s is not None), default=walked)
@@ -265,16 +268,16 @@ def _bulge(feet: tuple[FootTrack, FootTrack], side: int, step: Swing, context: C
     return detour(way, *there, context.settings.step, 1.0 - 2.0 * side)
 
 
-# From a play to a plan: when each foot leaves and lands, where, and how it is turned. One rule to a module.
+# From a play to a plan: when each foot leaves and lands, where, and how it is turned. Each rule has its module.
 #
-# A rule gets a row (or a wait) and the footing, changes neither, and returns its proposal: another footing
+# A rule takes a row (or a wait) and the footing, changes neither, and returns its proposal: another footing
 # (`footing.Proposal`) or a walk (`walks.WalkProposal`). Only `planner` applies proposals.
 
 
 def plan_footwork(play: Play, second: Callable[[int], float], gait: str, context: Context) -> Plan:
-    """What both feet and hands do in a song.
+    """Return the plan of both feet and hands in a song.
 
-    second : seconds of the music at a tick; gait : how she walks, a name or file as for `gait.load_gait`
+    second : seconds of the music at a tick; gait : the walk of the dancer, a name or file as for `gait.load_gait`
     Raises DancetutorError if the play has no steps.
     """
     plan = Planner(play, second, context).run()

@@ -17,13 +17,13 @@ from dancetutor_cli.dance.rig.body import GRAVITY
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Part
 
-# Brackets: one foot on two panels, heel on one and toes on the other, also where they tap by turns.
+# Brackets: one foot on two panels, heel on one and toes on the other, also where they tap in turn.
 
 NEIGHBOURS = 1.6 * PANEL  # metres between panels that one foot can press together
 
 
 def under_the_foot(row: Row, foot: FootState) -> list[int]:
-    """The columns that a foot stands over after a row: those that it presses, and one that its other end holds.
+    """Return the columns under a foot after a row: the columns that it presses, and one that its other end holds.
 
     A heel or toe that taps alone, beside a panel that the rest of the foot holds, is a bracket.
     """
@@ -37,7 +37,7 @@ def under_the_foot(row: Row, foot: FootState) -> list[int]:
 
 
 def _other_part(row: Row, side: int, column: int) -> list[int]:
-    """The panel beside one that a heel or toe taps alone, where the other end of the foot taps soon: two rolls."""
+    """The neighbour of a panel that a heel or toe taps alone, if the foot's other end taps it soon (two rolls)."""
     rows, part, i, panels = row.play.rows, row.play.part, row.index, row.context.panels
     for j in (i + 1, i - 1, i + 2, i - 2):
         if not 0 <= j < len(rows) or abs(rows.second[j] - rows.second[i]) > row.context.settings.step.bracket_between:
@@ -49,11 +49,11 @@ def _other_part(row: Row, side: int, column: int) -> list[int]:
     return []
 
 
-# Jumps: both feet land at one row; where, and how high they go for it (thesis 5.5, 5.6).
+# Jumps: both feet land at one row; their places and height (thesis 5.5, 5.6).
 
 
 def jump(row: Row, footing: Footing) -> Proposal:
-    """Both feet land at a row."""
+    """Propose a jump: both feet land at a row."""
     numbers, time = footing.settings.jump, row.time
     footing, latest = flown_on(footing, time)
     until = [time, time]
@@ -66,7 +66,7 @@ def jump(row: Row, footing: Footing) -> Proposal:
     far = max(float(np.linalg.norm(g - f.ball)) for (g, _), f in zip(goals, footing.feet, strict=True))
     way = min(far / numbers.far, 1.0)
     apex = numbers.apex_near + way * (numbers.apex_far - numbers.apex_near)
-    if row.hands:  # bending down to a panel: feet only just leave the ground
+    if row.hands:  # bending down to a panel: feet leave the ground only a little
         apex = numbers.apex_hands
     share = numbers.flight_share - row.jump_cut * (1.0 - way) * (numbers.flight_share - numbers.flight_near)
     take_off = take_off_for(footing, time, min(float(np.sqrt(8 * apex / GRAVITY)), share * row.duration))
@@ -77,7 +77,7 @@ def jump(row: Row, footing: Footing) -> Proposal:
 
 
 def _goals(row: Row, footing: Footing, columns: list[list[int]]) -> Goals:
-    """Where both balls land, and the feet's yaws."""
+    """Return where both balls land, and the yaws of the feet."""
     body, panels = footing.body_yaw(), row.context.panels
     share = footing.settings.jump.yaw_to_normal
     yaws = [footing.limited(f.yaw + share * (body - f.yaw), body) for f in footing.feet]
@@ -96,7 +96,7 @@ def _goals(row: Row, footing: Footing, columns: list[list[int]]) -> Goals:
 
 
 def step(row: Row, side: int, footing: Footing) -> Proposal:
-    """One foot steps at a row: from the ground, from the air over a mine, or as a part of a gallop."""
+    """Propose a step of one foot: from the ground, from the air over a mine, or as a part of a gallop."""
     numbers, time = footing.settings.step, row.time
     footing = galloping(row, side, footing)
     resuming, up = resumed(footing.feet[side], footing.feet[1 - side], time, footing.settings)
@@ -141,7 +141,7 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
 
 
 def _make_room(row: Row, side: int, footing: Footing) -> Footing:
-    """The footing in which the other foot turns with the body, if this foot comes to stand beside it on its panel.
+    """Return the footing in which the other foot turns with the body, if this foot lands beside it on its panel.
 
     A foot that lies across the panel would leave room for half a shoe, and the rest would hang over the edge of the
     pad.
@@ -155,20 +155,22 @@ def _make_room(row: Row, side: int, footing: Footing) -> Footing:
 
 
 def _taps_again(row: Row, foot: FootState, columns: list[int]) -> bool:
-    """Whether a foot came down on the row's panel so shortly before that there is no time to move it."""
+    """Whether a foot landed on the row's panel so shortly before that there is no time to move it."""
     on = (np.abs(foot.ball - row.context.panels[columns]) <= HALF_PANEL).all(axis=1).any()
     return bool(on) and row.time - foot.landed < row.context.settings.step.again
 
 
 def _gallop(row: Row, side: int, footing: Footing) -> TakeOff | None:
-    """The take-off of the foot that steps at a row, if it does so in a gallop."""
+    """Return the take-off of the foot that steps at a row, if it does so in a gallop."""
     found = footing.take_offs
     return found[side] if found is not None and found[side].row == row.index else None
 
 
 def _lift(row: Row, footing: Footing, far: float) -> float:
-    """When a foot would leave for its note, so many metres away. It has a least time, and both feet stand for a part of
-    the available time; of a fast step this part is smaller the farther it is.
+    """Return when a foot leaves for its note, `far` metres away.
+
+    A swing has a least time, and both feet stand for a part of the available time. For a fast step, this part is
+    smaller if the note is farther away.
     """
     numbers = footing.settings.step
     least = numbers.double_support_near * max(1.0 - far / numbers.double_support_far, 0.0)
@@ -180,9 +182,9 @@ def _lift(row: Row, footing: Footing, far: float) -> float:
 def _kind(
     row: Row, footing: Footing, going: tuple[FootState, float], target: Array, hovering: bool
 ) -> tuple[type[Swing], float]:
-    """What kind of swing it is, and how high the foot goes, metres; the height of a jump follows from its time.
+    """Return the kind of a swing, and the height of the foot, metres; the height of a jump follows from its time.
 
-    going : the foot and how many seconds it takes
+    going : the foot and the seconds of its swing
     """
     numbers, mines, (foot, duration) = footing.settings.step, footing.settings.mines, going
     far = float(np.linalg.norm(target - foot.ball))
@@ -199,13 +201,13 @@ def _kind(
         jump = footing.settings.jump
         kind, height = Gallop, max(height, mines.height, jump.apex_near + 2 * jump.tuck)  # up with the body
         assert footing.take_offs is not None
-        if footing.take_offs[1 - foot.side].row > row.index:  # the first of the two
+        if footing.take_offs[1 - foot.side].row > row.index:  # this foot lands first
             kind = Jump
     return kind, height
 
 
 def _give_way(footing: Footing, foot: FootState, goal: tuple[Array, float], span: tuple[float, float]) -> Footing:
-    """The standing foot turns with the body while the other one goes to its goal, from lift to landing."""
+    """Return the footing in which the standing foot turns with the body while the other one swings to its goal."""
     other, (target, yaw) = footing.other(foot), goal
     after = footing.turned_to((yaw, other.yaw) if foot.side == 0 else (other.yaw, yaw))
     turned = footing.pivot_yaw(other, after, target, footing.toes(foot, yaw))

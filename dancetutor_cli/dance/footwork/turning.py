@@ -1,4 +1,4 @@
-"""How the body turns with the feet: by how much at a row, from when on, and which foot decides if both could."""
+"""How the body turns with the feet: how far at a row, from when on, and which way if both are possible."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play
 
 NO_WAY = 1e-6  # metres
-HALF_TURN = 1e-6  # degrees from half a turn
-ALL_ROUND = 180.0  # degrees; rows that are farther apart in time than the body takes for them do not affect each other
-SPIN = 1.1  # a body that spins may turn this many times as fast as the feet do on average
-ASIDE = 15.0  # degrees from the feet normal; from here on the feet's actual places matter
+HALF_TURN = 1e-6  # degrees that a turn may differ from half a turn
+ALL_ROUND = 180.0  # degrees; rows do not affect each other if the body could turn this far between them
+SPIN = 1.1  # a body in a spin may turn this many times as fast as the feet do on average
+ASIDE = 15.0  # degrees from the feet normal; from here on the actual places of the feet matter
 
 
 def shorter(normal: float, facing: float) -> float:
-    """Degrees from one to the other by the shorter way, positive left; half a turn is negative."""
+    """Return the degrees from one to the other by the shorter way, positive left; half a turn is negative."""
     return float((facing - normal + 180.0) % 360.0 - 180.0)
 
 
 def is_half(turn: float) -> bool:
-    """Whether either way round is as far, degrees."""
+    """Whether both ways round are equally far, degrees."""
     return abs(abs(turn) - 180.0) < HALF_TURN
 
 
 def rounds(normal: float, turn: float, rounded: float) -> float:
-    """How far all the way round, a multiple of 360 degrees, the dancer has gone after a turn from a feet normal.
+    """Return how far all the way round, a multiple of 360 degrees, the dancer has gone after a turn from a feet normal.
 
-    rounded : before the turn. With her back to the screen, she is in the round that she came from
+    rounded : the result before the turn. With her back to the screen, the dancer is in the round that she came from
     """
     after = normal + turn
     if is_half(shorter(0.0, after)):
@@ -44,21 +44,22 @@ def rounds(normal: float, turn: float, rounded: float) -> float:
 
 
 def passing(turn: float, normal: float, foot: int, seconds: float, step: StepSettings) -> float:
-    """The turn, degrees, in which one foot passes the other one on the side that the form prefers, if it can.
+    """Return the turn, degrees, in which one foot passes the other on the side that the form prefers, if it can.
 
-    turn : the way it goes without a form; normal : of the feet before; foot : that steps, 0 left; seconds : it has
+    turn : the turn without a form; normal : of the feet before; foot : the foot that steps, 0 left; seconds : time for
+    the turn
     """
     other = turn - float(np.copysign(360.0, turn))
     enough = max(180.0 + HALF_TURN, step.turn_rate * seconds)
     if step.crossing == 0.0 or abs(turn) < step.crossing_from or abs(other) > enough:
         return turn
-    # Half-way, the line from the standing foot to this one points to the screen, or away from it.
+    # Half-way, the line from the standing foot to this foot points to the screen, or away from it.
     ahead = float(np.sin(np.radians(normal + turn / 2))) * (2 * foot - 1)
     return turn if ahead * (1.5 - step.crossing) >= -NO_WAY else other
 
 
 def body_yaw(normal: float, settings: MotionSettings) -> float:
-    """Which way the body faces for a feet normal, both in degrees: crossed feet turn it less."""
+    """Return the direction of the body for a feet normal, both in degrees: crossed feet turn the body less."""
     whole = 360.0 * round(normal / 360.0)
     rest = abs(normal - whole)
     step = settings.step
@@ -72,10 +73,10 @@ def body_yaw(normal: float, settings: MotionSettings) -> float:
 
 
 class Facing:
-    """Which way the body faces at each row: with the feet, but no faster than people turn who know what is coming.
+    """The direction of the body at each row: with the feet, but no faster than dancers turn who know the next rows.
 
-    If the feet turn faster than the body should, it begins earlier and ends later, and of a turn that is undone at once
-    it makes only a part. Meanwhile the legs cross, at most as far as legs do. Of all paths that are slow enough, the
+    If the feet turn faster than the body should, it begins earlier and ends later. If a turn is undone at once, the
+    body makes only a part of it. Meanwhile the legs cross, within their limit. Of all paths that are slow enough, the
     one whose largest distance from the feet is smallest lies half-way between the lowest path over them and the highest
     path under them.
     """
@@ -89,19 +90,19 @@ class Facing:
         self._facing: list[float] = play.facing.tolist()
         feet = [(play.limb == side).any(axis=1) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
         self._alone: list[int] = np.where(feet[0] == feet[1], -1, feet[1]).tolist()  # the foot that steps alone, or -1
-        # the direction at rows that turn half around, chosen with a look ahead
+        # the direction of half turns at rows, chosen with a look ahead
         self.halves: dict[int, float] = {}
-        self.past: list[tuple[float, float]] = []  # seconds and where it would face, degrees, row by row
-        self.rounded = 0.0  # degrees that she has gone all the way round, 360 for each spin to the left
+        self.past: list[tuple[float, float]] = []  # seconds and wanted yaw, degrees, row by row
+        self.rounded = 0.0  # degrees that the dancer has gone all the way round, 360 for each spin to the left
 
     def aim(self, row: Row, normal: float, lead: int) -> float:
-        """The yaw to aim at for a row's feet normal, degrees; rows are asked for in order."""
+        """Return the yaw to aim at for a row's feet normal, degrees; the caller must ask for rows in order."""
         step = self.settings.step
         wanted = body_yaw(normal, self.settings)
         self.past = [was for was in self.past if was[0] > row.time - ALL_ROUND / step.turn_rate]
         self.past.append((row.time, wanted))
         around = [*self.past, *self._coming(row, normal, lead)]
-        # in a spin the body turns evenly, as fast as the feet do on average: slower, it would only catch up in jerks
+        # in a spin the body turns evenly, as fast as the feet do on average: a slower body would catch up in jerks
         spin = SPIN * abs(around[-1][1] - self.past[0][1]) * step.turn_rate / (2.0 * ALL_ROUND)
         slack = [max(step.turn_rate, spin) * abs(time - row.time) for time, _ in around]
         low = max(yaw - free for (_, yaw), free in zip(around, slack, strict=True))
@@ -109,10 +110,10 @@ class Facing:
         return float(min(max((low + high) / 2, normal - step.turn_crossed), normal + step.turn_crossed))
 
     def turn(self, row: Row, footing: Footing) -> float:
-        """Degrees by which the feet normal turns at a row, positive left: the form's way, the play's or the shorter
-        one.
+        """Return the degrees by which the feet normal turns at a row, positive left: the turn of the form, of the play,
+        or the shorter one.
 
-        Rows are asked for in order, each before its aim.
+        The caller must ask for rows in order, for each before its aim.
         """
         j, normal = row.index, footing.normal
         self.rounded = rounds(normal, 0.0, self.rounded)  # the dancer may have gone home meanwhile
@@ -127,9 +128,10 @@ class Facing:
         return turn
 
     def _half(self, j: int, normal: float, rounded: float, side: float) -> float:
-        """The way of half a turn at row `j`: not on around the back, because in the play that would be a spin.
+        """Half a turn at row `j`, left or right. It does not go on around the back, which would be a spin in the play.
 
-        side : 1 left, -1 right if the dancer turns her back to the screen straight from there; not if she stood aside
+        side : 1 left, -1 right, for a dancer who turns her back to the screen directly; not used if she stands aside
+        later
         """
         facing = self.play.facing[self.rows[self.rows >= j]]
         if not is_half(float(facing[0])):
@@ -138,7 +140,7 @@ class Facing:
         return 180.0 * float(np.sign(aside[0]) if len(aside) and abs(aside[0]) > ASIDE else side)
 
     def _as_formed(self, j: int, turn: float, normal: float) -> float:
-        """The turn at row `j` of the play as the form has it, if one foot steps."""
+        """Return the turn at row `j` of the play as the form prefers it, if one foot steps."""
         k, alone = bisect_left(self._steps, j), self._alone[j]
         if alone < 0 or k == 0:
             return turn
@@ -146,15 +148,15 @@ class Facing:
         return passing(turn, normal, alone, seconds, self.settings.step)
 
     def _side(self, j: int, lead: int) -> float:
-        """The side, 1 left, to which the foot that steps at row `j` passes ahead of the other one."""
+        """Return the side, 1 left, to which the foot that steps at row `j` passes ahead of the other one."""
         return 2.0 * (self._alone[j] if self._alone[j] >= 0 else lead) - 1.0
 
     def begin_anew(self) -> None:
-        """Forget what was before a stand: the dancer has turned to the screen."""
+        """Forget the rows before a stand, because the dancer has turned to the screen."""
         self.past = []
 
     def _coming(self, row: Row, normal: float, lead: int) -> Iterator[tuple[float, float]]:
-        """The coming rows, as far as they matter."""
+        """Yield the coming rows, as far as they matter."""
         latest, rounded = row.time + ALL_ROUND / self.settings.step.turn_rate, self.rounded
         for k in range(bisect_right(self._steps, row.index), len(self._steps)):
             j = self._steps[k]
@@ -169,25 +171,26 @@ class Facing:
 
 
 def turn_start(move: tuple[float, float], leaves: float, far: float, step: StepSettings) -> float:
-    """When the body begins to turn `far` degrees for a move: when the move begins, but not so long before the foot
-    leaves the ground that body and foot would be turned much farther from each other than they are anyway.
+    """Return when the body begins to turn `far` degrees for a move: at the beginning of the move, or later.
 
-    move : when it lands, and how long it lasts; leaves : when a foot does, seconds
+    It begins later if body and foot would otherwise be turned much farther from each other than they are anyway.
+
+    move : second of its landing, and its duration; leaves : second at which a foot leaves the ground
     """
     time, duration = move
     ahead = 2.0 * step.turn_ahead / (STEEPEST * max(far, step.turn_ahead)) * (time - leaves)
     late = step.turn_late * float(
         np.clip(far / step.turn_wide - 1.0, 0.0, 1.0)
-    )  # for the body's path is smooth: it turns before it begins
+    )  # the body's path is smooth, so it turns before the turn begins
     return max(time - duration, leaves - ahead + late)
 
 
 def leading_foot(play: Play, panels: Array) -> int:
-    """The foot that steps first alone, 0 left or 1 right; if there is none, the first asymmetric jump decides.
+    """Return the foot that steps first alone, 0 left or 1 right; if there is none, the first asymmetric jump decides.
 
-    This foot leads: if both sides are equal, it decides, so a mirrored play is danced mirrored.
+    This foot leads: where both sides are equal, it decides, so a mirrored play is danced mirrored.
 
-    panels : (c, 2) on the ground. A play that is its own mirror image is led by the left foot.
+    panels : (c, 2) on the ground. The left foot leads a play that is its own mirror image.
     """
     feet = [(play.limb == side).any(axis=1) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
     alone = np.flatnonzero(feet[0] != feet[1])
@@ -195,7 +198,7 @@ def leading_foot(play: Play, panels: Array) -> int:
         return int(feet[1][alone[0]])
     left, right = (np.asarray(play.limb == side) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT))
     aside, ahead = (left | right) @ panels[:, 0], (left.astype(np.int8) - right) @ panels[:, 1]
-    for x, z in zip(aside, ahead, strict=True):  # each changes its sign in the mirror
+    for x, z in zip(aside, ahead, strict=True):  # each changes its sign in the mirror image
         if max(abs(x), abs(z)) > NO_WAY:
             return int(x < 0) if abs(x) > NO_WAY else int(z < 0)
     return 0

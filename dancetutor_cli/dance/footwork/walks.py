@@ -1,4 +1,4 @@
-"""Walking: onto the pad before the song, off it afterwards, between pads, and step by step aside in short waits."""
+"""Walks: onto the pad before the song, off it afterwards, between pads, and step by step aside in short waits."""
 
 from __future__ import annotations
 
@@ -29,18 +29,18 @@ from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind
 
-# Walking: when and from where to where the dancer walks onto the pad, off it, and between pads.
+# The times and places of walks onto the pad, off it, and between pads.
 #
-# This part proposes footsteps; `planner` puts them into a plan. They are swings like all others, so feet stand as
-# exactly, and the body's path keeps its balance over them. What the gait adds to pelvis, chest and hands (`dance.gait`)
-# comes on top.
+# This module proposes footsteps; `planner` puts them into a plan. They are swings like all others, so feet stand as
+# exactly, and the body's path keeps its balance over them. The gait adds its movements of pelvis, chest and hands
+# (`dance.gait`).
 
 
 @dataclass(frozen=True, slots=True)
 class WalkProposal:
     """A walk that a rule proposes.
 
-    goal : how she stands after it; begin : where she stands before it, if the plan begins with it
+    goal : the stand after it; begin : the stand before it, if the plan begins with it
     """
 
     steps: WalkSteps
@@ -49,7 +49,7 @@ class WalkProposal:
 
 
 def walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> WalkProposal | None:
-    """The dancer comes from one side as the song begins, if there is time before the first note."""
+    """Propose a walk of the dancer from one side as the song begins, if there is time before the first note."""
     ground, settings, walk = context.ground, context.settings, context.settings.walk
     busy = min(plan.first, *(s.lift + walk.settle for t in plan.feet for s in t.moves[:1]))
     if busy < walk.least or (mines < busy).any():
@@ -65,9 +65,9 @@ def walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropos
 
 
 def walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> WalkProposal | None:
-    """After the last note the dancer goes on to the other side, or back if her feet would be in each other's way.
+    """Propose a walk after the last note to the other side, or back if her feet would be in each other's way.
 
-    Beside another dancer she goes to her own side, or stays.
+    Beside another dancer, the dancer goes to her own side, or stays.
     """
     if context.stays:
         return None
@@ -93,10 +93,10 @@ def walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropo
 
 
 def side_of(plan: Plan, context: Context) -> int:
-    """The side from which the dancer comes, 0 left or 1 right: by chance, but always the same one for the same notes.
+    """Return the side from which the dancer comes, 0 left or 1 right: random, but always the same for the same notes.
 
     For the mirror image of a play it is the other side. On two pads it is the side of the foot that leads; beside
-    another dancer it is her own (`Context.sides`).
+    another dancer it is the dancer's own side (`Context.sides`).
     """
     if context.sides is not None:
         return context.sides[0]
@@ -107,12 +107,12 @@ def side_of(plan: Plan, context: Context) -> int:
 
 
 def _place_off_pad(ground: Ground, side: int, far: float) -> float:
-    """A place along x so far beside the pad, on her left (0) or right (1) as she looks to the screen."""
+    """A place along x, `far` metres beside the pad, on the dancer's left (0) or right (1) as she faces the screen."""
     return ground.high[0] + far if side == 0 else ground.low[0] - far
 
 
 def walk_over(plan: Plan, wait: tuple[float, float], gait: str, context: Context) -> WalkProposal | None:
-    """If a long wait ends with steps of both feet on the other pad, the dancer walks there instead of stretching.
+    """Propose a walk if a long wait ends with steps of both feet on the other pad; otherwise the dancer would stretch.
 
     wait : one of `waits`, seconds
     """
@@ -130,7 +130,7 @@ def walk_over(plan: Plan, wait: tuple[float, float], gait: str, context: Context
 def walk_there(
     begin: Stand, targets: Array, wait: tuple[float, float], gait: str, lead: int, context: Context
 ) -> WalkProposal | None:
-    """A walk in a wait to where both feet will step next, targets (2, 2), if they are far and there is time for it."""
+    """Propose a walk in a wait to the next steps of both feet, targets (2, 2), if they are far and there is time."""
     settings, walk = context.settings, context.settings.walk
     if wait[1] - wait[0] < walk.wait or np.linalg.norm(targets - begin.balls, axis=1).min() < walk.far:
         return None
@@ -144,15 +144,15 @@ def walk_there(
 
 
 def next_step(track: FootTrack, time: float) -> Swing | None:
-    """A foot's first swing that begins at a time or later."""
+    """Return a foot's first swing that begins at a time or later."""
     return next((m for m in track.moves if m.lift >= time - 1e-9 and isinstance(m, Swing)), None)
 
 
 def first_place(play: Play, context: Context, lead: int) -> float:
-    """Where along x the dancer waits for the first note: the place nearest to the first panels of both feet.
+    """Return where along x the dancer waits for the first note: the place nearest to the first panels of both feet.
 
-    On a single pad, and if only one foot ever steps, it is the pad's middle. Steps are planned from there: steps
-    planned from another place would come down on the foot that waits. lead : as in `Plan`
+    On a single pad, and if only one foot ever steps, it is the pad's middle. Steps are planned from this place: steps
+    planned from another place would land on the foot that waits. lead : as in `Plan`
     """
     places = places_along(context.squares, lead)
     own = [np.flatnonzero((play.limb == side).any(axis=1)) for side in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)]
@@ -163,15 +163,15 @@ def first_place(play: Play, context: Context, lead: int) -> float:
 
 
 def _nearest(places: Array, targets: Array) -> float:
-    """Which of the places is nearest to where both feet will step next, (2, 2)."""
+    """Return the place that is nearest to the next steps of both feet, (2, 2)."""
     return float(places[np.argmin(np.round(np.abs(places - targets[:, 0].mean()), 6))])
 
 
 def places_along(squares: Array, lead: int) -> Array:
-    """Places (k,) along x where the dancer may wait: the middle of each square of panels (s, 2), and between two of
-    them.
+    """Return the places (k,) along x where the dancer may wait: the middle of each square of panels (s, 2), and between
+    squares.
 
-    lead : as in `Plan`; that foot's side is last, and so second choice
+    lead : as in `Plan`; the side of this foot is last, and so second choice
     """
     middles = np.sort(squares[:, 0])
     places = np.sort(np.concatenate((middles, (middles[1:] + middles[:-1]) / 2)))
@@ -179,7 +179,7 @@ def places_along(squares: Array, lead: int) -> Array:
 
 
 def waits(plan: Plan, mines: Array, least: float) -> list[tuple[float, float]]:
-    """Stretches of a minimum length, from when both feet are free to when one lifts, without mines and hands."""
+    """Return stretches of a minimum length, from both feet free to the next lift, without mines and hands."""
     lifts = sorted((s.lift, s.land) for t in plan.feet for s in t.moves if isinstance(s, Swing))
     held = [(c.start, c.end) for c in plan.contacts if c.kind == StepKind.HOLD]
     busy = [(p.start - p.lead, p.end + 1.0) for p in plan.presses]
@@ -194,17 +194,17 @@ def waits(plan: Plan, mines: Array, least: float) -> list[tuple[float, float]]:
     return out
 
 
-# Side-steps: in a short wait before notes of the other pad, the dancer goes there step by step, the near foot first.
+# Side-steps: in a short wait before notes of the other pad, the dancer moves there step by step, the near foot first.
 #
 # A walk between the pads takes about three seconds. In a shorter wait dancers step aside, close, and step aside again,
-# so a normal step reaches the notes and not a leap. They do not wait with one foot on each pad, either.
+# so a normal step reaches the notes, without a leap. They also do not wait with one foot on each pad.
 
 SPREAD_STEP = 0.04  # metres between the candidate places for stepping aside
 
 
 @dataclass(frozen=True, slots=True)
 class _Next:
-    """What feet do next: when (2,), at which panel each (nan: nothing soon), and who does so in the next row."""
+    """The next steps of the feet: times (2,), panels (nan: none soon), and the feet that step in the next row."""
 
     times: Array
     places: Array
@@ -212,7 +212,7 @@ class _Next:
 
 
 class StepsInWaits:
-    """What side-steps need to know about a play: places to stand, mines, rows of each foot."""
+    """The data of a play for side-steps: places to stand, mines, rows of each foot."""
 
     def __init__(self, play: Play, context: Context, lead: int) -> None:
         self.play, self.panels, self.settings = play, context.panels, context.settings
@@ -222,10 +222,10 @@ class StepsInWaits:
 
 
 class SideSteps(StepsInWaits):
-    """Proposes side-steps before a row whose notes are far from where the dancer stands."""
+    """A rule that proposes side-steps before a row whose notes are far from the dancer."""
 
     def before(self, row: Row, presses: Sequence[Press], footing: Footing) -> Proposal | None:
-        """Step aside before a row if that helps and there is time, and turn the body meanwhile; None if not.
+        """Propose steps aside before a row if they help and there is time, with a turn of the body; otherwise None.
 
         presses : of palms, so far
         """
@@ -268,8 +268,9 @@ class SideSteps(StepsInWaits):
         return _Next(times, places, tuple(row.feet))
 
     def _far(self, balls: Array, following: _Next) -> float:
-        """How far the dancer would stretch: between the feet now, and for the next row (in a step from the other foot,
-        in a jump from the place of either foot).
+        """Return how far the dancer would stretch: between the feet now, and for the next row.
+
+        For a step it is the distance from the other foot, for a jump from the place of either foot.
         """
         if len(following.first) == 2:
             far = np.linalg.norm(following.places - balls, axis=1).max()
@@ -280,7 +281,7 @@ class SideSteps(StepsInWaits):
     def _goal(
         self, begin: Stand, following: _Next, heading: float, time: float
     ) -> tuple[list[tuple[int, Footfall]], float] | None:
-        """Where to go, as footfalls of feet (0 left), and how long each step takes; None if nothing is nearer."""
+        """Return the goal as footfalls of feet (0 left), and the seconds of each step; None if no goal is nearer."""
         aside, settings = self.settings.aside, self.settings
         best, least = None, self._far(begin.balls, following) - aside.gain
         for x in _between(self.places):
@@ -294,7 +295,7 @@ class SideSteps(StepsInWaits):
         return best
 
     def _falls(self, begin: Stand, goal: Stand, time: float) -> tuple[list[tuple[int, Footfall]], float] | None:
-        """Footfalls that are comfortable, if there is time; otherwise the smallest number for which there is time."""
+        """Return comfortable footfalls, if there is time; otherwise the smallest number for which there is time."""
         aside = self.settings.aside
         few = len(footfalls(begin, goal, aside.comfortable, aside)) or aside.most
         for spread in np.arange(aside.narrow, aside.wide + 1e-6, SPREAD_STEP):
@@ -314,13 +315,13 @@ class SideSteps(StepsInWaits):
 
 
 def stand_of(footing: Footing) -> Stand:
-    """How both feet stand."""
+    """Return the stand of both feet."""
     yaws = np.array([footing.toes(foot) for foot in footing.feet])
     return Stand(np.array([foot.ball for foot in footing.feet]), yaws, footing.turned_to())
 
 
 def walks_there(begin: Stand, targets: Array, wait: tuple[float, float], footing: Footing) -> bool:
-    """Whether there is time and a reason to walk; wait : from when feet are free to the row, seconds."""
+    """Whether there is time and a reason to walk; wait : from the feet free to the row, seconds."""
     if np.isnan(targets).any():
         return False
     step = footing.settings.step
@@ -329,7 +330,7 @@ def walks_there(begin: Stand, targets: Array, wait: tuple[float, float], footing
 
 
 def stepped(footing: Footing, foot: FootState, fall: Footfall, start: float, duration: float) -> Footing:
-    """The footing in which a foot has stepped aside."""
+    """Return the footing in which a foot has stepped aside."""
     step = footing.settings.step
     lift = max(start + step.double_support * duration, foot.free)
     bulge = around(footing, foot, (lift, start + duration), fall.ball, fall.heading, footing.other(foot))
@@ -338,7 +339,7 @@ def stepped(footing: Footing, foot: FootState, fall: Footfall, start: float, dur
 
 
 def sidestep(when: tuple[float, float, float], fall: Footfall, bulge: Bulge, step: StepSettings) -> Sidestep:
-    """The move of a foot that steps aside. when : it leaves and lands, and how long all of it takes, seconds"""
+    """Return the move of a foot that steps aside. when : its lift, its landing, and the whole duration, seconds"""
     lift, land, duration = when
     cut = float(reduction(duration, step.fast, step.longest))
     height = step.height_slow + cut * (step.height_fast - step.height_slow)
@@ -346,16 +347,16 @@ def sidestep(when: tuple[float, float, float], fall: Footfall, bulge: Bulge, ste
 
 
 def _between(places: Array) -> Array:
-    """Places (k,) half a panel apart from the first to the last of some along a line."""
+    """Return places (k,) half a panel apart, from the first to the last of `places`."""
     count = round(abs(float(places[-1] - places[0])) / HALF_PANEL)
     middle, way = (places[0] + places[-1]) / 2, np.sign(places[-1] - places[0])
     return np.asarray(middle + way * HALF_PANEL * (np.arange(count + 1) - count / 2))
 
 
 def footfalls(begin: Stand, goal: Stand, spread: float, aside: AsideSettings) -> list[tuple[int, Footfall]]:
-    """Steps to the side along x: the near foot goes, at most `spread` from the other one, which follows.
+    """Return steps to the side along x: the near foot goes, at most `spread` from the other one, which follows.
 
-    Returns foot (0 left) and footfall of each; none if more than `aside.most` are needed.
+    The result has the foot (0 left) and the footfall of each step; it is empty if more than `aside.most` are needed.
     """
     way = float(np.sign(goal.middle[0] - begin.middle[0]))
     near = 0 if way > 0 else 1
@@ -377,7 +378,7 @@ def footfalls(begin: Stand, goal: Stand, spread: float, aside: AsideSettings) ->
 
 
 def _off(begin: Stand, goal: Stand, falls: list[tuple[int, Footfall]], foot: tuple[int, float]) -> bool:
-    """Whether a foot is not yet where it must be. foot : which, and how near is there, metres"""
+    """Whether a foot is not yet at its goal. foot : its number, and the metres that count as the same place"""
     side, same = foot
     done = [fall.ball for s, fall in falls if s == side]
     return bool(np.linalg.norm((done[-1] if done else begin.balls[side]) - goal.balls[side]) > same)

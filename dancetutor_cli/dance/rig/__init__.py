@@ -3,5 +3,5 @@
 quaternion                    rotations: functions on arrays (..., 4)
 skeleton                      joints, their hierarchy, rest positions and limits
 body                          forward kinematics, masses, points that touch the pad
-body                          forward kinematics, masses, the points that touch the pad
+limbs                         the two-bone limb in closed form; capsules, and how deep one is in another
 """

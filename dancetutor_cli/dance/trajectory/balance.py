@@ -1,4 +1,4 @@
-"""The path of a centre of mass that keeps the dancer's balance: soles as support, swinging limbs, zero moment."""
+"""The path of a centre of mass in balance: soles as support, swinging limbs, the zero-moment point."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ from dancetutor_cli.dance.settings_body import BodySettings, LayerSettings
 from dancetutor_cli.dance.smoothing import low_pass, sample_path, steady_spline
 from dancetutor_cli.dance.trajectory.height import span
 
-# The soles that stand, as a hull in which the zero-moment point may be.
+# The standing soles, as a hull that must contain the zero-moment point.
 
 Array = NDArray[np.float64]
-ONE, TWO = np.pi / 2 * np.arange(2), np.pi / 4 * np.array([0.0, 1.0, -1.0])  # between sides of hulls of so many soles
+ONE, TWO = np.pi / 2 * np.arange(2), np.pi / 4 * np.array([0.0, 1.0, -1.0])  # angles of the sides of such hulls
 
 
 @dataclass(frozen=True, slots=True)
 class Support:
-    """Where the zero-moment point may be at each of n nodes: in a hull of the soles that stand.
+    """The allowed places of the zero-moment point at each of n nodes: a hull of the standing soles.
 
-    across : (n, 5, 2) unit vectors square to its sides; low, high : (n, 5) metres along these, without end where one
-        sole has no such side
-    middle : (n, 2) where it is best
+    across : (n, 5, 2) unit vectors square to its sides; low, high : (n, 5) metres along these, infinite where the hull
+        of one sole has no such side
+    middle : (n, 2) the best place
     """
 
     across: Array
@@ -48,7 +48,7 @@ class Support:
 
 
 def support_of(feet: Feet, heel_down: float) -> Support:
-    """The soles that stand. heel_down : radians; a heel lower than this carries"""
+    """Return the support of the standing soles. heel_down : radians; a heel lower than this carries weight"""
     soles = [_sole(foot, heel_down) for foot in feet]
     across = _sides(feet, soles)
     along = [np.einsum("nda,nca->ndc", across, sole) for sole in soles]
@@ -63,7 +63,7 @@ def support_of(feet: Feet, heel_down: float) -> Support:
 
 
 def _sole(foot: FootPath, heel_down: float) -> Array:
-    """Corners (n, 4, 2) of the part of a foot that carries, once round."""
+    """Return the corners (n, 4, 2) of the part of a foot that carries weight, in order around it."""
     ahead = np.column_stack((np.sin(foot.yaw), np.cos(foot.yaw)))
     aside = SOLE_HALF_WIDTH * np.column_stack((ahead[:, 1], -ahead[:, 0]))
     back = np.where(foot.pitch < heel_down, SOLE_BACK_HEEL, SOLE_BACK_TOES)[:, None]
@@ -72,11 +72,11 @@ def _sole(foot: FootPath, heel_down: float) -> Array:
 
 
 def _sides(feet: Feet, soles: list[Array]) -> Array:
-    """Unit vectors (n, 5, 2) square to the sides of a hull of the soles that stand.
+    """Return unit vectors (n, 5, 2) square to the sides of a hull of the standing soles.
 
-    For one foot these are its own two sides; for two feet those that touch both soles, and the sides at the ends of the
-    line between them. With the same directions at all times, the hull of a turned foot would be centimetres wider than
-    the foot.
+    For one foot these are its own two sides. For two feet they are the sides that touch both soles, and the sides at
+    the ends of the line between them. With the same directions at all times, the hull of a turned foot would be
+    centimetres wider than the foot.
     """
     line = soles[0].mean(axis=1) - soles[1].mean(axis=1)
     left, right = feet[0].down, feet[1].down
@@ -89,7 +89,7 @@ def _sides(feet: Feet, soles: list[Array]) -> Array:
 
 
 def _touching(a: Array, b: Array) -> Array:
-    """Unit vectors (m, 2, 2) square to the two lines that touch both of two rectangles (m, 4, 2) on the same side."""
+    """Return unit vectors (m, 2, 2) square to the two lines that touch two rectangles (m, 4, 2) on the same side."""
     edge = (b[:, None] - a[:, :, None]).reshape(-1, 16, 2)
     square = np.stack((edge[..., 1], -edge[..., 0]), axis=-1)
     square /= np.maximum(np.linalg.norm(square, axis=-1, keepdims=True), 1e-9)
@@ -101,25 +101,25 @@ def _touching(a: Array, b: Array) -> Array:
 
 
 def along_sides(across: Array, places: Array) -> Array:
-    """How far (n, d) places (n, 2) are along each of the directions (n, d, 2)."""
+    """Return how far (n, d) places (n, 2) are along each of the directions (n, d, 2)."""
     return np.asarray(np.einsum("nda,na->nd", across, places))
 
 
-# How far limbs that swing about the centre of mass move the zero-moment point.
+# The offset of the zero-moment point by limbs that swing about the centre of mass.
 #
 # In the cart-table model the body is one point. A body whose parts turn about that point with the momentum L pushes
 # with the moment L', and the ground balances it farther away by (L'_z, -L'_x) / (m (y'' + g)) (Popovic, Goswami and
 # Herr, 2005). In streams these are decimetres, of which the soles can give centimetres.
 
-AGAINST = 0.7  # of the way from the middle of the soles to their edge: nearer to it balance is lost
-FARTHEST = 0.03  # metres that it goes at most; farther, ankles of wide stands bend too far before a leap
-LEAST_CARRIED = 0.4  # of her weight: lighter feet than that hold no moment worth planning for
+AGAINST = 0.7  # largest part of the way from the middle of the soles to their edge: nearer to the edge, balance is lost
+FARTHEST = 0.03  # metres; largest offset: beyond it, ankles of wide stands bend too far before a leap
+LEAST_CARRIED = 0.4  # share of her weight: lighter feet hold no moment worth planning for
 
 
 def rotation_zmp_offset(skeleton: Skeleton, positions: Array, world: Array, rate: float) -> Array:
-    """Where the zero-moment point lies beyond the point mass's, (f, 2) metres along x and z, below 10 Hz.
+    """Return the offset of the zero-moment point from that of the point mass, (f, 2) metres along x and z, below 10 Hz.
 
-    positions (f, j, 3), world (f, j, 4) : of the joints, as of `world_transforms`, at `rate` per second
+    positions (f, j, 3), world (f, j, 4) : of the joints, as from `world_transforms`, at `rate` per second
     """
     joints, masses, offsets = mass_points(skeleton)
     places = positions[:, joints] + quat.rotate(world[:, joints], offsets)
@@ -134,10 +134,9 @@ def rotation_zmp_offset(skeleton: Skeleton, positions: Array, world: Array, rate
 
 
 def counter_rotation_zmp(support: Support, turning: Array) -> Array:
-    """The best place (n, 2) of the mass's own zero-moment point, so that with `turning` (n, 2) it is in the soles'
-    middle.
+    """The best zero-moment point (n, 2) of the point mass: with `turning` (n, 2) added, it is near the soles' middle.
 
-    It does not go all the way, because the own point, too, must stay well within the soles.
+    It does not go all the way, because the point itself must also stay well within the soles.
     """
     along, middle = along_sides(support.across, turning), along_sides(support.across, support.middle)
     room = np.where(along > 0.0, middle - support.low, support.high - middle)
@@ -147,18 +146,18 @@ def counter_rotation_zmp(support: Support, turning: Array) -> Array:
     return np.asarray(support.middle - np.minimum(most.min(axis=1), far)[:, None] * turning)
 
 
-# The path of the centre of mass over the ground, which keeps the dancer's balance.
+# The path of the centre of mass over the ground, in balance.
 #
 # The cart-table model (Kajita 2003): the zero-moment point is x - y / (y'' + g) x'' . It must stay under the standing
 # feet, and the pelvis where both legs reach their feet. Within these limits the pelvis, which swinging legs throw, has
-# the least jerk. In flight nothing pushes sideways, so the path is straight. If a song asks for the impossible, limits
-# give way by as little as possible.
+# the least jerk. In flight nothing pushes sideways, so the path is straight. If the limits of a song contradict each
+# other, they give way by as little as possible.
 
-NODE_RATE, ROUGH_RATE = 80.0, 40.0  # nodes per second of the path, and of one that is not tightened
+NODE_RATE, ROUGH_RATE = 80.0, 40.0  # nodes per second of the path, and of a rough path
 UNIT = 0.03  # metres; scales the programme
-NARROWER, NARROWEST = 0.05, 0.01  # metres: a limit moves at most so much a round, and both stay so far apart
-NEAR, END = 1e-5, 0.1  # how much being over the middle of the soles counts, and at both ends: no drifting off there
-GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # prices of leaving the soles and of stretching, see `quadratic.Limits`
+NARROWER, NARROWEST = 0.05, 0.01  # metres: largest move of a limit in a round, and least distance of two limits
+NEAR, END = 1e-5, 0.1  # weight of the middle of the soles in general, and at both ends of the path
+GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # costs of leaving the soles and of stretching, see `quadratic.Limits`
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,9 +165,9 @@ class Pendulum:
     """The inverted pendulum on the zero-moment point at n even times.
 
     times : (n,) seconds; slowness : (n,) 1 / omega^2 = y / (y'' + g), seconds squared; ignored in flight
-    seen : the same without trembling above 10 Hz
+    seen : (n,) slowness without trembling above 10 Hz
     offset : (n, 2) from the pelvis to the centre of mass, as far as known
-    turning : (n, 2) as of `rotation_zmp_offset`, as far as known
+    turning : (n, 2) as from `rotation_zmp_offset`, as far as known
     """
 
     times: Array
@@ -186,7 +185,7 @@ def balanced_path(
     hand: float = 1.0,
     shift: Array | None = None,
 ) -> tuple[Array, bool]:
-    """Path (n, 2) of the centre of mass over the ground; whether its limits were softened, see `quadratic.Solution`.
+    """The path (n, 2) of the centre of mass over the ground, and whether limits were softened (`quadratic.Solution`).
 
     The body is a cart on a table (Kajita and others 2003): with x the centre of mass over the ground, y its height and
     g gravity the zero-moment point is  z = x - y / (y'' + g) x'' . On nodes k
@@ -197,14 +196,14 @@ def balanced_path(
                     x''_k = 0                        in flight (a term of large weight)
 
     m : the middle of the support; w : `middle_weight`, `foot_weight`; o : from the pelvis to the centre of mass; s :
-    `smooth`, seconds. Both coordinates are unknowns of one programme, for edges of soles lie aslant.
+    `smooth`, seconds. Both coordinates are unknowns of one programme, because edges of soles lie aslant.
 
     Parameters
     ----------
     feet : at the pendulum's times
-    settings : of the body, and how the weight sways while both feet stand
-    hand : as in `Plan`; on its side she begins to sway; shift : (n,) as in `waits.WaitMotion`
-    tightened : rounds of narrowing limits where the path without its quickest trembling leaves them; 0 is a rough path
+    settings : of the body, and of the sway of the weight while both feet stand
+    hand : as in `Plan`; the side on which the dancer begins to sway; shift : (n,) as in `waits.WaitMotion`
+    tightened : rounds in which limits are narrowed where the path, without trembling, leaves them; 0 is a rough path
     """
     times, body, rate = pendulum.times, settings.body, NODE_RATE if tightened else ROUGH_RATE
     nodes = times[0] + np.arange(int(np.ceil((times[-1] - times[0]) * rate - 1e-6)) + 1) / rate
@@ -241,12 +240,12 @@ def balanced_path(
 
 @dataclass(frozen=True, slots=True)
 class _PathGoals:
-    """What the path must do at each of n nodes.
+    """The goals of the path at each of n nodes.
 
-    support : where the zero-moment point may be and must be
-    weight : (n,) how much the latter counts; near : (n,) how much the centre of mass itself wants to be there
+    support : the allowed and the best places of the zero-moment point
+    weight : (n,) weight of the best place; near : (n,) weight of the distance of the centre of mass from it
     offset : (n, 2) from the pelvis to the centre of mass
-    nearest, farthest : (n, 2) where the pelvis may be
+    nearest, farthest : (n, 2) limits of the pelvis's place
     """
 
     support: Support
@@ -258,19 +257,19 @@ class _PathGoals:
 
 
 def _room(feet: Feet, back: float, farthest: float) -> tuple[Array, Array]:
-    """Lowest and highest place (n, 2) of the pelvis at which both legs reach; back : from ball to ankle, metres."""
+    """The lowest and highest place (n, 2) of the pelvis that both legs reach; back : from ball to ankle, metres."""
     ankles = [f.ball[:, [0, 2]] - back * np.column_stack((np.sin(f.yaw), np.cos(f.yaw))) for f in feet]
     return np.maximum(*ankles) - farthest, np.minimum(*ankles) + farthest
 
 
 def _nearest(foot: FootPath, times: Array, nodes: Array) -> FootPath:
-    """A foot at the sampled times nearest to other ones: standing and swinging are not mixed."""
+    """Return a foot at the sampled times nearest to `nodes`, so that standing and swinging are not mixed."""
     i = np.clip(np.round((nodes - times[0]) / (times[1] - times[0])).astype(np.int64), 0, len(times) - 1)
     return FootPath(foot.ball[i], foot.yaw[i], foot.pitch[i], foot.down[i], foot.progress[i])
 
 
 def _carrying(feet: Feet, rate: float) -> Feet:
-    """Feet that may carry: not at the very moment of landing or leaving, unless no other foot stands."""
+    """Return feet that carry weight: not at the very moment of landing or leaving, unless no other foot stands."""
     down = np.stack([f.down for f in feet])
     down = down | _brief(np.asarray(~down.any(axis=0)), np.ceil(LEAST_FLIGHT * rate))
     firm = down.copy()
@@ -281,7 +280,7 @@ def _carrying(feet: Feet, rate: float) -> Feet:
 
 
 def _brief(flags: NDArray[np.bool_], most: float) -> NDArray[np.bool_]:
-    """Flags of runs (n,) that are at most so many long."""
+    """Return the flags of runs (n,) that are at most `most` long."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8))).reshape(-1, 2)
     out = np.zeros(len(flags), dtype=bool)
     for first, end in edges[edges[:, 1] - edges[:, 0] <= most]:
@@ -290,7 +289,7 @@ def _brief(flags: NDArray[np.bool_], most: float) -> NDArray[np.bool_]:
 
 
 def _sway(feet: Feet, times: Array, layers: LayerSettings) -> Array:
-    """(n, 2): how far the weight wanders from foot to foot while both stand."""
+    """Return (n, 2): how far the weight sways from foot to foot while both stand."""
     across = feet[0].ball[:, [0, 2]] - feet[1].ball[:, [0, 2]]
     across = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 0.05)
     both = feet[0].down & feet[1].down
@@ -302,7 +301,7 @@ def _sway(feet: Feet, times: Array, layers: LayerSettings) -> Array:
 def _shifted(feet: Feet, onto: float, shift: Array, slowness: Array, rate: float) -> Array:
     """(n, 2): the way of the zero-moment point that moves the weight by `shift` (n,) metres towards the left foot.
 
-    onto : the part of the way to the middle of a foot that it goes at most
+    onto : largest part of the way to the middle of a foot
     """
     across = feet[0].ball[:, [0, 2]] - feet[1].ball[:, [0, 2]]
     far = np.maximum(np.linalg.norm(across, axis=1), 0.05)
@@ -312,17 +311,17 @@ def _shifted(feet: Feet, onto: float, shift: Array, slowness: Array, rate: float
 
 
 def _zero_moment(path: Array, slowness: Array, rate: float) -> Array:
-    """The zero-moment point (n, 2) of a path (n, 2); at its ends the path."""
+    """Return the zero-moment point (n, 2) of a path (n, 2); at its ends, the path itself."""
     out = path.copy()
     out[1:-1] -= slowness[1:-1, None] * np.diff(path, n=2, axis=0) * rate**2
     return out
 
 
 def _tightened(want: _PathGoals, given: Support, zmp: Array, flight: NDArray[np.bool_]) -> _PathGoals:
-    """Limits moved inward by as much as a zero-moment point (n, 2) is beyond the given ones.
+    """Return goals whose limits are moved inward by as much as a zero-moment point (n, 2) is beyond the given limits.
 
-    People see no trembling above 10 Hz, and the quality report does not measure it. But as the weight goes from foot to
-    foot within a few hundredths of a second, some of it is needed to arrive in time.
+    Trembling above 10 Hz is not visible, and the quality report does not measure it. But some of it is needed to arrive
+    in time, because the weight goes from foot to foot within a few hundredths of a second.
     """
     low, high, tight = given.low, given.high, want.support
     along = along_sides(given.across, zmp)
@@ -342,7 +341,7 @@ def _tightened(want: _PathGoals, given: Support, zmp: Array, flight: NDArray[np.
 def _solved(
     want: _PathGoals, flight: NDArray[np.bool_], slowness: Array, rate: float, body: BodySettings, what: str
 ) -> Solution:
-    """The path (n, 2), flat; both coordinates are unknowns of one programme, by turns."""
+    """Solve the path (n, 2), flat; both coordinates are unknowns of one programme, alternating."""
     support = want.support
     n = len(support.middle)
     problem = BandedLeastSquares(2 * n, 1, 8)
@@ -375,6 +374,6 @@ def _solved(
 
 
 def _both(coefficients: Array, direction: Array) -> Array:
-    """Coefficients (m, 2 q) of a term in both coordinates, from those (m, q) along a direction (2,) or (m, 1, 2)."""
+    """Return coefficients (m, 2 q) of a term in both coordinates, from (m, q) along a direction (2,) or (m, 1, 2)."""
     count, width = coefficients.shape
     return (coefficients[:, :, None] * direction).reshape(count, 2 * width)

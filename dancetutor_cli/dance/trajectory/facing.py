@@ -1,4 +1,4 @@
-"""Which way pelvis, chest and head face; how the body bends for palms, turns for the bar and leans on it."""
+"""The directions of pelvis, chest and head; bends for palms, turns for the bar, and leaning on it."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from dancetutor_cli.dance.settings_arms import AcrossSettings, BarSettings, Hand
 from dancetutor_cli.dance.smoothing import Controller, follow, no_faster, smooth, smooth_path, upper_envelope
 from dancetutor_cli.dance.trajectory.legs import Course
 
-# How the body bends and turns for palms that go down to panels.
+# The bends and turns of the body for palms that go down to panels.
 
 Array = NDArray[np.float64]
 Presses = tuple[Press, ...]
 
 
 def press_share(press: Press, times: Array, down: float) -> Array:
-    """How much of a press there is at each time, 0 to 1: all of it from its start to its end."""
+    """Return the share of a press at each time, 0 to 1; it is 1 from the start to the end of the press."""
     return smooth((times - press.start + down) / down) * smooth((press.end + down - times) / down)
 
 
 def reaching(presses: Presses, times: Array, hands: HandSettings) -> Array:
-    """How far (n, 2) the body has bent for each hand, 0 to 1."""
+    """Return how far (n, 2) the body has bent for each hand, 0 to 1."""
     out = np.zeros((len(times), 2))
     for press in presses:
         out[:, press.side] = np.maximum(out[:, press.side], press_share(press, times, hands.reach_down))
@@ -32,9 +32,9 @@ def reaching(presses: Presses, times: Array, hands: HandSettings) -> Array:
 
 
 def bent_down(presses: Presses, deeper: Array | None, times: Array, hands: HandSettings) -> Array:
-    """(n, 2): how far the body has gone down to the floor, 0 to 1, and how much deeper than usual, metres.
+    """Return (n, 2): how far the body has gone down to the floor, 0 to 1, and how much deeper than usual, metres.
 
-    deeper : (p,) metres for each press, None for none
+    deeper : (p,) metres for each press; None: 0 for all
     """
     out = np.zeros((len(times), 2))
     for k, press in enumerate(presses):
@@ -46,7 +46,7 @@ def bent_down(presses: Presses, deeper: Array | None, times: Array, hands: HandS
 
 
 def turned_for_hands(presses: Presses, times: Array, hands: HandSettings) -> Array:
-    """How far (n,) the body turns to the side of a hand that reaches behind it, radians."""
+    """Return how far (n,) the body turns to the side of a hand that reaches behind it, radians."""
     out = np.zeros(len(times))
     for press in presses:
         if press.turn != 0.0:
@@ -55,9 +55,9 @@ def turned_for_hands(presses: Presses, times: Array, hands: HandSettings) -> Arr
 
 
 def leaning_tilt(presses: Presses, course: Course, chest: Array, lean: Array, settings: MotionSettings) -> Array:
-    """How the chest leans (n, 2), a horizontal direction times an angle: a little forward, and down to each panel.
+    """The lean of the chest (n, 2), a horizontal direction times an angle: towards each panel that a hand presses.
 
-    chest : (n,) its yaw; lean : (n, 2) how it leans where no hand reaches, in the same form
+    chest : (n,) yaw of the chest; lean : (n, 2) the lean where no hand reaches, in the same form
     """
     times, hands = course.times, settings.hands
     forward = np.column_stack((np.sin(chest), np.cos(chest)))
@@ -76,18 +76,18 @@ def leaning_tilt(presses: Presses, course: Course, chest: Array, lean: Array, se
 
 
 def wrapped(angle: Array) -> Array:
-    """The same angles between half a turn to the right and half a turn to the left, radians."""
+    """Return the same angles between half a turn to the right and half a turn to the left, radians."""
     return np.asarray((angle + np.pi) % (2 * np.pi) - np.pi)
 
 
-# Turns in which the far hand crosses over to the bar: meanwhile, trunk and chest turn and lean to it.
+# Turns in which the far hand crosses over to the bar. During a turn, trunk and chest turn and lean towards the bar.
 
 
 def crossing_share(grips: tuple[Grip, ...], times: Array, numbers: AcrossSettings) -> Array:
-    """How far (n,) the body has turned and leaned for a hand that crosses over, -1 to 1.
+    """Return how far (n,) the body has turned and leaned for a hand that crosses over, -1 to 1.
 
-    In full from a little before the hand is there until a little after; positive if the dancer is turned to the left,
-    so that the right hand is the far one.
+    It is 1 or -1 from a little before the hand is at the bar until a little after. It is positive if the dancer is
+    turned to the left, so that the right hand is the far one.
     """
     out, ease = np.zeros(len(times)), max(numbers.ease, 1e-6)
     for grip in grips:
@@ -99,25 +99,29 @@ def crossing_share(grips: tuple[Grip, ...], times: Array, numbers: AcrossSetting
 
 
 def turned_across(torso: Array, yaw: Array, share: Array, numbers: AcrossSettings) -> Array:
-    """How far (n,) the chest turns from a pelvis of yaw (n,), else by `torso` (n,), radians: till it faces along the
-    rail and a little to it, as far as a trunk turns."""
+    """How far (n,) the chest turns from a pelvis of yaw (n,), radians; `torso` (n,) is the turn without crossing.
+
+    The chest turns until it faces along the rail and a little towards it, as far as a trunk turns.
+    """
     most = np.radians(numbers.twist)
     goal = np.clip(wrapped(np.copysign(np.radians(numbers.facing), share) - yaw), -most, most)
     return np.asarray(torso + np.abs(share) * (goal - torso))
 
 
 def leaned_across(share: Array, numbers: AcrossSettings) -> Array:
-    """How the chest leans to the bar (n, 2), a horizontal direction times an angle."""
+    """Return the lean of the chest to the bar (n, 2), a horizontal direction times an angle."""
     return np.outer(np.abs(share) * np.radians(numbers.lean), [0.0, -1.0])
 
 
-# Which way pelvis, chest and head face: with the feet, and to the screen as far as they can (thesis 5.7).
+# The directions of pelvis, chest and head: with the feet, and to the screen as far as they can (thesis 5.7).
 
-HELD, AROUND_QUICK = 1e-3, 0.5  # radians that a neck is held back; seconds around it that are softer
+HELD, AROUND_QUICK = 1e-3, 0.5  # radians by which a neck is held back; seconds around such moments that are smoothed
 
 
 def pelvis_yaw(plan: Plan, times: Array, settings: MotionSettings) -> Array:
-    """Yaw (n,) of the pelvis at even times, radians, unwrapped: it turns with the steps, and for hands behind it."""
+    """Return the yaw (n,) of the pelvis at even times, radians, unwrapped. It turns with the steps, and for hands
+    behind it.
+    """
     turned = _turned(plan.turns, times) + turned_for_hands(plan.presses, times, settings.hands)
     rate = 1.0 / float(times[1] - times[0])
     return np.asarray(smooth_path(turned[:, None], np.ones(len(times)), rate, settings.inertia.pelvis_turn)[:, 0])
@@ -135,15 +139,14 @@ def _turned(turns: tuple[Turn, ...], times: Array) -> Array:
 
 
 def screen_yaw(ground: Array, settings: MotionSettings) -> Array:
-    """Yaw (n,) from a place on the ground (n, 2) to the screen."""
+    """Return the yaw (n,) from a place on the ground (n, 2) to the screen."""
     return np.asarray(np.arctan2(-0.5 * ground[:, 0], settings.look.distance - ground[:, 1]))
 
 
 def chest_and_head(plan: Plan, course: Course, ahead: Array, settings: MotionSettings) -> tuple[Array, Array]:
-    """Yaws (n,) of chest and head. They stay on the screen as far as they can; turned farther away, the dancer looks
-    where she turns.
+    """Return the yaws (n,) of chest and head. They face the screen as far as they can; beyond that, they face the turn.
 
-    ahead (n,) : how much she looks where she walks and not at the screen
+    ahead : (n,) how much the dancer looks where she walks, instead of at the screen
     """
     look, ones = settings.look, np.ones(len(course.yaw))
     to_screen = screen_yaw(course.ground, settings)
@@ -151,7 +154,7 @@ def chest_and_head(plan: Plan, course: Course, ahead: Array, settings: MotionSet
     torso = np.clip(look.torso_weight * gap, -np.radians(look.torso_limit), np.radians(look.torso_limit))
     torso = torso * smooth(
         (np.pi - np.abs(gap)) / np.radians(look.wrung)
-    )  # a spine is not wrung from one side to the other at once
+    )  # a spine does not turn from one side to the other at once
     torso = torso * (1.0 - ahead)
     for press in (p for p in plan.presses if p.turn != 0.0):  # the chest turns to the hand, not to the screen
         share = press_share(press, course.times, settings.hands.reach_down)
@@ -168,8 +171,10 @@ def chest_and_head(plan: Plan, course: Course, ahead: Array, settings: MotionSet
 
 
 def limit_head_yaw(head: Array, chest: Array, rate: float, settings: MotionSettings) -> Array:
-    """Yaw (n,) of a head whose neck can follow. It turns from the chest, which has turned against the legs and with the
-    beat, no faster and no farther than necks do; rate : samples per second.
+    """Return the yaw (n,) of a head that the neck can follow. rate : samples per second
+
+    The head turns from the chest, which has turned against the legs and with the beat. It turns no faster and no
+    farther than necks do.
     """
     look, neck = settings.look, head - chest
     most = np.radians(look.head_limit)
@@ -183,7 +188,7 @@ def limit_head_yaw(head: Array, chest: Array, rate: float, settings: MotionSetti
 
 
 def _head(gap: Array, course: Course, settings: MotionSettings) -> Array:
-    """How far (n,) the head would turn from the chest, radians, where the screen is `gap` (n,) from that."""
+    """Return how far (n,) the head would turn from the chest, radians, if the screen is `gap` (n,) from the chest."""
     look = settings.look
     to_screen = np.clip(look.head_weight * gap, -np.radians(look.head_limit), np.radians(look.head_limit))
     away = away_from_screen(gap, settings)
@@ -192,16 +197,16 @@ def _head(gap: Array, course: Course, settings: MotionSettings) -> Array:
 
 
 def away_from_screen(gap: Array, settings: MotionSettings) -> Array:
-    """How far (n,) the dancer has given up looking at a screen that is `gap` (n,) radians from her chest, 0 to 1."""
+    """How far (n,) the dancer has stopped looking at a screen that is `gap` (n,) radians from her chest, 0 to 1."""
     first, last = np.radians(settings.look.away_from), np.radians(settings.look.away_to)
     return np.asarray(smooth((np.abs(gap) - first) / (last - first)))
 
 
-# How the body leans on the bar: it stays within reach of the bar while hands hold it.
+# The body leans on the bar: it stays within reach of the bar while hands hold it.
 
 
 def leaning_share(grips: tuple[Grip, ...], times: Array, settings: BarSettings) -> Array:
-    """How much the body leans on the bar (n,), 0 to 1: wholly while hands hold it, also while one takes it again."""
+    """How much the body leans on the bar (n,), 0 to 1: 1 while hands hold it, also while a hand takes it again."""
     out, rest = np.zeros(len(times)), settings.leave
     spans: list[list[float]] = []
     for grip in grips:
@@ -216,12 +221,12 @@ def leaning_share(grips: tuple[Grip, ...], times: Array, settings: BarSettings) 
 
 
 def limit_to_bar(path: Array, share: Array, bar: Bar, settings: BarSettings, nearer: Array) -> Array:
-    """A path (n, 2) over the ground that stays within reach of the bar, softly, as far as `share` (n,) says.
+    """Return a path (n, 2) over the ground that stays within reach of the bar, softly, in proportion to `share` (n,).
 
     nearer : (n,) metres that it must be nearer than usual
     """
     most = settings.forward - nearer
     over = (path[:, 1] - bar.behind - most) / settings.soft
-    # a soft least of the place and the farthest one: -log(exp(-a) + exp(-b))
+    # a soft minimum of the place and the farthest one: -log(exp(-a) + exp(-b))
     near = bar.behind + most - settings.soft * np.logaddexp(0.0, -over)
     return np.column_stack((path[:, 0], path[:, 1] + share * (near - path[:, 1])))

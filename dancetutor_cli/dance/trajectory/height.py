@@ -1,4 +1,4 @@
-"""The height of the centre of mass over the whole song as one quadratic programme, and how low the dancer crouches."""
+"""The height of the centre of mass over the whole song as one quadratic programme, and the depth of crouches."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from dancetutor_cli.dance.settings_body import BodySettings
 from dancetutor_cli.dance.settings_feet import JumpSettings
 from dancetutor_cli.dance.smoothing import smooth, smooth_path
 
-# How low the dancer stands: on bent knees in streams, lower before and after jumps, and the lean that goes with it.
+# How low the dancer stands: on bent knees in streams, lower before and after jumps, and the lean in a jump.
 
 Array = NDArray[np.float64]
 
 
-LOWEST = 0.42  # part of the time between two landings at which she is lowest
-GIVES, RISEN = 0.4, 2.0  # parts of that time from which on she gives, and at which she is up again
+LOWEST = 0.42  # part of the time between two landings at which the dancer is lowest
+GIVES, RISEN = 0.4, 2.0  # parts of that time at which she begins to go down and at which she is up again
 
 
 def tempo_factor(plan: Plan, times: Array, settings: MotionSettings) -> Array:
-    """How fast (n,) the steps around each of the even `times` are: 0 for the slowest, 1 for a stream."""
+    """Return how fast (n,) the steps around each of the even `times` are: 0 for the slowest, 1 for a stream."""
     step, around_them = settings.step, settings.body.stream_time
     fast = np.zeros(len(times))
     for swing in (m for track in plan.feet for m in track.moves if isinstance(m, Swing) and not isinstance(m, Walk)):
@@ -39,7 +39,7 @@ def tempo_factor(plan: Plan, times: Array, settings: MotionSettings) -> Array:
 
 
 def time_for_jumps(flights: Array, jump: JumpSettings) -> tuple[Array, Array]:
-    """How much time there is before and after each of (k, 2) flights, (k,) each: 0 for none, 1 for enough to crouch."""
+    """Return the time before and after each of (k, 2) flights, (k,) each: 0 for none, 1 for enough to crouch."""
     between = flights[1:, 0] - flights[:-1, 1]
     share = np.clip((between - jump.no_time) / jump.full_time, 0.0, 1.0)
     before, after = np.ones(len(flights)), np.ones(len(flights))
@@ -48,7 +48,7 @@ def time_for_jumps(flights: Array, jump: JumpSettings) -> tuple[Array, Array]:
 
 
 def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
-    """How much lower (n,) the dancer is before and after jumps, metres: deeper for higher jumps, less if time is short.
+    """Return how much lower (n,) the dancer is around jumps, metres: more for higher jumps, less if time is short.
 
     A run of quick jumps leaves no time for that; in it she is a little lower all the time.
     """
@@ -74,8 +74,7 @@ def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
 
 
 def landing_give(plan: Plan, times: Array, body: BodySettings) -> Array:
-    """How far (n,) knees give after steps, metres: deepest a little after a landing, and less the sooner the next foot
-    lands."""
+    """How far (n,) knees give after steps, metres: deepest a little after a landing, less if the next one is soon."""
     swings = [m for track in plan.feet for m in track.moves if isinstance(m, Swing) and not isinstance(m, Walk | Jump)]
     lands = sorted({m.land for track in plan.feet for m in track.moves})
     out = np.zeros(len(times))
@@ -92,9 +91,9 @@ def landing_give(plan: Plan, times: Array, body: BodySettings) -> Array:
 
 
 def jump_drive(plan: Plan, times: Array, jump: JumpSettings) -> tuple[Array, Array]:
-    """How much (n, 2) legs push off and catch, at take-offs and landings, 0 to 1.
+    """Return how much (n, 2) legs push off and catch, at take-offs and landings, 0 to 1.
 
-    It is little if there was no time to crouch before it, or is none to give way after it.
+    It is little without time to crouch before the flight, or without time to give way after it.
     """
     flights = plan.flights
     out = np.zeros((len(times), 2))
@@ -111,17 +110,16 @@ def jump_drive(plan: Plan, times: Array, jump: JumpSettings) -> tuple[Array, Arr
 
 
 def jump_swing(plan: Plan, times: Array, jump: JumpSettings) -> Array:
-    """Where arms (n,) that help a jump are: -1 back as the dancer crouches, 1 ahead and up in the air, back as she
-    lands.
+    """Return where the arms (n,) are that help a jump: -1 back as the dancer crouches, 1 ahead and up in the air.
 
-    As far as the jump is high, and as there is time for it.
+    They go back again as she lands. The swing is larger for higher jumps, and smaller if time is short.
     """
     flights = plan.flights
     out, wide = np.zeros(len(times)), jump.arms_time
     if not len(flights):
         return out
     start, end = flights.T
-    before, after = (share**2 for share in time_for_jumps(flights, jump))  # the less time, the quicker a swing is
+    before, after = (share**2 for share in time_for_jumps(flights, jump))  # with less time, a swing is quicker
     high = np.clip((end - start) / jump.arms_full, 0.0, 1.0) ** 2
     swings = (
         (-before, start - jump.crouch_before),
@@ -136,9 +134,9 @@ def jump_swing(plan: Plan, times: Array, jump: JumpSettings) -> Array:
 
 
 def jump_lean(plan: Plan, times: Array, jump: JumpSettings) -> Array:
-    """How far (n, 2) the shoulders lean in jumps to where they go, radians: in proportion to the way (thesis 5.6.2).
+    """How far (n, 2) the shoulders lean in the direction of jumps, radians: in proportion to the way (thesis 5.6.2).
 
-    Both feet of a jump come down at once and have one way; a gallop has that of the foot that comes down first.
+    Both feet of a jump land at once and have one way; a gallop has the way of the foot that lands first.
     """
     jumps: dict[float, Jump] = {}
     for swing in (m for track in plan.feet for m in track.moves if isinstance(m, Jump)):
@@ -156,32 +154,32 @@ def jump_lean(plan: Plan, times: Array, jump: JumpSettings) -> Array:
 # The height of the centre of mass over the whole song as one quadratic programme.
 #
 # The unknowns are heights at nodes in time; take-offs and landings are nodes. In flight the height falls with g,
-# exactly. On the ground the jerk is least, while the height stays near a wanted one and below what the legs reach, and
-# the ground pushes with a force that legs can give. A landing and the next move share one ground phase, so they overlap
-# by themselves.
+# exactly. On the ground the jerk is least, while the height stays near a target and below the reach of the legs, and
+# the force on the ground is within what legs can give. A landing and the next move share one ground phase, so they
+# overlap without further rules.
 
 NODE_RATE = 80.0  # nodes per second
-UNIT = 0.02  # metres; heights differ by about so much, which scales the programme
+UNIT = 0.02  # metres, the typical difference of heights; it scales the programme
 GIVE_FORCE, GIVE_ROOM = (
     1e-5,
     1e-4,
-)  # prices of pushing harder than legs do and of stretching them, see `quadratic.Limits`
-LOOSE = 1e-3  # how much the wanted height counts in flight
+)  # costs of pushing harder than legs do and of stretching them, see `quadratic.Limits`
+LOOSE = 1e-3  # weight of the target height in flight
 LEAST_STAND = 0.012  # seconds; a flight that begins so soon after another one is left out
 
 
 class Height(Protocol):
-    """Of the centre of mass, metres, at any times."""
+    """The height of the centre of mass, metres, at any times."""
 
     def at(self, times: Array) -> Array:
-        """(f,) at times (f,), seconds."""
+        """Return the height (f,) at times (f,), seconds."""
 
 
 @dataclass(frozen=True, slots=True)
 class HeightPath:
-    """Piecewise cubic through nodes: times (n,) seconds, values (n,) metres, slopes (n,) metres per second.
+    """A piecewise cubic through nodes: times (n,) seconds, values (n,) metres, slopes (n,) metres per second.
 
-    softened : whether legs reach farther or push harder there than they should, as in `quadratic.Solution`
+    softened : whether legs reach farther or push harder than they should, as in `quadratic.Solution`
     """
 
     times: Array
@@ -190,7 +188,7 @@ class HeightPath:
     softened: bool = False
 
     def at(self, times: Array) -> Array:
-        """Height (f,) at any times; a cubic through a parabola's points and slopes is that parabola."""
+        """Return the height (f,) at any times; a cubic through a parabola's points and slopes is that parabola."""
         i = np.clip(np.searchsorted(self.times, times, side="right") - 1, 0, len(self.times) - 2)
         h = self.times[i + 1] - self.times[i]
         s = np.clip((times - self.times[i]) / h, 0.0, 1.0)
@@ -203,10 +201,10 @@ class HeightPath:
 class HeightWish:
     """The targets and limits of the height of the centre of mass at n even times, metres.
 
-    times : (n,) seconds; target : (n,) where it would like to be; highest : (n,) where it may be
-    above : (n,) how far it is over the pelvis, whose jerk on the ground is least
-    firm : (n,) how much `target` counts at take-offs and landings: elsewhere it always counts 1
-    tempo : (n,) as of `tempo_factor`: the slower steps are the more the height may follow them
+    times : (n,) seconds; target : (n,) the preferred height; highest : (n,) the largest allowed height
+    above : (n,) height of the centre of mass over the pelvis, whose jerk on the ground is least
+    firm : (n,) weight of `target` at take-offs and landings: elsewhere the weight is always 1
+    tempo : (n,) from `tempo_factor`: for slower steps, the height follows them more
     """
 
     times: Array
@@ -218,7 +216,7 @@ class HeightWish:
 
 
 def height_path(wish: HeightWish, flights: Array, body: BodySettings) -> HeightPath:
-    """Height h of the centre of mass, as one quadratic programme on nodes k that are uneven in time.
+    """Compute the height h of the centre of mass, as one quadratic programme on nodes k that are uneven in time.
 
         minimise    sum_k c_k (h_k - target_k)^2  +  s^6 sum_k |d3(h - above)/dt3|_k^2
         subject to  f_least <= 1 + h''_k / g <= f_most     force on the ground, in body weights
@@ -254,12 +252,12 @@ def height_path(wish: HeightWish, flights: Array, body: BodySettings) -> HeightP
 
 
 def span(times: Array) -> str:
-    """The seconds from the first to the last of some times, for people."""
+    """Return the seconds from the first to the last of some times, as words for the user."""
     return f"from {times[0]:.1f} s to {times[-1]:.1f} s"
 
 
 def _separate_flights(flights: Array) -> Array:
-    """Flights (k, 2) with time on the ground between them; one that begins as the last one ends is left out."""
+    """Return flights (k, 2) with time on the ground between them; one that begins as the last one ends is left out."""
     keep, landed = [], -np.inf
     for k, (start, end) in enumerate(flights):
         if start - landed >= LEAST_STAND:
@@ -269,7 +267,7 @@ def _separate_flights(flights: Array) -> Array:
 
 
 def _nodes(start: float, end: float, flights: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Node times, and for each interval between nodes whether it is flight."""
+    """Return node times, and for each interval between nodes whether it is flight."""
     times, flying = [np.array([start])], []
     edges = [(a, b, fly) for pair in zip([start, *flights[:, 1]], [*flights[:, 0], end], strict=True) for a, b, fly in
              [(pair[0], pair[1], False)]]  # fmt: skip
@@ -282,7 +280,7 @@ def _nodes(start: float, end: float, flights: Array) -> tuple[Array, NDArray[np.
 
 
 def _second(t: Array) -> Array:
-    """Coefficients (n - 2, 3) of the second derivative at each inner node of an uneven grid."""
+    """Return the coefficients (n - 2, 3) of the second derivative at each inner node of an uneven grid."""
     a, b = t[1:-1] - t[:-2], t[2:] - t[1:-1]
     return np.stack((2 / (a * (a + b)), -2 / (a * b), 2 / (b * (a + b))), axis=1)
 
@@ -319,7 +317,7 @@ def _objective(
 
 
 def _slopes(t: Array, x: Array, flying: NDArray[np.bool_]) -> Array:
-    """Slopes at the nodes: of the parabola where one side is flight, else of the parabola through three nodes."""
+    """Return slopes at the nodes: of the parabola next to flight, otherwise of the parabola through three nodes."""
     h = np.diff(t)
     rise = np.diff(x) / h
     out = np.empty_like(x)

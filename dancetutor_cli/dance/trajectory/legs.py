@@ -1,4 +1,4 @@
-"""The body over its legs: its course, how high legs let it be, heels at take-off."""
+"""The body over its legs: its course, its height within their reach, heels at take-off."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.trajectory.height import time_for_jumps
 
-# Where the body goes over the ground and which way it faces; its height, chest and arms follow from this.
+# The path and direction of the body over the ground; its height, chest and arms follow from them.
 
 Array = NDArray[np.float64]
 
@@ -25,8 +25,8 @@ Array = NDArray[np.float64]
 class Course:
     """The body over the ground at n even times.
 
-    times : (n,) seconds; mass : (n, 2), x and z of the centre of mass; above : (n, 3), from the root to it, as far as
-    known; hips : (n, 2, 3), from the root to each hip; yaw : (n,) of the pelvis, radians, unwrapped
+    times : (n,) seconds; mass : (n, 2), x and z of the centre of mass; above : (n, 3), from the root to the centre of
+    mass, as far as known; hips : (n, 2, 3), from the root to each hip; yaw : (n,) of the pelvis, radians, unwrapped
     """
 
     times: Array
@@ -42,15 +42,15 @@ class Course:
 
     @property
     def ground(self) -> Array:
-        """(n, 2), x and z of the root."""
+        """The place (n, 2) of the root, x and z."""
         return np.asarray(self.mass - self.above[:, [0, 2]])
 
 
-# How high the root may be so that legs reach their feet.
+# The height of the root at which legs reach their feet.
 
 
 def leg_room(feet: Feet, course: Course, skeleton: Skeleton, reach: Array | float, side: int) -> Array:
-    """Highest root (n,) from which one leg still reaches its foot when hip and ankle are `reach` apart."""
+    """Return the highest root (n,) from which one leg reaches its foot, with hip and ankle at most `reach` apart."""
     hip, ankle = hip_over(course, side), ankle_of(feet[side], skeleton, side)
     aside = np.hypot(hip[:, 0] - ankle[:, 0], hip[:, 1] - ankle[:, 2])
     down = course.hips[:, side, 1]
@@ -58,22 +58,22 @@ def leg_room(feet: Feet, course: Course, skeleton: Skeleton, reach: Array | floa
 
 
 def hip_over(course: Course, side: int) -> Array:
-    """Where (n, 2) a hip is over the ground, x and z."""
+    """Return the place (n, 2) of a hip over the ground, x and z."""
     return np.asarray(course.ground + course.hips[:, side, ::2])
 
 
 def upright_hips(yaw: Array, skeleton: Skeleton) -> Array:
-    """From the root to each hip (n, 2, 3) of an upright pelvis with yaw (n,)."""
+    """Return the vectors (n, 2, 3) from the root to each hip of an upright pelvis with yaw (n,)."""
     turned = quat.from_axis_angle(quat.UP, yaw)
     return np.stack([quat.rotate(turned, skeleton.offsets[skeleton.index(f"{s}_hip")]) for s in "lr"], axis=1)
 
 
 def ankle_of(foot: FootPath, skeleton: Skeleton, side: int) -> Array:
-    """World position (f, 3) of the ankle joint of a foot."""
+    """Return the world position (f, 3) of the ankle joint of a foot."""
     meta = skeleton.offsets[skeleton.index(f"{'lr'[side]}_metatarsal")]
     up = skeleton.rest[skeleton.index(f"{'lr'[side]}_metatarsal")][1]
     sine, cosine = np.sin(foot.pitch), np.cos(foot.pitch)
-    y = -meta[1] * cosine + meta[2] * sine  # the ankle seen from the ball's joint, heel up by pitch
+    y = -meta[1] * cosine + meta[2] * sine  # the ankle from the joint of the ball, heel up by pitch
     z = -meta[1] * sine - meta[2] * cosine
     x = -meta[0]
     out = foot.ball.copy()
@@ -83,27 +83,27 @@ def ankle_of(foot: FootPath, skeleton: Skeleton, side: int) -> Array:
     return out
 
 
-# Heels that rise unevenly at take-off: the leg with the farther way gets its length from its foot.
+# Heels that rise unevenly at take-off: the leg with the longer way to its foot gets the missing length from its heel.
 #
 # Over feet that stand apart, one hip is farther from its ankle than the other. The reach of one leg holds the body
 # down, and the other leg would leave the ground on a bent knee. So the heel of the farther foot rises farther, until
 # both legs are equally long as the toes leave.
 
-STEP = np.radians(0.25)  # between pitches that are tried
+STEP = np.radians(0.25)  # radians between pitches that are tried
 JUMP_WINDOW = 0.05  # seconds between the feet; if one leaves earlier, the other one pushes alone
 
 
 def raised(feet: Feet, up: Array) -> Feet:
-    """The same feet with their heels higher by (n, 2) radians."""
+    """Return the same feet with their heels higher by (n, 2) radians."""
     left, right = (replace(foot, pitch=foot.pitch + up[:, side]) for side, foot in enumerate(feet))
     return left, right
 
 
 def push_off(plan: Plan, times: Array, feet: Feet, hips: Array, context: Context) -> Array:
-    """How much farther (n, 2) heels rise at take-off, radians.
+    """Return how much farther (n, 2) heels rise at take-off, radians.
 
-    times : (n,) even; feet : then, their heels up for their ankles' sake already
-    hips : (n, 2, 3) places of both hips, as a rough bake has them
+    times : (n,) even; feet : at these times, with heels already raised for their ankles
+    hips : (n, 2, 3) places of both hips in a rough bake
     """
     jump, out = context.settings.jump, np.zeros((len(times), 2))
     flights = plan.flights
@@ -123,7 +123,7 @@ def push_off(plan: Plan, times: Array, feet: Feet, hips: Array, context: Context
 
 
 def _lifts(plan: Plan, start: float) -> tuple[float, float] | None:
-    """When each foot leaves the ground for the jump whose flight begins at `start`; None where both do not push."""
+    """Return when each foot leaves the ground for the jump whose flight begins at `start`; None if not both push."""
     out = []
     for track in plan.feet:
         lifts = [m.lift for m in track.moves if isinstance(m, Jump) and m.lift <= start + 1e-6 < m.land]
@@ -134,7 +134,7 @@ def _lifts(plan: Plan, start: float) -> tuple[float, float] | None:
 
 
 def _at(feet: Feet, k: int) -> Feet:
-    """Both feet at one of their times only."""
+    """Return both feet at one of their times only."""
     left, right = (_taken(foot, [k]) for foot in feet)
     return left, right
 
@@ -144,7 +144,7 @@ def _taken(foot: FootPath, at: list[int]) -> FootPath:
 
 
 def _more(feet: Feet, hips: Array, most: float, skeleton: Skeleton) -> tuple[int, float]:
-    """Which foot's heel rises farther at one time, and by how much, radians; hips : (2, 3); most : heel up at most"""
+    """The foot whose heel rises farther, and by how much, radians. hips : (2, 3); most : largest pitch of a heel"""
     far = [float(np.linalg.norm(hips[s] - ankle_of(feet[s], skeleton, s)[0])) for s in (0, 1)]
     side = int(far[1] > far[0])
     tried = np.arange(0.0, max(most - float(feet[side].pitch[0]), STEP), STEP)
@@ -154,7 +154,7 @@ def _more(feet: Feet, hips: Array, most: float, skeleton: Skeleton) -> tuple[int
 
 
 def above_at_rest(skeleton: Skeleton) -> Array:
-    """How far (3,) the centre of mass is over the root in the rest pose, metres."""
+    """Return the vector (3,) from the root up to the height of the centre of mass in the rest pose, metres."""
     rest = np.tile(quat.IDENTITY, (1, len(skeleton.names), 1))
     mass = centre_of_mass(skeleton, *world_transforms(skeleton, rest, skeleton.offsets[None, 0]))
     return np.asarray((mass[0] - skeleton.offsets[0]) * [0.0, 1.0, 0.0])

@@ -1,13 +1,13 @@
-"""Trunk and arms answer the legs: they turn against the momentum of swinging legs and of a mass that travels.
+"""The counter-movement of trunk and arms: they turn against the momentum of swinging legs and of a moving mass.
 
-In people who walk, the momentum of the whole body about its centre of mass stays small though that of its parts is
-not: the parts cancel each other (Herr and Popovic, *Angular momentum in human walking*, 2008). So the momentum L(t) of
-the legs, and of the trunk's middle that they carry along, is taken as given, and the turn q(t) of the trunk of inertia
+In people who walk, the momentum of the whole body about its centre of mass stays small, although its parts have much
+momentum: the parts cancel each other (Herr and Popovic, *Angular momentum in human walking*, 2008). So the momentum
+L(t) of the legs, and of the middle of the trunk that they carry along, is given. The turn q(t) of the trunk of inertia
 I about each axis is the one of least
 
     sum over time of   | T (q' + c L / I) |^2  +  e | q |^2  +  | S^3 q''' |^2 :
 
-momentum that is left, effort (of a posture off the upright one; more where gaze or hands need the trunk), and jerk.
+the remaining momentum, effort (of a posture off the upright one; more where gaze or hands need the trunk), and jerk.
 Turns quicker than T are answered, by their part c; slower turns are left to the dance. Arms take a part of each turn
 with their own levers, so they swing and rise.
 """
@@ -27,18 +27,18 @@ from dancetutor_cli.dance.settings_arms import ArmSettings
 from dancetutor_cli.dance.trajectory.legs import Course, above_at_rest, ankle_of, upright_hips
 
 Array = NDArray[np.float64]
-LEAN_INERTIA = 0.070  # m^2 per mass of the body: of a trunk that leans on its hips while its legs give way to it
-SWING_LEVER = 0.6  # metres that each hand goes to turn the body as a radian of the chest does
-HELD = 30.0  # times the effort of a trunk that gaze or hands hold
+LEAN_INERTIA = 0.070  # m^2 per mass of the body: a trunk that leans on its hips while its legs give way
+SWING_LEVER = 0.6  # metres that each hand moves to turn the body as much as a radian of the chest does
+HELD = 30.0  # factor of the effort of a trunk that gaze or hands hold
 
 
 @dataclass(frozen=True, slots=True)
 class CounterMotion:
-    """How trunk and arms answer the legs at n times.
+    """The counter-movement of trunk and arms to the legs at n times.
 
     twist : (n,) radians that the chest turns, positive left; tilt : (n, 2) radians that it leans, as in `Trajectory`
-    swing : (n,) metres that the right hand goes ahead and the left one back; raised : (n,) metres that the left hand
-    is raised aside, or where negative the right one
+    swing : (n,) metres that the right hand goes ahead and the left one back; raised : (n,) metres that the left hand is
+    raised aside, or, where negative, the right one
     """
 
     twist: Array
@@ -50,7 +50,7 @@ class CounterMotion:
 def counter_motion(
     feet: Feet, course: Course, height: Array, free: Array, skeleton: Skeleton, arms: ArmSettings
 ) -> CounterMotion:
-    """The answer to `feet` on the course of a body whose centre of mass is `height` (n,) metres high.
+    """Return the counter-movement to `feet` on the course of a body whose centre of mass is `height` (n,) metres high.
 
     free : (n,) 0 to 1, how far the trunk is free to turn
     """
@@ -70,7 +70,7 @@ def counter_motion(
 
 
 def least_effort(rate_wanted: Array, effort: Array, rate: float, arms: ArmSettings) -> Array:
-    """Turns (n, d) whose rates are near the wanted ones, radians per second, as the module's text says.
+    """Return turns (n, d) whose rates are near the wanted ones, radians per second, as in the module's docstring.
 
     effort : (n,) e; rate : samples per second
     """
@@ -86,10 +86,10 @@ def least_effort(rate_wanted: Array, effort: Array, rate: float, arms: ArmSettin
 
 
 def lower_momentum(feet: Feet, course: Course, height: Array, skeleton: Skeleton) -> Array:
-    """Momentum (n, 3) about the centre of mass of both legs and of what they carry, m^2/s per mass of the body.
+    """The momentum (n, 3) about the centre of mass of both legs and the part they carry, m^2/s per mass of the body.
 
-    The legs are straight lines from the hips of an upright body; the middle of the carried part is where the centre of
-    mass needs it.
+    The legs are straight lines from the hips of an upright body. The middle of the carried part is where the given
+    centre of mass requires it.
     """
     mass = np.column_stack((course.mass[:, 0], height, course.mass[:, 1]))
     root = mass - above_at_rest(skeleton)
