@@ -1,6 +1,6 @@
-"""A captured motion of any humanoid on a body with the rig's joints: world deltas, the body's own proportions.
+"""A captured motion of any humanoid on a body with the rig's joints: world rotations, with the body's own proportions.
 
-Trunk, head, hands and feet turn in the world as the captured ones turn from their rest pose. Limbs take the directions
+Trunk, head, hands and feet turn in the world as the captured parts turn from their rest pose. Limbs take the directions
 of the captured bones. Knees and elbows become pure hinges; the rest of a forearm's turn goes to the wrist. Legs end, in
 closed form, where the captured feet stood, with all lengths in proportion to the legs.
 """
@@ -35,22 +35,22 @@ from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.play import runs
 from dancetutor_cli.run.errors import FileError
 
-# sines of a limb's bend: from the first on the bend shows its plane, below the second it does not
+# sines of a limb's bend: above the first, the bend shows the plane of the limb; below the second, it does not
 BENT, STRAIGHT = 0.30, 0.09
-CLEAR = 0.7  # cosine between both axes; from here on the bend alone gives the plane
-UNEVEN = 0.12  # metres; a floor that differs more has steps, and is left as it is
+CLEAR = 0.7  # cosine between both axes; above it, the bend alone gives the plane
+UNEVEN = 0.12  # metres; a floor with larger differences has steps, and is not changed
 _EXTENT = (("skullbase", "l_talocrural"), ("l_hip", "l_knee"), ("r_hip", "r_knee"))
-OFF = 12.0  # degrees between the segments of a capture and of what is made of it, on average, that are a fault
+OFF = 12.0  # degrees between the segments of a capture and of the result, on average, that are a fault
 _UP = np.array([0.0, 1.0, 0.0])
 _LIMBS = (("shoulder", "elbow", "radiocarpal"), ("hip", "knee", "talocrural"))
 
 
 @dataclass(frozen=True, slots=True)
 class CapturedMotion:
-    """A file's motion, in the world as the file has it. f frames, j joints, parents before children.
+    """The motion of a file, in the world of the file. f frames, j joints, parents before children.
 
     rest, rest_turns : (j, 3) and (j, 4) in the rest pose; times : (f,) seconds; places, turns : (f, j, 3), (f, j, 4)
-    notes : what of the file is left out, for people
+    notes : parts of the file that are left out, for the user
     """
 
     path: Path
@@ -66,19 +66,21 @@ class CapturedMotion:
 
 
 def on_body(captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton) -> Motion:
-    """The motion on a body.
+    """Transfer the captured motion to a body.
 
     Parameters
     ----------
-    joints : index in the file of each joint of the rig that it has; body : joints named as the rig's, standing on y = 0
+    joints : for each joint of the rig that the file has, its index in the file; body : joints named as the rig's,
+    standing on y = 0
 
     Returns
     -------
-    Motion of `body`, its lowest standing feet on y = 0, turned to look to +Z
+    Motion of `body`, with its lowest standing feet on y = 0, turned to face +Z
 
     Raises
     ------
-    FileError if the file's joints lie in one point, if nothing says which way is up, or if its poses do not carry over.
+    FileError if the file's joints lie in one point, if the up direction is unknown, or if the poses cannot be
+    transferred.
     """
     captured = _without_reference(captured, joints)
     given = _Upright(captured, joints, body)
@@ -106,7 +108,7 @@ def on_body(captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton)
 
 
 def upright(captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton) -> Array:
-    """The captured skeleton itself, at the keys of what `on_body` makes of it.
+    """Return the captured skeleton itself, at the keys of the result of `on_body`.
 
     Parameters
     ----------
@@ -126,7 +128,7 @@ def upright(captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton)
 
 
 def _check(given: _Upright, body: Skeleton, poses: tuple[Array, Array]) -> None:
-    """Raise FileError if the body's segments do not point where the captured ones do."""
+    """Raise FileError if the segments of the body do not point in the directions of the captured ones."""
     places, _ = world_transforms(body, *poses)
     paths = _paths(given.captured, given.joints)
     upright = replace(paths, places={name: given.place(name) for name in given.joints})
@@ -141,7 +143,7 @@ def _check(given: _Upright, body: Skeleton, poses: tuple[Array, Array]) -> None:
 
 
 def _without_reference(captured: CapturedMotion, joints: Mapping[str, int]) -> CapturedMotion:
-    """The motion without the rest pose that some converters put before it, and from which everything would jump."""
+    """The motion without the rest pose that some converters put before it, and from which all joints would jump."""
     first = first_frame(_paths(captured, joints))
     if not first or len(captured.times) - first < 2:
         return captured
@@ -150,7 +152,7 @@ def _without_reference(captured: CapturedMotion, joints: Mapping[str, int]) -> C
 
 
 def _paths(captured: CapturedMotion, joints: Mapping[str, int]) -> JointPaths:
-    """What the rig's joints do in the file."""
+    """Return the paths of the rig's joints in the file."""
     return JointPaths(
         captured.path,
         captured.fps,
@@ -162,7 +164,7 @@ def _paths(captured: CapturedMotion, joints: Mapping[str, int]) -> JointPaths:
 
 
 class _Upright:
-    """The captured motion turned to look to +Z over y, in the lengths of the body's legs.
+    """The captured motion turned to face +Z over y, in the lengths of the body's legs.
 
     theirs : metres between the captured hips; wider : by which each of the body's hips is farther from the middle
     """
@@ -179,21 +181,21 @@ class _Upright:
         self.wider = (float(np.linalg.norm(hips[0] - hips[1])) - self.theirs) / 2
 
     def place(self, name: str) -> Array:
-        """World path (f, 3), metres of the body."""
+        """Return the world path (f, 3) of a joint, metres of the body."""
         return self.scale * quat.rotate(self.turn, self.captured.places[:, self.joints[name]])
 
     def delta(self, name: str) -> Array:
-        """World turn (f, 4) from the pose in which the captured person stands."""
+        """Return the world turn (f, 4) of a joint from the standing pose of the captured person."""
         turned = quat.multiply(self.turn, self.captured.turns[:, self.joints[name]])
         return quat.multiply(turned, quat.conjugate(self.turns[name]))
 
     def bone(self, name: str, tip: str) -> Array:
-        """The bone (3,) in the pose in which the captured person stands."""
+        """Return the bone (3,) in the standing pose of the captured person."""
         return np.asarray(self.rest[tip] - self.rest[name])
 
 
 def _leg(places: Mapping[str, Array]) -> float:
-    """Mean length of both legs."""
+    """Return the mean length of both legs."""
     bones = [(f"{s}_{a}", f"{s}_{b}") for s in "lr" for a, b in (("hip", "knee"), ("knee", "talocrural"))]
     return sum(float(np.linalg.norm(places[a] - places[b])) for a, b in bones) / 2
 
@@ -208,7 +210,7 @@ def _level(pelvis: Array, given: _Upright) -> Array:
 
 
 def _spread(body: Skeleton, joints: Mapping[str, int], world: Array) -> None:
-    """Joints of trunk and neck that the file lacks turn by their share between those that it has."""
+    """Turn joints of trunk and neck that the file lacks by their share between the neighbours that it has."""
     known = [k for k, name in enumerate(TRUNK) if name in joints]
     for before, after in pairwise(known):
         for k in range(before + 1, after):
@@ -221,7 +223,9 @@ def _spread(body: Skeleton, joints: Mapping[str, int], world: Array) -> None:
 
 
 def _limb(body: Skeleton, given: _Upright, side: str, chain: tuple[str, str, str], world: Array) -> None:
-    """Turns of an arm or leg, written into `world`: bones where the captured ones point, the middle joint a hinge."""
+    """Write turns of an arm or leg into `world`: bones in the directions of the captured ones, the middle joint a
+    hinge.
+    """
     upper, middle, end = (f"{side}_{name}" for name in chain)
     first, second = body.offsets[body.index(middle)], body.offsets[body.index(end)]
     hinge = hinge_axis(chain[1], second)
@@ -241,11 +245,11 @@ def _limb(body: Skeleton, given: _Upright, side: str, chain: tuple[str, str, str
 
 
 def _plane(u: Array, v: Array, axis: Array) -> tuple[Array, Array]:
-    """The hinge's axis (f, 3) in the world, and the bend (f,) about it, of two bones along u and v.
+    """Return the hinge's axis (f, 3) in the world, and the bend (f,) about it, of two bones along u and v.
 
-    axis : (f, 3) of the captured upper bone. It may be turned about the bone, which differs from rig to rig; this turn
-    is found over the whole clip, because people bend the right way most of the time. The axis decides where a limb is
-    straight.
+    axis : (f, 3) of the captured upper bone. It may be turned about the bone, by an angle that differs from rig to rig.
+    This angle is found over the whole clip, because people bend in the right direction most of the time. Where a limb
+    is straight, the captured axis decides.
     """
     normal = np.cross(u, v)
     sine = np.linalg.norm(normal, axis=1)
@@ -263,13 +267,13 @@ def _plane(u: Array, v: Array, axis: Array) -> tuple[Array, Array]:
 
 
 def _square(axis: Array, bone: Array) -> Array:
-    """Unit vectors (f, 3): the part of an axis that is square to the bone (f, 3)."""
+    """Return unit vectors (f, 3): the part of an axis that is square to the bone (f, 3)."""
     axis = axis - np.sum(axis * bone, axis=1, keepdims=True) * bone
     return np.asarray(axis / np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), 1e-9))
 
 
 def _frame(bone: Array, hinge: Array, u: Array, axis: Array) -> Array:
-    """The turns (f, 4) that take a bone and the hinge square to it to u and axis, (f, 3) each."""
+    """Return the turns (f, 4) that take a bone and the hinge square to it to u and axis, (f, 3) each."""
     first = quat.between(bone, u)
     turned = quat.rotate(first, hinge)
     angle = np.arctan2(np.sum(np.cross(turned, axis) * u, axis=1), np.sum(turned * axis, axis=1))
@@ -278,16 +282,16 @@ def _frame(bone: Array, hinge: Array, u: Array, axis: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class _Feet:
-    """Where ankles and feet must be; lift : metres (f,) by which the file's hips must rise to stand on y = 0."""
+    """The targets of ankles and feet; lift : metres (f,) by which the file's hips must rise to stand on y = 0."""
 
     feet: AnkleTracks
     lift: Array
 
 
 def _feet(body: Skeleton, given: _Upright, world: Array) -> _Feet:
-    """Feet flat where they stand, their balls over the places of the captured ones; writes feet and toes of `world`.
+    """Return flat feet in stands, with their balls over the captured ones, and write feet and toes of `world`.
 
-    They stand as much farther apart as the body's hips are wider; legs that slanted to a narrow stance would need
+    They stand farther apart by as much as the body's hips are wider. Legs that slant to a narrow stance would need
     impossible ankles.
     """
     places, turns, stands, raised = [], [], [], []
@@ -320,7 +324,7 @@ def _feet(body: Skeleton, given: _Upright, world: Array) -> _Feet:
 
 
 def _floor(low: Array, standing: NDArray[np.bool_]) -> Array:
-    """Height (f,) of the floor under her: feet (f, 2) at rest stand on it, between rests it goes straight.
+    """The height (f,) of the floor under the dancer: feet (f, 2) at rest stand on it; between rests it is interpolated.
 
     Captured floors are rarely level: a foot at rest may lie centimetres higher at the other end of the room.
     """

@@ -1,5 +1,5 @@
-"""The simulation: springs and dampers pull the ragdoll after its points; a second-order follower; the remaining
-distances.
+"""The simulation: springs and dampers pull the ragdoll after its points. Also a second-order follower, and the goals of
+the remaining distances.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 MEAN, DEVIATION, LARGEST = 0.9, 0.5, 3.5  # goals of the distances of the points, centimetres
 
-# A second-order follower: how an animator gives a motion weight, sloppiness or snap.
+# A second-order follower gives a motion weight, sloppiness or snap, as an animator does.
 #
-# y + k1 y' + k2 y'' = x + k3 x', with k1 = z / (pi f), k2 = 1 / (2 pi f)^2, k3 = r z / (2 pi f): frequency f says how
-# quickly it follows, damping z how much it swings after, response r how it starts (0 slowly, above 1 it overshoots,
-# negative it first goes the other way). Sampled with the bilinear rule, which is stable at any frequency.
+# y + k1 y' + k2 y'' = x + k3 x', with k1 = z / (pi f), k2 = 1 / (2 pi f)^2, k3 = r z / (2 pi f). Frequency f is how
+# quickly it follows, damping z how much it swings after, response r how it starts (0: slowly; above 1: it overshoots;
+# negative: it first goes the other way). It is sampled with the bilinear rule, which is stable at any frequency.
 
 _TRUNK = ("chest", "head")
 _JOINTS = {
@@ -40,7 +40,7 @@ _JOINTS = {
 
 
 def follow(values: Array, rate: float, follower: Follower) -> Array:
-    """What a path x (f, d), evenly sampled at `rate`, becomes behind the follower, at rest in the first frame.
+    """Return the path x (f, d), evenly sampled at `rate`, behind the follower, which is at rest in the first frame.
 
         y + k1 y' + k2 y'' = x + k3 x' ,    k1 = 2 z / w ,  k2 = 1 / w^2 ,  k3 = r z / w ,  w = 2 pi f
 
@@ -72,10 +72,10 @@ def follow_all(skeleton: Skeleton, rotations: Array, root: Array, style: Style) 
 
 
 def _arms(skeleton: Skeleton, given: Array, rotations: Array, rate: float, follower: Follower) -> None:
-    """Filter arms in the frame of the turning body, in place, because they make up for what the trunk does in that
-    moment.
+    """Filter arms in the frame of the turning body, in place, because they compensate the present movement of the
+    trunk.
 
-    Shoulders that did so some frames later or earlier would throw the hands about.
+    Shoulders that did this some frames later or earlier would throw the hands about.
     """
     nowhere = np.zeros((len(given), 3))
     turned, world = (world_transforms(skeleton, turns, nowhere)[1] for turns in (given, rotations))
@@ -88,19 +88,19 @@ def _arms(skeleton: Skeleton, given: Array, rotations: Array, rate: float, follo
 
 
 def _followed(turns: Array, rate: float, follower: Follower) -> Array:
-    """Turns (f, 4) behind a follower."""
+    """Return turns (f, 4) behind a follower."""
     return quat.normalize(follow(quat.continuous(turns), rate, follower))
 
 
 # Forces are actuators of the engine (implicitfast), which uses the place of a point in the present step. Forces that
-# are set from outside before a plain step are one step old, and that explodes at 240 Hz.
+# are set from outside before a plain step are one step old, and the simulation explodes at 240 Hz.
 
-PIECE = 2400  # steps whose targets are in memory at once
+PIECE = 2400  # number of steps whose targets are in memory at once
 
 
 @dataclass(frozen=True, slots=True)
 class Ragdoll:
-    """A skeleton with its bodies and points, and the style in which they follow."""
+    """A skeleton with its bodies and points, and the style in which they follow the input."""
 
     skeleton: Skeleton
     bones: tuple[Bone, ...]
@@ -121,11 +121,11 @@ def simulate(
     Parameters
     ----------
     rotations : (f, j, 4) local, and root : (f, 3), of the input at the style's update rate; start : second of the first
-    actors : what else acts on it
+    actors : other forces and constraints
 
     Returns
     -------
-    local rotations (f, j, 4), those of joints without a body as in the input, and root (f, 3)
+    local rotations (f, j, 4), with the input's rotations for joints without a body, and root (f, 3)
 
     Raises
     ------
@@ -171,7 +171,7 @@ def simulate(
 
 
 def _forces(ragdoll: Ragdoll) -> Array:
-    """External force (b, 3) on each body in the pelvis's axes, newtons; a part's force is shared by its bodies."""
+    """Return the external force (b, 3) on each body in the pelvis's axes, newtons; bodies of a part share its force."""
     bones, style = ragdoll.bones, ragdoll.style
     out = []
     for bone in bones:
@@ -182,7 +182,7 @@ def _forces(ragdoll: Ragdoll) -> Array:
 
 
 def _failed(ragdoll: Ragdoll, model: Any, data: Any, second: float) -> DancetutorError:
-    """The engine says which degree of freedom broke, with warnings of its positions, speeds and accelerations."""
+    """Return the error with the joint that failed, by the engine's warnings of positions, speeds and accelerations."""
     kinds = engine().mjtWarning
     name = ragdoll.bones[0].name
     for kind in (kinds.mjWARN_BADQACC, kinds.mjWARN_BADQVEL):

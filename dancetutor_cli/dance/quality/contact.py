@@ -26,16 +26,16 @@ from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.play import StepKind, runs
 
-# Contact error: when each limb reaches its panel, against the note's time.
+# The contact error: when each limb reaches its panel, compared with the time of the note.
 
 TOUCH = 0.0002  # metres over the surface that count as touching
-INSIDE = 0.02  # metres of a panel around a sole's middle that make it a good foothold
-HOLD_STEP, OFF_PANEL = 0.01, 0.002  # seconds between looks at a held note; metres over the panel that are off it
+INSIDE = 0.02  # metres inside the edge of a panel at which the middle of a sole has a good foothold
+HOLD_STEP, OFF_PANEL = 0.01, 0.002  # seconds between checks of a held note; metres over the panel that count as off it
 OFFSETS = np.arange(-50, 51) / 1000.0  # seconds around a note: 1 kHz
 
 
 def contact_figures(motion: Motion) -> tuple[tuple[Figure, ...], Array]:
-    """The figures, and the error of every contact in milliseconds (c,), nan for a miss."""
+    """Return the figures, and the error of every contact in milliseconds (c,), nan for a miss."""
     errors = contact_errors(motion)
     missed = np.isnan(errors)
     worst = float(np.abs(errors[~missed]).max()) if (~missed).any() else float("nan")
@@ -53,9 +53,7 @@ def contact_figures(motion: Motion) -> tuple[tuple[Figure, ...], Array]:
 
 
 def soles_inside(motion: Motion) -> Array:
-    """How far (k,) the middle of the sole is inside the panel on which a whole foot comes down, metres; below 0
-    outside.
-    """
+    """How far (k,) the middle of the sole is inside its panel when a whole foot lands, metres; below 0 outside."""
     whole = [c for c in motion.contacts if c.limb < Limb.LEFT_HAND and c.part == Part.WHOLE]
     if not whole:
         return np.zeros(0)
@@ -69,12 +67,12 @@ def soles_inside(motion: Motion) -> Array:
 
 
 def contact_errors(motion: Motion) -> Array:
-    """When sole or palm reaches the panel minus the note's time, milliseconds (c,), nan where it misses the panel, or
-    leaves it while the note is held.
+    """Return when sole or palm reaches the panel minus the note's time, milliseconds (c,); nan for a miss.
 
-    The motion is resampled at 1 kHz within 50 ms of the note. A contact begins when the lowest point comes within 0.2
-    mm of the surface, after having been higher. A limb that has stood there all the time is on time if it is down at
-    the note. At the note the touching point must be inside the panel.
+    A limb misses if it is not on the panel at the note, or leaves it while the note is held. The motion is resampled at
+    1 kHz within 50 ms of the note. A contact begins when the lowest point comes within 0.2 mm of the surface, after it
+    was higher. A limb that has stood there all the time is on time if it is down at the note. At the note the touching
+    point must be inside the panel.
     """
     out = np.full(len(motion.contacts), np.nan)
     for start in range(0, len(motion.contacts), 100):  # in pieces: a long chart has thousands of contacts
@@ -90,7 +88,7 @@ def contact_errors(motion: Motion) -> Array:
 
 
 def away_from_hold(motion: Motion, contact: Contact) -> float:
-    """The longest time in seconds that a limb is off the panel between a held note's head and its end."""
+    """Return the longest time in seconds that a limb is off the panel between a held note's head and its end."""
     end = min(contact.end, float(motion.times[-1]))
     times = np.arange(contact.start, end, HOLD_STEP)
     if len(times) < 2:
@@ -103,7 +101,7 @@ def away_from_hold(motion: Motion, contact: Contact) -> float:
 
 
 def _points(motion: Motion, contact: Contact) -> tuple[BodyPoint, ...]:
-    """The body points that may press: the palm, the whole sole, or its heel or toes in a bracket."""
+    """Return the body points that can press: the palm, the whole sole, or its heel or toes in a bracket."""
     if contact.limb >= Limb.LEFT_HAND:
         return (palm_points(motion.skeleton)[contact.limb - Limb.LEFT_HAND],)
     points = sole_points(motion.skeleton)[contact.limb]
@@ -114,7 +112,7 @@ def _points(motion: Motion, contact: Contact) -> tuple[BodyPoint, ...]:
 
 
 def _error(points: Array, contact: Contact) -> float:
-    """points : (times, p, 3) around the note."""
+    """Return the error of one contact, milliseconds; points : (times, p, 3) around the note."""
     low = points[..., 1].min(axis=1)
     note = len(OFFSETS) // 2
     inside = np.abs(points[..., [0, 2]] - np.array(contact.panel)).max(axis=2) <= HALF_PANEL + 1e-6
@@ -126,25 +124,25 @@ def _error(points: Array, contact: Contact) -> float:
     if not len(begins):
         return float("nan")
     if len(begins) == 1 and begins[0] == 0:
-        return 0.0  # stood there all the time
+        return 0.0  # it stood there all the time
     begins = begins[begins > 0]
     best = begins[np.argmin(np.abs(OFFSETS[begins]))]
-    # between two samples: where the height crosses the threshold
+    # between two samples: the time at which the height crosses the threshold
     share = (low[best - 1] - TOUCH) / max(low[best - 1] - low[best], 1e-12)
     return float(1000 * (OFFSETS[best - 1] + share * (OFFSETS[best] - OFFSETS[best - 1])))
 
 
 # Feet on the ground: slides while planted, depth below the pad, feet that rest where a mine passes.
 
-PIVOT = np.radians(2.0)  # a planted foot that turns more is pivoting on purpose: on its ball, which must not slide
-CUT_PIVOT = np.radians(0.2)  # and so is one that turns so much at a section's edge, where only a part of it is seen
-BALL = slice(2, 4)  # of a sole's points, those of the ball
-MINE_CLEARANCE = 0.03  # metres that a foot over a mine is up
-MAX_LISTED_MINES = 6  # moments at which a foot is on mines that a note names at most
+PIVOT = np.radians(2.0)  # a planted foot that turns more pivots on purpose: on its ball, which must not slide
+CUT_PIVOT = np.radians(0.2)  # the same at the edge of a section, where only a part of the turn is visible
+BALL = slice(2, 4)  # the indices of the ball's points in a sole
+MINE_CLEARANCE = 0.03  # metres; a foot over a mine must be higher
+MAX_LISTED_MINES = 6  # largest number of moments on mines that a note lists
 
 
 def ground_figures(motion: Motion, body: Body, mines: Array | None) -> tuple[tuple[Figure, ...], tuple[str, ...]]:
-    """Figures and notes. mines : (m, 3) of second, x, z; None if not known."""
+    """Return figures and notes. mines : (m, 3) of second, x, z; None if not known."""
     slide, pivots = plant_slides(body, motion.skeleton)
     under = np.zeros(0, np.int8) if mines is None else feet_on_mines(motion, mines)
     figures = (
@@ -161,7 +159,9 @@ def ground_figures(motion: Motion, body: Body, mines: Array | None) -> tuple[tup
 
 
 def plant_slides(body: Body, skeleton: Skeleton) -> tuple[float, int]:
-    """Longest path (metres) of a sole point during one plant, of the ball's joint if it pivots; and how many do."""
+    """Return the longest path (metres) of a sole point in a plant (of the ball's joint in a pivot), and the number of
+    pivots.
+    """
     worst, pivots = 0.0, 0
     balls = [body.joints[:, skeleton.index(f"{side}_metatarsal")] for side in "lr"]
     for side in (0, 1):
@@ -183,7 +183,7 @@ def plant_slides(body: Body, skeleton: Skeleton) -> tuple[float, int]:
 
 
 def deepest(motion: Motion) -> float:
-    """How far any sole point is below the pad, metres, at every key and half-way between keys."""
+    """Return how far any sole point is below the pad, metres, at every key and half-way between keys."""
     times = np.sort(np.concatenate((motion.times, (motion.times[1:] + motion.times[:-1]) / 2)))
     low = 0.0
     for start in range(0, len(times), 4000):
@@ -195,8 +195,10 @@ def deepest(motion: Motion) -> float:
 
 
 def feet_on_mines(motion: Motion, mines: Array) -> NDArray[np.int8]:
-    """Which foot (m,), 0 left or 1 right, is on each mine as it passes: a sole point inside its panel is lower than
-    3 cm. -1 if none is, or the motion is of another time."""
+    """Return the foot (m,), 0 left or 1 right, that is on each mine as it passes; -1 if none is.
+
+    A foot is on a mine if a sole point inside its panel is lower than 3 cm. A mine outside the motion's time gets -1.
+    """
     out = np.full(len(mines), -1, dtype=np.int8)
     here = np.flatnonzero((mines[:, 0] >= motion.times[0]) & (mines[:, 0] <= motion.times[-1]))
     if not len(here):
@@ -210,8 +212,8 @@ def feet_on_mines(motion: Motion, mines: Array) -> NDArray[np.int8]:
 
 
 def mine_messages(seconds: Array) -> tuple[str, ...]:
-    """One line for people that lists the mines on which a foot is as they pass; none if there are none. seconds : of
-    these mines
+    """Return one line for the user that lists the mines on which a foot is as they pass, or nothing. seconds : of these
+    mines
     """
     if not len(seconds):
         return ()
@@ -221,14 +223,14 @@ def mine_messages(seconds: Array) -> tuple[str, ...]:
     return (f"a foot is on {what}, or less than {100 * MINE_CLEARANCE:g} cm over: {when}",)
 
 
-# Hands on the bar: whether the palms lie on the rail while they hold it.
+# Hands on the bar: the distance of the palms from the rail while they hold it.
 
-PIECE = 2000  # samples worked on at once
-RATE = 120.0  # of the samples, per second
+PIECE = 2000  # samples in memory at once
+RATE = 120.0  # samples per second
 
 
 def bar_figures(motion: Motion) -> tuple[Figure, ...]:
-    """Largest distance of a palm from its place on the rail while it holds it; nothing without a bar."""
+    """Return the largest distance of a palm from its place on the rail while it holds it; nothing without a bar."""
     if motion.bar is None:
         return ()
     worst = 0.0
@@ -253,21 +255,21 @@ def _farthest(motion: Motion, side: int, x: float, times: np.ndarray[tuple[int],
     return out
 
 
-# How far feet slide while they stand, seen from outside: by height and speed of ankles and balls, nothing else.
+# The slide of standing feet, as seen from outside: by height and speed of ankles and balls only.
 #
 # Sources: J. Lee and others, *Interactive control of avatars animated with human motion data*, SIGGRAPH 2002, whose
 # contacts are where a joint is low and slow; limits as in the skating ratio (K. Karunratanakul and others, *Guided
-# motion diffusion*, 2023). What the program itself holds to the floor does not count: one measure for any motion.
+# motion diffusion*, 2023). The program's own plants do not count, so this measure fits any motion.
 
-RATE = 60.0  # frames per second at which motion is looked at
-SHORTEST = 0.10  # seconds that a foot which stands is down
-MEDIAN, WORST = 5.0, 25.0  # millimetres: the goals
+RATE = 60.0  # frames per second of the measurement
+SHORTEST = 0.10  # seconds; least duration of a stand
+MEDIAN, WORST = 5.0, 25.0  # goals, millimetres
 JOINTS = ("l_talocrural", "l_metatarsal", "r_talocrural", "r_metatarsal")
 
 
 @dataclass(frozen=True, slots=True)
 class StandingSpan:
-    """A joint that stands: name, from `start` to `end` in seconds, and how far it slides, metres."""
+    """A stand of a joint: name, from `start` to `end` in seconds, and how far the joint slides, metres."""
 
     joint: str
     start: float
@@ -276,7 +278,7 @@ class StandingSpan:
 
 
 def stands_of(times: Array, name: str, path: Array) -> list[StandingSpan]:
-    """When a joint of a foot stands, and how far it slides.
+    """Return when a joint of a foot stands, and how far it slides.
 
     Parameters
     ----------
@@ -284,8 +286,9 @@ def stands_of(times: Array, name: str, path: Array) -> list[StandingSpan]:
 
     Returns
     -------
-    stands, in time: all frames in which the joint is less than 5 cm over its own lowest twentieth and goes slower than
-    0.5 m/s, 0.1 s or longer. The slide is the longest way along the floor between two places of one stand.
+    stands, in time. A stand is all frames in which the joint is less than 5 cm over its own lowest twentieth and slower
+    than 0.5 m/s, for 0.1 s or longer. The slide is the longest distance along the floor between two places of one
+    stand.
     """
     return [
         StandingSpan(name, float(times[first]), float(times[end - 1]), _extent(path[first:end][:, [0, 2]]))
@@ -294,9 +297,9 @@ def stands_of(times: Array, name: str, path: Array) -> list[StandingSpan]:
 
 
 def stand_frames(times: Array, path: Array, margin: float = 1.0) -> NDArray[np.int64]:
-    """First and one past the last frame of each stand of a joint, (n, 2); times and path as for `stands_of`.
+    """Return the first and one past the last frame of each stand of a joint, (n, 2); times and path as for `stands_of`.
 
-    margin : times higher, faster and, by as much, shorter than by the limits a stand may be
+    margin : factor by which a stand may be higher, faster and shorter than the limits
     """
     if len(times) < 3:
         return np.empty((0, 2), dtype=np.int64)
@@ -308,13 +311,13 @@ def stand_frames(times: Array, path: Array, margin: float = 1.0) -> NDArray[np.i
 
 
 def _extent(places: Array) -> float:
-    """The longest distance between two of many places (n, 2), to a hundredth: widths along 24 directions."""
+    """Return the longest distance between two of many places (n, 2), to a hundredth: widths along 24 directions."""
     angles = np.arange(24) * np.pi / 24
     return float(np.ptp(places @ np.stack([np.cos(angles), np.sin(angles)]), axis=0).max())
 
 
 def stands(motion: Motion) -> list[StandingSpan]:
-    """Stands of all four joints of the feet of a motion of the rig."""
+    """Return the stands of all four joints of the feet of a motion of the rig."""
     length = float(motion.times[-1] - motion.times[0])
     times = motion.times[0] + np.arange(int(length * RATE + 1e-6) + 1) / RATE
     places, _ = world_transforms(motion.skeleton, *sample(motion, times))
@@ -323,7 +326,7 @@ def stands(motion: Motion) -> list[StandingSpan]:
 
 
 def slide_figures(motion: Motion, words: str, goals: bool) -> tuple[Figure, ...]:
-    """Median and worst slide in millimetres. words : put behind the names; goals : whether the figures have goals"""
+    """The median and worst slide in millimetres. words : added to the names; goals : whether the figures have goals"""
     slides = [1000.0 * one.slide for one in stands(motion)]
     median, worst = (float(np.median(slides)), max(slides)) if slides else (float("nan"), float("nan"))
     return (

@@ -16,25 +16,25 @@ from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import runs
 
-# Inverse dynamics: the force and the moment at the root that no contact can supply, the residual.
+# Inverse dynamics: the residual, which is the force and the moment at the root that no contact can supply.
 #
 # The path of the mass and the momentum about it give the force and the moment that the world must exert. Sole points on
-# the ground can push (friction up to `FRICTION`); nothing else can. The residual is what they cannot supply, in body
-# weights, and body weights times metres, as it is given for captured motion (Hicks and others, 2015).
+# the ground can push (friction up to `FRICTION`); nothing else can. The residual is the rest that they cannot supply,
+# in body weights, and body weights times metres, as for captured motion (Hicks and others, 2015).
 
 CUT = 10.0  # Hz; accelerations above it come from single frames, not from the body
-FRICTION = 0.8  # of a sole on a pad
+FRICTION = 0.8  # coefficient of friction of a sole on a pad
 CONTACT = GROUND + 0.004  # metres over the ground up to which a sole point can push
-MOST = 3000  # frames that are looked at
-GYRATION = 0.29  # radius of a part about its middle, in parts of its length: a rod's
-WIDE = 0.09  # metres to both sides of the middle of a part without a length: the pelvis
-HANDS = 0.15  # seconds around a pressing palm, or a hand on the bar, that are left out: hands can push, too
+MOST = 3000  # largest number of measured frames
+GYRATION = 0.29  # radius of gyration of a part about its middle, in parts of its length, as of a rod
+WIDE = 0.09  # metres to both sides of the middle of the pelvis, a part without a length
+HANDS = 0.15  # seconds around a pressing palm, or a hand on the bar, that are left out, because hands can push, too
 FORCE_MEDIAN, FORCE_MOST = 0.02, 0.5  # goals, body weights
 MOMENT_MEDIAN, MOMENT_MOST = 0.02, 0.2  # goals, body weights times metres
 
 
 def dynamics_figures(motion: Motion, body: Body) -> tuple[Figure, ...]:
-    """Median and 99th percentile of residual force and moment; nan where there is too little to measure."""
+    """Return median and 99th percentile of residual force and moment; nan if there is too little to measure."""
     values = residuals(motion, body)
     names = ("residual force", "residual moment")
     units = ("body weights", "body weights x m")
@@ -49,7 +49,7 @@ def dynamics_figures(motion: Motion, body: Body) -> tuple[Figure, ...]:
 
 
 def residuals(motion: Motion, body: Body) -> Array:
-    """Residual force and moment (k, 2) of the frames that are looked at."""
+    """Return residual force and moment (k, 2) of the measured frames."""
     if len(body.times) < 5:
         return np.zeros((0, 2))
     points, masses = dumbbells(motion.skeleton, body)
@@ -76,8 +76,8 @@ def residuals(motion: Motion, body: Body) -> Array:
 
 
 def _looked_at(motion: Motion, body: Body) -> NDArray[np.int64]:
-    """Frames that are evenly chosen, without the ends, where filters have too little input, and without those in which
-    hands push.
+    """Return evenly chosen frames, without frames in which hands push, and without the ends, where filters have too
+    little input.
     """
     free = np.ones(len(body.times), dtype=bool)
     free[:3] = free[-3:] = False
@@ -89,8 +89,8 @@ def _looked_at(motion: Motion, body: Body) -> NDArray[np.int64]:
 
 
 def _near(down: NDArray[np.bool_], rate: float) -> NDArray[np.bool_]:
-    """Where (f, s) a sole point is down within half a period of the cut, because force and moment have no finer
-    resolution.
+    """Return where (f, s) a sole point is down within half a period of the cut frequency. Force and moment have no
+    finer resolution.
     """
     half = round(rate / (2.0 * CUT))
     padded = np.pad(down, ((half, half), (0, 0)))
@@ -98,14 +98,14 @@ def _near(down: NDArray[np.bool_], rate: float) -> NDArray[np.bool_]:
 
 
 def _rays(arms: Array) -> Array:
-    """Wrenches (6, 4 p) about the centre of mass of unit pushes along the edges of friction cones at arms (p, 3)."""
+    """Return wrenches (6, 4 p) about the centre of mass of unit pushes along edges of friction cones at arms (p, 3)."""
     edges = np.array([(FRICTION, 1, 0), (-FRICTION, 1, 0), (0, 1, FRICTION), (0, 1, -FRICTION)])
     push = np.tile(edges, (len(arms), 1))
     return np.concatenate((push, np.cross(np.repeat(arms, 4, axis=0), push)), axis=1).T
 
 
 def dumbbells(skeleton: Skeleton, body: Body) -> tuple[Array, Array]:
-    """The body as pairs of point masses that turn as its parts do: places (f, 2 m, 3), masses (2 m,) with sum 1."""
+    """The body as pairs of point masses that turn with its parts: places (f, 2 m, 3), masses (2 m,) with sum 1."""
     joints, masses, offsets = mass_points(skeleton)
     size = np.linalg.norm(offsets, axis=1, keepdims=True)
     half = np.where(size > 0.03, GYRATION * 2.0 * offsets, [WIDE, 0.0, 0.0])
@@ -116,14 +116,14 @@ def dumbbells(skeleton: Skeleton, body: Body) -> tuple[Array, Array]:
     return np.asarray(places), np.concatenate((masses, masses)) / 2
 
 
-# Jumps: whether the centre of mass falls freely, and whether the ground pushes no harder than legs can.
+# Jumps: the centre of mass must fall freely, and the ground must push no harder than legs can.
 
 SHORTEST = 5  # frames; fewer do not determine a parabola
-FIT = 0.12  # seconds; the arc of a shorter flight is so flat (under 2 cm) that a fit of g says nothing
+FIT = 0.12  # seconds; the arc of a shorter flight is so flat (under 2 cm) that a fit of g has no meaning
 
 
 def flight_figures(body: Body) -> tuple[Figure, ...]:
-    """g and residual of a parabola fitted to each flight, its apex, and the force on the ground in body weights."""
+    """G and residual of a parabola fitted to each flight, its apex, and the force on the ground in body weights."""
     flying = np.asarray(~body.standing.any(axis=1))
     gravity, residual, apex = [], [], []
     height = body.mass[:, 1]
@@ -149,25 +149,24 @@ def flight_figures(body: Body) -> tuple[Figure, ...]:
 
 
 def ground_force(body: Body) -> Array:
-    """Vertical force in body weights at the frames in which both neighbours stand too, from the centre of mass."""
+    """The vertical force, body weights, at frames between two other frames on the ground, from the centre of mass."""
     stands = np.asarray(body.standing.any(axis=1))
     inner = stands[1:-1] & stands[:-2] & stands[2:]
     acceleration = np.diff(body.mass[:, 1], n=2) * body.rate**2
     return np.asarray((acceleration / GRAVITY + 1.0)[inner])
 
 
-# Balance: the zero-moment point lies under the feet that stand.
+# Balance: the zero-moment point lies under the standing feet.
 
-GROWN = 0.02  # metres by which the hull of the soles is grown
+GROWN = 0.02  # metres by which the hull of the soles is enlarged
 
 
 def balance_figures(body: Body, bar: bool = False) -> tuple[Figure, ...]:
-    """Share of the frames on the ground in which the zero-moment point is inside the hull, in percent.
+    """Return the share of the frames on the ground in which the zero-moment point is inside the hull, in percent.
 
-    It is measured twice: of the centre of mass as it is, for which the goal is, and without movement above 10 Hz. In
+    It is measured twice: for the centre of mass itself, which has the goal, and without movement above 10 Hz. In
     streams of more than 10 steps a second, the second figure lacks a part of the way of the weight from foot to foot.
-
-    bar : hands may hold the body, so there is no goal
+    bar : whether hands may hold the body; then there is no goal
     """
     return (
         Figure("balance", _share(zmp_margin(body)), "%", None if bar else 98.0, at_least=True),
@@ -180,7 +179,9 @@ def _share(margin: Array) -> float:
 
 
 def zero_moment_point(body: Body, cut: float | None = None) -> Array:
-    """(f - 2, 2) on the ground, metres: x - y x'' / (y'' + g) of the centre of mass, below `cut` Hz if given."""
+    """Return the point (f - 2, 2) on the ground, metres: x - y x'' / (y'' + g) of the centre of mass, below `cut` Hz if
+    given.
+    """
     mass = body.mass if cut is None else low_pass(body.mass, body.rate, cut)
     acceleration = np.diff(mass, n=2, axis=0) * body.rate**2
     lever = mass[1:-1, 1] / np.maximum(acceleration[:, 1] + GRAVITY, 0.3 * GRAVITY)
@@ -188,7 +189,7 @@ def zero_moment_point(body: Body, cut: float | None = None) -> Array:
 
 
 def zmp_margin(body: Body, cut: float | None = None) -> Array:
-    """Distance (k,) of the zero-moment point outside the hull of all standing sole points, for frames on the ground."""
+    """The distance (k,) of the zero-moment point outside the hull of standing sole points, for frames on the ground."""
     zmp = zero_moment_point(body, cut)
     soles = body.soles[1:-1].reshape(len(zmp), -1, 3)
     down = soles[..., 1] <= GROUND + 0.004
@@ -201,7 +202,7 @@ def zmp_margin(body: Body, cut: float | None = None) -> Array:
 
 
 def _outside(points: Array, p: Array) -> float:
-    """Distance of p outside the convex hull of points (k, 2); negative inside. Exact enough outside: nearest edge."""
+    """Return the distance of p outside the convex hull of points (k, 2), to the nearest edge; negative inside."""
     angle = np.arange(0.0, 2 * np.pi, np.pi / 36)
     directions = np.column_stack((np.cos(angle), np.sin(angle)))
     return float((directions @ p - (points @ directions.T).max(axis=0)).max())

@@ -12,14 +12,14 @@ from dancetutor_cli.dance.motion import Ground, Motion, sample
 from dancetutor_cli.dance.rig.body import centre_of_mass, place, sole_points, world_transforms
 from dancetutor_cli.dance.units import Array
 
-# What a quality report holds: named figures with their goals.
+# The figures of a quality report, with their goals.
 
 
 @dataclass(frozen=True, slots=True)
 class Figure:
     """One measured figure.
 
-    value : nan where nothing could be measured, for example no jump in the chart
+    value : nan if nothing could be measured, for example without a jump in the chart
     goal : the largest good value (or, if `at_least`, the smallest); None: no goal
     """
 
@@ -42,8 +42,8 @@ class MotionReport:
     """All figures of a motion.
 
     contact_errors : (c,) milliseconds, late positive, nan for a miss
-    notes : what a reader should know: pivots on purpose, what was exempt
-    curves : over the song, for the plot: name -> (seconds (n,), values (n,) or, of input and output, (n, 2))
+    notes : remarks for the reader: pivots on purpose, exempt stretches
+    curves : over the song, for the plot: name -> (seconds (n,), values (n,); for input and output, values (n, 2))
     distances : of a ragdoll by retargeting point: minimum, maximum, mean and standard deviation, centimetres
     """
 
@@ -59,25 +59,25 @@ class MotionReport:
         return all(f.met is not False for f in self.figures)
 
     def __getitem__(self, name: str) -> Figure:
-        """The figure of that name; KeyError lists the names."""
+        """Return the figure of that name; KeyError lists the names."""
         for figure in self.figures:
             if figure.name == name:
                 return figure
         raise KeyError(f"no figure {name!r}; there are {', '.join(f.name for f in self.figures)}")
 
 
-# A motion resampled evenly, with everything that several figures need, by forward kinematics.
+# A motion resampled evenly, with the data that several figures need, by forward kinematics.
 
 GROUND = 0.001  # a sole point at most this high stands on the ground, metres
 GRAVITY = 9.81
-PIECE = 4000  # frames worked on at once, so that a long song needs little memory
+PIECE = 4000  # frames in memory at once, so that a long song needs little memory
 
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """f frames at `rate` per second.
+    """The f frames of a motion at `rate` per second.
 
-    joints : (f, j, 3) positions; soles : (f, 2, 6, 3) sole points of both feet, y over the ground below
+    joints : (f, j, 3) positions; soles : (f, 2, 6, 3) sole points of both feet, y over the ground under them
     mass : (f, 3) centre of mass; rotations : (f, j, 4) local; head : (f, 3) middle of the head
     """
 
@@ -91,7 +91,7 @@ class Body:
 
     @property
     def standing(self) -> NDArray[np.bool_]:
-        """(f, 2): a foot has a point on the ground."""
+        """Whether each foot has a point on the ground, (f, 2)."""
         return np.asarray(self.soles[..., 1].min(axis=2) <= GROUND)
 
 
@@ -113,7 +113,7 @@ def body_of(motion: Motion) -> Body:
 
 
 def over_ground(points: Array, ground: Ground | None) -> Array:
-    """Points (..., 3) with their heights over what is below them: the pad, or the floor beside it."""
+    """Return points (..., 3) with their heights over the surface below them: the pad, or the floor beside it."""
     if ground is None:
         return points
     out = points.copy()
@@ -121,10 +121,10 @@ def over_ground(points: Array, ground: Ground | None) -> Array:
     return out
 
 
-# Measures of motion that others publish, computed as their authors do, so that figures can be compared.
+# Published measures of motion, computed as their authors do, so that figures can be compared.
 #
 # Sources: docs/references.md. Skating ratio: Karunratanakul and others 2023 (GMD). PFC: Tseng and others 2023 (EDGE).
-# Penetration: Yuan and others 2023 (PhysDiff), of the soles, which are the lowest of a body that stands.
+# Penetration: Yuan and others 2023 (PhysDiff), of the soles, which are the lowest points of a standing body.
 
 SKATE_RATE, SKATE_HEIGHT, SKATE_SPEED, SKATE_WINDOW = 20.0, 0.05, 0.50, 5  # frames/s, metres, m/s, frames
 PFC_RATE, PFC_SCALE = 30.0, 10000.0
@@ -132,7 +132,7 @@ TOLERANCE = 0.005  # metres that a body may be below the ground
 
 
 def published_figures(motion: Motion, body: Body) -> tuple[Figure, ...]:
-    """Foot-skating ratio, physical foot contact score and penetration."""
+    """Return foot-skating ratio, physical foot contact score and penetration."""
     return (
         Figure("skating ratio (GMD)", skating_ratio(motion), ""),
         Figure("PFC (EDGE)", physical_foot_contact(motion), ""),
@@ -141,14 +141,15 @@ def published_figures(motion: Motion, body: Body) -> tuple[Figure, ...]:
 
 
 def skating_ratio(motion: Motion) -> float:
-    """Part of the frames, 20 a second, in which a foot that is down moves faster than 0.5 m/s, now and on average.
+    """Return the part of the frames, 20 a second, in which a foot that is down moves faster than 0.5 m/s.
 
-    Down: below 5 cm in this frame and the next. Average: over five frames, those beyond the ends count as 0.
+    Down: below 5 cm in this frame and the next. The speed and its average over five frames must both be faster; frames
+    beyond the ends count as 0.
     """
     feet = _joints(motion, SKATE_RATE, ("l_metatarsal", "r_metatarsal"))
     if len(feet) < 2:
         return float("nan")
-    feet[..., 1] -= feet[..., 1].min()  # as in their data, whose lowest joint lies on the ground
+    feet[..., 1] -= feet[..., 1].min()  # as in the data of the authors, whose lowest joint lies on the ground
     speed = np.linalg.norm(np.diff(feet[..., [0, 2]], axis=0), axis=2) * SKATE_RATE
     padded = np.pad(speed, ((SKATE_WINDOW // 2, SKATE_WINDOW // 2), (0, 0)))
     average = np.lib.stride_tricks.sliding_window_view(padded, SKATE_WINDOW, axis=0).mean(axis=-1)
@@ -158,10 +159,10 @@ def skating_ratio(motion: Motion) -> float:
 
 
 def physical_foot_contact(motion: Motion) -> float:
-    """Mean of speed of the one foot x speed of the other x acceleration of the root, 30 frames a second, times 10,000.
+    """The mean of speed of one foot x speed of the other x acceleration of the root, 30 frames a second, times 10,000.
 
-    Speeds are metres per frame, of the slower of ankle and toes; the acceleration counts upward and aside, in parts of
-    its largest.
+    Speeds are metres per frame, of the slower of ankle and toes. The acceleration counts upward and aside, in parts of
+    its largest value.
     """
     names = ("HumanoidRoot", "l_talocrural", "l_metatarsal", "r_talocrural", "r_metatarsal")
     places = _joints(motion, PFC_RATE, names)
@@ -178,13 +179,13 @@ def physical_foot_contact(motion: Motion) -> float:
 
 
 def penetration(body: Body) -> float:
-    """Mean depth in metres of the lowest point below the ground, where it is more than 5 mm below, over all frames."""
+    """The mean depth in metres of the lowest point below the ground, over all frames; less than 5 mm counts as 0."""
     depth = -body.soles[..., 1].min(axis=(1, 2))
     return float(np.where(depth > TOLERANCE, depth, 0.0).mean())
 
 
 def _joints(motion: Motion, rate: float, names: tuple[str, ...]) -> Array:
-    """Places (f, n, 3) of joints at even times."""
+    """Return places (f, n, 3) of joints at even times."""
     start, end = float(motion.times[0]), float(motion.times[-1])
     times = start + np.arange(int((end - start) * rate + 1e-6) + 1) / rate
     rotations, root = sample(motion, times)

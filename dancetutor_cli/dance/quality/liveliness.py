@@ -1,6 +1,6 @@
-"""How much a body takes part in a dance: lean, twist, tilt, arms, bounce, and legs that give under landings.
+"""How much each part of the body moves in a dance: lean, twist, tilt, arms, bounce, and legs that give under landings.
 
-The goals are what captured dancers have; the same definitions read a capture and a bake alike (docs/motion.md).
+The goals come from captured dancers; the same definitions measure a capture and a bake alike (docs/motion.md).
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.units import Array
 
-SHORTEST = 20.0  # seconds of stepping: less says little, and has no figures
-SLOWEST, FASTEST = 1.0, 8.0  # steps a second: outside of these the figures have no goal
-HELD = 0.5  # nor have those of trunk and arms where a hand is on the bar for this part of the time and more
-BOUNCE = (0.7, 5.0)  # Hz, of the pelvis's height
-NEAR, STILL, LIFTED = 0.03, 0.35, 0.03  # metres and metres per second of a ball that is down; metres of one that was up
-BEFORE, RESTS, GIVES = 0.2, 0.085, 0.25  # seconds: up before a landing, down after it, and within which a knee gives
+SHORTEST = 20.0  # seconds of steps; a shorter dance has no figures
+SLOWEST, FASTEST = 1.0, 8.0  # steps a second; slower or faster dances have no goal
+HELD = 0.5  # part of the time with a hand on the bar, from which on the figures of trunk and arms have no goal
+BOUNCE = (0.7, 5.0)  # Hz, of the height of the pelvis
+NEAR, STILL, LIFTED = 0.03, 0.35, 0.03  # metres and metres per second of a ball that is down; metres of a raised ball
+BEFORE, RESTS, GIVES = 0.2, 0.085, 0.25  # seconds: up before a landing; down after it; in which a knee gives
 ROLL = (0.067, 0.1)  # seconds before and after a landing between which the foot's pitch is compared
-UPPER = ("lean", "lean most", "twist", "wrists")  # of trunk and arms
+UPPER = ("lean", "lean most", "twist", "wrists")  # figures of trunk and arms
 HAND_TURN = 2000.0  # degrees per second that a hand turns on its forearm at most
 
 
 def liveliness_figures(body: Body, motion: Motion) -> tuple[Figure, ...]:
-    """Figures of the frames from the first step to the last one; nan, and no goal missed, if there are too few."""
+    """Figures of the frames from the first step to the last one; nan, with no goal missed, if there are too few."""
     skeleton, contacts = motion.skeleton, motion.contacts
     stepping = _stepping(body.times, contacts)
     seconds = float(stepping.sum()) / body.rate
@@ -52,7 +52,7 @@ def liveliness_figures(body: Body, motion: Motion) -> tuple[Figure, ...]:
 
 
 def _stepping(times: Array, contacts: tuple[Contact, ...]) -> NDArray[np.bool_]:
-    """Which times (n,) are between the first contact and the last one."""
+    """Return the times (n,) that are between the first contact and the last one."""
     if not contacts:
         return np.zeros(len(times), dtype=bool)
     first, last = min(c.start for c in contacts), max(c.end for c in contacts)
@@ -60,7 +60,7 @@ def _stepping(times: Array, contacts: tuple[Contact, ...]) -> NDArray[np.bool_]:
 
 
 def _held(times: Array, motion: Motion) -> float:
-    """Part of the times at which a hand is on the bar."""
+    """Return the part of the times at which a hand is on the bar."""
     on = np.zeros(len(times), dtype=bool)
     for grip in motion.grips:
         on |= (times >= grip.start) & (times <= grip.end)
@@ -91,18 +91,18 @@ def _joint(body: Body, skeleton: Skeleton, name: str) -> Array:
 
 
 def _across(body: Body, skeleton: Skeleton, name: str) -> Array:
-    """From the right joint of a pair to the left one, (f, 3)."""
+    """Return the line from the right joint of a pair to the left one, (f, 3)."""
     return np.asarray(_joint(body, skeleton, f"l_{name}") - _joint(body, skeleton, f"r_{name}"))
 
 
 def _turned(a: Array, b: Array) -> Array:
-    """How far (f,) lines a are turned from lines b about the vertical, radians."""
+    """Return how far (f,) lines a are turned from lines b about the vertical, radians."""
     turn = np.arctan2(a[:, 2], a[:, 0]) - np.arctan2(b[:, 2], b[:, 0])
     return np.asarray((turn + np.pi) % (2 * np.pi) - np.pi)
 
 
 def _ways(body: Body, skeleton: Skeleton, side: str) -> Array:
-    """Where a wrist is (f, 3) from the shoulders' middle: to the left, ahead of them, and up; metres."""
+    """Return the place (f, 3) of a wrist from the shoulders' middle: to the left, ahead of them, and up; metres."""
     line = _across(body, skeleton, "shoulder")
     left = line / np.linalg.norm(line, axis=1, keepdims=True)
     ahead = np.cross(left, quat.UP)
@@ -113,16 +113,14 @@ def _ways(body: Body, skeleton: Skeleton, side: str) -> Array:
 
 
 def _band(x: Array, rate: float) -> Array:
-    """What of x (n,) is between the two frequencies of `BOUNCE`."""
+    """Return the part of x (n,) between the two frequencies of `BOUNCE`."""
     spectrum, hertz = np.fft.rfft(x - x.mean()), np.fft.rfftfreq(len(x), 1.0 / rate)
     spectrum[(hertz < BOUNCE[0]) | (hertz > BOUNCE[1])] = 0.0
     return np.fft.irfft(spectrum, len(x))
 
 
 def landings(body: Body, skeleton: Skeleton, stepping: NDArray[np.bool_]) -> tuple[Array, Array]:
-    """For each landing of a foot during the steps: how far its knee bends on after it, and how far the foot rolls about
-    it, degrees.
-    """
+    """How far the knee bends after each landing of a foot during the steps, and how far the foot rolls, degrees."""
     knees, gives, rolls = 180.0 - knee_angles(body, skeleton), [], []
     first, last = (int(i) for i in (np.argmax(stepping), len(stepping) - np.argmax(stepping[::-1])))
     before, rests, within, back, on = (round(s * body.rate) for s in (BEFORE, RESTS, GIVES, *ROLL))
@@ -143,7 +141,7 @@ def landings(body: Body, skeleton: Skeleton, stepping: NDArray[np.bool_]) -> tup
 
 
 def hand_turn(motion: Motion) -> float:
-    """The fastest that a hand turns on its forearm, degrees per second, by the times of the keys, which are uneven."""
+    """The fastest turn of a hand on its forearm, degrees per second, by the times of the keys, which are uneven."""
     steps, fastest = np.diff(motion.times), 0.0
     apart = steps > 1e-6
     for side in "lr":

@@ -17,16 +17,16 @@ from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import StepKind, runs
 
-# Whether the pose is possible: joints within their limits, parts of the body not inside each other.
+# Possible poses: joints within their limits, parts of the body not inside each other.
 
-PAST = 1.0  # degrees past a limit that count
+PAST = 1.0  # degrees past a limit from which on a frame counts
 FOOT_RADIUS = 0.038
 HAIR_ALLOWED = 0.010
-BACK_RADIUS = 0.105  # of the dancer's back about her spine
+BACK_RADIUS = 0.105  # metres, of the dancer's back about her spine
 
 
 def shape_figures(body: Body, skeleton: Skeleton) -> tuple[tuple[Figure, ...], tuple[str, ...]]:
-    """Figures, and notes on which joints are past their limits and how far."""
+    """Return figures, and notes on the joints that are past their limits, and how far."""
     past = excess(skeleton, body.rotations)
     beyond = {name: degrees for name, degrees in past.items() if (degrees > PAST).any()}
     frames = np.zeros(len(body.times), dtype=bool)
@@ -47,12 +47,12 @@ def shape_figures(body: Body, skeleton: Skeleton) -> tuple[tuple[Figure, ...], t
 
 
 def limb_depth(body: Body, skeleton: Skeleton) -> Array:
-    """How deep (f,) a forearm or hand is inside the torso, metres; negative outside."""
+    """Return how deep (f,) a forearm or hand is inside the torso, metres; negative outside."""
     return np.maximum(*(arm_in_torso(skeleton, body.joints, side) for side in "lr"))
 
 
 def feet_depth(body: Body) -> Array:
-    """How deep (f,) one shoe is inside the other, metres; negative apart. A shoe is a capsule from heel to toes."""
+    """Return how deep (f,) one shoe, a capsule from heel to toes, is inside the other, metres; negative if apart."""
     ends = []
     for side in (0, 1):
         soles = body.soles[:, side]
@@ -63,7 +63,7 @@ def feet_depth(body: Body) -> Array:
 
 
 def hair_depth(body: Body, skeleton: Skeleton) -> Array:
-    """How deep (f,) a joint of the braid is inside the back, metres; negative outside or without a braid."""
+    """Return how deep (f,) a joint of the braid is inside the back, metres; negative outside or without a braid."""
     out = np.full(len(body.times), -np.inf)
     low, high = (body.joints[:, skeleton.index(n)] for n in ("vt10", "vc4"))
     along = high - low
@@ -74,16 +74,16 @@ def hair_depth(body: Body, skeleton: Skeleton) -> Array:
     return out
 
 
-# Limbs through limbs: legs and arms as tapered capsules, which is how people see them.
+# Limbs through limbs: legs and arms as tapered capsules, close to their visible shape.
 
-DEEP = 0.01  # metres; what is less deep is clothes and skin that give way
+DEEP = 0.01  # metres; up to this depth, clothes and skin give way
 LEG = (("hip", THIGH), ("knee", KNEE), ("talocrural", ANKLE))  # joints and radii, metres
 ARM = (("shoulder", 0.045), ("elbow", 0.036), ("radiocarpal", 0.026))
 HAND = 0.10  # metres of the hand beyond the wrist
 
 
 def capsule_figures(body: Body, skeleton: Skeleton) -> tuple[tuple[Figure, ...], tuple[str, ...]]:
-    """Frames in which a limb is deeper than 1 cm in another one, and notes on where it is worst."""
+    """Return the frames in which a limb is deeper than 1 cm in another one, and notes on the worst frames."""
     figures, notes = [], []
     for name, deep in limb_depths(body, skeleton).items():
         figures.append(Figure(name, float((deep > DEEP).sum()), "frames", 0.0))
@@ -98,8 +98,7 @@ def capsule_figures(body: Body, skeleton: Skeleton) -> tuple[tuple[Figure, ...],
 
 
 def limb_depths(body: Body, skeleton: Skeleton) -> dict[str, Array]:
-    """How deep (f,) left and right leg, left and right arm, and any arm and leg are in each other, metres; below 0
-    apart."""
+    """Return how deep (f,) both legs, both arms, and any arm and leg are in each other, metres; below 0 if apart."""
     legs, arms = ([_limb(body, skeleton, side, chain) for side in "lr"] for chain in (LEG, ARM))
     return {
         "leg in leg": depth(legs[0], legs[1]),
@@ -109,7 +108,7 @@ def limb_depths(body: Body, skeleton: Skeleton) -> dict[str, Array]:
 
 
 def _limb(body: Body, skeleton: Skeleton, side: str, chain: tuple[tuple[str, float], ...]) -> list[Capsule]:
-    """The capsules of a limb from its root outward; an arm's last one reaches to the end of the hand."""
+    """The capsules of a limb from its root outward; the last capsule of an arm reaches to the end of the hand."""
     places = [body.joints[:, skeleton.index(f"{side}_{name}")] for name, _ in chain]
     radii = [radius for _, radius in chain]
     if chain is ARM:
@@ -118,15 +117,15 @@ def _limb(body: Body, skeleton: Skeleton, side: str, chain: tuple[tuple[str, flo
     return [(places[k], places[k + 1], radii[k], radii[k + 1]) for k in range(len(chain) - 1)]
 
 
-# Knees that do not snap, and bodies that do not jerk.
+# Smoothness: knees that do not snap, and bodies that do not jerk.
 
-FAST_JUMPS = 4.0  # per second; faster ones are exempt from the goal of the jerk
-AROUND_JUMPS = 0.1  # seconds before and after a run that belong to it
+FAST_JUMPS = 4.0  # jumps per second; faster ones are exempt from the goal of the jerk
+AROUND_JUMPS = 0.1  # seconds before and after a run of jumps that belong to it
 STRAIGHT = 165.0  # degrees from which a knee may pop
 
 
 def knee_angles(body: Body, skeleton: Skeleton) -> Array:
-    """Inner angle (f, 2) of the left and right knee, degrees; 180 is straight."""
+    """Return the inner angle (f, 2) of the left and right knee, degrees; 180 is straight."""
     out = []
     for side in "lr":
         hip, knee, ankle = (body.joints[:, skeleton.index(f"{side}_{n}")] for n in ("hip", "knee", "talocrural"))
@@ -139,9 +138,9 @@ def knee_angles(body: Body, skeleton: Skeleton) -> Array:
 def smoothness_figures(
     body: Body, skeleton: Skeleton, contacts: tuple[Contact, ...] = ()
 ) -> tuple[tuple[Figure, ...], tuple[str, ...]]:
-    """Knee angle and its acceleration where nearly straight; mean jerk of root, hands and head; notes.
+    """Return the knee angle and its acceleration where nearly straight; the mean jerk of root, hands and head; notes.
 
-    Runs of jumps faster than 4 per second are exempt from the jerk, and noted.
+    Runs of jumps faster than 4 per second are exempt from the jerk, with a note.
     """
     knees = knee_angles(body, skeleton)
     smooth = low_pass(knees, body.rate)
@@ -173,7 +172,7 @@ def smoothness_figures(
 
 
 def in_fast_jumps(times: Array, contacts: tuple[Contact, ...]) -> NDArray[np.bool_]:
-    """Which times (n,) are in a run of jumps faster than `FAST_JUMPS`, or within `AROUND_JUMPS` of one."""
+    """Return the times (n,) in a run of jumps faster than `FAST_JUMPS`, or within `AROUND_JUMPS` of one."""
     feet: dict[float, set[int]] = {}
     for contact in contacts:
         if contact.limb < Limb.LEFT_HAND:
@@ -187,23 +186,22 @@ def in_fast_jumps(times: Array, contacts: tuple[Contact, ...]) -> NDArray[np.boo
 
 
 def jerk(path: Array, rate: float) -> Array:
-    """Size of the third derivative (f - 3,) of a path (f, 3), low-passed at 10 Hz."""
+    """Return the size of the third derivative (f - 3,) of a path (f, 3), low-passed at 10 Hz."""
     return np.asarray(np.linalg.norm(np.diff(low_pass(path, rate), n=3, axis=0), axis=1) * rate**3)
 
 
-# How the dancer stands, jumps and waits, in the figures by which people judge; most of them have no goal.
+# How the dancer stands, jumps and waits, in figures that viewers judge by; most of them have no goal.
 
-WRIST, TURN = 4.0, 650.0  # metres per second that a wrist goes at most; degrees per second that the pelvis turns
-NECK = 80.0  # degrees that a neck turns the head from the chest
-JUMP, BEFORE = 0.15, 0.35  # seconds in the air, and on the ground before it, of a jump that legs have time for
+WRIST, TURN = 4.0, 650.0  # metres per second of a wrist at most; degrees per second of the pelvis at most
+NECK = 80.0  # degrees between head and chest at most
+JUMP, BEFORE = 0.15, 0.35  # seconds in the air, and on the ground before it, of a jump for which legs have enough time
 FOLD, GIVE = 0.5, 0.16  # the middle half of a flight; seconds after landing in which knees give
 WAIT = 4.5  # seconds without a note that are a wait
-HOME, READY = 2.5, 1.0  # seconds of its beginning and its end in which she steps
+HOME, READY = 2.5, 1.0  # seconds at the beginning and at the end of a wait in which the dancer steps
 
 
 def posture_figures(body: Body, skeleton: Skeleton, contacts: tuple[Contact, ...]) -> tuple[Figure, ...]:
-    """Flexion of the knees and lean of the trunk, the legs' part in jumps, speeds of wrists and pelvis, weight in
-    waits."""
+    """Knee flexion, trunk lean, the knees in jumps, speeds of wrists, pelvis and head, and weight shift in waits."""
     knees = 180.0 - knee_angles(body, skeleton)
     off, fold, give = _medians(jump_knees(body, knees))
     shift = weight_shifts(body, contacts)
@@ -233,9 +231,10 @@ def _medians(jumps: Array) -> tuple[float, float, float]:
 
 
 def jump_knees(body: Body, knees: Array) -> Array:
-    """Flexion (k, 3) in degrees, mean of both knees, of jumps with time.
+    """Return the flexion (k, 3) in degrees, mean of both knees, of jumps for which legs have enough time.
 
-    The least as the toes leave, the most in the middle of the flight, and the most as they give after it.
+    The three values are the least as the toes leave, the most in the middle of the flight, and the most after the
+    landing.
     """
     flying = runs(np.asarray(~body.standing.any(axis=1)))
     mean, frames, out, landed = knees.mean(axis=1), body.rate, [], 0
@@ -255,7 +254,7 @@ def jump_knees(body: Body, knees: Array) -> Array:
 
 
 def trunk_lean(body: Body, skeleton: Skeleton) -> Array:
-    """Angle (f,) in degrees between upright and the line from the hips' middle to the shoulders' middle."""
+    """Return the angle (f,) in degrees between upright and the line from the hips' middle to the shoulders' middle."""
     hips, shoulders = (
         (body.joints[:, skeleton.index(f"l_{n}")] + body.joints[:, skeleton.index(f"r_{n}")]) / 2
         for n in ("hip", "shoulder")
@@ -265,30 +264,30 @@ def trunk_lean(body: Body, skeleton: Skeleton) -> Array:
 
 
 def speeds(body: Body, joint: int) -> Array:
-    """Speed (f - 1,) of a joint, metres per second."""
+    """Return the speed (f - 1,) of a joint, metres per second."""
     return np.asarray(np.linalg.norm(np.diff(body.joints[:, joint], axis=0), axis=1) * body.rate)
 
 
 def pelvis_yaw(body: Body, skeleton: Skeleton) -> Array:
-    """Which way (f,) the pelvis faces, radians, unwrapped: square to the line between the hips."""
+    """Return the yaw (f,) of the pelvis, radians, unwrapped: square to the line between the hips."""
     across = body.joints[:, skeleton.index("l_hip")] - body.joints[:, skeleton.index("r_hip")]
     return np.unwrap(np.arctan2(-across[:, 2], across[:, 0]))
 
 
 def neck_yaw(body: Body, skeleton: Skeleton) -> Array:
-    """How far (f,) the face is turned from where the chest faces, radians, positive left."""
+    """Return how far (f,) the face is turned from the direction of the chest, radians, positive left."""
     neck, skull = (body.rotations[:, skeleton.index(name)] for name in ("vc4", "skullbase"))
     face = quat.rotate(quat.multiply(neck, skull), np.array([0.0, 0.0, 1.0]))
     return np.asarray(np.arctan2(face[:, 0], face[:, 2]))
 
 
 def weight_shifts(body: Body, contacts: tuple[Contact, ...]) -> Array:
-    """How far (w,), metres, the pelvis moves to and fro in each wait between notes, without its ends."""
+    """Return how far (w,), metres, the pelvis moves to and fro in each wait between notes, without its ends."""
     ends = [c.end if c.kind == StepKind.HOLD else c.start for c in contacts]  # a foot may stay after a tap
     busy = sorted({(c.start, float(min(end, body.times[-1]))) for c, end in zip(contacts, ends, strict=True)})
     out, free = [], -np.inf
     for start, end in busy:
-        if WAIT <= start - free < np.inf:  # before the first note she walks on
+        if WAIT <= start - free < np.inf:  # before the first note the dancer walks on
             inner = (body.times > free + HOME) & (body.times < start - READY)
             if inner.any():
                 place = body.joints[inner, 0][:, [0, 2]]
@@ -298,5 +297,5 @@ def weight_shifts(body: Body, contacts: tuple[Contact, ...]) -> Array:
 
 
 def _main_way(places: Array) -> Array:
-    """Unit vector (2,) along which places (n, 2) differ most."""
+    """Return the unit vector (2,) along which places (n, 2) differ most."""
     return np.asarray(np.linalg.svd(places - places.mean(axis=0), full_matrices=False)[2][0])

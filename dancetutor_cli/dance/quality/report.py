@@ -1,4 +1,4 @@
-"""The quality report: all figures of a motion, and those of captured motion before and after a ragdoll."""
+"""The quality report: all figures of a motion, and figures of captured motion before and after a ragdoll."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from dancetutor_cli.dance.rig.body import place, sole_points, world_transforms
 from dancetutor_cli.dance.rig.skeleton import excess
 from dancetutor_cli.run.errors import DancetutorError
 
-# The quality report: what the program itself measures about a motion, by forward kinematics from its rotations.
+# The quality report: measurements of a motion by forward kinematics from its rotations.
 #
-# Every figure is of the motion as any viewer of its file shows it: rotations slerped and the root moved straight
-# between keys. Definitions and goals are those of docs/motion.md; there is one module for each family of figures.
+# Every figure measures the motion as a viewer of its file shows it: rotations are slerped and the root moves straight
+# between keys. Definitions and goals are in docs/motion.md; each family of figures has its module.
 
-SHORTEST = 0.05  # seconds; of less there are no accelerations to measure
+SHORTEST = 0.05  # seconds; a shorter motion has no accelerations to measure
 Curve = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
@@ -43,7 +43,7 @@ def report(motion: Motion, mines: NDArray[np.float64] | None = None) -> MotionRe
     Parameters
     ----------
     motion : from `bake`, or read from a file
-    mines : (m, 3) of second, x, z of every mine, metres in the world; None leaves its figure out
+    mines : (m, 3) of second, x, z of every mine, metres in the world; None: the figure of mines has no value
 
     Raises
     ------
@@ -87,13 +87,13 @@ def _curves(motion: Motion, body: Body, errors: NDArray[np.float64]) -> dict[str
     }
 
 
-# Faults of captured motion before and after: knees that pop, feet that skate, joints past human limits.
+# Faults of captured motion before and after the ragdoll: knees that pop, feet that skate, joints past human limits.
 
-BACKWARD = -8.0  # degrees of an elbow's bend: further backward than any bends
+BACKWARD = -8.0  # degrees of an elbow's bend: elbows do not bend farther backward
 
 
 def fault_figures(before: Motion, after: Motion, plants: Plants | None) -> tuple[Figure, ...]:
-    """Each fault in the input and in what was made of it, same frames; the goals are the output's."""
+    """Return each fault in the input and in the output, same frames; the goals are for the output."""
     out = []
     for words, motion in ((", input", before), ("", after)):
         body = body_of(motion)
@@ -116,7 +116,7 @@ def _knees(body: Body, motion: Motion, words: str) -> list[Figure]:
 
 
 def plant_slides(motion: Motion, plants: Plants) -> list[float]:
-    """Longest path (metres) of a held point of the sole over each plant; feet that turn on purpose are left out."""
+    """Return the longest path (metres) of a held sole point over each plant; feet that turn on purpose are left out."""
     positions, world = world_transforms(motion.skeleton, motion.rotations, motion.root)
     out = []
     for side, points in enumerate(sole_points(motion.skeleton)):
@@ -135,7 +135,7 @@ def plant_slides(motion: Motion, plants: Plants) -> list[float]:
 
 
 def _past(motion: Motion) -> NDArray[np.bool_]:
-    """Frames in which any joint is past its limit."""
+    """Return the flags of frames in which any joint is past its limit."""
     past: NDArray[np.bool_] = np.zeros(len(motion.times), dtype=bool)
     for degrees in excess(motion.skeleton, motion.rotations).values():
         past |= degrees > PAST
@@ -143,7 +143,7 @@ def _past(motion: Motion) -> NDArray[np.bool_]:
 
 
 def _backward(motion: Motion) -> NDArray[np.bool_]:
-    """Frames in which an elbow bends backward."""
+    """Return the flags of frames in which an elbow bends backward."""
     out: NDArray[np.bool_] = np.zeros(len(motion.times), dtype=bool)
     for bone in bones_of(motion.skeleton):
         if bone.name.endswith("elbow"):
@@ -152,11 +152,11 @@ def _backward(motion: Motion) -> NDArray[np.bool_]:
     return out
 
 
-# Retargeting: how far a ragdoll was from what it followed, with the goals of one-on-one simulation.
+# Retargeting: the distance of a ragdoll from the motion that it follows, with the goals of one-on-one simulation.
 
 
 def with_distances(report: MotionReport, distances: Distances | None, style: str | None) -> MotionReport:
-    """The report with a ragdoll's distances; without one it stays as it is. Only `neutral` has goals: others differ."""
+    """Return the report with a ragdoll's distances, if there are any. Only the style `neutral` has goals."""
     if distances is None:
         return report
     goals = (MEAN, DEVIATION, LARGEST) if style == NEUTRAL else (None, None, None)
