@@ -1,4 +1,4 @@
-"""Ankles within their limits over feet that are held: legs turn about their own axis, feet in the air turn, standing
+"""Ankles within their limits over held feet: legs turn about their own axis, feet in the air turn, standing
 feet lean.
 """
 
@@ -16,9 +16,9 @@ from dancetutor_cli.dance.smoothing import both_envelopes, upper_envelope
 from dancetutor_cli.dance.units import Array, Poses
 
 ROUNDS = 3
-LEANS = 1.0  # degrees to a side; from here on a foot stands on its edge and its sole is not held
-MARGIN = 0.6  # degrees that are left to a limit
-SWIVELS = 0.25  # seconds in which a leg turns about the line from hip to ankle, or a foot leans, and comes back
+LEANS = 1.0  # degrees to a side; from here on, a foot stands on its edge and its sole is not held
+MARGIN = 0.6  # degrees that are kept to a limit
+SWIVELS = 0.25  # seconds in which a leg turns about the line from hip to ankle, or a foot leans, and returns
 _AHEAD = np.array([0.0, 0.0, 1.0])
 _ASIDE = np.array([1.0, 0.0, 0.0])
 
@@ -26,10 +26,10 @@ _ASIDE = np.array([1.0, 0.0, 0.0])
 def eased_ankles(
     skeleton: Skeleton, poses: Poses, feet: AnkleTracks, plants: Plants, held: Array, times: Array
 ) -> tuple[Poses, AnkleTracks, Plants]:
-    """Poses and feet whose ankles are within their limits, and the places where soles still lie on the floor.
+    """Return poses and feet whose ankles are within their limits, and the plants whose soles still lie on the floor.
 
-    If an ankle is twisted too far, the leg turns by the excess between hip and foot, knee aside. Feet in the air, or on
-    one end, turn; a foot that lies flat leans on an edge as far as the leg over it leans too far.
+    If an ankle is twisted too far, the leg turns by the excess between hip and foot, and the knee moves aside. Feet in
+    the air, or on one end, turn. A foot that lies flat leans onto an edge as far as the leg over it leans too far.
 
     poses : with legs that end in `feet`; held : (f, 2) how far feet stand
     """
@@ -50,7 +50,7 @@ def eased_ankles(
 
 
 def _swivelled(skeleton: Skeleton, poses: Poses, feet: AnkleTracks, times: Array) -> Poses:
-    """Poses whose legs have turned by the excess of their ankles, as far as the hips allow."""
+    """Return poses whose legs have turned by the excess of their ankles, as far as the hips allow."""
     rotations = poses[0].copy()
     places, world = world_transforms(skeleton, *poses)
     for side in "lr":
@@ -72,7 +72,7 @@ def _swivelled(skeleton: Skeleton, poses: Poses, feet: AnkleTracks, times: Array
 
 
 def _twisted(turns: Array) -> Array:
-    """Radians (f,) by which ankles, turned locally by (f, 4), are twisted past their limit; 0 within."""
+    """Return the radians (f,) by which ankles, turned locally by (f, 4), are twisted past their limit; 0 within."""
     twist = quat.to_vector(quat.swing_twist(turns, quat.UP)[1])[:, 1]
     most = np.radians(LIMITS["l_talocrural"].twist[1] - MARGIN)
     return np.asarray(np.sign(twist) * np.maximum(np.abs(twist) - most, 0.0))
@@ -81,7 +81,7 @@ def _twisted(turns: Array) -> Array:
 def _turned(
     skeleton: Skeleton, rotations: Array, feet: AnkleTracks, plants: Plants, held: Array
 ) -> tuple[AnkleTracks, bool]:
-    """Feet that do not lie flat, turned about the end that they stand on; and whether any had to be."""
+    """Return feet that do not lie flat, turned about the end on which they stand; and whether any has changed."""
     places, turns, changed = feet.places.copy(), feet.turns.copy(), False
     world = world_transforms(skeleton, rotations, np.zeros((len(rotations), 3)))[1]
     for side in (0, 1):
@@ -104,9 +104,9 @@ def _turned(
 
 
 def _pitched(turns: Array, wanted: Array, ball: NDArray[np.bool_]) -> Array:
-    """Turns (n, 4) of feet that stand on one end, pitched as `wanted`: any other turn would make that end slide.
+    """Return turns (n, 4) of feet on one end, with the pitch of `wanted`: any other turn would make that end slide.
 
-    ball : (n,) which of them stand on that end; the other end is up
+    ball : (n,) whether a foot stands on its ball; otherwise it stands on its heel
     """
     ahead, towards = quat.rotate(turns, _AHEAD), quat.rotate(wanted, _AHEAD)
     level = quat.from_axis_angle(quat.UP, np.arctan2(ahead[:, 0], ahead[:, 2]))
@@ -118,7 +118,7 @@ def _pitched(turns: Array, wanted: Array, ball: NDArray[np.bool_]) -> Array:
 def _leaning(
     skeleton: Skeleton, rotations: Array, feet: AnkleTracks, held: Array, times: Array
 ) -> tuple[AnkleTracks, bool]:
-    """Feet that lean by the excess of their ankles, balls in place; and whether any had to."""
+    """Return feet that lean by the excess of their ankles, with balls in place; and whether any has changed."""
     places, turns, changed = feet.places.copy(), feet.turns.copy(), False
     world = world_transforms(skeleton, rotations, np.zeros((len(rotations), 3)))[1]
     low = lowest(skeleton, feet)

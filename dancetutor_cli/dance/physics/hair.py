@@ -1,7 +1,7 @@
-"""The braid: four segments that hang from the head, swing, and never go into head, back, shoulders or arms.
+"""The braid: four segments that hang from the head, swing, and never enter head, back, shoulders or arms.
 
 Position-based dynamics (Mueller and others 2007) in fixed steps of the song's clock: the same motion gives the same
-hair on every machine. Segments only swing; they never twist, for a bone is turned by the shortest arc.
+hair on every machine. Segments only swing and never twist, because a bone is turned by the shortest arc.
 """
 
 from __future__ import annotations
@@ -25,23 +25,23 @@ TIP = (0.0, -0.110, 0.0)  # from the last joint to the end of the braid in the r
 HEAD = (0.0, 0.085, 0.005)  # middle of the head's ball from the skullbase
 BACK = ((0.0, 0.0, 0.015), (0.0, 0.17, 0.020))  # the back's capsule: its ends from vt10 and from vt4
 NECK = (0.030, 0.135, 0.004)  # where the left shoulder's capsule begins, from vt4; it ends at the arm's joint
-ROUND = 2  # capsules that are rounder than a segment is long: head and back
-TRUNK = 4  # capsules before those of the arms: these and the shoulders
+ROUND = 2  # number of capsules that are rounder than a segment is long: head and back
+TRUNK = 4  # number of capsules before the arms' capsules: head, back and shoulders
 ITERATIONS = 5  # rounds of the constraints in each step
-SPARE = 1.0  # radians that arms push it higher than it may rise by itself
-LAST = 3  # rounds of pushing it out at the end of a step
-WITHIN = 0.025  # metres that a fast turn may press it into head and back: its own and their softness
-TOUCH = 0.004  # metres from which a point touches
+SPARE = 1.0  # radians that arms push the braid higher than it may rise by itself
+LAST = 3  # rounds of pushing the braid out at the end of a step
+WITHIN = 0.025  # metres that a fast turn may press the braid into head and back, because all three are soft
+TOUCH = 0.004  # metres from a capsule within which a point touches it
 DOWN = (0.0, -1.0, 0.0)
 SETTLE = 1.0  # seconds of hanging still before the first frame
-CHUNK = 4800  # steps whose anchors are held at once
+CHUNK = 4800  # steps whose anchors are in memory at once
 _ARMS = tuple(f"{s}_{n}" for s in "lr" for n in ("shoulder", "elbow", "radiocarpal"))
 
 
 class Anchors(NamedTuple):
-    """What the braid hangs on and collides with, at n even times, in the world.
+    """The anchors and obstacles of the braid at n even times, in the world.
 
-    root : (n, 3); head_turn : (n, 4); ends : (n, 2, c, 3) of capsules, the first of them the head's ball
+    root : (n, 3); head_turn : (n, 4); ends : (n, 2, c, 3) of capsules; the first capsule is the ball of the head
     """
 
     root: Array
@@ -50,7 +50,9 @@ class Anchors(NamedTuple):
 
 
 def add_hair(skeleton: Skeleton, times: Array, rotations: Array, root: Array, settings: HairSettings) -> None:
-    """Swing the braid of `rotations` (f, j, 4) in place; times (f,) seconds, root (f, 3). No braid: nothing to do."""
+    """Swing the braid of `rotations` (f, j, 4) in place; times (f,) seconds, root (f, 3). Without a braid, nothing
+    changes.
+    """
     if any(name not in skeleton.names for name in JOINTS):
         return
     bones = np.array([*(skeleton.offsets[skeleton.index(n)] for n in JOINTS[1:]), TIP])
@@ -63,7 +65,7 @@ def add_hair(skeleton: Skeleton, times: Array, rotations: Array, root: Array, se
                    settings.fastest, settings.struck * settings.fastest, settings.highest, settings.droop)  # fmt: skip
     state = np.zeros((2, len(bones) + 1, 3))
     for first in range(0, len(fixed), CHUNK):
-        # from the step before, whose speeds count, to the chunk's end, with what the cubics need of frames
+        # from the step before, whose speeds count, to the end of the chunk, with the frames that the cubics need
         low, end = max(first - 1, 0), min(first + CHUNK, len(fixed))
         near = slice(
             max(int(np.searchsorted(times, fixed[low])) - 3, 0), int(np.searchsorted(times, fixed[end - 1])) + 3
@@ -97,7 +99,7 @@ def _anchors(skeleton: Skeleton, times: Array, positions: Array, world: Array, f
 
 @inner_kernel
 def _along(p: Vec, a: Vec, b: Vec) -> float:
-    """Where on the line from a to b the nearest place to p is: 0 at a, 1 at b."""
+    """Return the nearest place to p on the line from a to b: 0 at a, 1 at b."""
     line = sub(b, a)
     size = dot(line, line)
     return min(1.0, max(0.0, dot(sub(p, a), line) / size)) if size > 0.0 else 0.0
@@ -105,11 +107,12 @@ def _along(p: Vec, a: Vec, b: Vec) -> float:
 
 @inner_kernel
 def _cleared(p: Vec, above: Vec, ends: Array, radii: tuple[float, ...], last: int, inside: float) -> Vec:
-    """p, the lower end of a segment: out of the first capsules, ends (2, c, 3), its middle out of the thin ones.
+    """Move p, the lower end of a segment, out of the first capsules, ends (2, c, 3), and its middle out of the thin
+    ones.
 
-    inside : metres that it may be inside
+    inside : metres that p may be inside a capsule
     """
-    for c in range(last - 1, -1, -1):  # the trunk last: it gives way least
+    for c in range(last - 1, -1, -1):  # the trunk comes last, because it gives way least
         a, b = _vec(ends[0, c]), _vec(ends[1, c])
         for middle in range(1 if c < ROUND else 2):
             at = scale(add(p, above), 0.5) if middle else p
@@ -122,14 +125,14 @@ def _cleared(p: Vec, above: Vec, ends: Array, radii: tuple[float, ...], last: in
 
 @inner_kernel
 def _lengthened(p: Vec, above: Vec, size: float) -> Vec:
-    """The lower end of a segment `size` metres from the upper one."""
+    """Return the lower end of a segment, `size` metres from the upper end."""
     bone = sub(p, above)
     return add(above, scale(bone, size / length(bone)))
 
 
 @inner_kernel
 def _no_further(a: Vec, b: Vec, most: float) -> Vec:
-    """Unit vector b, or what is `most` radians from unit vector a towards it, if that is nearer."""
+    """Return unit vector b, limited to `most` radians from unit vector a."""
     cosine = dot(a, b)
     if cosine >= math.cos(most):
         return b
@@ -152,7 +155,9 @@ def _put(a: Array, k: int, v: Vec) -> None:
 
 @inner_kernel
 def _copy(a: Array, to: Array) -> None:
-    """Points (n, 3). Assigning them whole makes numba compile what it says of wrong shapes, for a second and more."""
+    """Copy points (n, 3). An assignment of the whole array makes numba compile an error message, for a
+    second and more.
+    """
     for k in range(len(a)):
         _put(to, k, _vec(a[k]))
 
@@ -174,9 +179,9 @@ class _Braid(NamedTuple):
 
 @inner_kernel
 def _rub(p: Array, state: Array, anchors: Anchors, now: int, radii: tuple[float, ...], share: float) -> None:
-    """Points (n, 3) that touch something lose a share of their speed along it, as seen from what they touch.
+    """Slow down points (n, 3) that touch a capsule, by a share of their speed along the capsule.
 
-    state : (2, n, 3), where they were, and where they were to have come from
+    state : (2, n, 3), the places before, and the places that give the points their speed
     """
     last = max(now - 1, 0)
     q, q0 = anchors.head_turn[now], anchors.head_turn[last]
@@ -200,9 +205,10 @@ def _rub(p: Array, state: Array, anchors: Anchors, now: int, radii: tuple[float,
 
 @inner_kernel
 def _bent(p: Array, before: Array, held: Vec, lengths: Array, braid: _Braid, ends: Array) -> None:
-    """One round: each segment leans to where head (`held`) or segment before hold it, is pushed out, gets its length.
+    """Do one round: each segment leans to its place at the head (`held`) or the segment before, and is pushed out of
+    capsules.
 
-    before : gets what pushes move p by, so that it does not fly off
+    before : is moved by the same pushes as p, so that a push gives no speed
     """
     for k in range(1, len(p)):
         here, above = _vec(p[k]), _vec(p[k - 1])
@@ -224,9 +230,9 @@ def _limited(
     most: tuple[float, float, float],
     segment: tuple[float, tuple[float, ...], Array],
 ) -> tuple[Vec, Vec]:
-    """The lower end of a segment that turns and rises no farther than it may, and where it is pushed from there.
+    """Return the lower end of a segment, limited in turn and rise, and its place after the pushes out of capsules.
 
-    was : its direction a step ago; most : radians from hanging down, of turning, and of turning where it is pushed
+    was : direction of the segment a step ago; most : radians from hanging down, of a turn, and of a turn by a push
     segment : its length, the capsules' radii and ends
     """
     size, radii, ends = segment
@@ -239,7 +245,7 @@ def _limited(
         for _ in range(LAST):
             here = _lengthened(_cleared(here, above, ends, radii, last, 0.0), above, size)
         if (above[1] - here[1]) / size > math.cos(most[0] + SPARE):
-            break  # an arm that would stand it on end goes through it
+            break  # an arm goes through a braid that it would stand on end
     now = _no_further(was, scale(sub(here, above), 1.0 / size), most[2])
     here = add(above, scale(now, size))
     return free, _lengthened(_cleared(here, above, ends, radii, ROUND, WITHIN), above, size)

@@ -12,23 +12,24 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond
 from dancetutor_cli.dance.smoothing import cubic, low_pass, upper_envelope
 from dancetutor_cli.dance.units import Array, Poses
 
-# Popping is a question of millimetres: a leg at 170 degrees is 0.4 % shorter than a straight one. A foot in the air
-# comes nearer by these millimetres; over a foot that stands the pelvis sinks by them, early and smoothly.
+# Popping depends on millimetres: a leg at 170 degrees is 0.4 % shorter than a straight one. A foot in the air comes
+# nearer by these millimetres. Over a standing foot the pelvis sinks by them, early and smoothly.
 
-FROM, TO = np.radians(22.0), np.radians(7.0)  # bends of a knee: where the stretch grows slower, and where it ends
+FROM, TO = np.radians(22.0), np.radians(7.0)  # knee bends at which the stretch grows slower, and ends
 ROUND = 0.01  # metres over which a foot in the air begins to come nearer
-SLOWLY = 0.30  # seconds that the last of a stretch takes to come and to go
+SLOWLY = 0.30  # seconds that the last part of a stretch takes to come and to go
 SINK = 0.25  # seconds over which the pelvis sinks
 BENT = np.radians(20.0)  # bend of a knee that a rise must leave, because straighter knees pop
-RISES, RISE = 12, 0.0008  # rounds of rising, and metres in each for a degree that an ankle is past its limit
+RISES, RISE = 12, 0.0008  # rounds of rising; metres in each round for each degree that an ankle is past its limit
 
 
 def soft_legs(
     skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks, held: Array, times: Array
 ) -> tuple[Array, AnkleTracks]:
-    """Root (f, 3) and feet with which no knee pops.
+    """Return root (f, 3) and feet with which no knee pops.
 
-    poses : local rotations (f, j, 4), of which the pelvis counts, and root (f, 3); held : (f, 2) how far feet stand
+    poses : local rotations (f, j, 4), of which only the pelvis is used, and root (f, 3); held : (f, 2) how far feet
+    stand
     """
     pelvis, root = poses[0][:, 0], poses[1].copy()
     legs = [Leg(skeleton, s) for s in "lr"]
@@ -48,14 +49,14 @@ def soft_legs(
         way = places[:, side] - start
         far = np.linalg.norm(way, axis=1)
         less = (far - reach[side]) / 2
-        short = less + np.hypot(less, ROUND * (1.0 - held[:, side]) / 2)  # 0 below the reach, without an edge
+        short = less + np.hypot(less, ROUND * (1.0 - held[:, side]) / 2)  # 0 below the reach, without a corner
         short = np.where(held[:, side] < 1.0, short, np.maximum(2 * less, 0.0))
         places[:, side] -= way * (short / np.maximum(far, 1e-9))[:, None]
     return root, AnkleTracks(places, feet.turns)
 
 
 def risen(skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks, plants: Plants, times: Array) -> Array:
-    """Root (f, 3), so high that ankles of feet with held heels are within their limits, as far as legs reach.
+    """The root (f, 3), so high that ankles of feet with held heels are within their limits, as far as legs reach.
 
     On a body with long thighs and short shanks, a captured squat would bend the ankles too far.
     """
@@ -76,9 +77,9 @@ def risen(skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks, pla
 
 
 def too_high(skeleton: Skeleton, pelvis: tuple[Array, Array], feet: AnkleTracks, bent: float) -> Array:
-    """Metres (f,) by which a pelvis must sink so that no knee is bent by less than `bent` radians.
+    """Return the metres (f,) by which a pelvis must sink so that each knee is bent by at least `bent` radians.
 
-    pelvis : its turns (f, 4) and root (f, 3)
+    pelvis : turns (f, 4) and root (f, 3)
     """
     turns, root = pelvis
     need = np.zeros(len(root))
@@ -91,9 +92,10 @@ def too_high(skeleton: Skeleton, pelvis: tuple[Array, Array], feet: AnkleTracks,
 
 
 def _soft(leg: Leg, distance: Array, times: Array) -> Array:
-    """How far (f,) hip and ankle must be apart that are `distance` (f,) metres apart.
+    """Return the new distance (f,) of hip and ankle, now `distance` (f,) metres apart.
 
-    It is never as far as a straight leg, and the last of the stretch comes and goes slowly, so there is no pop.
+    It is always less than the length of a straight leg. The last part of a stretch comes and goes slowly, so there is
+    no pop.
     """
     start, end = leg.length(FROM), leg.length(TO)
     over = np.maximum(distance - start, 0.0)
@@ -104,29 +106,30 @@ def _soft(leg: Leg, distance: Array, times: Array) -> Array:
     return np.asarray(np.where(distance > start, leg.lengths(FROM - np.maximum(slow, 0.0)), distance))
 
 
-# The weight keeps its place: a style moves limbs, and the body answers so that the centre of mass keeps its path.
+# The centre of mass keeps its path: a style moves limbs, and the body compensates their movement.
 #
-# Without this, the arms and trunk of a ragdoll would throw the mass about, and the dancer would fall over, or fly on no
-# parabola. The horizontal path is the input's; in height the dancer may stand lower or higher, but changes slowly.
+# Without this, the arms and trunk of a ragdoll would throw the mass about. The dancer would fall over, or her flights
+# would not be parabolas. The horizontal path is the path of the input. The height of the dancer may differ, but the
+# difference changes slowly.
 
-ROUNDS = 4  # rounds of moving the root: legs follow, and have mass
-STANCE = 0.5  # Hz below which her height may be another one
-SINKS = 1.5  # seconds over which she stands lower than a style would have her
-RATE = 120.0  # at which height is filtered
+ROUNDS = 4  # rounds of moving the root, because legs follow it, and have mass
+STANCE = 0.5  # Hz below which her height may differ from the input
+SINKS = 1.5  # seconds over which she stands lower than the style's motion
+RATE = 120.0  # per second, at which height is filtered
 
 
 def mass_of(skeleton: Skeleton, poses: Poses) -> Array:
-    """Centre of mass (f, 3)."""
+    """Return the centre of mass (f, 3)."""
     return centre_of_mass(skeleton, *world_transforms(skeleton, *poses))
 
 
 def restore_mass_path(
     skeleton: Skeleton, poses: Poses, feet: AnkleTracks, path: tuple[Array, Array], share: Array, free: Array
 ) -> Poses:
-    """Poses whose centre of mass is on its path, legs ending in `feet`.
+    """Return poses whose centre of mass is on its path, with legs that end in `feet`.
 
-    path : times (f,) and places (f, 3) where the mass was in the input; share : (f,) how far it must be there, 0 to 1
-    free : (f,) how far she may stand higher or lower
+    path : times (f,) and places (f, 3) of the mass in the input; share : (f,) how far it must be there, 0 to 1
+    free : (f,) how far the dancer may stand higher or lower
     """
     times, wanted = path
     rotations, root = poses
@@ -146,7 +149,7 @@ def restore_mass_path(
 
 
 def _slowly(times: Array, values: Array) -> Array:
-    """The slow part of values (f,)."""
+    """Return the slow part of values (f,)."""
     grid = np.arange(times[0], times[-1] + 1 / RATE, 1 / RATE)
     slow = low_pass(cubic(times, values[:, None], grid), RATE, STANCE)
     return np.asarray(cubic(grid, slow, times)[:, 0])

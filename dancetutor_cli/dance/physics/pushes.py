@@ -1,4 +1,4 @@
-"""What acts on a ragdoll besides its springs: soles that hold and break, shoves, obstacles that catch a foot."""
+"""Forces on a ragdoll besides its springs: soles that hold and break loose, shoves, obstacles that catch a foot."""
 
 from __future__ import annotations
 
@@ -23,29 +23,29 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.physics.simulation import Ragdoll
 
 
-NEAR = 0.008  # metres over the floor at which a corner of a sole gets a joint
-SLOW, AIMED = 0.6, 0.03  # m/s and metres: only where the input's corner moves no faster, and is no higher
-HOLD, LIFT = 600.0, 60.0  # newtons along the floor and off it at which a corner's joint breaks
+NEAR = 0.008  # metres over the floor at which a corner of a sole gets a joint with the floor
+SLOW, AIMED = 0.6, 0.03  # m/s and metres: largest speed and height of a corner in the input for such a joint
+HOLD, LIFT = 600.0, 60.0  # newtons along the floor and off it at which the joint of a corner breaks
 KNEE = 10.0  # degrees of bend below which a knee is damped: an inner angle of 170 degrees
 DAMPING = 8.0  # N m s/rad at a straight knee
 
 
 class Actor(ABC):
-    """Takes part in a simulation. `constraints` : XML of the engine's equality section"""
+    """A participant in a simulation. `constraints` : XML of the engine's equality section"""
 
     constraints = ""
 
     @abstractmethod
     def before(self, model: Any, data: Any, step: int) -> None:
-        """Called before each step of the engine."""
+        """Act before each step of the engine."""
 
     def springs(self, step: int) -> tuple[Array, Array] | None:
-        """Parts of kp and kd (a,) that the actuators have in a step; None: all of them."""
+        """Return the parts of kp and kd (a,) that the actuators have in a step; None: all of them."""
         return None
 
 
 class StiffKnees(Actor):
-    """Knees damped from 170 degrees on, so that they do not pop: rotations beyond are possible, but slow."""
+    """Knees that are damped from 170 degrees on, so that they do not pop: larger angles are possible, but slow."""
 
     def __init__(self, ragdoll: Ragdoll) -> None:
         self.names = [f"{s}_knee" for s in "lr"]
@@ -54,7 +54,7 @@ class StiffKnees(Actor):
         self.places: list[tuple[int, int]] = []
 
     def before(self, model: Any, data: Any, step: int) -> None:
-        """Set the damping of both knees' bends."""
+        """Set the damping of the bends of both knees."""
         if not self.places:
             for name in self.names:
                 joint = int(model.body(name).jntadr[0])
@@ -67,7 +67,7 @@ class StiffKnees(Actor):
 class BreakableSoles(Actor):
     """Four joints between each foot's corners and the floor: made where the sole touches it, broken by too much force.
 
-    Which of them held in which step is `plants`.
+    `plants` returns the joints that held, step by step.
     """
 
     def __init__(self, ragdoll: Ragdoll, rotations: Array, root: Array) -> None:
@@ -96,7 +96,7 @@ class BreakableSoles(Actor):
         self.held = np.zeros(self.slow.shape, dtype=bool)
 
     def before(self, model: Any, data: Any, step: int) -> None:
-        """Break joints that too much force pulls at, make those whose corners touch the floor."""
+        """Break the joints under too much force, and make joints for corners that touch the floor."""
         active = np.flatnonzero(data.eq_active)
         for place, corner in enumerate(active.tolist()):
             x, y, z = data.efc_force[3 * place : 3 * place + 3] if data.nefc >= 3 * place + 3 else (0.0, 0.0, 0.0)
@@ -113,38 +113,38 @@ class BreakableSoles(Actor):
         self.held[step] = data.eq_active != 0
 
     def plants(self) -> Plants:
-        """Which ends of both feet were held in each step."""
+        """Return the ends of both feet that were held in each step."""
         held = self.held.reshape(-1, 2, 2, 2)  # step, foot, heel or ball, in or out
         either = held[..., 0] | held[..., 1]
         return Plants(either[:, :, 0], either[:, :, 1])
 
 
-# Pushes and trips: a shove against the chest, or an obstacle that catches a foot; springs soften while they act.
+# Pushes and trips: a shove against the chest, or an obstacle that catches a foot. Springs soften while they act.
 #
 # The dancer gives way as a body does, and the springs bring her back within a second. Feet step as planned, unless the
-# push is too strong to stand: then she staggers, and misses the notes of that time. A foot that was caught is late, and
-# misses the notes that it cannot reach any more.
+# push is too strong: then she staggers, and misses the notes of that time. A caught foot is late, and misses the notes
+# that it cannot reach in time.
 
 Blow = tuple[float, Array]  # second, and force (3,) in newtons, world
 LASTS = 0.15  # seconds that a push acts, and that an obstacle holds a foot
-CHEST = 0.10  # metres over vt4 at which it strikes
-SOFT = 1e-4  # of its stiffness that a spring keeps: 32 Hz become 0.32
-LOOSE = 1.4  # times the damping ratio that a spring has when it is softest
-UPRIGHT = 0.35  # exponent of what upward springs keep: she bends aside more than she sags
-FIRM = ("shanks", "feet")  # parts whose springs stay as they are
+CHEST = 0.10  # metres over vt4 at which a push strikes
+SOFT = 1e-4  # least share of its stiffness that a spring keeps: 32 Hz become 0.32
+LOOSE = 1.4  # factor of the damping ratio of a spring when it is softest
+UPRIGHT = 0.35  # exponent of the share that upward springs keep: the dancer bends aside more than she sags
+FIRM = ("shanks", "feet")  # parts whose springs do not change
 BACK = 0.75  # seconds after the push until springs are as stiff as before
 STRONGEST = 3000.0  # newtons
-TRIP_FORCE = 350.0  # newtons that throw her ahead when a foot is caught
-MOVES = 0.05  # m/s from which a caught foot is off the floor
-CATCH_UP = 0.30  # seconds in which a caught foot reaches its own path again
-FALL = 0.22  # metres of giving way beyond which nobody stays on her feet
-STAGGER, STAGGER_LIFT = 0.80, 0.07  # seconds that she staggers, and metres by which feet rise then
+TRIP_FORCE = 350.0  # newtons that throw the dancer ahead when a foot is caught
+MOVES = 0.05  # m/s from which on a caught foot is off the floor
+CATCH_UP = 0.30  # seconds in which a caught foot returns to its own path
+FALL = 0.22  # metres of giving way beyond which the dancer cannot stay on her feet
+STAGGER, STAGGER_LIFT = 0.80, 0.07  # seconds that the dancer staggers, and metres by which her feet rise meanwhile
 _WAYS = {"ahead": 0.0, "left": 90.0, "back": 180.0, "right": 270.0}
 
 
 @dataclass(frozen=True, slots=True)
 class Push:
-    """A push at `second` with `newtons` towards `degrees` from where she faces, to her left; 0 pushes her ahead."""
+    """A push at `second` with `newtons` towards `degrees` from the dancer's front, to her left; 0 pushes her ahead."""
 
     second: float
     newtons: float
@@ -153,13 +153,13 @@ class Push:
 
 @dataclass(frozen=True, slots=True)
 class Stumble:
-    """The foot that is in the air at `second`, or the next one to be, is caught by something."""
+    """A trip: an obstacle catches the foot that is in the air at `second`, or the next one in the air."""
 
     second: float
 
 
 def parse_push(text: str) -> Push:
-    """A push as on the command line, TIME:FORCE:DIRECTION. UsageError, one line, for what is none."""
+    """Read a push as on the command line, TIME:FORCE:DIRECTION. Raises a UsageError of one line if it is not one."""
     parts = text.split(":")
     if len(parts) != 3:
         raise UsageError(f"--push {text}: write TIME:FORCE:DIRECTION, for example 12.5:300:left")
@@ -190,7 +190,7 @@ def _number(text: str, word: str, what: str) -> float:
 
 
 class Struck(Actor):
-    """Forces on the chest, and how stiff springs are meanwhile."""
+    """Forces on the chest, and the softer springs while they act."""
 
     def __init__(self, ragdoll: Ragdoll, steps: int, start: float, blows: Sequence[Blow]) -> None:
         """steps : of the simulation, the first at second `start`"""
@@ -202,18 +202,18 @@ class Struck(Actor):
             since = times - second
             self.force[(since >= 0) & (since < LASTS)] += force
             soft = np.maximum(soft, smooth(since / 0.03 + 1) * smooth((BACK - since) / (BACK - LASTS)))
-        self.stiff = SOFT**soft  # falls to SOFT, and comes back by equal parts in equal times
+        self.stiff = SOFT**soft  # falls to SOFT, and rises again by equal factors in equal times
         self.share = np.array([0.0 if p.part in FIRM else s for p in ragdoll.points for s in (1.0, UPRIGHT, 1.0)])
         gains = [p.gains(ragdoll.style) for p in ragdoll.points]
         self.kp, self.kd = (np.concatenate([g[k] for g in gains]) for k in (0, 1))
 
     def springs(self, step: int) -> tuple[Array, Array]:
-        """Parts of kp and kd (a,) that all actuators have in a step: the softer, the less they swing."""
+        """Return the parts of kp and kd (a,) that all actuators have in a step; softer springs swing less."""
         kp = self.stiff[step] ** self.share
         return kp, np.sqrt(kp) * (LOOSE + (1.0 - LOOSE) * kp)
 
     def before(self, model: Any, data: Any, step: int) -> None:
-        """Set the force and the springs; a style's own forces soften with them."""
+        """Set the force and the springs; the forces of the style become weaker with the springs."""
         kp, kd = self.springs(step)
         model.actuator_biasprm[:, 1] = -self.kp * kp
         model.actuator_biasprm[:, 2] = -self.kd * kd
@@ -225,22 +225,23 @@ class Struck(Actor):
 
 
 def heading(motion: Motion, second: float) -> float:
-    """Where she faces at a moment: radians from +Z to +X."""
+    """Return the direction of the dancer at a moment: radians from +Z to +X."""
     k = int(np.argmin(np.abs(motion.times - second)))
     ahead = quat.rotate(motion.rotations[k, 0], np.array([0.0, 0.0, 1.0]))
     return float(np.arctan2(ahead[0], ahead[2]))
 
 
 def force_of(push: Push, motion: Motion) -> Array:
-    """The force (3,) of a push in the world."""
+    """Return the force (3,) of a push in the world."""
     angle = heading(motion, push.second) + np.radians(push.degrees)
     return push.newtons * np.array([np.sin(angle), 0.0, np.cos(angle)])
 
 
 def catch_foot(motion: Motion, feet: AnkleTracks, trip: Stumble) -> tuple[AnkleTracks, Array, float, int]:
-    """Feet of which one is caught; the force (3,) that throws her, second and which foot it is.
+    """Return the feet, one of them caught; the force (3,) that throws the dancer; the second; and the caught foot.
 
-    The toes of the motion's rotations are late, too, in place. Raises UsageError if no foot is in the air after that.
+    The toes in the motion's rotations are late, too; they are changed in place. Raises UsageError if no foot is in the
+    air after the trip.
     """
     down = float(feet.places[..., 1].min())
     high = feet.places[..., 1] > down + 0.02
@@ -272,21 +273,21 @@ def catch_foot(motion: Motion, feet: AnkleTracks, trip: Stumble) -> tuple[AnkleT
 
 
 def _late(turns: Array, times: Array, at: Array) -> Array:
-    """Turns (f, 4) of the times (f,) at other times (f,)."""
+    """Return turns (f, 4), given at `times` (f,), at other times `at` (f,)."""
     before = np.clip(np.searchsorted(times, at, side="right") - 1, 0, len(at) - 2)
     share = (at - times[before]) / np.diff(times)[before]
     return quat.slerp(turns[before], turns[before + 1], np.clip(share, 0, 1))
 
 
 def missed_by_trip(motion: Motion, second: float, side: int) -> list[Contact]:
-    """The notes that a foot which is caught at a second cannot take in time."""
+    """Return the notes that a foot which is caught at a second cannot reach in time."""
     return [c for c in motion.contacts if c.limb == side and second <= c.start < second + LASTS + CATCH_UP]
 
 
 def staggering(motion: Motion, feet: AnkleTracks, second: float, gave: Array) -> AnkleTracks:
-    """Feet of a dancer who cannot stay in place: both step after the body, one after the other, and come back.
+    """The feet of a dancer who cannot stay in place: both step after the body, one after the other, and come back.
 
-    gave : (3,) metres of the body from where it should be
+    gave : (3,) metres of the body from its place in the motion
     """
     places, turns = feet.places.copy(), feet.turns.copy()
     gave = gave * np.array([1.0, 0.0, 1.0])
@@ -296,7 +297,7 @@ def staggering(motion: Motion, feet: AnkleTracks, second: float, gave: Array) ->
         return feet
     start = int(np.flatnonzero(inside)[0])
     down = feet.places[start]
-    first = int(np.argmax(down[:, [0, 2]] @ gave[[0, 2]]))  # the one on the side that she falls to
+    first = int(np.argmax(down[:, [0, 2]] @ gave[[0, 2]]))  # the foot on the side to which she falls
     for order, side in enumerate((first, 1 - first)):
         out, home = 0.05 + 0.18 * order, STAGGER - 0.18 * (2 - order)
         away = smooth((since - out) / 0.18)
@@ -315,12 +316,12 @@ def staggering(motion: Motion, feet: AnkleTracks, second: float, gave: Array) ->
 
 
 def _hop(share: Array) -> Array:
-    """0 to 1 and back to 0 as a share of a step goes from 0 to 1."""
+    """Return a value that rises from 0 to 1 and falls to 0 as a share of a step goes from 0 to 1."""
     return np.asarray(np.sin(np.pi * np.clip(share, 0.0, 1.0)))
 
 
 def without(motion: Motion, missed: Sequence[Contact], note: str, at: float) -> Motion:
-    """The motion without contacts that are missed, but those held at second `at`, and with a note that says which."""
+    """The motion without the missed contacts, except those already held at second `at`, with a note that lists them."""
     started = {id(c) for c in missed if c.start < at}
     gone = {id(c) for c in missed} - started
     kept = tuple(c for c in motion.contacts if id(c) not in gone)
@@ -333,7 +334,7 @@ def without(motion: Motion, missed: Sequence[Contact], note: str, at: float) -> 
 
 
 def disturbed(motion: Motion, pushes: Sequence[Push], trips: Sequence[Stumble]) -> tuple[Motion, list[Blow]]:
-    """The motion with feet that trips catch, and the blows that strike her.
+    """Return the motion with feet that trips catch, and the forces on the dancer.
 
     Raises UsageError for a push or trip outside of the motion, or without a foot in the air.
     """
@@ -359,9 +360,9 @@ def disturbed(motion: Motion, pushes: Sequence[Push], trips: Sequence[Stumble]) 
 def recovered(
     motion: Motion, feet: AnkleTracks, root: Array, pushes: Sequence[Push]
 ) -> tuple[Motion, AnkleTracks, list[list[Contact]]]:
-    """The motion without what pushes make her miss, her feet, and what each push makes her miss.
+    """The motion without the notes that pushes make the dancer miss, her feet, and the notes missed by each push.
 
-    root : (f, 3) behind the ragdoll
+    root : (f, 3) of the ragdoll
     """
     out = []
     for push in pushes:
@@ -379,13 +380,15 @@ def recovered(
 
 
 def _farthest(motion: Motion, apart: Array, push: Push) -> int:
-    """The frame in which the body is farthest along the floor from where it should be, by `apart` (f, 3)."""
+    """Return the frame in which the body is farthest along the floor from its planned place, by `apart` (f, 3)."""
     after = (motion.times >= push.second) & (motion.times <= push.second + BACK)
     return int(np.argmax(np.hypot(apart[:, 0], apart[:, 2]) * after))
 
 
 def with_push_notes(motion: Motion, root: Array, pushes: Sequence[Push], missed: Sequence[Sequence[Contact]]) -> Motion:
-    """The motion with a note on each push: how far she gave way, what she misses. root : (f, 3), the input's"""
+    """Return the motion with a note on each push: how far the dancer gave way, the missed notes. root : (f, 3), of the
+    input
+    """
     for push, gone in zip(pushes, missed, strict=True):
         apart = motion.root - root
         gave = 100 * float(np.hypot(*apart[_farthest(motion, apart, push), [0, 2]]))

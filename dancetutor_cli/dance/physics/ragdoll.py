@@ -1,4 +1,4 @@
-"""The ragdoll: capsules and boxes with density as a model of the engine, and where springs pull it."""
+"""The ragdoll: capsules and boxes with density as a model of the engine, and the points where springs pull it."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from dancetutor_cli.run.errors import UsageError, did_you_mean
 if TYPE_CHECKING:
     from dancetutor_cli.dance.physics.style import Style
 
-# Retargeting points: where on the ragdoll springs and dampers pull, End, Center or Hybrid Center.
+# Retargeting points: the points of the ragdoll where springs and dampers pull (End, Center or Hybrid Center).
 #
-# Each bone has one point, at its end or its middle, and beside it two extra ones that keep it from turning about
-# itself; the pelvis has the root's and both hips', whose extra ones are before and behind.
+# Each bone has one point, at its end or its middle, and two extra points beside it, which keep the bone from turning
+# about itself. The pelvis has the points of the root and of both hips; their extra points are before and behind.
 
 # name of the point at the end of a bone, by the bone's joint without its side
 _ENDS = {
@@ -34,9 +34,10 @@ _ASIDE_OF_LIMBS = 0.06  # metres from a point to an extra one
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """bone : index of its body; offset : (3,) in the body's axes from its joint, metres; share : of the body's mass
+    """A retargeting point. bone : index of its body; offset : (3,) in the body's axes from its joint, metres; mass :
+    its share of the body's mass
 
-    extra : whether it is one of the two beside the point of that name
+    extra : whether it is one of the two extra points beside the point of that name
     """
 
     name: str
@@ -47,7 +48,7 @@ class Point:
     extra: bool
 
     def gains(self, style: Style) -> tuple[Array, Array]:
-        """kp (3,) in N/m and kd (3,) in N s/m along the world's axes; zero where the style disables the point."""
+        """Return kp (3,) in N/m and kd (3,) in N s/m along the world's axes; zero if the style disables the point."""
         if self.name in style.disabled:
             return np.zeros(3), np.zeros(3)
         spring = style.points.get(self.name, style.springs[self.part])
@@ -56,7 +57,7 @@ class Point:
 
 
 def points_of(skeleton: Skeleton, bones: tuple[Bone, ...], style: Style) -> tuple[Point, ...]:
-    """The points of a ragdoll as a style wants them. UsageError if it names a point or a joint that there is not."""
+    """Return the points of a ragdoll for a style. Raises UsageError if the style names an unknown point or joint."""
     out: list[Point] = []
     for index, bone in enumerate(bones):
         places = _places(skeleton, bone, style)
@@ -78,7 +79,7 @@ def _check_names(style: Style, what: str, given: Iterable[str], names: list[str]
 
 
 def _places(skeleton: Skeleton, bone: Bone, style: Style) -> list[tuple[str, Array, Array]]:
-    """Name, offset, and the way to an extra point."""
+    """Return name, offset, and the vector to an extra point."""
     if bone.parent < 0:
         hips = [(s, skeleton.offsets[skeleton.index(f"{s}_hip")]) for s in "lr"]
         ahead = np.array([0.0, 0.0, _ASIDE["pelvis"]])
@@ -102,19 +103,19 @@ def place_points(
     return np.asarray(positions[:, joints] + quat.rotate(world[:, joints], np.array([p.offset for p in points])))
 
 
-# All bodies have the world's axes in the rest pose, so that a body's rotation is its joint's world rotation. Knees and
-# elbows have two hinges (bend and twist), all other joints are spherical with a cone for a limit, as in chapter 4 of
-# the thesis on retargeting; her ankles are spherical too, for in a straddle they bend aside while the sole stays flat.
+# All bodies have the world's axes in the rest pose, so the rotation of a body is the world rotation of its joint. Knees
+# and elbows have two hinges (bend and twist); all other joints are spherical with a cone as limit, as in chapter 4 of
+# the thesis on retargeting. Ankles are spherical too, because in a straddle they bend aside while the sole stays flat.
 
 NOMINAL = 1000.0  # kg/m^3 at which springs are measured
-LIMIT = 0.009  # seconds in which a joint comes back from beyond its limit
+LIMIT = 0.009  # seconds in which a joint returns from beyond its limit
 FRONT = np.array([0.0, 0.0, 1.0])
 _CHAINS = (  # in the engine's order: each body, then all below it
     ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4", "skullbase"),
     *(("vt4", *(f"{s}_{n}" for n in ("sternoclavicular", "shoulder", "elbow", "radiocarpal"))) for s in "lr"),
     *(("HumanoidRoot", *(f"{s}_{n}" for n in ("hip", "knee", "talocrural"))) for s in "lr"),
 )
-_END = {"vt4": "vc4"}  # where a joint has several children, the one at the end of its bone
+_END = {"vt4": "vc4"}  # the child at the end of the bone, for joints with several children
 # name without side: part of `style.PARTS`, radius in metres, cone of a spherical joint in degrees
 _SHAPES = {
     "HumanoidRoot": ("pelvis", 0.105, 180.0),
@@ -144,7 +145,7 @@ _FLOOR = 'type="plane" size="0 0 1" quat="0.70710678 -0.70710678 0 0" contype="1
 
 @dataclass(frozen=True, slots=True)
 class Bone:
-    """One body. joint : index in the skeleton; name : of the rig; parent : index of a bone, -1
+    """One body of the ragdoll. joint : index in the skeleton; name : of the rig; parent : index of a bone, -1 for none
 
     end : (3,) from its joint to its end, metres, rest pose; hinge : axis of its bend, None for a spherical joint
     mass : kilograms at the nominal density
@@ -160,7 +161,7 @@ class Bone:
 
     @property
     def along(self) -> Array:
-        """Unit vector of the bone in the rest pose."""
+        """The unit vector of the bone in the rest pose."""
         return np.asarray(self.end / np.linalg.norm(self.end))
 
     @property
@@ -170,7 +171,7 @@ class Bone:
 
 
 def bones_of(skeleton: Skeleton) -> tuple[Bone, ...]:
-    """The bodies of the dancer's ragdoll, parents before children; toes, eyes, lids, jaw and braid ride along."""
+    """The bodies of the dancer's ragdoll, parents before children; toes, eyes, lids, jaw and braid have no body."""
     rest = skeleton.rest
     out: list[Bone] = []
     names: list[str] = []
@@ -201,7 +202,7 @@ def _hinge(bare: str, end: Array) -> Array | None:
 
 
 def hinge_axis(bare: str, end: Array) -> Array:
-    """Unit vector about which a positive turn bends a shank `end` (3,) backward, a forearm forward, in the rest pose.
+    """The unit vector about which a positive turn bends a shank backward or a forearm forward; end : (3,), rest pose.
 
     bare : "knee" or "elbow"
     """
@@ -220,10 +221,11 @@ def _mass(bare: str, radius: float, end: Array) -> float:
 
 
 def build(skeleton: Skeleton, bones: tuple[Bone, ...], points: tuple[Point, ...], style: Style, more: str = "") -> Any:
-    """The engine's model: bodies, joints, sites, floor, and per point three actuators (x, y, z) of a spring-damper.
+    """Build the engine's model: bodies, joints, sites, floor, and for each point three actuators of a spring-damper (x,
+    y, z).
 
-    An actuator's control is kp times the place plus kd times the speed that its point must have.
-    more : XML of its equality section
+    The control of an actuator is kp times the target place plus kd times the target speed of its point.
+    more : XML of the equality section
     """
     numbers = style.body
     actuators = "".join(_actuators(k, p, style) for k, p in enumerate(points))
@@ -278,7 +280,7 @@ def _geom(bone: Bone, rest: Array, style: Style) -> str:
     if bare == "talocrural":
         rubs = f'friction="{style.body.friction:.4f} 0.005 0.0001" contype="2" conaffinity="1"'
         low, ball = FOOT_BOX[1] - rest[bone.joint][1], bone.end[2]
-        parts = ((HEEL, ball, rubs), (ball, HEEL + 2 * FOOT_BOX[2], ""))  # toes bend where the ground is
+        parts = ((HEEL, ball, rubs), (ball, HEEL + 2 * FOOT_BOX[2], ""))  # toes bend where they touch the ground
         return "".join(
             f'<geom type="box" size="{FOOT_BOX[0]} {FOOT_BOX[1]} {abs(b - a) / 2:.9g}" '
             f'pos="0 {low:.9g} {(a + b) / 2:.9g}" {density} {more}/>'
@@ -300,7 +302,7 @@ def _actuators(index: int, point: Point, style: Style) -> str:
 
 
 def pose_of(bones: tuple[Bone, ...], turns: Array, root: Array) -> Array:
-    """Generalised positions (f, q) of the engine from local rotations (f, b, 4) of the bones and root (f, 3)."""
+    """Return the engine's generalised positions (f, q) from local rotations (f, b, 4) of the bones and root (f, 3)."""
     out = [root, turns[:, 0]]
     for k, bone in enumerate(bones[1:], 1):
         out += [turns[:, k]] if bone.hinge is None else [bend_and_twist(bone, turns[:, k])]
@@ -308,7 +310,7 @@ def pose_of(bones: tuple[Bone, ...], turns: Array, root: Array) -> Array:
 
 
 def bend_and_twist(bone: Bone, turns: Array) -> Array:
-    """Angles (f, 2) in radians of a hinged joint: about its hinge, and about the bone."""
+    """Return the angles (f, 2) in radians of a hinged joint: about its hinge, and about the bone."""
     assert bone.hinge is not None
     swing, twist = quat.swing_twist(turns, bone.along)
     return np.column_stack([_angle(swing, bone.hinge), _angle(twist, bone.along)])
@@ -320,7 +322,7 @@ def _angle(q: Array, axis: Array) -> Array:
 
 
 def turns_of(bones: tuple[Bone, ...], poses: Array) -> Array:
-    """Local rotations (f, b, 4) of the bones from generalised positions (f, q)."""
+    """Return local rotations (f, b, 4) of the bones from generalised positions (f, q)."""
     out = [poses[:, 3:7]]
     at = 7
     for bone in bones[1:]:

@@ -1,7 +1,7 @@
-"""How a captured person stands: which way is up, where the clip begins, and the pose from which joints turn.
+"""The stand of a captured person: the up direction, the beginning of the clip, and the pose from which joints turn.
 
 The pose of a file with all channels at 0 is used if it is a standing person. Otherwise (bones along one axis, as many
-studios export them) the pose is found from the motion: joints of a person move, but each keeps directions of its own
+studios export them) the pose is found from the motion. Joints of a person move, but each keeps directions of its own
 (to the next joint, to the left, to the floor while a foot stands) that are known for a standing body.
 """
 
@@ -21,11 +21,11 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.errors import FileError
 
-STANDS = 0.8  # cosine to upright that trunk and legs of a standing pose have at least
-CLEARLY = 0.5  # mean of the bodies' directions along an axis from which that axis is up
-TOWARDS = 0.5  # length of the mean of the ways that somebody faces from which it is one way
-STILL = 0.25  # metres per second, of a body of the rig's size: slower feet may stand
-LOW = 0.06  # metres over its lowest that a foot which stands may be
+STANDS = 0.8  # least cosine between upright and trunk and legs of a standing pose
+CLEARLY = 0.5  # mean of the bodies' directions along an axis, from which on this axis is up
+TOWARDS = 0.5  # length of the mean direction of a person, from which on it is one direction
+STILL = 0.25  # metres per second, for a body of the rig's size: slower feet may stand
+LOW = 0.06  # metres over its lowest height up to which a foot may stand
 _X, _Y, _Z = np.eye(3)
 TRUNK = ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4", "skullbase")
 _LEGS = (("hip", "knee"), ("knee", "talocrural"))
@@ -33,7 +33,7 @@ _LEGS = (("hip", "knee"), ("knee", "talocrural"))
 
 @dataclass(frozen=True, slots=True)
 class StandingPose:
-    """The pose from which joints turn, upright over +Y and looking to +Z.
+    """The pose from which joints turn, upright over +Y and facing +Z.
 
     turn : (4,) from the file's world to the upright one; places, turns : (3,) and (4,) of each joint in the pose
     """
@@ -45,7 +45,9 @@ class StandingPose:
 
 @dataclass(frozen=True, slots=True)
 class JointPaths:
-    """Joints of the rig that a file has. places, turns : (f, 3) and (f, 4) of each; rest, rest_turns : its zero pose"""
+    """The joints of the rig that a file has. places, turns : (f, 3) and (f, 4) of each; rest, rest_turns : its zero
+    pose
+    """
 
     path: Path
     fps: float
@@ -56,9 +58,9 @@ class JointPaths:
 
 
 def standing_pose(given: JointPaths, body: Skeleton) -> StandingPose:
-    """The pose that joints turn from. body : named as the rig's, it rests as the pose must stand.
+    """Return the pose from which joints turn. body : named as the rig's; its rest pose is the wanted standing pose
 
-    Raises FileError if nothing says which way is up.
+    Raises FileError if the up direction is unknown.
     """
     zero = _upright_axes(given.rest)
     axis = _up_axis(given, zero)
@@ -75,7 +77,7 @@ def standing_pose(given: JointPaths, body: Skeleton) -> StandingPose:
 
 
 def standing_frames(path: Array, fps: float) -> NDArray[np.bool_]:
-    """The frames (f,) in which an ankle (f, 3) may stand: low and slow, or the lowest ones if it never rests."""
+    """Return the frames (f,) in which an ankle (f, 3) may stand: low and slow, or the lowest ones if it never rests."""
     if len(path) < 3:
         return np.ones(len(path), dtype=bool)
     speed = np.linalg.norm(np.gradient(path, 1.0 / fps, axis=0), axis=1)
@@ -97,7 +99,7 @@ def _upwards(at: Mapping[str, Array]) -> Array:
 
 
 def _upright_axes(rest: Mapping[str, Array]) -> tuple[Array, Array] | None:
-    """Left and up (3,) of a person who stands along an axis of the file; None for any other pose."""
+    """Return left and up (3,) of a person who stands along an axis of the file; None for any other pose."""
     up = _upwards(rest)
     axis = np.eye(3)[np.abs(up).argmax()] * np.sign(up[np.abs(up).argmax()])
     left = _left(rest) - (_left(rest) @ axis) * axis
@@ -110,7 +112,7 @@ def _upright_axes(rest: Mapping[str, Array]) -> tuple[Array, Array] | None:
 
 
 def _up_axis(given: JointPaths, zero: tuple[Array, Array] | None) -> Array:
-    """The axis (3,) of the file's world that points up over the whole clip."""
+    """Return the axis (3,) of the file's world that points up over the whole clip."""
     mean = _unit(_upwards(given.places)).mean(axis=0)
     most = int(np.abs(mean).argmax())
     if zero is not None and float(mean @ zero[1]) > abs(mean[most]) - 0.1:
@@ -125,7 +127,7 @@ def _up_axis(given: JointPaths, zero: tuple[Array, Array] | None) -> Array:
 
 
 def _mean_axes(given: JointPaths, axis: Array) -> tuple[Array, Array]:
-    """Left and up (3,) over a clip."""
+    """Return left and up (3,) over a clip."""
     left = _unit(_left(given.places))
     left = left - (left @ axis)[:, None] * axis
     mean = left.mean(axis=0)
@@ -137,12 +139,12 @@ def _mean_axes(given: JointPaths, axis: Array) -> tuple[Array, Array]:
 
 
 def _to_upright(left: Array, up: Array) -> Array:
-    """The turn (4,) that takes left to +X and up to +Y."""
+    """Return the turn (4,) that takes left to +X and up to +Y."""
     return np.asarray(quat.from_matrix(np.stack([left, up, np.cross(left, up)])))
 
 
 def _facing(given: JointPaths, turn: Array) -> Array:
-    """The turn to upright, and half around if the person would show the camera the back nearly all the time."""
+    """Return the turn to upright, and half around if the person's back would face the camera nearly all the time."""
     left = quat.rotate(turn, _unit(_left(given.places))) * [1.0, 0.0, 1.0]
     mean = left.mean(axis=0)
     if float(np.linalg.norm(mean)) < TOWARDS or mean[0] > 0:
@@ -155,7 +157,7 @@ def _facing(given: JointPaths, turn: Array) -> Array:
 
 
 def _from_motion(turn: Array, given: JointPaths, body: Skeleton) -> StandingPose:
-    """The pose in which each joint's own directions point where those of the body at rest do."""
+    """Return the pose in which each joint's own directions point as the directions of the body at rest."""
     at, rest = given.places, {name: body.rest[body.index(name)] for name in given.places}
     turns = {}
     for name, (first, second) in _directions(given, body).items():
@@ -173,17 +175,17 @@ def _from_motion(turn: Array, given: JointPaths, body: Skeleton) -> StandingPose
             continue
         parent = body.names[above]
         way = _unit(rest[name] - rest[parent])
-        if parent.endswith("talocrural"):  # how far ankles lie over toes differs
+        if parent.endswith("talocrural"):  # the height of ankles over toes differs from rig to rig
             way = quat.rotate(turns[parent], _own(given.turns[parent], at[name] - at[parent]))
         places[name] = places[parent] + float(np.median(np.linalg.norm(at[name] - at[parent], axis=1))) * way
     return StandingPose(turn, places, turns)
 
 
-_Way = tuple[Array, Array]  # a direction (f, 3) in the motion, and where it points (3,) in the pose
+_Way = tuple[Array, Array]  # a direction (f, 3) in the motion, and its direction (3,) in the pose
 
 
 def _directions(given: JointPaths, body: Skeleton) -> dict[str, tuple[_Way, _Way]]:
-    """Two directions of each joint that turns; the first one is kept exactly."""
+    """Return two directions of each joint that turns; the first one is kept exactly."""
     at = given.places
     hips, chest = _unit(at["l_hip"] - at["r_hip"]), _unit(at["l_shoulder"] - at["r_shoulder"])
 
@@ -216,7 +218,7 @@ def _directions(given: JointPaths, body: Skeleton) -> dict[str, tuple[_Way, _Way
 
 
 def _foot_directions(given: JointPaths, side: str, hips: Array) -> dict[str, tuple[_Way, _Way]]:
-    """Of a foot: its own up is the world's while it stands."""
+    """Return the directions of a foot: its own up is the up of the world while it stands."""
     ankle, toes = f"{side}_talocrural", f"{side}_metatarsal"
     at = given.places
     leg = float(np.median(np.linalg.norm(at[f"{side}_hip"] - at[ankle], axis=1)))
@@ -229,12 +231,12 @@ def _foot_directions(given: JointPaths, side: str, hips: Array) -> dict[str, tup
 
 
 def _own(turns: Array, ways: Array) -> Array:
-    """The mean of directions (f, 3), each seen from the joint that turns (f, 4)."""
+    """Return the mean of directions (f, 3), each seen from the joint that turns (f, 4)."""
     return _unit(quat.rotate(quat.conjugate(turns), ways).mean(axis=0))
 
 
 def _axes(first: Array, second: Array) -> Array:
-    """The turn (4,) of axes whose x is the first direction and whose y lies to the second."""
+    """Return the turn (4,) of axes whose x is the first direction and whose y is towards the second."""
     x = _unit(first)
     y = second - (second @ x) * x
     if float(np.linalg.norm(y)) < 1e-6:
@@ -245,8 +247,8 @@ def _axes(first: Array, second: Array) -> Array:
 
 # Rest poses that converters write before the motion.
 
-_SEARCHED = 3.0  # seconds at the beginning of a clip in which a rest pose may stand
-# a rest pose: joints jump from it by this many times the next step, and by this part of a leg's length
+_SEARCHED = 3.0  # seconds at the beginning of a clip in which a rest pose is searched
+# from a rest pose, joints jump by this many times the next step, and by this part of a leg's length
 JUMP, JUMP_LEAST = 8.0, 0.12
 JUMP_ZERO, ALIKE = 2.0, np.radians(0.5)  # of a pose that is the file's zero pose: times what comes next; to be it
 
@@ -269,13 +271,13 @@ def first_frame(given: JointPaths) -> int:
 
 
 def _is_zero(given: JointPaths, frame: int) -> bool:
-    """Whether a frame has the file's zero pose, wherever it stands."""
+    """Whether a frame has the file's zero pose, at any place."""
     deltas = np.stack([quat.multiply(t[frame], quat.conjugate(given.rest_turns[n])) for n, t in given.turns.items()])
     return bool(quat.angle_between(deltas[:1], deltas).max() < ALIKE)
 
 
 def segment_angles(given: JointPaths, places: Mapping[str, Array]) -> dict[str, float]:
-    """Mean angle, degrees, between each segment of a capture (upright) and of what was made of it."""
+    """Return the mean angle, degrees, between each segment of a capture (upright) and of the result."""
     out = {}
     ends = [("l_hip", "l_shoulder"), ("r_hip", "r_shoulder")]
     for side in "lr":

@@ -1,9 +1,9 @@
-"""Feet that stand where people see them stand: still in each stand that an independent measure finds.
+"""Feet that stand still in each stand that an independent measure finds.
 
-The joints of the soles hold what touches the floor. People also see ankles that roll slowly, toes that leave slowly,
-and feet that creep a centimetre over the floor. So stands are found by height and speed, as the report finds them, in
-rounds. In each stand the foot keeps one place and, while its ankle stands, one turn. Between stands the changes fade.
-What moves between stands is faster afterwards, so each round finds the stands shorter and stiller.
+The joints of the soles hold the parts that touch the floor. Viewers also see ankles that roll slowly, toes that leave
+slowly, and feet that creep a centimetre over the floor. So stands are found by height and speed, in the same way as in
+the report, in rounds. In each stand the foot keeps one place and, while its ankle stands, one turn. Between stands the
+changes fade. The movement between stands is faster afterwards, so each round finds the stands shorter and more still.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from dancetutor_cli.dance.units import Array, Flags
 from dancetutor_cli.feet.play import runs
 
 ROUNDS = 4
-# times the visible limits within which feet are held: legs that give move the feet across these limits later
+# factor of the visible limits within which feet are held: later, legs that give move the feet across these limits
 MARGIN = 1.05
-ON_FLOOR = 0.015  # metres over the floor up to which the end of a foot that stands is put on it
-FLAT = np.radians(8.0)  # pitch up to which a foot that stands lies flat
-TURNS = np.radians(45.0)  # a foot that turns more while it stands pivots on purpose
-SHUFFLE = 0.03  # metres between two places of one stand from which it is two, and a quick step between them
-STEP = 1.2  # m/s of that step
+ON_FLOOR = 0.015  # metres over the floor up to which the end of a standing foot is put on the floor
+FLAT = np.radians(8.0)  # pitch up to which a standing foot lies flat
+TURNS = np.radians(45.0)  # a standing foot that turns more pivots on purpose
+SHUFFLE = 0.03  # metres between two places of one stand, from which on it becomes two stands with a quick step between
+STEP = 1.2  # m/s of that quick step
 FROM = np.radians(15.0)  # bend of a knee that is nearly straight
 SINKS = 0.04  # metres that a pelvis may sink for a heel that stays on the floor
-FADE = 0.10  # seconds in which a foot takes up its own way again
+FADE = 0.10  # seconds in which a foot returns to its own path
 _UP = np.array([0.0, 1.0, 0.0])
 _ASIDE = np.array([1.0, 0.0, 0.0])
 _AHEAD = np.array([0.0, 0.0, 1.0])
@@ -39,7 +39,7 @@ _AHEAD = np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True, slots=True)
 class _Stand:
-    """Frames from `first` to before `end` in which a foot stands; ankle : its ankle's stands, counted from `first`."""
+    """Frames from `first` to before `end` in which a foot stands; ankle : stands of its ankle, counted from `first`."""
 
     first: int
     end: int
@@ -47,7 +47,7 @@ class _Stand:
 
     @property
     def in_ankle(self) -> Flags:
-        """Which of its frames (n,) are in a stand of the ankle."""
+        """Whether each frame (n,) is in a stand of the ankle."""
         out = np.zeros(self.end - self.first, dtype=bool)
         for first, end in self.ankle:
             out[first:end] = True
@@ -55,22 +55,22 @@ class _Stand:
 
     @property
     def rests(self) -> Flags:
-        """Which of its frames (n,) say where it stands: those of the ankle's, or all."""
+        """Whether each frame (n,) decides where the foot stands: the frames of the ankle's stands, or all frames."""
         return self.in_ankle if self.ankle else np.ones(self.end - self.first, dtype=bool)
 
 
 def keep_feet_still(
     skeleton: Skeleton, feet: AnkleTracks, plants: Plants, times: Array, hips: Array
 ) -> tuple[AnkleTracks, Plants, Array]:
-    """Feet that are still while they stand, heels on the floor as long as legs reach.
+    """Return feet that are still while they stand, with heels on the floor as long as legs reach.
 
     Parameters
     ----------
-    plants : where feet are held so far; hips : (f, 2, 3) their places, metres
+    plants : the held parts of feet so far; hips : (f, 2, 3) places of the hips, metres
 
     Returns
     -------
-    the feet, where they are held, and how far (f, 2) each is held, 0 to 1
+    the feet, their held parts, and how far (f, 2) each foot is held, 0 to 1
     """
     places, turns = feet.places.copy(), feet.turns.copy()
     heel, ball = plants.heel.copy(), plants.ball.copy()
@@ -87,14 +87,14 @@ def keep_feet_still(
 
 
 class _Foot:
-    """One foot over f times (f,). hips : (f, 3); free : (f, 4) how it turns where nothing holds it"""
+    """One foot over f times (f,). hips : (f, 3); free : (f, 4) turns of the foot without a hold"""
 
     def __init__(self, skeleton: Skeleton, side: int, times: Array, hips: Array, free: Array) -> None:
         self.sole, self.times, self.hips, self.free = Sole(skeleton, side), times, hips, free
         self.reach = Leg(skeleton, "lr"[side]).length(FROM) + SINKS
 
     def stands(self, place: Array, turn: Array) -> list[_Stand]:
-        """Stands in time: those of the ankle (f, 3) and of the ball joined where they overlap, shuffles split."""
+        """Stands in time: the stands of ankle (f, 3) and ball, joined where they overlap, with shuffles split."""
         ankles, balls = (_unshuffled(self.times, path) for path in (place, place + quat.rotate(turn, self.sole.ball)))
         joined: list[list[int]] = []
         for first, end in sorted((*ankles, *balls)):
@@ -107,7 +107,7 @@ class _Foot:
         ]
 
     def held(self, place: Array, turn: Array, stands: list[_Stand]) -> tuple[Array, Array, Flags, Flags, Array]:
-        """Ankle (f, 3) and turn (f, 4) of the foot still in its stands; whether heel and ball are held; how far."""
+        """Ankle (f, 3) and turn (f, 4) of the foot, still in its stands; whether heel and ball are held; how far."""
         frames, ball = len(place), place + quat.rotate(turn, self.sole.ball)
         heel_down, on_floor, fixed = (np.zeros(frames, dtype=bool) for _ in range(3))
         moved, turned = np.zeros((frames, 3)), np.zeros((frames, 3))
@@ -128,10 +128,10 @@ class _Foot:
         return ball - quat.rotate(turn, self.sole.ball), turn, heel_down, on_floor, share
 
     def _turns(self, turn: Array, stand: _Stand, ball: Array, low: bool) -> tuple[Array, Flags]:
-        """Turns (n, 4) of the foot in a stand, level across, and where (n,) it lies flat; ball : (n, 3), held.
+        """Return turns (n, 4) of the foot in a stand, level across, and whether (n,) it lies flat; ball : (n, 3), held.
 
-        It keeps its heading and, in each stand of the ankle, its pitch. If the leg is too short, the heel rises as it
-        does without a hold.
+        The foot keeps its heading and, in each stand of the ankle, its pitch. If the leg is too short, the heel rises
+        as without a hold.
         """
         part = slice(stand.first, stand.end)
         heading, own = _heading_and_pitch(turn[part])
@@ -161,23 +161,23 @@ class _Foot:
         return np.asarray(heading + _faded(times, (wanted - heading)[:, None], near)[:, 0])
 
     def _stretch(self, part: slice, ball: Array, turn: Array) -> Array:
-        """Metres (n,) from the hip to the ankle of a foot whose ball is in places (n, 3)."""
+        """Return the metres (n,) from the hip to the ankle of a foot whose ball is in places (n, 3)."""
         return np.asarray(np.linalg.norm(ball - quat.rotate(turn, self.sole.ball) - self.hips[part], axis=1))
 
 
 def _heading_and_pitch(turns: Array) -> tuple[Array, Array]:
-    """Radians (n,) from +Z to +X that feet point, and by which their heels are up."""
+    """Return the heading of feet, radians (n,) from +Z to +X, and their pitch, radians (n,) with the heel up."""
     ahead = quat.rotate(turns, _AHEAD)
     return np.unwrap(np.arctan2(ahead[:, 0], ahead[:, 2])), np.arcsin(np.clip(-ahead[:, 1], -1.0, 1.0))
 
 
 def _level_turns(heading: Array, pitch: Array) -> Array:
-    """Turns (n, 4) of feet that are level across."""
+    """Return turns (n, 4) of feet that are level across."""
     return quat.multiply(quat.from_axis_angle(_UP, heading), quat.from_axis_angle(_ASIDE, pitch))
 
 
 def _unshuffled(times: Array, path: Array) -> list[tuple[int, int]]:
-    """Stands of a joint; if it goes from one place to another within a stand, there are two."""
+    """Return the stands of a joint; if the joint goes from one place to another within a stand, there are two."""
     out: list[tuple[int, int]] = []
     rate = (len(times) - 1) / float(times[-1] - times[0])
     rest = [(int(first), int(end)) for first, end in stand_frames(times, path, MARGIN)]
@@ -200,7 +200,7 @@ def _unshuffled(times: Array, path: Array) -> list[tuple[int, int]]:
 
 
 def _faded(times: Array, values: Array, fixed: Flags) -> Array:
-    """Values (f, d) that stay where they are fixed; between, the values before and after fade."""
+    """Return values (f, d), unchanged in `fixed` frames; in between, the values before and after fade."""
     out = values.copy()
     last = len(times) - 1
     for first, end in runs(~fixed).tolist():
