@@ -1,4 +1,4 @@
-"""Arms out of trunk, legs and each other: back to their place in the input or, if that is wrong, pushed out."""
+"""Arms out of trunk, legs and each other: back to their place in the input or, if that place is wrong, pushed out."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import both_envelopes, upper_envelope
 from dancetutor_cli.dance.units import Array, Poses
 
-# The arms of the input are taken in the trunk's frame, as local turns: what was clear of the trunk there is clear of it
-# here.
+# The arms of the input are taken in the trunk's frame, as local turns: an arm that was clear of the trunk there is
+# clear of it here.
 
-ALLOWED = 0.003  # metres that an arm may be in something, because clothes and skin give way
-DEEPER = 0.002  # metres by which it must be deeper than in the input to count as a fault of the style
-APART_ROUNDS, APART_STEP = 10, 0.3  # rounds of going back, and the part of the way in each
-APART_SPAN = 0.4  # seconds around a touch in which an arm goes back and comes again
+ALLOWED = 0.003  # metres that an arm may be inside another part, because clothes and skin give way
+DEEPER = 0.002  # metres by which an arm must be deeper than in the input to count as a fault of the style
+APART_ROUNDS, APART_STEP = 10, 0.3  # rounds of returning, and the part of the way in each
+APART_SPAN = 0.4  # seconds around a touch in which an arm goes back and returns
 OUT_ROUNDS, NUDGE, LEAST = 40, 0.02, 0.08  # rounds of pushing out; radians, and metres; metres of depth per radian
 _ARM = ("sternoclavicular", "shoulder", "elbow", "radiocarpal")
-_RADII = (0.045, 0.036, 0.026)  # of shoulder, elbow and wrist, metres
+_RADII = (0.045, 0.036, 0.026)  # radii of shoulder, elbow and wrist, metres
 
 
 def clear_arms(skeleton: Skeleton, given: Array, poses: Poses, feet: AnkleTracks, times: Array) -> Array:
-    """Local rotations (f, j, 4) of poses whose arms are as clear of everything as in the input.
+    """Return local rotations (f, j, 4) of poses whose arms are as clear of all parts as in the input.
 
-    given : local rotations (f, j, 4) of the input; feet : where the legs end; times : (f,) seconds
+    given : local rotations (f, j, 4) of the input; feet : the ends of the legs; times : (f,) seconds
     """
     rotations = poses[0]
     before = _depths(skeleton, (given, poses[1]), feet)
@@ -45,11 +45,11 @@ def clear_arms(skeleton: Skeleton, given: Array, poses: Poses, feet: AnkleTracks
 
 
 def push_arms_out(skeleton: Skeleton, poses: Poses, times: Array) -> Array:
-    """Local rotations (f, j, 4) of poses whose forearms and hands are out of trunk and legs.
+    """Return local rotations (f, j, 4) of poses whose forearms and hands are out of trunk and legs.
 
-    For captured motion on another body, whose input has the same fault. Each shoulder turns in the direction in which
-    its arm comes out soonest, by d g / |g|^2 in rounds: d the depth, g its derivative by the turn; the turn comes and
-    goes smoothly.
+    This is for captured motion on another body, whose input has the same fault. In rounds, each shoulder turns by d g /
+    |g|^2, in the direction in which its arm comes out soonest: d is the depth, g its derivative by the turn. The turn
+    comes and goes smoothly.
     """
     rotations = poses[0].copy()
     for _ in range(OUT_ROUNDS):
@@ -74,7 +74,7 @@ def push_arms_out(skeleton: Skeleton, poses: Poses, times: Array) -> Array:
 
 
 def _with_turned_arms(skeleton: Skeleton, places: Array, axis: Array) -> Array:
-    """Joints (f, j, 3) with both arms turned a little about their shoulders and an axis of the world."""
+    """Return joints (f, j, 3) with both arms turned a little about their shoulders and an axis of the world."""
     out = places.copy()
     turn = quat.from_axis_angle(axis, np.array(NUDGE))
     for side in "lr":
@@ -86,12 +86,12 @@ def _with_turned_arms(skeleton: Skeleton, places: Array, axis: Array) -> Array:
 
 
 def _depths(skeleton: Skeleton, poses: Poses, feet: AnkleTracks) -> Array:
-    """How deep (f, 2) the left and the right arm are in anything, metres; negative apart."""
+    """Return how deep (f, 2) the left and the right arm are in any other part, metres; negative if apart."""
     return _arm_depths(skeleton, world_transforms(skeleton, *repinned(skeleton, poses, feet))[0])
 
 
 def _arm_depths(skeleton: Skeleton, joints: Array) -> Array:
-    """As `_depths`, for joints (f, j, 3)."""
+    """Return the same as `_depths`, for joints (f, j, 3)."""
     legs = [leg_capsules(*(joints[:, skeleton.index(f"{s}_{n}")] for n in ("hip", "knee", "talocrural"))) for s in "lr"]
     arms = [_arm(skeleton, joints, s) for s in "lr"]
     crossed = depth(arms[0], arms[1])
@@ -103,7 +103,7 @@ def _arm_depths(skeleton: Skeleton, joints: Array) -> Array:
 
 
 def _arm(skeleton: Skeleton, joints: Array, side: str) -> list[Capsule]:
-    """Upper arm, and forearm with its hand."""
+    """Return the capsules of the upper arm, and of the forearm with its hand."""
     shoulder, elbow, wrist = (joints[:, skeleton.index(f"{side}_{n}")] for n in _ARM[1:])
     along = wrist - elbow
     tip = wrist + HAND * along / np.linalg.norm(along, axis=1, keepdims=True)

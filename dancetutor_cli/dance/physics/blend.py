@@ -1,6 +1,4 @@
-"""How much of which style there is: one style, a blend such as `fierce:0.6,heavy:0.4`, or changes by measures of a
-song.
-"""
+"""The share of each style: one style, a blend such as `fierce:0.6,heavy:0.4`, or changes by measures of a song."""
 
 from __future__ import annotations
 
@@ -26,16 +24,16 @@ from dancetutor_cli.run.yaml_files import read
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
 
-TOLERANCE = 1e-6  # by which weights may sum to more than 1: thirds that are written with six digits
-SHORTEST = 0.5  # seconds that a change lasts at least, where a warp leaves nothing of its measure
+TOLERANCE = 1e-6  # by which weights may sum to more than 1, for thirds that are written with six digits
+SHORTEST = 0.5  # seconds; least duration of a change, if a warp skips its measure
 
 
 @dataclass(frozen=True, slots=True)
 class Blend:
-    """Styles, and how much of each there is over a song. Pickles.
+    """Styles, and their shares over a song. It can be pickled.
 
-    styles : s of them; states : before the first change, after it, ..., each s shares that sum to 1
-    changes : when each state turns into the next one, seconds, in order, apart from each other
+    styles : s of them; states : before the first change, after it, ..., each with s shares that sum to 1
+    changes : when each state turns into the next one, seconds, in order, without overlap
     """
 
     styles: tuple[Style, ...]
@@ -44,24 +42,22 @@ class Blend:
 
     @classmethod
     def of(cls, style: Style) -> Blend:
-        """All of one style, all the time."""
+        """Return a blend of one style, all the time."""
         return cls((style,), ((1.0,),))
 
     def shares(self, times: Array) -> Array:
-        """How much (f, s) of each style there is at times (f,), seconds."""
+        """Return the shares (f, s) of the styles at times (f,), seconds."""
         return np.asarray(state_weights(self.changes, times) @ np.array(self.states))
 
     def within(self, times: Array) -> tuple[list[Style], Array]:
-        """The styles that are used at any of the times (f,), the one with the largest share first, and their shares (f,
-        s).
-        """
+        """The styles that are used at any of the times (f,), with the largest share first, and their shares (f, s)."""
         shares = self.shares(times)
         total = shares.sum(axis=0)
         order = [int(k) for k in np.argsort(-total, kind="stable") if total[k] > 0.0]
         return [self.styles[k] for k in order], shares[:, order]
 
     def settings(self, motion: Path | None, form: str) -> MotionSettings | SettingsCourse:
-        """The numbers of the motion that follow from a form and a file of changes, as `load_settings` takes them."""
+        """Return the numbers of the motion for a form and a file of changes, as `load_settings` takes them."""
         numbers = [style.motion for style in self.styles]
         states = tuple(load_settings(motion, form, tuple(zip(numbers, state, strict=True))) for state in self.states)
         return states[0] if len(set(states)) == 1 else SettingsCourse(states, self.changes)
@@ -69,7 +65,7 @@ class Blend:
 
 @dataclass(frozen=True, slots=True)
 class StyleChoice:
-    """What `--style` names. styles, states : as in `Blend`; measures : of each change, at which it is complete"""
+    """The value of `--style`. styles, states : as in `Blend`; measures : of each change, at which it is complete"""
 
     text: str
     styles: tuple[Style, ...]
@@ -77,7 +73,7 @@ class StyleChoice:
     measures: tuple[int, ...] = ()
 
     def blend(self, timing: Timing | None = None) -> Blend:
-        """The blend in a song; each change takes place in the measure before it. UsageError if there is no song."""
+        """The blend in a song; each change takes place in the measure before it. Raises UsageError without a song."""
         if self.measures and timing is None:
             raise UsageError(
                 f"style {self.text} changes by measures, and captured motion has none; name a style without 'measures'"
@@ -94,7 +90,7 @@ class StyleChoice:
 
 @cache
 def load_choice(text: str) -> StyleChoice:
-    """What a `--style` names: NAME or FILE, or NAME:WEIGHT,NAME:WEIGHT; a file may change by measures.
+    """Load a `--style`: NAME or FILE, or NAME:WEIGHT,NAME:WEIGHT; a file may change by measures.
 
     Raises UsageError for a text in another form and for unknown names, FileError with the line for a wrong file.
     """
@@ -122,7 +118,7 @@ def load_choice(text: str) -> StyleChoice:
 
 
 def style_sources(text: str) -> tuple[tuple[str | Path, float], ...]:
-    """The parts of a `--style`, for fingerprints: names of `configs/styles` and files, with their weights."""
+    """Return the parts of a `--style`, for fingerprints: names of `configs/styles` and files, with their weights."""
     out: list[tuple[str | Path, float]] = []
     for name, weight in weights_of(text):
         is_file = name not in config_names("styles")
@@ -135,7 +131,7 @@ def style_sources(text: str) -> tuple[tuple[str | Path, float], ...]:
 
 
 def weights_of(text: str, folder: Path = Path()) -> list[tuple[str, float]]:
-    """Names of styles and their weights, above 0 to 1, in a `--style`; one alone has 1. folder : where files lie
+    """Names of styles and their weights, above 0 to 1, in a `--style`; a single name has 1. folder : of the files
 
     Raises UsageError for a text in another form.
     """
@@ -153,7 +149,7 @@ def weights_of(text: str, folder: Path = Path()) -> list[tuple[str, float]]:
 
 
 def is_one_name(text: str, folder: Path = Path()) -> bool:
-    """Whether a text is the name of one file, whatever signs it has."""
+    """Whether a text is the name of one file, with any signs in it."""
     return text in config_names("styles") or (folder / text).is_file()
 
 
@@ -172,9 +168,9 @@ def _weight(text: str, weight: str) -> float:
 
 
 def weights_within(text: str, folder: Path) -> list[tuple[str, float]]:
-    """As `weights_of`, of a text in a style file: names of `configs/styles`, or paths of files below its folder.
+    """Return the same as `weights_of` for a text in a style file: names of `configs/styles`, or paths below its folder.
 
-    UsageError for a file elsewhere: a style file may be a stranger's.
+    Raises UsageError for a file elsewhere, because another user may have written the style file.
     """
     names, out = config_names("styles"), []
     for name, weight in weights_of(text, folder):
@@ -188,7 +184,7 @@ def weights_within(text: str, folder: Path) -> list[tuple[str, float]]:
 
 
 def _parts(text: str, weights: Sequence[tuple[str, float]]) -> list[tuple[Style, float]]:
-    """Styles with their shares, which sum to 1: what is missing is neutral. text : for errors"""
+    """Return styles with their shares, which sum to 1: the rest is neutral. text : for errors"""
     parts = [(load_style(name), weight) for name, weight in weights]
     total = sum(weight for _, weight in parts)
     if any(one is other for (one, _), (other, _) in combinations(parts, 2)):
@@ -203,7 +199,7 @@ def _parts(text: str, weights: Sequence[tuple[str, float]]) -> list[tuple[Style,
 
 
 def _states(blends: list[list[tuple[Style, float]]]) -> tuple[tuple[Style, ...], tuple[tuple[float, ...], ...]]:
-    """All styles of some blends, and how much of each there is in each of them."""
+    """Return all styles of some blends, and the share of each style in each blend."""
     styles: list[Style] = []
     for style, _ in (part for blend in blends for part in blend):
         if not any(style is one for one in styles):
@@ -212,11 +208,11 @@ def _states(blends: list[list[tuple[Style, float]]]) -> tuple[tuple[Style, ...],
     return tuple(styles), states
 
 
-# How the results of the ragdolls of several styles are mixed.
+# The mean of the results of the ragdolls of several styles.
 
 
 def mean_poses(poses: Sequence[Poses], shares: Array) -> Poses:
-    """The mean of poses, local rotations (f, j, 4) and root (f, 3), each with its share (f, s)."""
+    """Return the mean of poses, local rotations (f, j, 4) and root (f, 3), each with its share (f, s)."""
     if len(poses) == 1:
         return poses[0]
     root = sum(shares[:, k, None] * one for k, (_, one) in enumerate(poses))
@@ -224,7 +220,7 @@ def mean_poses(poses: Sequence[Poses], shares: Array) -> Poses:
 
 
 def mean_distances(runs: Sequence[Distances], times: Array, shares: Array) -> Distances:
-    """The mean of the distances of ragdolls, which have the same points, each with its share (f, s) at times (f,)."""
+    """Return the mean of the distances of ragdolls with the same points, each with its share (f, s) at times (f,)."""
     first = runs[0]
     if len(runs) == 1:
         return first

@@ -1,4 +1,4 @@
-"""Input skeleton -> ragdoll -> output skeleton: a motion goes in, and what the ragdoll makes of it comes out."""
+"""Input skeleton -> ragdoll -> output skeleton: the way of a motion through a ragdoll."""
 
 from __future__ import annotations
 
@@ -41,18 +41,18 @@ from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.feet.limbs import Limb
 
 CORRECTIONS = ("knees", "feet", "limits")
-GIVING_BACK = 8  # rounds of giving way less where hips or ankles are at their limits
-AFTERMATH = 0.3  # seconds over which a push or a trip begins to count; it ceases to count 0.7 s later
+GIVING_BACK = 8  # rounds of giving way less if hips or ankles are at their limits
+AFTERMATH = 0.3  # seconds over which the effect of a push or a trip begins; it ends 0.7 s later
 BEFORE = 1.0  # seconds of standing still before the first frame, in which springs come to rest
 PALM_EXACT = 0.06  # seconds around a pressing palm in which the body is as in the input
-PALM_FADE = 0.45  # seconds around a pressing palm over which the input takes over: a palm is where its panel is
+PALM_FADE = 0.45  # seconds around a pressing palm over which the input takes over, because a palm must be on its panel
 
 
 @dataclass(frozen=True, slots=True)
 class RagdollResult:
     """A motion behind the ragdoll, with feet as in the input; distances : of the ragdoll from the input, before that
 
-    plants : where feet were held to the floor, at the motion's keys; None where they were not to be
+    plants : the held feet, at the motion's keys; None if feet are not corrected
     """
 
     motion: Motion
@@ -62,11 +62,11 @@ class RagdollResult:
 
 @dataclass(frozen=True, slots=True)
 class Wishes:
-    """What is to happen to a motion besides its style.
+    """The changes of a motion besides its style.
 
     corrections : of `CORRECTIONS`, for captured motion: knees that pop, feet that skate
-    pushes, trips : what befalls her
-    own_legs : legs stay as the ragdoll has them, but where feet are corrected or something befalls her
+    pushes, trips : disturbances of the dancer
+    own_legs : legs stay as the ragdoll has them, unless feet are corrected or the dancer is disturbed
     """
 
     corrections: tuple[str, ...] = ()
@@ -75,15 +75,15 @@ class Wishes:
     own_legs: bool = False
 
     def within(self, start: float, end: float) -> Wishes:
-        """The same with only the pushes and trips between two seconds."""
+        """Return the same with only the pushes and trips between two seconds."""
         pushes = tuple(push for push in self.pushes if start <= push.second <= end)
         return replace(self, pushes=pushes, trips=tuple(trip for trip in self.trips if start <= trip.second <= end))
 
 
 def wishes_of(push: Sequence[str], trip: Sequence[float], rate: float = 1.0) -> Wishes:
-    """Pushes and trips from the command line, in seconds of the song, as pushes and trips in music at a rate.
+    """Return pushes and trips from the command line (seconds of the song) as pushes and trips in music at a rate.
 
-    UsageError for a push that is none.
+    Raises UsageError for a text that is not a push.
     """
     pushes = map(parse_push, push)
     return Wishes(
@@ -95,18 +95,19 @@ def wishes_of(push: Sequence[str], trip: Sequence[float], rate: float = 1.0) -> 
 def through_ragdoll(motion: Motion, blend: Blend, wishes: Wishes = Wishes()) -> RagdollResult:
     """Let the ragdolls of the styles of a blend follow a motion of a skeleton with the dancer's joints.
 
-    Joints without a body keep their turns, feet their places in the world, unless corrected; times stay, and contacts,
-    unless she is pushed or caught so that she misses them: then the motion's notes say which.
-    Raises DancetutorError with time and joint where the simulation fails, UsageError for points that there are not or
-    a push outside of the motion.
+    Joints without a body keep their turns. Feet keep their places in the world, unless corrected. Times stay, and
+    contacts, unless a push or trip makes the dancer miss them: then the motion's notes list them.
+    Raises DancetutorError with time and joint where the simulation fails, UsageError for unknown points or a push
+    outside of the motion.
 
     The order of work (docs/physics.md):
 
     1. Pushes and trips change the input; the ragdoll of each style follows it, and the mean of all is taken.
-    2. Near a palm that presses a panel the input replaces it. Joints come within their limits where a style wants that.
-    3. With `own_legs` this is all, unless feet are corrected or something befalls her.
-    4. Feet get the places of the input, but for those where a push makes her stagger.
-    5. A dance has arms, weight and palms put back (`_put_back`), captured motion is corrected (`_corrected`).
+    2. Near a palm that presses a panel the input replaces it. Joints are brought within their limits if a style wants
+    that.
+    3. With `own_legs` this is all, unless feet are corrected or the dancer is disturbed.
+    4. Feet get the places of the input, unless a push makes the dancer stagger.
+    5. In a dance, arms, weight and palms are put back (`_put_back`); captured motion is corrected (`_corrected`).
     """
     given, blows = disturbed(motion, wishes.pushes, wishes.trips)
     styles, shares = blend.within(given.times)
@@ -136,16 +137,16 @@ def _with_poses(motion: Motion, poses: Poses) -> Motion:
 
 
 def _put_back(goal: Motion, poses: Poses, feet: AnkleTracks, calm: Array, free: Array) -> Poses:
-    """Poses of a dance with arms clear of the body, the centre of mass on its path, hips and ankles within their
-    limits, and palms on the bar; legs end in `feet`.
+    """Return poses of a dance with arms clear of the body, the mass on its path, joints in limits, palms on the bar.
 
-    goal : the input; calm, free : (f,) how undisturbed she is, and how far she need not be as in the input, 0 to 1
+    goal : the input; feet : the ends of the legs; calm, free : (f,) 0 to 1, how undisturbed the dancer is, and how far
+    she may differ from the input
     """
     skeleton = goal.skeleton
     rotations = clear_arms(skeleton, goal.rotations, poses, feet, goal.times)
     path = (goal.times, mass_of(skeleton, (goal.rotations, goal.root)))
     poses = restore_mass_path(skeleton, (rotations, poses[1]), feet, path, calm, free)
-    if goal.grips:  # arms that are moved there have mass
+    if goal.grips:  # arms that move to the bar have mass
         poses = restore_mass_path(skeleton, pin_hands(goal, poses, feet), feet, path, calm, free)
     return pin_hands(goal, _possible(goal, poses, feet), feet)
 
@@ -153,10 +154,11 @@ def _put_back(goal: Motion, poses: Poses, feet: AnkleTracks, calm: Array, free: 
 def _corrected(
     goal: Motion, poses: Poses, feet: AnkleTracks, run: _Run, corrections: Sequence[str], limits: bool
 ) -> tuple[Poses, Plants | None]:
-    """Captured motion with the corrections asked for, and where its feet are held: None if feet are not corrected.
+    """Return captured motion with the requested corrections, and its held feet: None if feet are not corrected.
 
-    Feet stand still first, for knees, the height of the root and ankles follow from them. Then come palms on the bar,
-    arms out of the trunk, and flat toes. goal : the input; run : the ragdoll's; limits : whether a style has limits
+    Feet stand still first, because knees, the height of the root and ankles follow from them. Then come palms on the
+    bar, arms out of the trunk, and flat toes. goal : the input; run : of the ragdoll; limits : whether a style has
+    limits
     """
     skeleton, times = goal.skeleton, goal.times
     rotations, root = poses  # the turns of toes are changed in place
@@ -175,7 +177,7 @@ def _corrected(
         up = risen(skeleton, poses, feet, plants, times) - poses[1]
         poses = repinned(skeleton, (rotations, poses[1] + up), feet)
         poses, feet, plants = eased_ankles(skeleton, poses, feet, plants, held, times)
-        if "knees" in corrections:  # feet that were turned need other lengths of their legs
+        if "knees" in corrections:  # turned feet need other lengths of their legs
             sunk, feet = soft_legs(skeleton, (poses[0], root + up), feet, held, times)
             poses = repinned(skeleton, (poses[0], sunk), feet)
             poses, feet, plants = eased_ankles(skeleton, poses, feet, plants, held, times)
@@ -190,7 +192,7 @@ def _corrected(
 
 
 def _undisturbed(motion: Motion, wishes: Wishes) -> Array:
-    """How undisturbed (f,) the motion is, 0 to 1: less during a push or trip, and for a while after it."""
+    """Return how undisturbed (f,) the motion is, 0 to 1: less during a push or trip, and for a while after it."""
     out = np.ones(len(motion.times))
     for second in (*(p.second for p in wishes.pushes), *(t.second for t in wishes.trips)):
         since = motion.times - second
@@ -199,7 +201,7 @@ def _undisturbed(motion: Motion, wishes: Wishes) -> Array:
 
 
 def _possible(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
-    """Poses that give way only as far as hips and ankles of feet which stay are within their limits."""
+    """Return poses that give way only as far as hips and ankles are within their limits; feet keep their places."""
     for _ in range(GIVING_BACK):
         past = np.zeros(len(motion.times))
         for name in (f"{s}_{n}" for s in "lr" for n in ("hip", "talocrural")):
@@ -213,7 +215,7 @@ def _possible(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
 
 
 class _Run(NamedTuple):
-    """The result of a ragdoll, its distance from the input, the seconds (f,) of its steps, and its soles then."""
+    """The result of a ragdoll, its distances from the input, the seconds (f,) of its steps, and its soles."""
 
     made: Poses
     distances: Distances
@@ -222,7 +224,7 @@ class _Run(NamedTuple):
 
 
 def _followed(motion: Motion, style: Style, wishes: Wishes, blows: Sequence[Blow]) -> _Run:
-    """What the ragdoll of one style makes of a motion."""
+    """Let the ragdoll of one style follow a motion."""
     skeleton, rate = motion.skeleton, style.body.update_rate
     bones = bones_of(skeleton)
     points = points_of(skeleton, bones, style)
@@ -244,21 +246,21 @@ def _followed(motion: Motion, style: Style, wishes: Wishes, blows: Sequence[Blow
 
 
 def _at_keys(plants: Plants, at: Array, times: Array) -> Plants:
-    """Plants of the simulation's steps at a motion's keys."""
+    """Return the plants of the simulation's steps at a motion's keys."""
     nearest = np.clip(np.round((times - at[0]) / (at[1] - at[0])).astype(np.int64), 0, len(at) - 1)
     rate = (len(times) - 1) / float(times[-1] - times[0])
     return tidied(Plants(plants.heel[nearest], plants.ball[nearest]), rate)
 
 
 def _read(at: Array, rotations: Array, root: Array, times: Array) -> tuple[Array, Array]:
-    """Simulated frames at the keys' times: cubics, for straight lines between steps would jerk."""
+    """Return simulated frames at the keys' times: cubics, because straight lines between steps would jerk."""
     flat = quat.continuous(rotations).reshape(len(at), -1)
     values = cubic(at, np.concatenate((flat, root), axis=1), times)
     return quat.normalize(values[:, :-3].reshape(len(times), -1, 4)), np.ascontiguousarray(values[:, -3:])
 
 
 def _resampled(motion: Motion, at: Array, sample_rate: float) -> tuple[Array, Array]:
-    """The input at `at`: cubics through its keys at the sample rate, straight lines between those samples."""
+    """Return the input at `at`: cubics through its keys at the sample rate, straight lines between these samples."""
     turns = quat.continuous(motion.rotations)
     flat = turns.reshape(len(turns), -1)
     grid = at[0] + np.arange(int(np.ceil((at[-1] - at[0]) * sample_rate - 1e-9)) + 1) / sample_rate
@@ -271,7 +273,7 @@ def _resampled(motion: Motion, at: Array, sample_rate: float) -> tuple[Array, Ar
 
 
 def _pressing(motion: Motion) -> Array:
-    """How much (f,) each key must be as in the input because a palm presses a panel then: 0 to 1."""
+    """Return how much (f,) each key must be as in the input because a palm presses a panel, 0 to 1."""
     out = np.zeros(len(motion.times))
     for contact in motion.contacts:
         if contact.limb >= Limb.LEFT_HAND:

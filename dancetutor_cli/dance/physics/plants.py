@@ -1,4 +1,4 @@
-"""Feet that do not skate: soles stay where they were held, toes flat."""
+"""Feet that do not skate: held soles stay in their places, toes lie flat."""
 
 from __future__ import annotations
 
@@ -16,39 +16,41 @@ from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array, Flags
 from dancetutor_cli.feet.play import runs
 
-# Feet that do not skate: a sole that was held to the floor stays exactly in its place, and the way between is fitted to
-# that.
+# Feet that do not skate: a held sole stays exactly in its place, and the way between holds is fitted to it.
 #
-# A foot is held at its heel, at its ball, or at both and then lies flat. While it is held its heading does not change,
-# unless it pivots on its ball. From hold to hold, the changes of one hold fade smoothly into those of the next.
+# A foot is held at its heel, at its ball, or at both; then it lies flat. While it is held its heading does not change,
+# unless it pivots on its ball. Between two holds, the changes of the first fade smoothly into the changes of the
+# second.
 
 SHORTEST = 0.05  # seconds; a shorter contact of a sole is not a hold
-GAP = 0.07  # seconds between two holds of one point that are one
-PIVOT = np.radians(25.0)  # a foot that turns more than this while it lies flat does so on purpose, on its ball
-SURELY = 1.15  # times that; what is in doubt stays
-STEEPEST = np.radians(58.0)  # pitch of a foot on its ball: its toes bend no further
-FADE = 14.0  # frames within which a foot takes up the pace of its own way again
-NEARLY = 0.999  # how far a foot is held in the frames before and after
-ROLLED = 0.015  # metres that the end of a foot which stands on it alone may be away from where it lay
-CLEAR = 0.003  # metres that a foot which is not held is off the floor
+GAP = 0.07  # seconds; two holds of one point with a shorter gap become one
+PIVOT = np.radians(25.0)  # a foot that turns more than this while it lies flat pivots on purpose, on its ball
+SURELY = 1.15  # factor of `PIVOT`; uncertain turns stay
+STEEPEST = np.radians(58.0)  # pitch of a foot on its ball at which its toes bend no further
+FADE = 14.0  # frames within which a foot returns to the pace of its own path
+NEARLY = 0.999  # how far a foot is held in the frames before and after a hold
+ROLLED = 0.015  # metres that the end of a foot which stands on it alone may be away from its place in the flat stand
+CLEAR = 0.003  # metres over the floor of a foot that is not held
 _UP = np.array([0.0, 1.0, 0.0])
 _AHEAD = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True)
 class Plants:
-    """Feet held to the floor. heel, ball : bool (f, 2), whether that end of the left and of the right foot is held"""
+    """The held feet. heel, ball : bool (f, 2), whether that end of the left and of the right foot is held
+    to the floor
+    """
 
     heel: Flags
     ball: Flags
 
     def spans(self, side: int) -> NDArray[np.int64]:
-        """First and one past the last frame of each plant of a foot, (n, 2)."""
+        """Return the first and one past the last frame of each plant of a foot, (n, 2)."""
         return runs(self.heel[:, side] | self.ball[:, side])
 
 
 def tidied(plants: Plants, rate: float) -> Plants:
-    """The holds without those that are too short, and without gaps that are too short to be steps."""
+    """Return the holds without short holds, and without gaps that are too short to be steps."""
     out = []
     for flags in (plants.heel, plants.ball):
         new = flags.copy()
@@ -64,9 +66,9 @@ def tidied(plants: Plants, rate: float) -> Plants:
 
 
 def let_go(skeleton: Skeleton, feet: AnkleTracks, plants: Plants) -> Plants:
-    """The holds without the beginnings and ends in which a foot on one end alone is far from where it will be, or was.
+    """The holds without beginnings and ends in which a foot on one end alone is far from its place in the flat stand.
 
-    Feet come down and leave over heel and toe tips, and roll on: holding them longer would drag the body after them.
+    Feet land and leave over heel and toe tips, and roll on: longer holds would drag the body after them.
     """
     heel, ball = plants.heel.copy(), plants.ball.copy()
     flat = plants.heel & plants.ball
@@ -88,11 +90,11 @@ def let_go(skeleton: Skeleton, feet: AnkleTracks, plants: Plants) -> Plants:
 
 
 def planted(skeleton: Skeleton, feet: AnkleTracks, plants: Plants) -> tuple[AnkleTracks, Array]:
-    """Feet that stand still where they are held.
+    """Return feet that stand still where they are held.
 
     Returns
     -------
-    the feet, and how far (f, 2) each is held, 0 to 1
+    the feet, and how far (f, 2) each foot is held, 0 to 1
     """
     places, turns, held = feet.places.copy(), feet.turns.copy(), np.zeros(plants.heel.shape)
     for side in (0, 1):
@@ -113,14 +115,14 @@ def planted(skeleton: Skeleton, feet: AnkleTracks, plants: Plants) -> tuple[Ankl
 
 
 def cleared(skeleton: Skeleton, feet: AnkleTracks, held: Array) -> AnkleTracks:
-    """The feet, those that are not held off the floor."""
+    """Return the feet, raised off the floor where they are not held."""
     places = feet.places.copy()
     places[..., 1] += np.where(held < 1.0, np.maximum(CLEAR - lowest(skeleton, feet), 0.0), 0.0)
     return AnkleTracks(places, feet.turns)
 
 
 def lowest(skeleton: Skeleton, feet: AnkleTracks) -> Array:
-    """Height (f, 2) of the lowest point between heel and ball of each foot."""
+    """Return the height (f, 2) of the lowest point between heel and ball of each foot."""
     out = []
     for k, points in enumerate(sole_points(skeleton)):
         ankle = skeleton.index(f"{'lr'[k]}_talocrural")
@@ -148,7 +150,7 @@ def _between(spans: list[tuple[int, int]], feet: AnkleTracks, made: tuple[Array,
         (a, p, one), (b, q, other) = ends
         blend = smooth(share)
         places[part, side] = feet.places[part, side] + a + blend[:, None] * (b - a)
-        for at, way, on in ((left, -1, one), (right, 1, other)):  # and goes on as fast as it went
+        for at, way, on in ((left, -1, one), (right, 1, other)):  # the foot continues as fast as it went
             if on and 0 <= at + 2 * way < frames and at + way < frames:
                 pair = [places[k, side] - feet.places[k, side] for k in ((at - 1, at - 2) if way < 0 else (at, at + 1))]
                 u = np.clip((np.arange(left, right) - at + 1 if way < 0 else at - np.arange(left, right)) / FADE, 0, 1)
@@ -158,18 +160,18 @@ def _between(spans: list[tuple[int, int]], feet: AnkleTracks, made: tuple[Array,
 
 
 class Sole:
-    """A foot's points in its ankle's axes."""
+    """The points of a foot in the axes of its ankle."""
 
     def __init__(self, skeleton: Skeleton, side: int) -> None:
         rest, ankle = skeleton.rest, skeleton.index(f"{'lr'[side]}_talocrural")
         points = sole_points(skeleton)[side]
         corners = [rest[p.joint] + p.offset - rest[ankle] for p in points[:2]]
         self.heel = (corners[0] + corners[1]) / 2
-        self.ball = skeleton.offsets[skeleton.index(f"{'lr'[side]}_metatarsal")]  # about it the toes turn
+        self.ball = skeleton.offsets[skeleton.index(f"{'lr'[side]}_metatarsal")]  # the toes turn about it
         self.height, self.ball_height = rest[ankle][1], rest[ankle][1] + self.ball[1]
 
     def stand(self, places: Array, turns: Array, heel: Flags, ball: Flags) -> tuple[Array, Array]:
-        """Ankle (n, 3) and turn (n, 4) over one plant, the held end exactly where it is held."""
+        """Return ankle (n, 3) and turn (n, 4) over one plant, with the held end exactly in its place."""
         ahead = quat.rotate(turns, _AHEAD)
         heading = np.unwrap(np.arctan2(ahead[:, 0], ahead[:, 2]))
         pitch = np.arcsin(np.clip(-ahead[:, 1], -1.0, 1.0))  # above 0 the heel is up
@@ -187,7 +189,7 @@ class Sole:
             part = slice(first, end)
             lies = flat[part] if flat[part].any() else np.ones(end - first, dtype=bool)
             own = np.median(point[part][lies], axis=0)
-            if at is not None:  # what was held before has put this end where it is
+            if at is not None:  # the end that was held before determines the place of this end
                 own = at + quat.rotate(level[first], anchor[first])
             own[1] = self.ball_height if ball[first] else 0.0
             if ball[first]:
@@ -200,20 +202,20 @@ class Sole:
         return out, turn
 
     def _raised(self, ankle: Array, heading: Array) -> Array:
-        """Pitch (n,) with which the ankle is nearest to where it must be, `ankle` (n, 3) from the held ball."""
+        """The pitch (n,) with which the ankle is nearest to its goal `ankle` (n, 3), as seen from the held ball."""
         ahead = ankle[:, 0] * np.sin(heading) + ankle[:, 2] * np.cos(heading)
         rest = np.arctan2(-self.ball[1], self.ball[2])
         return np.asarray(np.clip(np.arctan2(ankle[:, 1], -ahead) - rest, 0.0, STEEPEST))
 
 
 def _same(flags: Flags) -> list[tuple[int, int]]:
-    """Stretches of equal flags."""
+    """Return the stretches of equal flags."""
     edges = [0, *(np.flatnonzero(np.diff(flags.astype(np.int8))) + 1).tolist(), len(flags)]
     return list(pairwise(edges))
 
 
 def _eased(pitch: Array, flat: Flags) -> Array:
-    """A pitch (n,) that leaves 0, and comes to it, without a jump."""
+    """Return a pitch (n,) that leaves 0, and returns to it, without a jump."""
     out = pitch.copy()
     for first, end in _same(flat):
         if flat[first]:
@@ -227,9 +229,9 @@ def _eased(pitch: Array, flat: Flags) -> Array:
     return out
 
 
-# What bends where feet are held: toes stay flat on the floor.
+# The joints that bend where feet are held: toes stay flat on the floor.
 
-FRAMES = 8.0  # over which toes go flat and come back
+FRAMES = 8.0  # frames in which toes become flat, and in which they return
 
 
 def flatten_toes(skeleton: Skeleton, rotations: Array, feet: AnkleTracks, plants: Plants, held: Array) -> AnkleTracks:
@@ -245,7 +247,7 @@ def flatten_toes(skeleton: Skeleton, rotations: Array, feet: AnkleTracks, plants
         flat = quat.multiply(quat.conjugate(feet.turns[:, side]), level)
         away = _frames_to(plants.ball[:, side])
         heels = (plants.heel & ~plants.ball)[:, side]
-        flat = np.where(heels[:, None], quat.IDENTITY, flat)  # on the heel they point up
+        flat = np.where(heels[:, None], quat.IDENTITY, flat)  # on the heel, toes point up
         turns = quat.slerp(rotations[:, toes], flat, np.maximum(smooth(1 - away / FRAMES), held[:, side] >= 1))
         least = np.where(held[:, side] < 1, CLEAR, 0.0)
         ball = feet.places[:, side] + quat.rotate(feet.turns[:, side], skeleton.offsets[toes])
@@ -264,7 +266,7 @@ def flatten_toes(skeleton: Skeleton, rotations: Array, feet: AnkleTracks, plants
 
 
 def _frames_to(flags: Flags) -> Array:
-    """How many frames (f,) it is to the nearest flag."""
+    """Return the number of frames (f,) to the nearest flag."""
     at = np.flatnonzero(flags)
     if not len(at):
         return np.full(len(flags), np.inf)

@@ -20,31 +20,31 @@ from dancetutor_cli.dance.units import Array, Poses
 
 # Feet back in their places: physics alone lets them slide by half a centimetre, so legs are closed by IK afterwards.
 #
-# Ankles get exactly the place, and feet exactly the turn, that they have in the input. Thighs keep the plane in which
-# the ragdoll bent them. If a leg would have to be longer than it is, the pelvis gives way.
+# Ankles get exactly the place, and feet exactly the turn, of the input. Thighs keep the plane in which the ragdoll bent
+# them. If a leg is too short, the pelvis gives way.
 
-STRAIGHTEST = np.radians(6.0)  # a knee stays bent by so much
+STRAIGHTEST = np.radians(6.0)  # least bend of a knee
 REACH_ROUNDS = 40  # rounds of pulling the pelvis until both legs reach
-SOFT = 0.003  # metres over which a leg comes to its stretch: a knee that snaps straight sinks the foot between two keys
+SOFT = 0.003  # metres over which a leg approaches its stretch; if knees snap straight, feet sink between two keys
 
 
 @dataclass(frozen=True, slots=True)
 class AnkleTracks:
-    """Where both ankles are, (f, 2, 3), and how both feet are turned, (f, 2, 4), in the world."""
+    """The places of both ankles, (f, 2, 3), and the turns of both feet, (f, 2, 4), in the world."""
 
     places: Array
     turns: Array
 
 
 def feet_of(skeleton: Skeleton, rotations: Array, root: Array) -> AnkleTracks:
-    """The feet of poses, local rotations (f, j, 4) and root (f, 3)."""
+    """Return the feet of poses, local rotations (f, j, 4) and root (f, 3)."""
     positions, world = world_transforms(skeleton, rotations, root)
     ankles = [skeleton.index(f"{s}_talocrural") for s in "lr"]
     return AnkleTracks(positions[:, ankles], world[:, ankles])
 
 
 def repinned(skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks) -> tuple[Array, Array]:
-    """The poses, local rotations (f, j, 4) and root (f, 3), with legs that end in `feet`; returns the same."""
+    """Return the poses, local rotations (f, j, 4) and root (f, 3), with legs that end in `feet`."""
     rotations, root = poses[0].copy(), poses[1].copy()
     ankles = [skeleton.index(f"{s}_talocrural") for s in "lr"]
     legs = [Leg(skeleton, s) for s in "lr"]
@@ -66,7 +66,7 @@ def repinned(skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks) 
 
 
 class Leg:
-    """Two bones with a hinge between them, from the rest pose."""
+    """A leg: two bones with a hinge between them, from the rest pose."""
 
     def __init__(self, skeleton: Skeleton, side: str) -> None:
         self.hip, self.knee = skeleton.index(f"{side}_hip"), skeleton.index(f"{side}_knee")
@@ -79,26 +79,26 @@ class Leg:
         self.longest = self.length(STRAIGHTEST)
 
     def length(self, bend: float) -> float:
-        """Metres from hip to ankle with a knee bent by `bend` radians."""
+        """Return the metres from hip to ankle with a knee bent by `bend` radians."""
         return float(self.lengths(np.array(bend)))
 
     def lengths(self, bend: Array) -> Array:
-        """As `length`, for many."""
+        """Return the same as `length`, for many bends."""
         return np.asarray(np.sqrt(self.a**2 + self.b**2 + 2 * self.a * self.b * np.cos(bend)))
 
     def bent(self, distance: Array) -> Array:
-        """Bend of the knee in radians, 0 straight, with the ankle `distance` metres from the hip."""
+        """Return the bend of the knee in radians, 0 straight, with the ankle `distance` metres from the hip."""
         d = np.clip(distance, abs(self.a - self.b) + 1e-4, self.longest)
         cosine = (d**2 - self.a**2 - self.b**2) / (2 * self.a * self.b)
         return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)))
 
     def bend(self, distance: Array) -> Array:
-        """Turn (f,) of the knee in radians that puts the ankle `distance` (f,) metres from the hip."""
+        """Return the turn (f,) of the knee in radians that puts the ankle `distance` (f,) metres from the hip."""
         return self.bent(distance) - self.rest
 
 
 def _pull(skeleton: Skeleton, pelvis: Array, root: Array, legs: list[Leg], goals: list[Array]) -> Array:
-    """Metres (f, 3) by which the root must move so that both ankles are within reach of their legs."""
+    """Return the metres (f, 3) by which the root must move so that both ankles are within reach of their legs."""
     by = np.zeros_like(root)
     hips = [root + quat.rotate(pelvis, skeleton.offsets[leg.hip]) for leg in legs]
     for first in (True, *[False] * REACH_ROUNDS):
@@ -115,20 +115,20 @@ def _pull(skeleton: Skeleton, pelvis: Array, root: Array, legs: list[Leg], goals
     return by
 
 
-# Exact joint limits: those of the engine are cones and give way a little, as springs do; what is past a limit comes
-# back.
+# Exact joint limits: the limits of the engine are cones and give way a little, as springs do. Joints past their limits
+# are brought back.
 
 MARGIN = 0.5  # degrees inside the limits
-SLOWLY = 0.25  # seconds over which a joint is brought back, before and after it would be past a limit
-MOST = np.radians(20.0)  # the excess that is brought back early; what is further past its limit is stopped there
-ELBOW = np.radians(-5.0)  # bend of an elbow at its stretch
+SLOWLY = 0.25  # seconds over which a joint is brought back, before and after it is past a limit
+MOST = np.radians(20.0)  # largest excess that is brought back early; a larger excess is stopped at once
+ELBOW = np.radians(-5.0)  # bend of a straight elbow
 _LEGS = ("l_hip", "l_knee", "l_talocrural")  # these are closed by IK afterwards
 
 
 def restrained(skeleton: Skeleton, rotations: Array, times: Array, calm: Array | None = None) -> Array:
-    """Local rotations (f, j, 4) at times (f,), with trunk, head and arms within their limits.
+    """Return local rotations (f, j, 4) at times (f,), with trunk, head and arms within their limits.
 
-    calm : (f,) how far joints may come back early, 0 to 1: not while she is struck or a palm presses. None: always
+    calm : (f,) how far joints may return early, 0 to 1: not during a push or while a palm presses. None: always
     """
     out = rotations.copy()
     hinges = {bone.joint: bone for bone in bones_of(skeleton) if bone.name.endswith("elbow")}
@@ -141,7 +141,7 @@ def restrained(skeleton: Skeleton, rotations: Array, times: Array, calm: Array |
             back = quat.to_vector(quat.multiply(_clipped(skeleton, mirrored, given, hinges), quat.conjugate(given)))
             if not back.any():
                 continue
-            early = both_envelopes(times, np.clip(back, -MOST, MOST), SLOWLY)  # one that stopped at once would jerk
+            early = both_envelopes(times, np.clip(back, -MOST, MOST), SLOWLY)  # a joint that stops at once would jerk
             if calm is not None:
                 early *= calm[:, None]
             out[:, joint] = _clipped(skeleton, mirrored, quat.multiply(quat.from_vector(early), given), hinges)
@@ -149,7 +149,7 @@ def restrained(skeleton: Skeleton, rotations: Array, times: Array, calm: Array |
 
 
 def _clipped(skeleton: Skeleton, name: str, turns: Array, hinges: Mapping[int, Bone]) -> Array:
-    """Turns (f, 4) of one joint, those past its limits brought back to them."""
+    """Return turns (f, 4) of one joint, brought back to its limits where they are past them."""
     past = np.flatnonzero(beyond(skeleton, name, turns) > -MARGIN)
     out = turns.copy()
     if len(past):
@@ -159,7 +159,7 @@ def _clipped(skeleton: Skeleton, name: str, turns: Array, hinges: Mapping[int, B
 
 
 def _forward(bone: Bone, turns: Array) -> Array:
-    """Turns (f, 4) of an elbow, where they bend it backward no further than elbows do."""
+    """Return turns (f, 4) of an elbow, bent backward no further than elbows bend."""
     bend, twist = bend_and_twist(bone, turns).T
     past = np.flatnonzero(bend < ELBOW)
     out = turns.copy()
@@ -169,20 +169,20 @@ def _forward(bone: Bone, turns: Array) -> Array:
     return out
 
 
-# Hands that stay on the bar: a style moves the body, and IK closes the arms to where the palms lie.
+# Hands that stay on the bar: a style moves the body, and IK moves the palms back to their places on the bar.
 #
-# If an arm would be too short, trunk and pelvis give way towards the input, whose hands are there.
+# If an arm is too short, trunk and pelvis give way towards the input, whose hands are on the bar.
 
-REACH = 0.35  # seconds in which a hand comes to where the input has it, and goes again
-LONGEST = 0.995  # of an arm's length that it stretches
+REACH = 0.35  # seconds in which a hand goes to its place in the input, and leaves it again
+LONGEST = 0.995  # largest stretch of an arm, as a part of its length
 HOLD_ROUNDS, HOLD_STEP = 12, 0.25  # rounds of giving way, and the part of the way in each
-HOLD_SPAN = 0.5  # seconds over which she gives way, and comes back
-DEEP = 0.003  # metres that a forearm may be in the trunk
+HOLD_SPAN = 0.5  # seconds over which the body gives way, and returns
+DEEP = 0.003  # metres that a forearm may be inside the trunk
 _BODY = ("HumanoidRoot", "vl5", "vt10", "vt4", *(f"{s}_{n}" for s in "lr" for n in ("sternoclavicular", "shoulder")))
 
 
 def pin_hands(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
-    """Poses whose palms lie on the bar as the input's do, while they hold it; legs end in `feet`."""
+    """Return poses whose palms lie on the bar as in the input, while they hold it; legs end in `feet`."""
     skeleton = motion.skeleton
     share = hold_share(motion.grips, motion.times, REACH)
     if not share.any():
@@ -202,9 +202,9 @@ def pin_hands(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
 
 
 def _closed(skeleton: Skeleton, poses: Poses, given: tuple[Array, Array], share: Array) -> tuple[Array, Array]:
-    """Rotations with both arms closed, and where (f,) one of them, or its joints, cannot: 1, else 0.
+    """Rotations with both arms closed; and 1 for frames (f,) in which an arm is too short or past its limits, else 0.
 
-    given : places and turns of all joints of the input; share : (f, 2) how far hands hold
+    given : places and turns of all joints of the input; share : (f, 2) how far hands hold the bar
     """
     rotations = poses[0].copy()
     places, turned = world_transforms(skeleton, *poses)
@@ -244,7 +244,9 @@ def _closed(skeleton: Skeleton, poses: Poses, given: tuple[Array, Array], share:
 
 
 def _bend(upper: Array, lower: Array, distance: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Turn (f,) of an elbow, radians, with the wrist `distance` (f,) from the shoulder; where (f,) that is too far."""
+    """Return the turn (f,) of an elbow, radians, for a wrist `distance` (f,) from the shoulder; whether (f,) that is
+    too far.
+    """
     a, b = float(np.linalg.norm(upper)), float(np.linalg.norm(lower))
     axis, along = hinge_axis("elbow", lower), upper / a
     rest = float(np.arctan2(lower @ np.cross(axis, along), lower @ along))

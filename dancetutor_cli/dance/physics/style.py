@@ -1,4 +1,4 @@
-"""A style: how a ragdoll follows the dancer, from `configs/styles` or a file. The engine is imported only if one is
+"""A style, from `configs/styles` or a file: how a ragdoll follows the dancer. The engine is imported only if a style is
 used.
 """
 
@@ -15,11 +15,11 @@ from dancetutor_cli.run.reading import config_path, named_file
 from dancetutor_cli.run.schema import NOT_IN_FILES, THREE, Bounds, Names, Text
 from dancetutor_cli.run.yaml_files import load
 
-# The physics engine, imported only if a ragdoll is used: plain bakes never wait for it.
+# The physics engine, imported only if a ragdoll is used: bakes without a style do not wait for it.
 
 
 def engine() -> Any:
-    """The module `mujoco`. Raises UnavailableError, one line, where it is not installed or does not load."""
+    """Return the module `mujoco`. Raises UnavailableError, one line, if it is not installed or does not load."""
     try:
         import mujoco
     except ImportError as error:
@@ -31,19 +31,19 @@ def engine() -> Any:
 
 
 def is_installed() -> bool:
-    """Whether the engine is there, without loading it."""
+    """Whether the engine is installed, without loading it."""
     return find_spec("mujoco") is not None
 
 
 def _silent(_: str) -> None:
-    """The engine writes its warnings to the terminal and to a log in the current folder; the program reads them itself
-    instead.
+    """Replace the engine's output of warnings to the terminal and to a log in the current folder. The program reads the
+    warnings itself.
     """
 
 
-# What a style may change is what chapter 6 of the thesis on retargeting changes: springs and dampers, densities,
-# gravity, friction, external forces, disabled points, and where the points sit; and a second-order follower before the
-# springs.
+# A style may change the numbers that chapter 6 of the thesis on retargeting changes: springs and dampers, densities,
+# gravity, friction, external forces, disabled points, and the placement of the points. It may also have a second-order
+# follower before the springs.
 
 PARTS = ("pelvis", "spine", "chest", "head", "clavicles", "arms", "hands", "thighs", "shanks", "feet")
 FOLLOWED = ("pelvis", "chest", "arms", "head")
@@ -52,12 +52,13 @@ _Hertz = Annotated[float, Bounds(0, 60, "hertz")]
 _Damping = Annotated[float, Bounds(0, 10)]
 _Density = Annotated[float, Bounds(1, 20000, "kg/m^3")]
 _Force = Annotated[float, Bounds(-2000, 2000, "newtons")]
-_Part = Annotated[str, Names(("all", *PARTS))]  # `all`: of those that are not named
+_Part = Annotated[str, Names(("all", *PARTS))]  # `all`: of all parts without an own entry
 
 
 @dataclass(frozen=True, slots=True)
 class Spring:
-    """Of a part's retargeting points: kp = m (2 pi f)^2 and kd = 2 z m 2 pi f, m the part's mass at 1000 kg/m^3.
+    """The spring of a part's retargeting points: kp = m (2 pi f)^2 and kd = 2 z m 2 pi f, m the part's mass at 1000
+    kg/m^3.
 
     frequency, damping : f in hertz and z, each along the world's three axes (x aside, y up, z ahead)
     """
@@ -68,7 +69,7 @@ class Spring:
 
 @dataclass(frozen=True, slots=True)
 class Follower:
-    """A second-order system that a part's target goes through: y + k1 y' + k2 y'' = x + k3 x'.
+    """A second-order system that filters a part's target: y + k1 y' + k2 y'' = x + k3 x'.
 
     frequency : hertz; damping : 1 is critical; response : 0 starts slowly, above 1 overshoots, negative anticipates
     """
@@ -80,7 +81,7 @@ class Follower:
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """What counts for the whole body.
+    """The numbers for the whole body.
 
     gravity : m/s^2 downward; friction : of the feet on the floor; stiffness : N m s/rad, damper of every joint
     spring : N m/rad that turns every joint back to the rest pose
@@ -104,7 +105,7 @@ class Style:
     disabled : names of retargeting points that do nothing; follower : by `FOLLOWED`, None for none
     placement : of the points; limits, extra_points : whether there are any
     motion : numbers of `configs/motion.yaml` of the motion that the ragdoll follows
-    measures : by measure of the song, another style or blend, as `--style` takes it, that there is from there on
+    measures : by measure of the song, another style or blend, as for `--style`, that holds from that measure on
     """
 
     placement: Literal["end", "center", "hybrid"]
@@ -125,7 +126,7 @@ class Style:
 
 @cache
 def load_style(name: str) -> Style:
-    """A style of `configs/styles` by name, or of a file: what it does not name is as in `neutral`.
+    """Load a style of `configs/styles` by name, or from a file. Keys that the file does not have are as in `neutral`.
 
     Raises UsageError for an unknown name, FileError with the line for a file that is wrong.
     """

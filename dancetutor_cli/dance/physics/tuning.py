@@ -1,4 +1,4 @@
-"""Springs and densities for a body not seen before: a short search on a standard clip."""
+"""Springs and densities for a new body, by a short search on a standard clip."""
 
 from __future__ import annotations
 
@@ -19,20 +19,19 @@ from dancetutor_cli.dance.rig.body import PARTS as MASSES
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.run.errors import DancetutorError
 
-# Densities give each part the share of the body's mass that it has in a person. Then the search finds the frequency and
-# the damping of all springs with which the ragdoll follows the clip most closely, by the goals of one-on-one
-# simulation.
+# Densities give each part its share of the mass of a person. Then the search finds the frequency and the damping of all
+# springs with which the ragdoll follows the clip most closely, by the goals of one-on-one simulation.
 
 FREQUENCIES, DAMPINGS = (24.0, 28.0, 32.0, 36.0, 40.0), (0.4, 0.5, 0.65)
 STURDY = 22.0  # kg/m^2: a body's mass is this times the square of its height
-DENSITIES = (400.0, 3000.0)  # kg/m^3 that a part may have
+DENSITIES = (400.0, 3000.0)  # allowed kg/m^3 of a part
 OVER_SKULL = 0.17  # metres from the joint of the skull to the crown
 _ROUND = 0.6  # seconds of one swing of the standard clip
 
 
 @dataclass(frozen=True, slots=True)
 class Tuning:
-    """What a body changes of a style. stretch : factor of all frequencies; damping : of all dampings
+    """The changes of a style for a body. stretch : factor of all frequencies; damping : factor of all dampings
 
     density : by part, kg/m^3 where the style has 1000
     """
@@ -42,7 +41,7 @@ class Tuning:
     density: Mapping[str, float]
 
     def of(self, style: Style) -> Style:
-        """The style for this body."""
+        """Return the style for this body."""
         springs, points = (
             {
                 name: Spring(
@@ -57,12 +56,12 @@ class Tuning:
         return replace(style, springs=springs, points=points, density=density)
 
     def as_json(self) -> dict[str, Any]:
-        """Plain data."""
+        """Return the tuning as plain data."""
         return asdict(self)
 
     @classmethod
     def from_json(cls, data: Any) -> Tuning | None:
-        """The tuning in plain data; None if it is none."""
+        """Return the tuning in plain data; None if the data is not a tuning."""
         try:
             density = {part: float(data["density"][part]) for part in PARTS}
             values = (float(data["stretch"]), float(data["damping"]), *density.values())
@@ -72,7 +71,9 @@ class Tuning:
 
 
 def tuned(body: Skeleton, neutral: Style) -> Tuning:
-    """Search. body : named as the rig's; raises DancetutorError if the ragdoll follows with no springs at all."""
+    """Search the tuning. body : named as the rig's; raises DancetutorError if the ragdoll follows with no springs at
+    all.
+    """
     density, clip = _densities(body), standard_clip(body)
     base = neutral.springs["chest"]
     best: tuple[float, Tuning] | None = None
@@ -90,7 +91,7 @@ def tuned(body: Skeleton, neutral: Style) -> Tuning:
 
 
 def _score(clip: Motion, style: Style) -> float:
-    """The worst of the three figures in parts of its goal; infinite where the simulation fails."""
+    """Return the worst of the three figures in parts of its goal; infinite if the simulation fails."""
     try:
         mean, deviation, largest = through_ragdoll(clip, Blend.of(style)).distances.worst
     except DancetutorError:
@@ -99,7 +100,7 @@ def _score(clip: Motion, style: Style) -> float:
 
 
 def _densities(body: Skeleton) -> dict[str, float]:
-    """Kilograms per cubic metre with which each part weighs its share (de Leva's) of a sturdy person of this height."""
+    """Return kg/m^3 with which each part weighs its share (de Leva's) of a sturdy person of this height."""
     height = float(body.rest[body.index("skullbase")][1]) + OVER_SKULL
     own: dict[str, float] = dict.fromkeys(PARTS, 0.0)
     for bone in bones_of(body):
@@ -112,12 +113,12 @@ def _densities(body: Skeleton) -> dict[str, float]:
         wanted[part_of[name]] += share * times
         total += share * times
     mass = STURDY * height**2
-    wanted["clavicles"], wanted["spine"] = 0.05 * total, wanted["spine"] - 0.05 * total  # de Leva has them in the trunk
+    wanted["clavicles"], wanted["spine"] = 0.05 * total, wanted["spine"] - 0.05 * total  # de Leva has both in the trunk
     return {p: float(np.clip(NOMINAL * mass * wanted[p] / total / own[p], *DENSITIES)) for p in PARTS}
 
 
 def standard_clip(body: Skeleton) -> Motion:
-    """Treading on the spot just over the floor: knees, arms, forearms, trunk and head swing at their own paces."""
+    """Return a clip of treading just over the floor: knees, arms, forearms, trunk and head swing at different paces."""
     fps, seconds = 60, 2.4
     t = np.arange(round(seconds * fps) + 1) / fps
     w = 2 * np.pi * t / (2 * _ROUND)
