@@ -1,8 +1,8 @@
-"""Numbers of the motion that change over a song (`settings.SettingsCourse`), and how such a piece is danced.
+"""Numbers of the motion that change over a song (`settings.SettingsCourse`), and the mean of their states.
 
 Each step is planned with the numbers of its time. The body's path is planned over the same steps once for each state,
-and these paths are mixed while one state turns into the next one. No joint is turned before that, so feet and palms
-touch the same places in all states. Then poses are solved with the numbers of each state, and mixed.
+and these paths are mixed while one state turns into the next one. This happens before any joint is turned, so feet and
+palms touch the same places in all states. Then poses are solved with the numbers of each state, and mixed.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ class MeanHeight:
     changes: tuple[Span, ...]
 
     def at(self, times: Array) -> Array:
-        """(f,) at times (f,), seconds."""
+        """Return the height (f,) at times (f,), seconds."""
         weights = state_weights(self.changes, times)
         return np.asarray(sum(weights[:, k] * one.at(times) for k, one in enumerate(self.heights)))
 
 
 def mean_feet(feet: Sequence[Feet], weights: Array) -> Feet:
-    """Both feet as the mean of those of each state; weights (f, k). All have the same plan, so they stand together."""
+    """Both feet as the mean of the states; weights (f, k). All states have the same plan, so feet stand together."""
     sides = []
     for paths in zip(*feet, strict=True):
         ball = np.einsum("fk,kfx->fx", weights, np.array([p.ball for p in paths]))
@@ -55,14 +55,14 @@ def mean_feet(feet: Sequence[Feet], weights: Array) -> Feet:
 
 
 def mean_of_states(skeleton: Skeleton, poses: Sequence[Poses], weights: Array) -> Poses:
-    """The mean of poses that have the same feet, each with its weight (f, k); legs end in the feet."""
+    """Return the mean of poses that have the same feet, each with its weight (f, k); legs end in the feet."""
     rotations = quat.mean([p.rotations for p in poses], weights)
     root = np.einsum("fk,kfx->fx", weights, np.array([p.root for p in poses]))
     feet = [feet_of(skeleton, p.rotations, p.root) for p in poses]
     places = np.einsum("fk,kfsx->fsx", weights, np.array([f.places for f in feet]))
     turns = quat.mean([f.turns for f in feet], weights)
     mean = Poses(*repinned(skeleton, (rotations, root), AnkleTracks(places, turns)))
-    whole = weights.max(axis=1) >= WHOLE  # there nothing is mixed
+    whole = weights.max(axis=1) >= WHOLE  # nothing is mixed in these frames
     for k, pose in enumerate(poses):
         own = whole & (weights[:, k] >= WHOLE)
         mean.rotations[own], mean.root[own] = pose.rotations[own], pose.root[own]
@@ -70,7 +70,7 @@ def mean_of_states(skeleton: Skeleton, poses: Sequence[Poses], weights: Array) -
 
 
 def mean_body(bodies: Sequence[Trajectory], changes: Sequence[Span]) -> Trajectory:
-    """The mean of the body's paths in all states, each with the weight of its state at the same even times."""
+    """Return the mean of the body's paths in all states, each with the weight of its state at the same even times."""
     first = bodies[0]
     weights = state_weights(changes, first.times)
     paths = {}

@@ -1,4 +1,4 @@
-"""How a foot moves in the air: its pace, and its path around the standing foot, which bends as little as possible."""
+"""The path of a foot in the air: its pace, and its detour around the standing foot, which is as small as possible."""
 
 from __future__ import annotations
 
@@ -18,24 +18,23 @@ from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
-# How far a swing has come at each part of its time, and how much there is of it if time is short.
+# How far a swing has come at each part of its time, and how much it is reduced if time is short.
 
 
 def reduction(duration: ArrayLike, fast: float, longest: float) -> Array:
-    """How much a move is cut for lack of time: 0 at `longest`, 1 at `fast` or less, growing as a cube
-    (thesis 5.6.1)."""
+    """How much a move is reduced for lack of time: 0 at `longest`, 1 at `fast` or less, as a cube (thesis 5.6.1)."""
     s = np.clip((longest - np.asarray(duration, dtype=np.float64)) / max(longest - fast, 1e-9), 0.0, 1.0)
     return np.asarray(s**3)
 
 
 def evenness(duration: ArrayLike, step: StepSettings) -> Array:
-    """How evenly a foot moves that has this many seconds for a step: 0 slow at both ends, 1 at one speed."""
+    """Return how evenly a foot moves in a step of `duration` seconds: 0 slow at both ends, 1 at one speed."""
     missing = step.even_slow - np.asarray(duration, dtype=np.float64)
     return np.asarray(np.clip(missing / max(step.even_slow - step.even_quick, 1e-9), 0.0, 1.0))
 
 
 def travelled(s: ArrayLike, step: StepSettings, even: ArrayLike = 0.0, low: ArrayLike = 0.0) -> Array:
-    """How far over the ground a swing has come at each part of its time.
+    """Return how far over the ground a swing has come at each part of its time.
 
     A cubic, slow at both ends: of the curves from rest to rest that were tried, its quick parts throw the body aside
     least. That holds for steps longer than a tenth of a second. Shorter ones go at one speed: the heavy body does not
@@ -52,14 +51,14 @@ def travelled(s: ArrayLike, step: StepSettings, even: ArrayLike = 0.0, low: Arra
 
 
 def _at_one_speed(s: Array, ends: float) -> Array:
-    """From rest to rest, gaining speed and losing it in so long a part of the time at both ends."""
+    """Return a way from rest to rest that gains and loses its speed in a part `ends` of the time at both ends."""
     speed = 1.0 / (1.0 - ends)
     first, last = np.minimum(s, ends), np.maximum(s - (1.0 - ends), 0.0)
     return np.asarray(speed * (s - ends / 2 + ((ends - first) ** 2 - last**2) / (2.0 * ends)))
 
 
 def risen(s: Array, step: StepSettings, even: ArrayLike = 0.0) -> Array:
-    """How high a foot is in a step, 0 to 1, at each part of its time; it meets the ground at a definite speed.
+    """Return how high a foot is in a step, 0 to 1, at each part of its time; it meets the ground at a definite speed.
 
     The more evenly it moves, the sooner it is up and the later it is down, because a foot near the ground must not
     slide.
@@ -69,46 +68,44 @@ def risen(s: Array, step: StepSettings, even: ArrayLike = 0.0) -> Array:
 
 
 def hovering(s: Array) -> Array:
-    """How high a foot is that is up at once and down late, 0 to 1."""
+    """Return how high a foot is, 0 to 1, that rises at once and lands late."""
     return np.asarray(1.0 - (2.0 * s - 1.0) ** 4)
 
 
 def swung(s: ArrayLike, step: StepSettings) -> Array:
-    """How far a foot has turned at each part of its swing: a little sooner than it lands."""
+    """Return how far a foot has turned at each part of its swing; it ends its turn a little before it lands."""
     return smooth(np.asarray(s, dtype=np.float64) / step.turned)
 
 
-# A swinging foot goes around the standing one: shoes are capsules, and the path bends as little as it must.
+# A swinging foot goes around the standing one: shoes are capsules, and the path bends as little as necessary.
 
-LATE_PRICE = 1.0  # metres of detour that weigh as much as a foot that is late by the whole way
+LATE_PRICE = 1.0  # metres of detour with the same weight as a foot that is late by the whole way
 
 
 def _ways(sides: ArrayLike, ahead: int, late: tuple[float, ...]) -> Array:
-    """Detours (k, 3), smallest first: metres sideways at the middle of a path, metres along it (in steps of 6 cm to
-    each side), and how late they are, as in `Bulge`.
-    """
+    """Detours (k, 3), smallest first: metres sideways and along the path at its middle, and lateness as in `Bulge`."""
     grid = np.meshgrid(sides, np.arange(-ahead, ahead + 1) * 0.06, late)
     ways = np.column_stack([axis.ravel() for axis in grid])
     return np.asarray(ways[np.argsort(np.abs(ways) @ [1.0, 1.0, LATE_PRICE], kind="stable")])
 
 
-_WAYS = (  # far ones, and late ones, which are quick in between, are tried only if no other one works
+_WAYS = (  # far detours, and late ones, which are quick in between, are tried only if no other one fits
     _ways(np.arange(-12, 13) * 0.03, 2, (0.0,)),
     _ways(np.arange(-16, 17) * 0.03, 5, (0.0,)),
     _ways(np.arange(-8, 9) * 0.06, 4, (0.08, 0.16, 0.24, 0.36)),
 )
-SHARES = np.linspace(0.05, 0.95, 37)  # of a swing's time, at which shoes are looked at
+SHARES = np.linspace(0.05, 0.95, 37)  # parts of a swing's time at which shoes are compared
 ANKLE = ball_to_ankle(dancer_skeleton()) - BALL_AHEAD  # metres by which the ankle lies behind the middle of the shoe
-WRONG = 0.10  # metres of missing room that weigh as much as a radian by which the legs are crossed too far
-TOLERATED = 0.004, 0.006, 0.0  # metres of room that a way may lack before farther or later ones are tried
+WRONG = 0.10  # metres of missing room with the same weight as a radian by which the legs cross too far
+TOLERATED = 0.004, 0.006, 0.0  # metres of room that may be missing before farther or later detours are tried
 SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on it
 
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """A swing from one place of the ball (2,) to another, and how the foot is turned at both, radians.
+    """A swing from one place of the ball (2,) to another, with the yaws of the foot at both, radians.
 
-    hips : yaw of the body at both, None where legs are not looked at; even : as of `evenness`
+    hips : yaw of the body at both, None if legs are not checked; even : as from `evenness`
     """
 
     start: Array
@@ -120,7 +117,7 @@ class Way:
 
 
 def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings, outward: float) -> Bulge:
-    """What to add to a straight path, so that the shoes stay `step.apart` between their middle lines.
+    """Return the detour to add to a straight path, so that the middle lines of the shoes stay `step.apart` apart.
 
     Legs must not go through each other either: the detour leads around the other foot on the side to which the hips
     turn.
@@ -163,15 +160,15 @@ def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings,
 
 @lru_cache(maxsize=256)
 def _by_share(step: StepSettings, even: float) -> tuple[Array, Array]:
-    """How far a swing has come at the `SHARES`, and how far it has turned; not to be written to."""
+    """How far a swing has come at the `SHARES`, and how far it has turned; callers must not change the arrays."""
     return travelled(SHARES, step, even), swung(SHARES, step)
 
 
 def wrung(way: Way, line: Array, step: StepSettings) -> Array:
-    """How much farther (...) the legs cross on the way than they may, radians; 0 if they do not.
+    """Return by how much (...) the legs cross too far on the way, radians; 0 if they do not.
 
-    line : (..., k, 2) from the right ankle to the left one at the `SHARES`. Its angle is followed from the start: a leg
-    that goes around the wrong side of the other foot has gone through the other leg, and its angle grows.
+    line : (..., k, 2) from the right ankle to the left one at the `SHARES`. Its angle is followed from the start. If a
+    leg goes around the wrong side of the other foot, it has gone through the other leg, and the angle grows.
     """
     if way.hips is None:
         return np.zeros(line.shape[:-2])
@@ -186,29 +183,27 @@ def wrung(way: Way, line: Array, step: StepSettings) -> Array:
 
 
 def enough(gaps: Array, e: Array, apart: float) -> Array:
-    """Room (k,) that a way must have. Its ends are given, so it is at most what there is at both. e : how far it has
-    come
-    """
+    """The required room (k,) of a way: at most the room at its ends, which are given. e : how far the swing has come"""
     return np.asarray(np.minimum(apart, gaps[0] + e * (gaps[-1] - gaps[0])))
 
 
 def shoe_line(middle: Array, ahead: Array) -> tuple[Array, Array]:
-    """Both ends (..., 2) of a shoe's middle line; ahead (..., 2) : unit vectors along it."""
+    """Return both ends (..., 2) of a shoe's middle line; ahead (..., 2) : unit vectors along it."""
     return middle - HALF_SHOE * ahead, middle + HALF_SHOE * ahead
 
 
 def bend(share: Array) -> Array:
-    """How much of a detour there is (...) at each share (...) of the way: it starts at once, for shoes are long."""
+    """Return the part of a detour (...) at each share (...) of the way: it starts at once, because shoes are long."""
     return np.asarray(np.sin(np.pi * share))
 
 
 def lag(share: Array) -> Array:
-    """How late a way is (...) at each share (...) of it."""
+    """Return how late a way is (...) at each share (...) of it."""
     return np.asarray(np.sin(2.0 * np.pi * share))
 
 
 def headings(yaw: Array) -> Array:
-    """Unit vectors (..., 2), x and z, of yaws (...)."""
+    """Return unit vectors (..., 2), x and z, of yaws (...)."""
     out = np.empty((*np.shape(yaw), 2))
     np.sin(yaw, out=out[..., 0])
     np.cos(yaw, out=out[..., 1])
@@ -216,7 +211,7 @@ def headings(yaw: Array) -> Array:
 
 
 def gaps_at(balls: Array, yaws: Array, other: Array, other_yaw: float) -> Array:
-    """Least distance (k,) in metres between the middle lines of shoes, balls (k, 2) and yaws (k,), and another shoe."""
+    """The least distances (k,) in metres of the middle lines of shoes, balls (k, 2), yaws (k,), to another shoe."""
     ahead = headings(yaws)
     middle, still = balls - BALL_AHEAD * ahead, headings(np.array(other_yaw))
     rest = other - BALL_AHEAD * still
@@ -224,7 +219,7 @@ def gaps_at(balls: Array, yaws: Array, other: Array, other_yaw: float) -> Array:
 
 
 def over(panels: Array, balls: Array, toes: Array, air: float) -> NDArray[np.bool_]:
-    """Which shoes, balls (k, 2) and toes (k,) in radians, are nearer than `air`, metres, to some panels (p, 2)."""
+    """Return whether shoes, balls (k, 2) and toes (k,) in radians, are nearer than `air`, metres, to panels (p, 2)."""
     if not len(panels):
         return np.zeros(len(balls), dtype=bool)
     ahead = headings(toes)
@@ -235,7 +230,7 @@ def over(panels: Array, balls: Array, toes: Array, air: float) -> NDArray[np.boo
 
 
 def segment_gaps(a: Array, b: Array, c: Array, d: Array) -> Array:
-    """Least distance (...) between segments a-b and c-d in the plane, (..., 2) each; c-d may be one for all."""
+    """The least distance (...) between segments a-b and c-d in the plane, (..., 2) each; c-d may be one for all."""
     same = (x if x.shape == a.shape else np.broadcast_to(x, a.shape) for x in (a, b, c, d))
     p, q, r, t = (np.ascontiguousarray(x).reshape(-1, 2) for x in same)
     out = np.empty(a.size // 2)
@@ -258,7 +253,7 @@ def _segment_gaps(a: Array, b: Array, c: Array, d: Array, out: Array) -> None:
 
 @inner_kernel
 def _point_gap(x: float, y: float, line: tuple[float, float, float, float]) -> float:
-    """From a point to a segment, given as the places of its ends."""
+    """Return the distance from a point to a segment, given as the places of its ends."""
     px, py = x - line[0], y - line[1]
     ux, uy = line[2] - line[0], line[3] - line[1]
     s = min(max((px * ux + py * uy) / (ux * ux + uy * uy), 0.0), 1.0)

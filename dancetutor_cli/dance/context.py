@@ -1,4 +1,4 @@
-"""What stands around the dancer while a song is danced: panels, the bar behind her, settings, her skeleton."""
+"""The surroundings of the dancer while a song is danced: panels, the bar behind her, settings, her skeleton."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.feet.pads import Pad
 
 
-# Where things are in the world: panels on the ground, and where on a panel a foot comes down.
+# Places in the world: panels on the ground, and the places on a panel where a foot lands.
 
 HALF_PANEL = PANEL / 2
 PHASE = 1.9  # seconds; no divisor of any period of the waves
@@ -32,36 +32,36 @@ HOLD_GRACE = 0.25  # seconds that a held note may be let go: StepMania's TimingW
 
 
 def panels_on_ground(pad: Pad) -> Array:
-    """World (x, z) of every panel's centre, (c, 2); the pad's centre is the origin and +Z the screen."""
+    """World (x, z) of every panel's centre, (c, 2); the pad's centre is the origin and +Z points to the screen."""
     centre = np.asarray(pad.centre, dtype=np.float64)
     panels = np.asarray(pad.panels, dtype=np.float64) - centre
     return np.asarray(panels * np.array([-PANEL, PANEL]))
 
 
 def squares_on_ground(pad: Pad) -> Array:
-    """World (x, z) of the middle of each square of three by three panels, (s, 2)."""
+    """Return world (x, z) of the middle of each square of three by three panels, (s, 2)."""
     return np.asarray((pad.squares - np.asarray(pad.centre, dtype=np.float64)) * np.array([-PANEL, PANEL]))
 
 
 def heading(yaw: float) -> Array:
-    """Unit vector (x, z) that somebody turned by `yaw` radians looks along."""
+    """Return the unit vector (x, z) in the direction of a yaw, radians."""
     return np.array([np.sin(yaw), np.cos(yaw)])
 
 
 def ball_of(middle: Array, yaw: float) -> Array:
-    """The ball of a foot whose sole has its middle there."""
+    """Return the ball of a foot from the middle of its sole."""
     return np.asarray(middle + BALL_AHEAD * heading(yaw))
 
 
 def middle_of(ball: Array, yaw: float) -> Array:
-    """The middle of the sole of a foot whose ball is there."""
+    """Return the middle of the sole of a foot from its ball."""
     return np.asarray(ball - BALL_AHEAD * heading(yaw))
 
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """Where a foot may be: a centre (2,), and how far (2,) its ball and the middle of its sole may be off along x and
-    z.
+    """The allowed places of a foot: a centre (2,), and the distances (2,) of its ball and of the middle of its sole
+    from it along x and z.
     """
 
     centre: Array
@@ -70,34 +70,35 @@ class Spot:
 
 
 def room_on(panels: Array, column: int, step: StepSettings) -> Array:
-    """How far (2,) along x and z the ball of a foot may be from a panel's centre; panels (c, 2)."""
+    """Return how far (2,) along x and z the ball of a foot may be from a panel's centre; panels (c, 2)."""
     away = np.abs(panels - panels[column])
     beside = [((np.abs(away[:, k] - PANEL) < 0.01) & (away[:, 1 - k] < HALF_PANEL)).any() for k in (0, 1)]
     return HALF_PANEL - np.where(beside, step.neighbour_margin, step.ball_margin)
 
 
 def on_panel(ball: Array, toes: float, spot: Spot) -> Array:
-    """The place nearest to this ball (2,) at which it and the middle of the sole are where they may be."""
+    """The place nearest to this ball (2,) at which the ball and the middle of the sole are in their allowed places."""
     centre, room, ahead = spot.centre, spot.room, BALL_AHEAD * heading(toes)
     ball = np.minimum(np.maximum(ball, centre - room), centre + room)  # np.clip takes three times as long
     low, high = centre - spot.middle_room, centre + spot.middle_room
     return np.asarray(np.minimum(np.maximum(ball - ahead, low), high) + ahead)
 
 
-# What does not change while a song is danced. Every stage gets it as one object.
+# The objects that do not change while a song is danced. Every stage gets them as one object.
 
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """Who dances, how, and where. Pickles.
+    """The dancer, the settings of her motion, and her surroundings. It can be pickled.
 
-    skeleton : hers; settings : the numbers of her motion
+    skeleton : of the dancer; settings : the numbers of her motion
     panels : (c, 2) world x and z of every panel's centre; squares : (s, 2) of the middle of each square of nine panels
     ground : the pad as a rectangle, and the floor around it
-    beats : seconds of the song's beats, in order; bar : what she holds on to, None for no bar
-    stays : she does not walk off after the last step; course : settings that change over the song, None: they do not
-    person : 0 for a dancer alone, else which of those beside each other: each has a chance and a phase of her own
-    sides : from which she comes and to which she goes, 0 left or 1 right, None: as the notes say
+    beats : seconds of the song's beats, in order; bar : the bar that she holds, None for no bar
+    stays : whether she does not walk off after the last step; course : settings that change over the song, None:
+    constant
+    person : 0 for a single dancer, else her number beside the other one: each has her own random choices and phase
+    sides : the side from which she comes and the side to which she goes, 0 left or 1 right, None: as the notes decide
     """
 
     skeleton: Skeleton
@@ -113,11 +114,11 @@ class Context:
     person: int = 0
 
     def at(self, second: float) -> Context:
-        """The context with the settings of a second."""
+        """Return the context with the settings of a second."""
         return self if self.course is None else replace(self, settings=self.course.at(second))
 
     def states(self, start: float, end: float) -> tuple[tuple[Context, ...], tuple[Span, ...]]:
-        """The context with the settings of each state between two seconds, and when each turns into the next one."""
+        """The context with the settings of each state between two seconds, and the times of changes between states."""
         if self.course is None:
             return (self,), ()
         part = self.course.within(start, end)
@@ -125,40 +126,40 @@ class Context:
 
     @property
     def own(self) -> tuple[int, ...]:
-        """What is added to a random seed, so that two dancers with the same notes are two people; () for a single
+        """The numbers that are added to a random seed, so that two dancers with the same notes differ; () for a single
         dancer.
         """
         return (self.person,) if self.person else ()
 
     @property
     def phase(self) -> float:
-        """Seconds by which this dancer's breath, blinks and slow movements are ahead of those of a single dancer."""
+        """Seconds by which this dancer's breath, blinks and slow movements are ahead of a single dancer's."""
         return PHASE * self.person
 
 
 def context_of(pad: Pad, settings: MotionSettings, beats: tuple[float, ...] = (), bar: Bar | None = None) -> Context:
-    """The context of the project's own dancer on a pad."""
+    """Return the context of the project's own dancer on a pad."""
     panels = panels_on_ground(pad)
     low, high = panels.min(axis=0) - HALF_PANEL, panels.max(axis=0) + HALF_PANEL
     ground = Ground((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), settings.walk.floor)
     return Context(dancer_skeleton(), settings, panels, squares_on_ground(pad), ground, beats, bar)
 
 
-# The bar behind the dancer: its place, how a dancer who holds it stands, and when each hand is on it.
+# The bar behind the dancer: its place, the stand of a dancer who holds it, and when each hand is on it.
 
 SEED = 19981121
-ACROSS_SLOWER = 1.5  # a hand that crosses over takes this many times as long to the rail
+ACROSS_SLOWER = 1.5  # factor of the time that a hand needs to reach the rail if it crosses over
 
 
 def bar_of(pad: Pad, settings: BarSettings) -> Bar:
-    """The bar of a pad: a rail behind each of its squares of nine panels."""
+    """Return the bar of a pad: a rail behind each of its squares of nine panels."""
     spans = tuple((float(x - settings.posts), float(x + settings.posts)) for x in np.sort(squares_on_ground(pad)[:, 0]))
     rear = float(panels_on_ground(pad)[:, 1].min()) - HALF_PANEL
     return Bar(settings.height, rear - settings.behind, settings.radius, spans)
 
 
 def holding(settings: MotionSettings) -> MotionSettings:
-    """The settings for a dancer who holds the bar: she stands a little lower, because her feet are far in front of her.
+    """The settings for a dancer who holds the bar: she stands a little lower, because her feet are far ahead of her.
 
     In streams she goes down a little, and her chest faces the screen more, because both hands hold the bar. For jumps
     she goes down half as far, because the bar carries a part of the weight.
@@ -173,18 +174,18 @@ def holding(settings: MotionSettings) -> MotionSettings:
 
 
 def on_rail(x: Array, bar: Bar, from_end: float) -> Array:
-    """The nearest place on the rail, so far from its ends, metres."""
+    """Return the nearest place on the rail, at least `from_end` metres from its ends."""
     choices = np.stack([np.clip(x, low + from_end, high - from_end) for low, high in bar.spans])
     nearest = np.argmin(np.abs(choices - x), axis=0)
     return np.asarray(np.take_along_axis(choices, nearest[None], axis=0)[0])
 
 
 def grip_phrases(plan: Plan, times: Array, yaw: Array, settings: BarSettings) -> tuple[Flags, Array]:
-    """Which hands (n, 2) may be on the rail at even times (n,), and how far (n,) beside the body each is, metres.
+    """Return which hands (n, 2) may be on the rail at even times (n,), and how far (n,) beside the body, metres.
 
-    A song is divided into phrases of some seconds. In each, she holds on with both hands, as mostly in quick ones, or
-    with one: when she is turned, with the hand on the rail's side, otherwise with either. Chance decides, always in the
-    same way for a song.
+    A song is divided into phrases of some seconds. In each, the dancer holds the bar with both hands, as mostly in
+    quick phrases, or with one: when she is turned, with the hand on the rail's side, otherwise with either. The choices
+    are random, but always the same for a song.
 
     yaw : (n,) radians that the chest is turned
     """
@@ -200,14 +201,14 @@ def grip_phrases(plan: Plan, times: Array, yaw: Array, settings: BarSettings) ->
         if one < (settings.one_quick if quick else settings.one_slow):
             turned = float(yaw[near].mean())
             if abs(turned) > np.radians(settings.turned):
-                side = int(turned < 0.0)  # turned to the left she has the rail at her left
+                side = int(turned < 0.0)  # turned to the left, the dancer has the rail at her left
             holds[near, 1 - side] = False
         start = end
     return holds, apart
 
 
 def hold_share(grips: tuple[Grip, ...], times: Array, reach: float) -> Array:
-    """How much each hand is at the rail, (n, 2), 0 to 1: all of it from a grip's start to its end."""
+    """Return how much each hand is at the rail, (n, 2), 0 to 1: 1 from a grip's start to its end."""
     out = np.zeros((len(times), 2))
     for grip in grips:
         near = around(grip, times, reach)
@@ -216,23 +217,23 @@ def hold_share(grips: tuple[Grip, ...], times: Array, reach: float) -> Array:
 
 
 def around(grip: Grip, times: Array, reach: float) -> slice:
-    """Those of the times (n,) at which the hand of a grip is on its way or there."""
+    """Return the slice of the times (n,) at which the hand of a grip is on its way or at the rail."""
     long = way_time(grip, reach)
     return slice(*np.searchsorted(times, (grip.start - long, grip.end + long)).tolist())
 
 
 def way_time(grip: Grip, reach: float) -> float:
-    """Seconds that the hand of a grip takes to the rail and from it; in front of the body its way is longer."""
+    """The seconds that the hand of a grip needs to the rail and from it; in front of the body, its way is longer."""
     return ACROSS_SLOWER * reach if grip.across else reach
 
 
 def grip_share(grip: Grip, times: Array, reach: float) -> Array:
-    """How much of a grip there is at each time (n,), 0 to 1; reach : seconds to the rail and from it."""
+    """Return the share of a grip at each time (n,), 0 to 1; reach : seconds to the rail and from it."""
     long = way_time(grip, reach)
     return smooth((times - grip.start + long) / long) * smooth((grip.end + long - times) / long)
 
 
 def held_at(motion: Motion, second: float) -> list[Contact]:
-    """The notes that feet hold at a second. They stay among the contacts, so a report counts them as missed."""
+    """Return the notes that feet hold at a second. They stay among the contacts, so a report counts them as missed."""
     feet = (c for c in motion.contacts if c.limb < Limb.LEFT_HAND and c.kind == StepKind.HOLD)
     return [c for c in feet if c.start < second and c.end > second + HOLD_GRACE]

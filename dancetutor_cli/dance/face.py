@@ -1,5 +1,5 @@
 """The dancer's face: narrowed lids in hard passages, a breath and a smile after them, smiles in easy ones, and eyes
-that look to where the next foot will step.
+that look at the place of the next step.
 
 A passage is hard if it has quick steps around it (`height.tempo_factor`, averaged over some seconds). After a hard
 passage its effect fades at an even rate, so relief is the largest value so far, minus the present one. The mesh has
@@ -35,9 +35,9 @@ BLINK_SEED, PEEK_SEED, SMILE_SALT = 20140513, 20260611, 3
 
 @dataclass(frozen=True, slots=True)
 class Mood:
-    """What the dancer's face shows at f times, (f,) 0 to 1 each.
+    """The expression of the dancer's face at f times, (f,) 0 to 1 each.
 
-    hard : she concentrates; relief : how much harder it was a moment ago; easy : it has been easy for a while
+    hard : her concentration; relief : how much harder the dance was a moment ago; easy : how long it has been easy
     """
 
     hard: Array
@@ -47,14 +47,14 @@ class Mood:
 
 @dataclass(frozen=True, slots=True)
 class Peeks:
-    """Looks at where the next foot goes, at f times. share : (f,) 0 to 1; places : (f, 3) metres in the world"""
+    """Looks at the place of the next step, at f times. share : (f,) 0 to 1; places : (f, 3) metres in the world"""
 
     share: Array
     places: Array
 
 
 def mood_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Mood:
-    """Her mood at times `at` (f,), seconds, from the steps around the body's even times."""
+    """Return the dancer's mood at times `at` (f,), seconds, from the steps around the body's even times."""
     numbers, times = context.settings.face, body.times
     effort = lately(tempo_factor(plan, times, context.settings), 1.0 / float(times[1] - times[0]), numbers.around)
     effort = np.maximum(effort, body.reaching.max(axis=1))
@@ -67,9 +67,10 @@ def mood_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Mood:
 
 
 def peeks_at(plan: Plan, free: Array, at: Array, context: Context) -> Peeks:
-    """Peeks at times `at` (f,): before some of the steps for which there is time, and before all that end a wait.
+    """Peeks at times `at` (f,): before some of the steps with enough time, and before each step that ends a wait.
 
-    free : (f,) 0 where hands are busy. Chance depends on the time of a step, so mirror images peek as mirror images.
+    free : (f,) 0 where hands are busy. Random choices depend on the time of a step, so mirror images peek as mirror
+    images.
     """
     numbers, song = context.settings.face, song_of(plan, context)
     out = Peeks(np.zeros(len(at)), np.zeros((len(at), 3)))
@@ -90,7 +91,7 @@ def peeks_at(plan: Plan, free: Array, at: Array, context: Context) -> Peeks:
 
 
 def with_peeks(glances: Glances, mood: Mood, peeks: Peeks, free: Array, numbers: FaceSettings) -> Glances:
-    """Glances in which the head goes down to look at a panel and leaves out its other movements. In hard passages it is
+    """Return glances in which the head lowers to look at a panel, without its other movements. In hard passages it is
     lower, too. free : (f,) as in `peeks_at`
     """
     rest = 1.0 - peeks.share
@@ -100,7 +101,7 @@ def with_peeks(glances: Glances, mood: Mood, peeks: Peeks, free: Array, numbers:
 
 
 def add_face(skeleton: Skeleton, poses: Poses, at: Array, shown: tuple[Mood, Peeks, Plan], context: Context) -> None:
-    """Turn lids, jaw and eyes at times `at` (f,), in place. shown : what she does, too"""
+    """Turn lids, jaw and eyes at times `at` (f,), in place. shown : mood, peeks, and the plan"""
     (mood, peeks, plan), rotations = shown, poses.rotations
     numbers, layers = context.settings.face, context.settings.layers
     down = np.zeros(len(at))
@@ -119,17 +120,17 @@ def add_face(skeleton: Skeleton, poses: Poses, at: Array, shown: tuple[Mood, Pee
 
 
 def _phrases(song: Song, at: Array, numbers: FaceSettings) -> Array:
-    """How far (f,) she smiles in easy passages, 0 to 1: for a while, then not, never twice in the same way."""
+    """Return how far (f,) the dancer smiles in easy passages, 0 to 1: for a while, then not, always in other ways."""
     return numbers.easy * smooth(slowly(song, at, numbers.smile_time, SMILE_SALT) / 0.6)
 
 
 def _laugh(at: Array, last: float, layers: LayerSettings) -> Array:
-    """She laughs (f,), 0 to 1, after the last note."""
+    """Return how far (f,) the dancer laughs after the last note, 0 to 1."""
     return smooth((at - last - layers.laugh_after) / layers.laugh_rise)
 
 
 def _look_at(skeleton: Skeleton, poses: Poses, which: NDArray[np.int64], peeks: Peeks, numbers: FaceSettings) -> Array:
-    """Turn the eyes of these frames to their places, as far as eyes go; how far down (k,) they go, radians."""
+    """Turn the eyes of these frames to their places, within limits; return how far down (k,) they turn, radians."""
     places, world = world_transforms(skeleton, poses.rotations[which], poses.root[which])
     head = quat.conjugate(world[:, skeleton.index("skullbase")])
     lowest, most = np.zeros(len(which)), float(np.radians(numbers.aside))
@@ -150,7 +151,7 @@ def _set(skeleton: Skeleton, rotations: Array, joint: str, angle: Array) -> None
 
 
 def eyelids(times: Array, every: float, blink: float) -> Array:
-    """How far the lids are closed (f,), 0 to 1: blinks of `blink` seconds, always at the same times."""
+    """Return how far the lids are closed (f,), 0 to 1: blinks of `blink` seconds, always at the same times."""
     cell = np.floor(times / every).astype(np.int64)
     out = np.zeros_like(times)
     for c in np.unique(cell):

@@ -1,4 +1,4 @@
-"""Gaits: how pelvis, chest and hands go with the steps of a walk, and how two gaits are blended.
+"""Gaits: how pelvis, chest and hands move with the steps of a walk, and how two gaits are blended.
 
 A gait's curves use normalised time: 0 is a landing of the left foot, 0.5 one of the right foot, 1 the next one of the
 left foot. Two gaits are blended pose by pose at the same normalised time, and the blend's cycle takes (T2 - T1) a + T1
@@ -46,11 +46,12 @@ class Gait:
 
 @dataclass(frozen=True, slots=True)
 class GaitPose:
-    """What a gait adds at f times; angles in radians.
+    """The movements that a gait adds at f times; angles in radians.
 
-    roll : left hip up; pelvis_yaw, chest_yaw : to the left; hips : the pelvis leans forward; arch : the chest back
-    hands : (f, 2) metres that the left and right hand are swung forward; own : (f,) 0 to 1, how much of the hands' way
-    is the gait's; sink : metres that the body is lower
+    roll : left hip up; pelvis_yaw, chest_yaw : to the left; hips : the pelvis leans forward; arch : the chest leans
+    back
+    hands : (f, 2) metres that the left and right hand are swung forward; own : (f,) 0 to 1, the gait's share of the
+    hands' movement; sink : metres that the body is lower
     """
 
     roll: Array
@@ -64,7 +65,7 @@ class GaitPose:
 
 
 def gait_pose(gait: Gait, phase: Array, walk: WalkSettings) -> GaitPose:
-    """The pose of a gait at normalised times (f,)."""
+    """Return the pose of a gait at normalised times (f,)."""
     angle = 2 * np.pi * phase
     ones = np.ones_like(phase)
     # the left foot lands at 0 and bears the body until 0.6: its hip is highest half-way through that
@@ -86,14 +87,14 @@ def gait_pose(gait: Gait, phase: Array, walk: WalkSettings) -> GaitPose:
 
 
 def blended_pose(gaits: tuple[Gait, Gait], share: float, phase: Array, walk: WalkSettings) -> GaitPose:
-    """Both gaits' poses at the same normalised times (f,), `share` (0 to 1) of the quick one."""
+    """The blend of both gaits' poses at the same normalised times (f,), with `share` (0 to 1) of the quick one."""
     a, b = (gait_pose(gait, phase, walk) for gait in gaits)
     mixed = (getattr(a, f.name) + share * (getattr(b, f.name) - getattr(a, f.name)) for f in fields(GaitPose))
     return GaitPose(*mixed)
 
 
 def blended(slow: Gait, quick: Gait, share: float) -> Gait:
-    """The numbers of the blend; its period is (T2 - T1) share + T1."""
+    """Return the numbers of the blend; its period is (T2 - T1) share + T1."""
     values = {f.name: getattr(slow, f.name) for f in fields(Gait)}
     return Gait(**{name: (getattr(quick, name) - value) * share + value for name, value in values.items()})
 
@@ -108,7 +109,7 @@ class _Gaits:
 
 @cache
 def load_gait(name: str) -> tuple[Gait, Gait]:
-    """The slow and the quick form of a gait: one of `configs/gaits` by name, or a file.
+    """Load the slow and the quick form of a gait: one of `configs/gaits` by name, or a file.
 
     Raises UsageError for an unknown name, FileError with the line for a file that is wrong.
     """
@@ -117,7 +118,7 @@ def load_gait(name: str) -> tuple[Gait, Gait]:
 
 
 def walking(walks: tuple[Route, ...], times: Array, settings: WalkSettings) -> GaitPose | None:
-    """What all walks add at `times` (f,), fading in and out; None if nobody walks."""
+    """Return the movements of all walks at `times` (f,), fading in and out; None without a walk."""
     total: GaitPose | None = None
     for walk in walks:
         first_at, end_at = np.searchsorted(times, (walk.start, walk.end))
@@ -138,7 +139,7 @@ def walking(walks: tuple[Route, ...], times: Array, settings: WalkSettings) -> G
 
 
 def gaze_ahead(plan: Plan, times: Array, settings: WalkSettings) -> Array:
-    """How much (f,) the dancer looks where she goes and not at the screen: on her way to the pad and from it."""
+    """How much (f,) the dancer looks where she goes, instead of at the screen: on her way to the pad and from it."""
     walks = tuple(w for w in plan.walks if w.end <= plan.first or w.start >= plan.last)
     gait = walking(walks, times + settings.gaze_ahead, settings)
     return np.zeros(len(times)) if gait is None else gait.own
@@ -149,7 +150,7 @@ def _standing_pose(count: int) -> GaitPose:
 
 
 def with_gait(pose: GaitPose, pelvis: Array, chest: Array) -> tuple[Array, Array]:
-    """Rotations of pelvis and chest (f, 4) with the gait on top, in local space, main rotation first."""
+    """Return the rotations of pelvis and chest (f, 4) with the gait on top, in local space, main rotation first."""
     across, up, front = np.eye(3)
     low = quat.multiply(quat.from_axis_angle(up, pose.pelvis_yaw), quat.from_axis_angle(front, pose.roll))
     low = quat.multiply(low, quat.from_axis_angle(across, pose.hips))

@@ -1,4 +1,4 @@
-"""What comes on top of the solved body: gaze and glances, breath, wrists, fingers; the face is in `face`."""
+"""Small movements on top of the solved body: gaze and glances, breath, wrists, fingers; the face is in `face`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from dancetutor_cli.dance.trajectory.posture import Trajectory
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.dance.waits import WaitMotion
 
-# Head and eyes: after everything else they turn to the screen, as far as a neck can (thesis 5.7).
+# Head and eyes: after all other movements they turn to the screen, as far as a neck can (thesis 5.7).
 
 SIDEWAYS = np.array([1.0, 0.0, 0.0])
 
@@ -44,7 +44,8 @@ def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
     head_yaw = chest_yaw + (1.0 + (settings.look.bent_yaw - 1.0) * bent) * turned
     lean = settings.look.head_tilt + (settings.look.bent_tilt - settings.look.head_tilt) * bent
     chin = quat.from_axis_angle(SIDEWAYS, -np.radians(settings.look.chin) * (1.0 - bent))
-    # in a deep bend hands pull the chest askew, and a head that kept its way in the world would be wrung on it
+    # in a deep bend, hands pull the chest askew, and the neck of a head that kept its direction in the world would
+    # twist
     meant = quat.slerp(chest, leaning(tilt, chest_yaw), bent)
     whole = quat.multiply(quat.conjugate(meant), quat.multiply(leaning(lean[:, None] * tilt, head_yaw), chin))
     neck = quat.slerp(np.broadcast_to(quat.IDENTITY, whole.shape), whole, np.full(len(at), settings.look.neck_share))
@@ -59,7 +60,7 @@ def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
         rotations[:, skeleton.index(f"{side}_eyeball_joint")] = quat.multiply(quat.conjugate(chin), eyes)
 
 
-# Glances: where steps are slow, and in waits, the dancer looks about, never at the same times or to the same places.
+# Glances: where steps are slow, and in waits, the dancer looks about, at different times and to different places.
 
 GLANCE_SEED = 19980926
 # parts of yaw, pitch and tilt of each kind: aside, up, with the head leant
@@ -68,9 +69,9 @@ _WAYS = np.array([[1.0, 0.25, 0.0], [0.35, 1.0, 0.2], [0.45, -0.3, 1.0]])
 
 @dataclass(frozen=True, slots=True)
 class Glances:
-    """How far the head is turned for them at f times, radians: yaw to the left, pitch up, tilt to the left; (f,) each.
+    """The turns of the head by glances at f times, radians: yaw to the left, pitch up, tilt to the left; (f,) each.
 
-    eyes : (f,) radians that they are farther to the left, a little before the head is
+    eyes : (f,) radians that the eyes are farther to the left, a little before the head
     """
 
     yaw: Array
@@ -80,10 +81,10 @@ class Glances:
 
 
 def glances_at(plan: Plan, body: Trajectory, times: Array, context: Context) -> Glances:
-    """Glances at `times` (f,), seconds. Mirror images of a plan have mirror images of them.
+    """Return the glances at `times` (f,), seconds. Mirror images of a plan have mirror images of its glances.
 
-    Chance decides when and where to. There is a glance only where no note is nearer to another than `numbers.slow`, and
-    it is smaller the nearer they are.
+    Their times and directions are random. A glance needs notes at least `numbers.quick` apart; it is smaller if they
+    are less than `numbers.slow` apart.
     """
     numbers = context.settings.glance
     out = Glances(*(np.zeros(len(times)) for _ in range(4)))
@@ -113,13 +114,13 @@ def glances_at(plan: Plan, body: Trajectory, times: Array, context: Context) -> 
 
 
 def _notes(plan: Plan) -> Array:
-    """Seconds at which feet land."""
+    """Return the seconds at which feet land."""
     lands = (m.land for track in plan.feet for m in track.moves if isinstance(m, Swing) and not isinstance(m, Walk))
     return np.unique(np.round(np.fromiter(lands, dtype=np.float64), 3))
 
 
 def _calm(notes: Array, start: float, end: float, numbers: GlanceSettings) -> float:
-    """How much of a glance there is time for, 0 to 1, by the least time between two notes near it."""
+    """Return the part of a glance for which there is time, 0 to 1, by the least time between two notes near it."""
     first, last = np.searchsorted(notes, (start - numbers.around, end + numbers.around))
     about = notes[max(first - 1, 0) : last + 1]
     least = min((b - a for a, b in pairwise(about.tolist())), default=np.inf)
@@ -127,7 +128,7 @@ def _calm(notes: Array, start: float, end: float, numbers: GlanceSettings) -> fl
 
 
 def _room(body: Trajectory, times: Array, context: Context) -> Array:
-    """How free (f,) head and eyes are, 0 to 1: not if they must turn far to see the screen."""
+    """Return how free (f,) head and eyes are, 0 to 1; they are not free if they must turn far to see the screen."""
     numbers = context.settings.glance
     head, chest = (sample_path(yaw, body.times, times) for yaw in (body.head_yaw, body.chest_yaw))
     screen = screen_yaw(sample_path(body.ground, body.times, times), context.settings)
@@ -137,11 +138,11 @@ def _room(body: Trajectory, times: Array, context: Context) -> Array:
 
 
 def _there(times: Array, start: float, end: float, turn: float) -> Array:
-    """0 before and after a glance, 1 in it, turning over so many seconds, (f,)."""
+    """Return 0 before and after a glance, 1 during it, with turns of `turn` seconds, (f,)."""
     return np.asarray(smooth((times - start) / turn) * smooth((end - times) / turn))
 
 
-# Small movements on top of all others, multiplied in each joint's own space: breath, wrists, glances.
+# Small movements on top of all others, multiplied in the space of each joint: breath, wrists, glances.
 #
 # Additive layers as in the blog of the project's sources: the main rotation first, then the layer. They change no joint
 # between the root and a foot, so no contact moves. They are off while a palm is on the floor.
@@ -151,10 +152,10 @@ ACROSS, FRONT = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True, slots=True)
 class Activity:
-    """What the dancer does at f times, as far as the layers need it.
+    """The activity of the dancer at f times, for the layers.
 
-    stepping : (f,) -1 to 1, the left foot (positive) or the right one is in the air
-    free : (f,) 0 where a palm is on the floor or the bar, else 1; lead : as in `Plan`
+    stepping : (f,) -1 to 1, positive while the left foot is in the air, negative while the right foot is
+    free : (f,) 0 while a palm is on the floor or the bar, else 1; lead : as in `Plan`
     relief : (f,) as in `face.Mood`: a deep breath; beat : (f,) as in `Trajectory`; waiting, glances : at the same times
     """
 
@@ -204,8 +205,9 @@ def add_layers(poses: Poses, times: Array, doing: Activity, context: Context) ->
 
 
 def _shrug(skeleton: Skeleton, rotations: Array, side: str, angle: Array) -> None:
-    """Raise a shoulder by turning its collarbone; the arm goes up with it and hangs as it did, or hands would swing
-    into thighs."""
+    """Raise a shoulder by turning its collarbone. The arm rises with it and hangs as before, because hands would
+    otherwise swing into thighs.
+    """
     _turn(skeleton, rotations, f"{side}_sternoclavicular", FRONT, angle)
     j = skeleton.index(f"{side}_shoulder")
     rotations[:, j] = quat.multiply(quat.from_axis_angle(FRONT, -angle), rotations[:, j])
@@ -219,15 +221,15 @@ def _turn(skeleton: Skeleton, rotations: Array, joint: str, axis: Array, angle: 
 
 # Hands: curled at rest, a loose fist in effort, flat on the floor, around the bar.
 
-CLOSING = np.array([1.8, 0.8])  # a hand closes from the fingers' middle joints on, knuckles follow: else it is a claw
+CLOSING = np.array([1.8, 0.8])  # powers for knuckles and middle joints: knuckles close later, or it is a claw
 SLANT = 0.14  # of the line of the knuckles: so much nearer to the wrist for each metre across the hand
 
 
 @dataclass(frozen=True, slots=True)
 class HandUse:
-    """What hands do at f times, 0 to 1 each; pairs are left, right.
+    """The use of hands at f times, 0 to 1 each; pairs are left, right.
 
-    effort : (f,) how hard she works; floor : (f, 2) on a panel or on the way there; bar : (f, 2) at the rail
+    effort : (f,) how hard the dancer works; floor : (f, 2) on a panel or on the way to it; bar : (f, 2) at the rail
     loose : (f, 2) shaken out; lead : as in `Plan`
     """
 
@@ -239,7 +241,7 @@ class HandUse:
 
 
 def hand_use(plan: Plan, body: Trajectory, at: Array, waiting: WaitMotion, context: Context) -> HandUse:
-    """What hands do at times `at` (f,); waiting : at the same times."""
+    """Return the use of hands at times `at` (f,); waiting : at the same times."""
     settings, rate = context.settings, 1.0 / float(body.times[1] - body.times[0])
     effort = lately(tempo_factor(plan, body.times, settings), rate, settings.arms.effort)
     return HandUse(
@@ -252,7 +254,7 @@ def hand_use(plan: Plan, body: Trajectory, at: Array, waiting: WaitMotion, conte
 
 
 def curls(times: Array, use: HandUse, numbers: FingerSettings) -> Array:
-    """How far (f, 2, 2) the fingers of each hand are bent at the knuckles and at their middle joints, radians.
+    """Return the bends (f, 2, 2) of the fingers of each hand at the knuckles and at their middle joints, radians.
 
     Each hand opens and closes a little by itself, slowly. If the right foot leads, left and right hand are exchanged.
     """
@@ -270,7 +272,7 @@ def curls(times: Array, use: HandUse, numbers: FingerSettings) -> Array:
 
 
 def add_fingers(skeleton: Skeleton, poses: Poses, bent: Array) -> None:
-    """Bend the fingers by (f, 2, 2) as `curls` gives it, in place; nothing for a skeleton without them."""
+    """Bend the fingers by (f, 2, 2), as from `curls`, in place; a skeleton without fingers does not change."""
     for k, side in enumerate(SIDES):
         axis = finger_axis(skeleton, side)
         for joint, name in enumerate((KNUCKLES, FINGERS)):
@@ -280,8 +282,11 @@ def add_fingers(skeleton: Skeleton, poses: Poses, bent: Array) -> None:
 
 
 def finger_axis(skeleton: Skeleton, side: str) -> Array:
-    """The unit vector in the rest pose about which fingers bend to the palm: along the knuckles, of which the little
-    finger's is nearest to the wrist; so its tip comes to the ball of the thumb."""
+    """Return the unit vector in the rest pose about which fingers bend to the palm.
+
+    It lies along the knuckles. The knuckle of the little finger is nearest to the wrist, so its tip comes to the ball
+    of the thumb.
+    """
     along = hand_direction(skeleton, side)
     across = np.cross(along, palm_normal(skeleton, side))
     sign = 1.0 if side == "l" else -1.0

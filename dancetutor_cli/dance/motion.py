@@ -156,7 +156,7 @@ def _plus(place: tuple[float, float], x: float, z: float) -> tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Distances:
-    """The distances of a ragdoll from the motion that it follows: of p retargeting points, over f moments.
+    """The distances of a ragdoll from its input: of p retargeting points, without the extra ones, over f moments.
 
     names : (p,); times : (f,) seconds; values : (f, p) centimetres between input and ragdoll
     """

@@ -1,4 +1,4 @@
-"""Least squares with unknowns that are not negative: how much of a wanted wrench pushes can supply."""
+"""Least squares with non-negative unknowns: the part of a wanted wrench that pushes can supply."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _SMALL = 1e-12  # smallest part of a gradient, and of what a column adds, that c
 
 
 def nonnegative_least_squares(columns: Array, target: Array) -> Array:
-    """The x >= 0 (n,) for which |columns x - target| is least; Lawson and Hanson's active set.
+    """Return the x >= 0 (n,) for which |columns x - target| is least, by Lawson and Hanson's active set.
 
         minimise over x >= 0     |A x - b|^2 ,   A : columns, b : target
 
@@ -30,7 +30,7 @@ def nonnegative_least_squares(columns: Array, target: Array) -> Array:
 
 @njit(cache=True)
 def _active_set(rows: Array, target: Array) -> Array:
-    """As above with the columns as rows (n, m)."""
+    """Solve the same problem with the columns as rows (n, m)."""
     n, m = rows.shape
     x, held = np.zeros(n), np.zeros(n, dtype=np.bool_)
     chosen, count = np.zeros(m + 1, dtype=np.int64), 0
@@ -50,7 +50,7 @@ def _active_set(rows: Array, target: Array) -> Array:
         chosen[count], held[best] = best, True
         count += 1
         z, sound = _least_squares(rows, chosen, count, target)
-        if not sound or z[count - 1] <= 0.0:  # nothing new in it, but for rounding
+        if not sound or z[count - 1] <= 0.0:  # nothing new in it, except for rounding
             count -= 1
             held[best], tried[best] = False, True
             continue
@@ -83,7 +83,7 @@ def _active_set(rows: Array, target: Array) -> Array:
 
 @njit(cache=True)
 def _least_squares(rows: Array, chosen: NDArray[np.int64], count: int, target: Array) -> tuple[Array, bool]:
-    """The unknowns of the chosen columns by QR (Gram-Schmidt, twice); False if one depends on those before it."""
+    """The unknowns of the chosen columns by QR (Gram-Schmidt, twice); False if a column depends on earlier ones."""
     m = rows.shape[1]
     q, r = np.zeros((count, m)), np.zeros((count, count))
     for k in range(count):

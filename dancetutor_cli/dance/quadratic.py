@@ -12,16 +12,16 @@ from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
-# Least squares over long sequences: every term involves a few neighbouring nodes, so the normal matrix is a band.
+# Least squares over long sequences: every term has a few neighbouring nodes, so the normal matrix is a band.
 #
 # Paths of the body are computed with it: "stay near these targets, with little jerk". The cost is linear in the length
 # of the song.
 
-REACH = 4  # nodes that a term touches at most by default: third differences
+REACH = 4  # largest number of nodes in a term by default, as for third differences
 
 
 class BandedLeastSquares:
-    """Collects terms  weight * (sum_i coefficients_i x[start + i] - target)^2 , finds the x (n, d) of least sum.
+    """Least squares of terms  weight * (sum_i coefficients_i x[start + i] - target)^2 , for x (n, d).
 
     For terms k with weights w_k, rows a_k and targets t_k the minimum solves the normal equations
 
@@ -33,7 +33,7 @@ class BandedLeastSquares:
     Parameters
     ----------
     nodes : n, number of unknowns in time; width : d, number of paths solved at once with the same terms
-    reach : most neighbouring unknowns that one term may touch
+    reach : largest number of neighbouring unknowns in one term
     """
 
     def __init__(self, nodes: int, width: int, reach: int = REACH) -> None:
@@ -53,13 +53,13 @@ class BandedLeastSquares:
         _accumulate(self.bands, self.right, start, np.ascontiguousarray(coefficients), weight, whole)
 
     def solve(self) -> Array:
-        """The minimum, (n, d). The terms must fix every node."""
+        """Return the minimum, (n, d). The terms must fix every node."""
         factor = _factor(self.bands)
         return np.stack([_solve_one(factor, np.ascontiguousarray(column)) for column in self.right.T], axis=1)
 
 
 def differences(order: int) -> Array:
-    """Coefficients (order + 1,) of the forward difference of that order on evenly spaced nodes."""
+    """Return the coefficients (order + 1,) of the forward difference of that order on evenly spaced nodes."""
     out = np.array([1.0])
     for _ in range(order):
         out = np.convolve(out, [-1.0, 1.0])
@@ -68,7 +68,7 @@ def differences(order: int) -> Array:
 
 @njit(cache=True)
 def _factor(bands: Array) -> Array:
-    """Cholesky factor L of a symmetric band: bands[i, k] = A[i, i + k]; returns out[i, k] = L[i + k, i]."""
+    """Return the Cholesky factor L of a symmetric band: bands[i, k] = A[i, i + k]; out[i, k] = L[i + k, i]."""
     n, reach = bands.shape
     out = np.zeros_like(bands)
     for i in range(n):
@@ -122,8 +122,8 @@ def _solve_one(factor: Array, right: Array) -> Array:
 # length of the song.
 
 TOLERANCE = 1e-6
-ROUNDS, MORE_ROUNDS = 60, 240  # of the method; and of its second try, with limits that give way more
-SOFTER, SOFT = 100.0, 0.01  # how much more these limits give way then, and how much hard limits do
+ROUNDS, MORE_ROUNDS = 60, 240  # rounds of the method, and of its second try, with softer limits
+SOFTER, SOFT = 100.0, 0.01  # factor of the softness of these limits in the second try, and the softness of hard limits
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +145,7 @@ class Limits:
 class Solution:
     """x : (n,); is_feasible : the hard limits hold and x is the minimum, to the tolerance; rounds : steps taken.
 
-    softened : whether the limits had to give way more than was asked for, because it did not converge otherwise
+    softened : whether the limits gave way more than requested, because the first try did not converge
     """
 
     x: Array
@@ -155,13 +155,13 @@ class Solution:
 
 
 class ConvergenceError(DancetutorError):
-    """A programme has no solution that the method finds, even with limits that give way."""
+    """The error for a programme to which the method finds no solution, even with softer limits."""
 
 
 def solve_surely(problem: BandedLeastSquares, limits: list[Limits], what: str) -> Solution:
-    """As `solve`, but it returns a minimum: if the first try does not converge, it tries again with softer limits.
+    """Solve as `solve` does, but return a minimum in any case: if the first try does not converge, try softer limits.
 
-    what : for people, the path that is looked for. ConvergenceError if the second try did not converge either
+    what : name of the wanted path, for the user. Raises ConvergenceError if the second try does not converge either
     """
     found = solve(problem, limits)
     if found.is_feasible:
@@ -174,7 +174,7 @@ def solve_surely(problem: BandedLeastSquares, limits: list[Limits], what: str) -
 
 
 def solve(problem: BandedLeastSquares, limits: list[Limits], most: int | None = None) -> Solution:
-    """The least sum of a problem of width 1 within limits. Scale limits so that 1 is a usual value.
+    """Return the least sum of a problem of width 1 within limits. Scale limits so that 1 is a usual value.
 
         minimise over x, e     1/2 x^T B x - r^T x + sum_i e_i^2 / (2 give_i)
         subject to             c_i^T x <= high_i + e_i ,   e_i = 0 where give_i is 0
@@ -187,7 +187,7 @@ def solve(problem: BandedLeastSquares, limits: list[Limits], most: int | None = 
     so that e = give z needs no unknown. Newton's steps towards s_i z_i = mu by S. Mehrotra, *On the implementation of a
     primal-dual interior point method*, SIAM Journal on Optimization, 1992: a predictor with mu = 0, then a corrector.
 
-    most : rounds after which it is given up, None for `ROUNDS`
+    most : largest number of rounds, None for `ROUNDS`
     """
     if problem.right.shape[1] != 1:
         raise ValueError("limits are for one path at a time")
@@ -207,7 +207,7 @@ def solve(problem: BandedLeastSquares, limits: list[Limits], most: int | None = 
             highs.append(bound[use])
             gives.append(np.full(len(highs[-1]), part.give))
     every = np.concatenate(rows)
-    width = reach - np.argmax(every[:, ::-1] != 0.0, axis=1)  # what is behind is zero
+    width = reach - np.argmax(every[:, ::-1] != 0.0, axis=1)  # the columns behind it are zero
     stacked = _Rows(np.concatenate(starts), width, every, np.concatenate(highs), np.concatenate(gives))
     right = np.ascontiguousarray(problem.right[:, 0])
     x, found, rounds = _interior_point(problem.bands, right, stacked, TOLERANCE, most or ROUNDS)
@@ -238,7 +238,7 @@ def _times_rows(limits: _Rows, x: Array) -> Array:
 
 @njit(cache=True)
 def _slack(limits: _Rows, x: Array, least: float) -> Array:
-    """How far each limit is from being reached, at least so much."""
+    """Return how far each limit is from being reached, at least `least`."""
     out = _times_rows(limits, x)
     for r in range(len(out)):
         out[r] = max(limits.high[r] - out[r], least)
@@ -247,7 +247,7 @@ def _slack(limits: _Rows, x: Array, least: float) -> Array:
 
 @njit(cache=True)
 def _residuals(bands: Array, right: Array, limits: _Rows, x: Array, s: Array, z: Array) -> tuple[Array, Array]:
-    """The residuals: the derivative of the sum (n,), and the limits with their slack (m,)."""
+    """Return the residuals: the derivative of the sum (n,), and the limits with their slack (m,)."""
     start, width, rows, high, give = limits.start, limits.width, limits.rows, limits.high, limits.give
     n, reach = bands.shape
     dual = np.zeros(n)
@@ -269,7 +269,7 @@ def _residuals(bands: Array, right: Array, limits: _Rows, x: Array, s: Array, z:
 
 @njit(cache=True)
 def _system(bands: Array, limits: _Rows, s: Array, z: Array) -> Array:
-    """Factor of the matrix of Newton's step, `bands` with the limits by their weight; `bands` is overwritten."""
+    """Return the factor of the matrix of Newton's step: `bands`, overwritten, with the limits by their weight."""
     start, width, rows, give = limits.start, limits.width, limits.rows, limits.give
     for r in range(len(start)):
         w = z[r] / (s[r] + give[r] * z[r])
@@ -294,7 +294,7 @@ def _longest_step(value: Array, change: Array) -> float:
 def _direction(
     factor: Array, limits: _Rows, dual: Array, primal: Array, slack: tuple[Array, Array], aim: Array
 ) -> tuple[Array, Array, Array]:
-    """Newton step for residuals `dual`, `primal` and wanted products s z = aim; slack : s and z"""
+    """Return the Newton step for residuals `dual`, `primal` and wanted products s z = aim; slack : s and z"""
     start, width, rows, give = limits.start, limits.width, limits.rows, limits.give
     s, z = slack
     right = np.empty_like(dual)

@@ -36,14 +36,14 @@ from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.reading import config_path, named_file
 from dancetutor_cli.run.yaml_files import load
 
-# Forms: how a player stands and turns, as files that name a few numbers of the motion; see `configs/forms`.
+# Forms: how a dancer stands and turns, as files that name a few numbers of the motion; see `configs/forms`.
 
 USUAL = "usual"  # the form if the user asks for none: the numbers of `configs/motion.yaml`
 
 
 @dataclass(frozen=True, slots=True)
 class MotionSettings:
-    """All of them, one field per section of the file."""
+    """All numbers of the motion, one field per section of the file."""
 
     step: StepSettings
     jump: JumpSettings
@@ -73,9 +73,10 @@ class MotionSettings:
 def load_settings(
     path: Path | None = None, form: str = USUAL, styles: Sequence[tuple[MotionSettings, float]] = ()
 ) -> MotionSettings:
-    """The numbers of `configs/motion.yaml`, replaced first by those of a form, then of styles, then of another file.
+    """Load the numbers of `configs/motion.yaml`, replaced first by those of a form, then of styles, then of another
+    file.
 
-    styles : the numbers of each of them, and how much of it there is, 0 to 1
+    styles : the numbers of each style, and its share, 0 to 1
     Raises FileError naming the file, the line and the names that exist, UsageError for an unknown form.
     """
     settings = default_settings()
@@ -88,12 +89,12 @@ def load_settings(
 
 @cache
 def default_settings() -> MotionSettings:
-    """The settings that the program comes with."""
+    """Return the settings that the program comes with."""
     return load(config_path("motion.yaml"), MotionSettings)
 
 
 def mean_settings(parts: Sequence[tuple[MotionSettings, float]]) -> MotionSettings:
-    """The mean of settings, each with its share; shares sum to 1."""
+    """Return the mean of settings, each with its share; shares sum to 1."""
     first = parts[0][0]
     sections = {}
     for section in _SECTIONS:
@@ -106,7 +107,7 @@ def mean_settings(parts: Sequence[tuple[MotionSettings, float]]) -> MotionSettin
 
 
 def _with_numbers_of(settings: MotionSettings, other: MotionSettings) -> MotionSettings:
-    """The settings, with those numbers of other settings that differ from the program's own."""
+    """Return the settings, with those numbers of `other` that differ from the program's own."""
     sections = {}
     for section in _SECTIONS:
         usual, new = getattr(default_settings(), section), getattr(other, section)
@@ -126,7 +127,7 @@ WHOLE = 1.0 - 1e-9  # share from which on a state counts as the only one
 
 
 def state_weights(changes: Sequence[Span], times: Array) -> Array:
-    """How much (f, k + 1) of each state there is at times (f,); changes : k spans, seconds, in order, apart."""
+    """The share (f, k + 1) of each state at times (f,); changes : k spans, seconds, in order, without overlap."""
     from dancetutor_cli.dance.smoothing import smooth  # numba, which help does without
 
     after = np.array([smooth((times - start) / (end - start)) for start, end in changes]).reshape(-1, len(times))
@@ -142,7 +143,7 @@ class SettingsCourse:
     changes: tuple[Span, ...]
 
     def at(self, second: float) -> MotionSettings:
-        """The numbers at a second; while one state turns into the next one, their mean by share."""
+        """Return the numbers at a second; while one state turns into the next one, their mean by share."""
         weights = state_weights(self.changes, np.array([second]))[0]
         return self._mean(tuple(np.round(weights, 9).tolist()))
 
@@ -151,7 +152,7 @@ class SettingsCourse:
         return self.states[largest] if weights[largest] >= WHOLE else _mean_of(self.states, weights)
 
     def within(self, start: float, end: float) -> SettingsCourse:
-        """The same with only the states between two seconds."""
+        """Return the same course with only the states between two seconds."""
         weights = state_weights(self.changes, np.array([start, end]))
         first, last = int(np.argmax(weights[0] > 0.0)), int(np.max(np.flatnonzero(weights[1] > 0.0)))
         return SettingsCourse(self.states[first : last + 1], self.changes[first:last])

@@ -11,22 +11,22 @@ from dancetutor_cli.dance.quadratic import BandedLeastSquares, differences
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.kernels.compiling import njit
 
-# Easing: how far a move has come (0 to 1) at each part of its time (0 to 1). All accept arrays and clip outside.
+# Easing: how far a move has come (0 to 1) at each part of its time (0 to 1). All functions accept arrays and clip.
 
 STEEPEST = 1.875  # largest slope of `smooth`
 
 
 def smooth(s: ArrayLike) -> Array:
-    """Slow in and out without a jump of the acceleration: 6s^5 - 15s^4 + 10s^3."""
+    """Ease in and out without a jump of the acceleration: 6s^5 - 15s^4 + 10s^3."""
     s = np.clip(np.asarray(s, dtype=np.float64), 0.0, 1.0)
     return np.asarray(s**3 * (10.0 + s * (6.0 * s - 15.0)))
 
 
-# Smooth paths through targets over time: near the target, with little jerk. The body's turning, travel and height.
+# Smooth paths through targets over time, near the targets and with little jerk: turns, travel and height of the body.
 
 
 def smooth_path(target: Array, weight: Array, rate: float, time_constant: float) -> Array:
-    """The path near `target` whose jerk is least.
+    """Return the path near `target` whose jerk is least.
 
         minimise over x     sum_k (w_k + 1e-6) |x_k - target_k|^2 + sum_k | (rate T)^3 D3 x_k |^2
 
@@ -36,8 +36,8 @@ def smooth_path(target: Array, weight: Array, rate: float, time_constant: float)
 
     Parameters
     ----------
-    target : (n, d), evenly spaced at `rate` per second; weight : (n,), how much each target counts, 1 is usual
-    time_constant : seconds; changes of the target are spread over about so long, to both sides
+    target : (n, d), evenly spaced at `rate` per second; weight : (n,), weight of each target, usually 1
+    time_constant : seconds over which changes of the target are spread, approximately, to both sides
 
     Returns
     -------
@@ -58,7 +58,7 @@ def _add_jerk(problem: BandedLeastSquares, n: int, rate: float, time_constant: f
 
 
 def sample_path(path: Array, times: Array, at: Array) -> Array:
-    """Linear interpolation of an evenly spaced path (n, ...) at other times (f,), ends held."""
+    """Interpolate an evenly spaced path (n, ...) linearly at other times (f,); it is constant beyond its ends."""
     x = np.clip((at - times[0]) * ((len(times) - 1) / (times[-1] - times[0])), 0.0, len(times) - 1.0)
     i = np.minimum(x.astype(np.int64), len(times) - 2)
     w = (x - i).reshape(-1, *([1] * (path.ndim - 1)))
@@ -66,7 +66,7 @@ def sample_path(path: Array, times: Array, at: Array) -> Array:
 
 
 def cubic(times: Array, values: Array, at: Array) -> Array:
-    """Piecewise cubic through uneven samples (n, d) at other times (f,), slopes from the neighbours, ends held."""
+    """Return a piecewise cubic through uneven samples (n, d) at times `at` (f,), with slopes from the neighbours."""
     slopes = np.gradient(values, times, axis=0)
     i = np.clip(np.searchsorted(times, at, side="right") - 1, 0, len(times) - 2)
     h = (times[i + 1] - times[i])[:, None]
@@ -76,10 +76,10 @@ def cubic(times: Array, values: Array, at: Array) -> Array:
 
 
 def steady_spline(times: Array, values: Array, at: Array) -> Array:
-    """The uniform cubic B-spline of even samples (n, d) at other times (f,), ends held.
+    """Return the uniform cubic B-spline of even samples (n, d) at other times (f,); it is constant beyond its ends.
 
-    Its second derivative goes straight from one sample's second difference to the next, so that a limit on these holds
-    in between as well; it passes each sample at a sixth of its second difference.
+    Its second derivative goes straight from the second difference of one sample to that of the next, so a limit on
+    these differences holds in between as well. The spline passes each sample at a sixth of its second difference.
     """
     ends = np.concatenate((2.0 * values[:1] - values[1:2], values, 2.0 * values[-1:] - values[-2:-1]))
     x = np.clip((at - times[0]) / (times[1] - times[0]), 0.0, len(times) - 1.0)
@@ -106,7 +106,7 @@ def upper_envelope(times: Array, values: Array, span: float) -> Array:
 
 
 def both_envelopes(times: Array, values: Array, span: float) -> Array:
-    """Values (f, d) of either sign, each spread as by `upper_envelope`: they begin before their time and end after it.
+    """Values (f, d) of either sign, each spread by `upper_envelope`: they begin before their time and end after it.
 
     times : (f,) seconds; span : seconds
     """
@@ -114,7 +114,7 @@ def both_envelopes(times: Array, values: Array, span: float) -> Array:
 
 
 def no_faster(values: Array, rate: float, most: float) -> Array:
-    """The path (n,) that changes by at most `most` per second and is least far from `values` (n,), `rate` per second.
+    """Return the path (n,) nearest to `values` (n,), `rate` per second, that changes by at most `most` per second.
 
     It lies half-way between the lowest path over the values and the highest path under them; where the values are slow
     enough, it is equal to them.
@@ -129,7 +129,7 @@ def no_faster(values: Array, rate: float, most: float) -> Array:
 
 
 def low_pass(values: Array, rate: float, cut: float = 10.0) -> Array:
-    """Butterworth gain of order 4 at `cut` Hz without delay, along the first axis; the ends are held."""
+    """Apply a Butterworth gain of order 4 at `cut` Hz without delay, along the first axis; the ends are extended."""
     pad = min(int(rate), max(len(values) - 1, 0))
     held = np.concatenate((np.repeat(values[:1], pad, axis=0), values, np.repeat(values[-1:], pad, axis=0)))
     frequency = np.fft.rfftfreq(len(held), 1.0 / rate)
@@ -140,37 +140,37 @@ def low_pass(values: Array, rate: float, cut: float = 10.0) -> Array:
 
 # Inertia of the upper body: a proportional-integral controller follows the target, and overshoots (thesis 4.2.1, 5.4).
 #
-# The controller's output is a velocity:  y' = Kp (r - y) + q,  q' = Ki (r - y) . That is a second-order system of
+# The controller's output is a velocity:  y' = Kp (r - y) + q,  q' = Ki (r - y) . This is a second-order system of
 # natural frequency sqrt(Ki) and damping Kp / (2 sqrt(Ki)). Its exact discrete form is used, for targets that move
-# straight between samples, so the result does not depend on the rate; and as the whole song is known, targets are
+# straight between samples, so the result does not depend on the rate. Because the whole song is known, targets are
 # advanced by the lag.
 
-MOVE_FREQUENCY = 2.0  # per second: moves are about so fast, and the lag is that at this frequency
+MOVE_FREQUENCY = 2.0  # per second: a typical frequency of moves, at which the lag is measured
 
 
 @dataclass(frozen=True, slots=True)
 class Controller:
-    """Gains of the controller. integral : 1/s^2, at least 4 times the proportional one (1/s) to overshoot visibly."""
+    """Gains of the controller. integral : 1/s^2, at least 4 times the proportional gain (1/s) to overshoot visibly."""
 
     proportional: float
     integral: float
 
     @classmethod
     def of(cls, frequency: float, damping: float) -> Controller:
-        """From natural frequency (per second) and damping (1: no overshoot of the free system)."""
+        """Return the gains for a natural frequency (per second) and damping (1: no overshoot of the free system)."""
         omega = 2 * np.pi * frequency
         return cls(2 * damping * omega, omega**2)
 
     @property
     def lag(self) -> float:
-        """Seconds by which a target that swings `MOVE_FREQUENCY` times a second is followed late."""
+        """The delay in seconds behind a target that swings `MOVE_FREQUENCY` times a second."""
         s = 2j * np.pi * MOVE_FREQUENCY
         gain = (self.proportional * s + self.integral) / (s**2 + self.proportional * s + self.integral)
         return float(-np.angle(gain) / (2 * np.pi * MOVE_FREQUENCY))
 
 
 def follow(target: Array, rate: float, controller: Controller) -> Array:
-    """The controlled value for a target (n, d), evenly spaced at `rate` per second; starts at rest on the target."""
+    """The controlled value for a target (n, d), evenly spaced at `rate` per second; it starts at rest on the target."""
     if len(target) < 2:
         return target.copy()
     times = np.arange(len(target)) + controller.lag * rate
@@ -179,7 +179,7 @@ def follow(target: Array, rate: float, controller: Controller) -> Array:
 
 
 def _discrete(controller: Controller, step: float) -> tuple[Array, Array, Array]:
-    """Exact step of the state (y, q): x+ = phi x + g0 r + g1 (r+ - r)."""
+    """Return the exact step of the state (y, q): x+ = phi x + g0 r + g1 (r+ - r)."""
     kp, ki = controller.proportional, controller.integral
     whole = np.zeros((4, 4))
     whole[:2, :2] = [[-kp, 1.0], [-ki, 0.0]]
@@ -190,7 +190,7 @@ def _discrete(controller: Controller, step: float) -> tuple[Array, Array, Array]
 
 
 def _exponential(m: Array) -> Array:
-    """Matrix exponential by scaling, a Taylor series, and squaring."""
+    """Return the matrix exponential by scaling, a Taylor series, and squaring."""
     squarings = max(0, int(np.ceil(np.log2(max(np.abs(m).sum(axis=1).max(), 1e-9)))) + 4)
     small = m / 2**squarings
     term, out = np.eye(len(m)), np.eye(len(m))
@@ -222,7 +222,7 @@ def _run_controller(target: Array, phi: Array, g0: Array, g1: Array) -> Array:
 
 
 def recursive_filter(above: Array, below: Array, values: Array) -> Array:
-    """What values (f, d) become behind  (a0 + a1/z + a2/z^2) / (b0 + b1/z + b2/z^2), from rest at 0.
+    """Filter values (f, d) by  (a0 + a1/z + a2/z^2) / (b0 + b1/z + b2/z^2), from rest at 0.
 
     above : (a0, a1, a2); below : (b0, b1, b2), b0 not 0
     """
@@ -232,7 +232,7 @@ def recursive_filter(above: Array, below: Array, values: Array) -> Array:
 
 @njit(cache=True)
 def _run_filter(above: Array, below: Array, values: Array) -> Array:
-    """Direct form II, transposed."""
+    """Apply the filter in direct form II, transposed."""
     out = np.empty_like(values)
     for d in range(values.shape[1]):
         first, second = 0.0, 0.0

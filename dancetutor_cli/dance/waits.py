@@ -1,5 +1,5 @@
-"""What the dancer does while she waits: her weight goes from foot to foot with the beat, she shakes out her arms, rolls
-her shoulders, taps a heel. It is never twice the same: chance decides, always in the same way for the same song.
+"""The dancer's movements while she waits: her weight goes from foot to foot with the beat, she shakes out her arms,
+rolls her shoulders, taps a heel. The movements are random, but always the same for the same song.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from dancetutor_cli.dance.units import Array
 
 SEED = 20190607
 EARLIEST = 0.3  # part of its time in which an act begins, so that no act runs into the next
-ENDS = 30.0  # seconds of beats before the first and after the last one that the dancer still follows
+ENDS = 30.0  # seconds of beats before the first and after the last beat that the dancer still follows
 
 
 @dataclass(frozen=True, slots=True)
 class WaitMotion:
-    """What a wait adds at n times; nothing where she does not wait.
+    """The movements that a wait adds at n times; all are 0 outside of waits.
 
-    share : (n,) 0 to 1, how much she waits; shift : (n,) metres that her hips must be on the left of the middle
+    share : (n,) 0 to 1, how much the dancer waits; shift : (n,) metres that her hips must be on the left of the middle
     between the feet
     turn : (n,) radians that her chest is turned to the left
-    hands : (n, 2, 3) metres that the left and the right hand are elsewhere, in the chest's upright axes
+    hands : (n, 2, 3) metres by which the left and the right hand move, in the chest's upright axes
     flap : (n, 2) radians that hands are bent at the wrist; loose : (n, 2) 0 to 1, how much fingers hang
     shrug : (n, 2) radians that shoulders are raised
-    tilt : (n,) radians that the head leans to the left; heels : (n, 2) radians that they are raised
+    tilt : (n,) radians that the head leans to the left; heels : (n, 2) radians that heels are raised
     """
 
     share: Array
@@ -47,13 +47,13 @@ class WaitMotion:
 
     @classmethod
     def none(cls, count: int) -> WaitMotion:
-        """Nothing, for so many times."""
+        """Return no movements, for `count` times."""
         one, two = partial(np.zeros, count), partial(np.zeros, (count, 2))
         return cls(one(), one(), one(), np.zeros((count, 2, 3)), two(), two(), two(), one(), two())
 
 
 def waiting_at(plan: Plan, times: Array, context: Context) -> WaitMotion:
-    """What the dancer does at `times` (n,) seconds besides standing. Mirror images of a plan wait as mirror images."""
+    """Return the movements of waits at `times` (n,) seconds. Mirror images of a plan wait as mirror images."""
     numbers, out = context.settings.wait, WaitMotion.none(len(times))
     spans = list(_waits(plan, context))
     for start, end in spans:
@@ -88,17 +88,17 @@ Song = tuple[int, ...]
 
 
 def song_of(plan: Plan, context: Context) -> Song:
-    """The seed of random choices for a song and a dancer; the same for the mirror image and for a piece of the song."""
+    """The seed of random choices for a song and a dancer, the same for the mirror image and for a piece of the song."""
     return *plan.song, *context.own
 
 
 def _chance(song: Song, *numbers: int) -> np.random.Generator:
-    """A random number for something in this song."""
+    """Return a random generator for one choice in this song."""
     return chance_of(SEED, *song, *numbers)
 
 
 class _Draw(NamedTuple):
-    """The random choices for one act: when it begins and how long it lasts, as parts of their times; side; kind."""
+    """The random choices for one act: its beginning and duration, as parts of their times; side; kind."""
 
     late: float
     long: float
@@ -108,7 +108,7 @@ class _Draw(NamedTuple):
 
 @lru_cache(maxsize=1024)
 def _draw(song: Song, number: int) -> _Draw:
-    """The act of this number, which each round of a bake asks for; all kinds come in turn, in ever different orders."""
+    """Return the act of this number, which each round of a bake needs; all kinds come in turn, in changing orders."""
     chance = _chance(song, number)
     turn, place = divmod(number, len(_KINDS))
     kind = int(_chance(song, turn, 1).permutation(len(_KINDS))[place])
@@ -116,13 +116,13 @@ def _draw(song: Song, number: int) -> _Draw:
 
 
 def _waits(plan: Plan, context: Context) -> Iterator[tuple[float, float]]:
-    """First and last second of each stand that is long enough, without its ends."""
+    """Return first and last second of each stand that is long enough, without its ends."""
     numbers, down = context.settings.wait, context.settings.hands.reach_down
     busy = [(move.lift, move.land) for track in plan.feet for move in track.moves]
     busy += [(press.start - press.lead, press.end + down) for press in plan.presses]
     busy += [(walk.start, walk.end) for walk in plan.walks]
     free = -np.inf
-    after = [] if context.stays else [(np.inf, np.inf)]  # at the end of a passage she just stands
+    after = [] if context.stays else [(np.inf, np.inf)]  # at the end of a passage the dancer only stands
     for start, end in [*sorted(busy), *after]:
         if start - free >= numbers.after:
             yield free + numbers.begin, start - numbers.ready
@@ -130,8 +130,9 @@ def _waits(plan: Plan, context: Context) -> Iterator[tuple[float, float]]:
 
 
 def _shift(times: Array, context: Context) -> Array:
-    """Where the weight is (n,), metres, positive over the left foot: over one foot on a beat, and on its way between
-    beats. Some beats are danced farther than others, and sometimes the dancer stays where she is.
+    """The place of the weight (n,), metres, positive over the left foot: over one foot on a beat, then on its way.
+
+    Some beats are danced farther than others, and sometimes the dancer stays on one foot.
     """
     numbers, beats = context.settings.wait, np.asarray(context.beats)
     if len(beats) < 2:
@@ -164,13 +165,13 @@ def slowly(song: Song, times: Array, every: float, salt: int) -> Array:
 
 @lru_cache(maxsize=1024)
 def _knot(song: Song, number: int, salt: int) -> float:
-    """Where `slowly` is then; each round of a bake asks again."""
+    """Return the value of `slowly` at a knot; each round of a bake asks again."""
     return float(_chance(song, number, 2 + salt).uniform(-1.0, 1.0))
 
 
 @dataclass(frozen=True, slots=True)
 class _Act:
-    """One act of the dancer. times : (m,) seconds since it began; long : seconds that it lasts; side : 0 left"""
+    """One act of the dancer. times : (m,) seconds since its beginning; long : its seconds; side : 0 left"""
 
     times: Array
     long: float
@@ -178,13 +179,13 @@ class _Act:
 
     @property
     def fade(self) -> Array:
-        """0 at both ends, 1 between, (m,)."""
+        """The weight (m,) of the act: 0 at both ends, 1 between."""
         quarter = self.long / 4
         return np.asarray(smooth(self.times / quarter) * smooth((self.long - self.times) / quarter))
 
 
 def _shake(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
-    """Both arms hang and hands are shaken, one a little after the other."""
+    """Let both arms hang and shake the hands, one a little after the other."""
     for hand, sign in ((0, 1.0), (1, -1.0)):
         turn = 2 * np.pi * numbers.shakes * act.times - 0.9 * (hand != act.side)
         out.flap[near, hand] += np.radians(numbers.flap) * np.sin(turn) * act.fade
@@ -194,7 +195,7 @@ def _shake(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> No
 
 
 def _swing(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
-    """Arms swing, one ahead and the other back."""
+    """Swing the arms, one ahead and the other back."""
     way = np.sin(2 * np.pi * act.times / numbers.swing_time) * act.fade
     for hand in (0, 1):
         sign = 1.0 if hand == act.side else -0.8
@@ -203,27 +204,27 @@ def _swing(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> No
 
 
 def _shrug(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
-    """Shoulders are raised and let fall, one more than the other."""
+    """Raise the shoulders and let them fall, one more than the other."""
     up = np.sin(np.pi * act.times / act.long) ** 2
     for hand in (0, 1):
         out.shrug[near, hand] += np.radians(numbers.shrug) * (1.0 if hand == act.side else 0.6) * up
 
 
 def _loosen(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
-    """The head leans to one side and then to the other."""
+    """Lean the head to one side and then to the other."""
     way = np.sin(2 * np.pi * act.times / act.long) * act.fade
     out.tilt[near] += np.radians(numbers.neck) * way
 
 
 def _tap(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
-    """The heel without weight comes up."""
+    """Raise the heel of the foot without weight."""
     for side, sign in ((0, -1.0), (1, 1.0)):
         light = smooth(sign * out.shift[near] / numbers.shift - 0.2)
         out.heels[near, side] += np.radians(numbers.heel) * light * act.fade
 
 
 def _stretch(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
-    """Arms go up aside, one over her head and the other not as far, and come down again."""
+    """Stretch the arms up aside, one over the head and the other not as far, and lower them again."""
     up = np.sin(np.pi * act.times / act.long) ** 2
     for hand, sign in ((0, 1.0), (1, -1.0)):
         turn = np.radians(numbers.stretch) * up * (1.0 if hand == act.side else numbers.stretch_other)
@@ -233,7 +234,7 @@ def _stretch(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> 
 
 
 def _pump(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
-    """Forearms are raised before her and dance, one up as the other goes down."""
+    """Raise the forearms in front of the dancer; one goes up as the other goes down."""
     way = np.sin(2 * np.pi * act.times / numbers.pump_time)
     for hand, sign in ((0, 1.0), (1, -1.0)):
         turn = way if hand == act.side else -way
