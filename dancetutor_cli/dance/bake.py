@@ -182,7 +182,7 @@ def bake_piece(piece: Piece) -> BakedPiece:
         from dancetutor_cli.dance.changes import mean_body
 
         body = mean_body(bodies, changes)
-    # hands are free in all keys, and in each round of more keys
+    # all keys need the free hands, and so does each round of more keys: they are computed once
     bodies_by_state = tuple((replace(body, hands=free_hands(plan, body, one)), one) for one in states)
     at = key_times(plan, piece.fps, *piece.baked)
     keys = (at, *_posed_in(plan, bodies_by_state, at, changes))

@@ -31,7 +31,7 @@ SOON = 0.001  # seconds after a walk, when it is over
 
 
 def on_the_pad(plan: Plan, cut: Cut) -> Cut:
-    """Return the cut. If it does not show her walk, the dancer stands before her first step."""
+    """Return the cut. If it does not show the dancer's walk onto the pad, she stands there until her first step."""
     arrivals = [walk.end for walk in plan.walks if walk.end <= plan.first and not cut.walks_on]
     return replace(cut, steps_from=max([cut.steps_from, *(second + SOON for second in arrivals)]))
 

@@ -165,8 +165,7 @@ def wait_for_other_foot(
 
 
 def resumed(foot: FootState, other: FootState, time: float, settings: MotionSettings) -> tuple[FootState, float | None]:
-    """Resume a step soon after a mine: the foot stays up and goes straight to it, unless the other foot has stepped
-    meanwhile.
+    """Resume a foot for a step soon after a mine: it stays up, unless the other foot has stepped meanwhile.
 
     The foot also does so if it would have no time on the ground, or if its hop with the other foot would not be over by
     then.

@@ -39,9 +39,7 @@ NEWEST = 8  # moves of a foot that rules may still read or change
 
 
 class Planner:
-    """The planner of a play. `second(tick)` gives the time of a tick in seconds of the music. Each planner
-    runs once.
-    """
+    """The planner of one play, row by row. `second(tick)` gives the time of a tick in seconds of the music."""
 
     def __init__(self, play: Play, second: Callable[[int], float], context: Context) -> None:
         self.play, self.second, self.context, self.settings = play, second, context, context.settings
@@ -96,9 +94,7 @@ class Planner:
         return max([time + self.settings.mines.ahead, *(self.second(int(tick)) for tick in held if tick >= 0)])
 
     def _feet(self, row: Row) -> None:
-        """Plan a step of one foot or a jump, with the turn of the body; before it the dancer may step
-        aside, or home.
-        """
+        """Plan a step or a jump, with the turn of the body; before it the dancer may step aside, or home."""
         time, longest = row.time, self.settings.step.longest
         aside = None
         if self.previous is not None:

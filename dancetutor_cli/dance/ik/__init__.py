@@ -3,6 +3,5 @@
 knees, hands                  the direction of knees, the parts of a lean; palms, and hands that hang
 targets                       where pelvis, shoulders, hands and feet must be at each frame: `full_body.Targets`
 full_body                     the solver: joint rotations and root of all frames
-ankles                        corrections afterwards: ankles within their limits, soles that roll if an ankle bends too
-far
+ankles                        corrections afterwards: ankles within their limits, soles that roll if ankles bend too far
 """

@@ -149,7 +149,7 @@ def flight_figures(body: Body) -> tuple[Figure, ...]:
 
 
 def ground_force(body: Body) -> Array:
-    """The vertical force, body weights, at frames between two other frames on the ground, from the centre of mass."""
+    """The vertical force, body weights, at frames on the ground whose neighbours are too, from the centre of mass."""
     stands = np.asarray(body.standing.any(axis=1))
     inner = stands[1:-1] & stands[:-2] & stands[2:]
     acceleration = np.diff(body.mass[:, 1], n=2) * body.rate**2
@@ -202,7 +202,7 @@ def zmp_margin(body: Body, cut: float | None = None) -> Array:
 
 
 def _outside(points: Array, p: Array) -> float:
-    """Return the distance of p outside the convex hull of points (k, 2), to the nearest edge; negative inside."""
+    """Return the distance of p outside the convex hull of points (k, 2), by 72 directions; negative inside."""
     angle = np.arange(0.0, 2 * np.pi, np.pi / 36)
     directions = np.column_stack((np.cos(angle), np.sin(angle)))
     return float((directions @ p - (points @ directions.T).max(axis=0)).max())

@@ -29,7 +29,7 @@ from dancetutor_cli.dance.trajectory.height import span
 # The standing soles, as a hull that must contain the zero-moment point.
 
 Array = NDArray[np.float64]
-ONE, TWO = np.pi / 2 * np.arange(2), np.pi / 4 * np.array([0.0, 1.0, -1.0])  # angles of the sides of such hulls
+ONE, TWO = np.pi / 2 * np.arange(2), np.pi / 4 * np.array([0.0, 1.0, -1.0])  # hull angles: of one sole, of two
 
 
 @dataclass(frozen=True, slots=True)
