@@ -1,4 +1,4 @@
-"""The piece of work of `annotate`: the files of one song in, what became of each out; a failure is part of that."""
+"""The task of `annotate`: it marks the files of one song and returns an outcome, or an error, for each file."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class AnnotateRequest:
-    """The work on every file. Pickles.
+    """The user's options of `annotate`, for every file. It can be pickled.
 
-    named : whether the user asked for these styles; if not, other files beside the song are no error
-    preset : name or file of the cost preset; None: what `feet.preset` finds for each chart
-    write : whether files are written at all; diff : whether a diff is wanted; force : pinned measures too
-    into_file : added charts instead of .edit files; backup : keep the old bytes beside a file that is changed
+    named : whether the user named these styles; if not, files of other programs beside the song are no error
+    preset : name or file of the cost preset; None: the preset that `feet.preset` chooses for each chart
+    write : whether files are written; diff : whether to make a diff; force : whether to overwrite pinned measures
+    into_file : whether to add charts instead of .edit files; backup : whether to copy a file before it is changed
     """
 
     styles: tuple[str, ...]
@@ -48,7 +48,7 @@ class AnnotateRequest:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """A chart file, and where its new version goes: the same path unless -o says otherwise."""
+    """A chart file, and the path of its new version, which is the same without -o."""
 
     source: Path
     target: Path
@@ -56,11 +56,11 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class AnnotateOutcome:
-    """The result for a file: lines for people, mostly.
+    """The result for a file, mostly as lines for people.
 
-    problems : contradictions in what people said about feet; lacks : what is missing or stale
-    changed : whether anything is or would be different; companions : such files beside the chart file
-    unselected : the charts of a file of which none was meant
+    problems : contradictions in feet that people have set; lacks : missing or stale markers
+    changed : whether anything has changed or would change; companions : changed files beside the chart file
+    unselected : the charts of the file, if none was selected
     """
 
     source: Path
@@ -76,10 +76,10 @@ class AnnotateOutcome:
 
 
 def annotate_song(items: Sequence[Item], request: AnnotateRequest) -> list[AnnotateOutcome]:
-    """Annotate the files of one song, or take the markers out. Never raises for what is wrong with a file.
+    """Write or remove the markers of one song's files. Errors of a file are in its outcome, not raised.
 
-    Of a .sm and a .ssc only the .ssc speaks for the song in `data.sme` and in .edit files.
-    `UsageError` (no such preset) is raised: it is not about a file.
+    If there are a .sm and a .ssc, only the .ssc is used for `data.sme` and .edit files. Raises `UsageError` for an
+    unknown preset, because that is not about one file.
     """
     if request.write:
         for folder in sorted({item.target.parent for item in items}):
@@ -91,7 +91,7 @@ def annotate_song(items: Sequence[Item], request: AnnotateRequest) -> list[Annot
 def _attempt(item: Item, request: AnnotateRequest, is_sm_of_pair: bool) -> AnnotateOutcome:
     try:
         return _annotate(item, request, is_sm_of_pair)
-    except NoChartsError as error:  # music of a menu: nothing to write
+    except NoChartsError as error:  # the music of a menu has no charts to mark
         return AnnotateOutcome(item.source, notes=(str(error),))
     except FileError as error:
         return AnnotateOutcome(item.source, error=str(error))
@@ -117,7 +117,10 @@ def _annotate(item: Item, request: AnnotateRequest, is_sm_of_pair: bool) -> Anno
 
 
 def _request_for_ucs(path: Path, request: AnnotateRequest) -> tuple[AnnotateRequest, list[str]]:
-    """What of a request can be done for a .ucs, into which nothing is written; FileError if nothing of it."""
+    """Return the part of a request that is possible for a .ucs file, which is never changed.
+
+    Raises FileError if none is.
+    """
     beside = list(dict.fromkeys(OF_UCS[style] for style in request.styles if style in OF_UCS))
     if not beside and not request.strip:
         there = "measure (a text beside it) and sidecar"
@@ -126,7 +129,7 @@ def _request_for_ucs(path: Path, request: AnnotateRequest) -> tuple[AnnotateRequ
 
 
 class _Work:
-    """One file in work: the planned changes, then the changes themselves. beside : the styles that write files."""
+    """The work on one file: planning the changes, then writing them. beside : the styles that write other files"""
 
     def __init__(self, item: Item, request: AnnotateRequest, song: Song, beside: tuple[str, ...]) -> None:
         self.item, self.request, self.song, self.beside = item, request, song, beside
@@ -138,7 +141,10 @@ class _Work:
         self.counts: Counter[str] = Counter()
 
     def write(self) -> None:
-        """Plan all styles that are asked for: charts that we added are out while feet are found, and come back last."""
+        """Plan the requested styles.
+
+        Charts that the program added are removed while feet are found, and added again last.
+        """
         from dancetutor_cli.markers import plan
 
         presets = _configured(self.request.preset).presets(self.item.source)
@@ -170,7 +176,7 @@ class _Work:
                 self.errors.append(str(error))
 
     def strip(self) -> None:
-        """Plan the removal of all styles that are asked for."""
+        """Plan the removal of the requested styles."""
         from dancetutor_cli.markers import plan
 
         own = self._without_added() if "edit" in self.request.styles else self.song
@@ -194,7 +200,7 @@ class _Work:
                 self.notes.append(str(error))
 
     def outcome(self) -> AnnotateOutcome:
-        """Write the changes if that is wanted, and say what became of the file."""
+        """Write the changes if requested, and return the outcome."""
         selection = self.request.selection
         if self.request.write:
             for change in self.changes:
@@ -223,16 +229,16 @@ class _Work:
         return self.item.source == self.item.target
 
     def _charts(self, song: Song) -> list[Chart]:
-        """The charts that are meant; those that we added ourselves have no feet to write."""
+        """Return the selected charts, except those that the program has added."""
         return [chart for chart in self.request.selection.charts(song) if not edit.is_ours(chart)]
 
     def _without_added(self) -> Song:
-        """The song without the charts that an earlier run has added for the charts that are meant."""
+        """Return the song without the charts that an earlier run has added for the selected charts."""
         splices = edit.without_added(self.song, self._charts(self.song))
         return parse(apply(self.song.data, splices), self.song.path) if splices else self.song
 
     def _without_background(self, song: Song) -> Song:
-        """The song without the entries of films; the very same object if there are none."""
+        """Return the song without the entries of films; the same object if there are none."""
         splices = background.remove(song)
         return parse(apply(song.data, splices), song.path) if splices else song
 
@@ -247,7 +253,7 @@ class _Work:
         self.lacks += change.lacks
 
     def _write_change(self, change: FileChange) -> None:
-        """Write one change; with -o also what is the same as before, so that the copy is whole."""
+        """Write one change; with -o, unchanged files are written too, so that the copy is complete."""
         if self._in_place and not change.needed:
             return
         if not change.path.parent.is_dir():
@@ -266,7 +272,7 @@ class _Work:
 
 @cache
 def _configured(preset: str | None) -> LintRun:
-    """Knows the presets of each file's charts; the same for `analyze`, so that both find the same feet."""
+    """Return the settings that choose presets, as in `analyze`, so that both commands find the same feet."""
     from dancetutor_cli.lint.run import LintRequest, LintRun
 
     return LintRun(LintRequest(preset=preset))
@@ -275,5 +281,5 @@ def _configured(preset: str | None) -> LintRun:
 def annotate_task(
     report: Callable[[int], None], items: Sequence[Item], request: AnnotateRequest
 ) -> list[AnnotateOutcome]:
-    """`annotate_song` as worker processes call it."""
+    """Call `annotate_song` in a worker process."""
     return annotate_song(items, request)

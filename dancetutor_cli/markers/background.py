@@ -1,7 +1,7 @@
-"""A film in `#BGCHANGES`, which the games play behind the notes: its entry, and putting it into files.
+"""The entry of a film in `#BGCHANGES`, which the games play behind the notes.
 
-An entry is ours if its file's name ends in `.dancetutor.` and a suffix; so nothing else has to say whose it is, and
-an editor that saves the file keeps it.
+An entry belongs to this program if its file's name ends in `.dancetutor.` and a suffix. So no other mark is needed, and
+editors keep the entry when they save the file.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from dancetutor_cli.run.files import UCS_SUFFIX, remove_leftovers, write_atomic
 TAG = "BGCHANGES"
 OURS = ".dancetutor"  # before the suffix of a film that this program has made for a song
 MARK = b"//{dt1 background}"  # before a tag that was not there
-# The games put the song's own picture behind the last note where no entry says otherwise: here the film goes on.
+# The games show the song's picture after the last note unless an entry prevents it; with this one, the film goes on.
 _NO_PICTURE = b"-nosongbg-"
 _ALONE = b",99999=%b=1.000=0=0=0" % _NO_PICTURE
 _NAME = re.compile(rf"[^,;:=#\\/\r\n\x00-\x1f]+{re.escape(OURS)}\.\w+")
@@ -34,14 +34,14 @@ _SONG_ENDS = ("NOTES", "NOTES2", "NOTEDATA")
 
 @dataclass(frozen=True, slots=True)
 class EntryInsertion:
-    """The replacements that put an entry in. later : beats of others' entries after it, which take the film away"""
+    """The replacements that insert an entry. later : beats of other entries after it, which end the film"""
 
     splices: tuple[Splice, ...]
     later: tuple[float, ...]
 
 
 def check_name(name: str) -> None:
-    """UsageError for a film's file name that the games would not read, or that `annotate --strip` would not know."""
+    """Raise UsageError for a film's file name that the games cannot read, or that `annotate --strip` cannot recognise."""
     if not _NAME.fullmatch(name):
         raise UsageError(
             f"{name}: with --into-file the film's name must end in {OURS}.mp4, so that `annotate --strip` knows it, "
@@ -50,13 +50,13 @@ def check_name(name: str) -> None:
 
 
 def entry(song: Song, name: str) -> bytes:
-    """The text of the entry: the film begins with the music, at the beat of its first moment by the song's timing."""
+    """Return the text of the entry: the film begins at the beat at which the music begins."""
     beat = float(song.timing.beats(np.array([0.0]))[0])
     return f"{beat:.3f}={name}=1.000=0=0=0=StretchNoLoop====".encode()
 
 
 def add(song: Song, name: str) -> EntryInsertion:
-    """Put the entry of a film into a chart file that has none of ours. FileError where there is no place for it."""
+    """Insert the entry of a film into a chart file without one. Raises FileError if there is no place for it."""
     text, tag = entry(song, name), _tag(song.data)
     if tag is None:
         return EntryInsertion((_new_tag(song, text + _ALONE),), ())
@@ -69,7 +69,7 @@ def add(song: Song, name: str) -> EntryInsertion:
 
 
 def remove(song: Song) -> list[Splice]:
-    """Replacements that take our entries out of a chart file, and the tag if it came with one."""
+    """Return the replacements that remove this program's entries, and the tag if the program added it."""
     tag = _tag(song.data)
     if tag is None or not tag.spans:
         return []
@@ -88,7 +88,7 @@ def remove(song: Song) -> list[Splice]:
 
 
 def _with_comma(value: bytes, start: int, end: int) -> tuple[int, int]:
-    """An entry's span with the comma that came with it: the one before, or the one after if it is the first."""
+    """Return an entry's span with its comma: the one before it, or the one after it for the first entry."""
     while start < end and value[start : start + 1].isspace():
         start += 1
     while end > start and value[end - 1 : end].isspace():
@@ -107,7 +107,7 @@ def _between(spans: list[tuple[int, int]], length: int) -> Iterator[tuple[int, i
 
 
 def _tag(data: bytes) -> Tag | None:
-    """The tag that counts: the last of its name among those of the song."""
+    """Return the tag that the games use: the last `#BGCHANGES` of the song."""
     found, in_chart = None, False
     for tag in scan(data):
         if tag.name == "NOTEDATA":
@@ -120,7 +120,7 @@ def _tag(data: bytes) -> Tag | None:
 
 
 def _new_tag(song: Song, text: bytes) -> Splice:
-    """The tag on lines of its own before the first chart."""
+    """Return the insertion of the tag on a new line before the first chart."""
     first = next((tag for tag in scan(song.data) if tag.name in _SONG_ENDS), None)
     if first is None:
         raise FileError(song.path, "has no chart, so #BGCHANGES cannot be put before one")
@@ -142,12 +142,12 @@ def _beats(value: bytes) -> Iterator[float]:
 
 
 def files_of_song(path: Path) -> list[Path]:
-    """The chart files that get the entry: a file that was named alone, of a folder of one song its .sm and .ssc."""
+    """Return the chart files that get the entry: the named file, or the .sm and .ssc of a song's folder."""
     return [path] if not path.is_dir() else [file for file in find_files([path]) if file.suffix.lower() != UCS_SUFFIX]
 
 
 def check_place(film: Path, files: Sequence[Path]) -> None:
-    """UsageError if a film there cannot be entered: it has to lie beside its chart, under a name that is ours."""
+    """Raise UsageError unless a film is beside its chart, with a name that this program recognises."""
 
     check_name(film.name)
     for file in files:
@@ -158,9 +158,9 @@ def check_place(film: Path, files: Sequence[Path]) -> None:
 
 
 def enter(film: Path, files: Sequence[Path]) -> list[str]:
-    """Write the entry of a film into chart files, in place of one that is there; lines for people.
+    """Write or replace the entry of a film in chart files; return lines for people.
 
-    Raises FileError for the first file that cannot be written; those before it are.
+    Raises FileError for the first file that cannot be written; earlier files are written.
     """
     return [line for file in files for line in _enter(film, file)]
 

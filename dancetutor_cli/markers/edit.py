@@ -26,11 +26,12 @@ _SIDE = {Limb.LEFT_FOOT: 0, Limb.LEFT_HAND: 0, Limb.RIGHT_FOOT: 1, Limb.RIGHT_HA
 
 
 def sides(chart: Chart, play: Play) -> NDArray[np.int64]:
-    """The pad of each note of a single, (n,): 0 left, 1 right.
+    """Return the pad of each note of a single chart, (n,): 0 left, 1 right.
 
-    A step goes to the pad of the limb that plays it. What nobody steps on (mines, fakes, steps that are not judged)
-    goes where the panel was stepped on last: a mine stays under the foot that it threatens. Before the first step the
-    outer arrows are at their own side. A step that no limb is left for goes to the pad with fewer steps in its row.
+    A step goes to the pad of the limb that plays it. A note without a step (a mine, a fake, a step that is not judged)
+    goes to the pad of the last step on its panel, so that a mine stays under the foot that it threatens. Before the
+    first step, only the right arrow is on the right pad. A step for which no limb is free goes to the pad with fewer
+    steps in its row.
     """
     limbs = _limbs(chart, play)
     last = [0, 0, 0, 1]
@@ -51,13 +52,13 @@ def sides(chart: Chart, play: Play) -> NDArray[np.int64]:
 
 
 def note_data(chart: Chart, play: Play, eol: bytes) -> bytes:
-    """The note data of the lane-split chart, as `chart.note_writer.write_notes` makes it."""
+    """Return the note data of the lane-split chart, by `chart.note_writer.write_notes`."""
     columns = chart.notes.column + _COLUMNS * sides(chart, play)
     return write_notes(chart.notes, columns, 2 * _COLUMNS, eol)
 
 
 def _limbs(chart: Chart, play: Play) -> dict[tuple[int, int], int]:
-    """{(tick, column): `Limb`} of all steps as written; virtual taps of rolls are not among them."""
+    """Return {(tick, column): `Limb`} of all written steps, without virtual taps of rolls."""
     row, column = (play.rows.steps > 0).nonzero()
     ticks = play.rows.tick[row].tolist()
     every = dict(zip(zip(ticks, column.tolist(), strict=True), play.limb[row, column].tolist(), strict=True))
@@ -67,7 +68,7 @@ def _limbs(chart: Chart, play: Play) -> dict[tuple[int, int], int]:
     return {place: every[place] for place in written if place in every}
 
 
-# The style: that chart in a file, or added to one.
+# The style: the lane-split chart in a .edit file, or added to the chart file.
 
 LIMIT = 60 * 1024  # bytes of a .edit file that the games still read
 MARK = b"//{dt1 edit}"
@@ -77,17 +78,17 @@ _TIMING = ("OFFSET", "BPMS", "STOPS", "DELAYS", "WARPS", "FAKES", "SCROLLS", "SP
 
 
 class EditError(FileError):
-    """A lane-split chart cannot be made in this form; the other styles are not concerned."""
+    """A lane-split chart cannot be made in this form; other styles are not affected."""
 
 
 def is_ours(chart: Chart) -> bool:
-    """Whether a chart is one that this style has added."""
+    """Whether this style has added a chart."""
     made = chart.steps_type == TARGET and chart.difficulty == "Edit"
     return made and chart.description.startswith(_NAME)
 
 
 def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileChange | FileError]:
-    """The .edit files of a song; an error in place of one that there cannot be."""
+    """Yield the .edit files of a song, or an error for a file that is not possible."""
     for path, data in edit_files(song, feet):
         if isinstance(data, FileError):
             yield data
@@ -96,13 +97,13 @@ def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileC
 
 
 def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
-    """The .edit files gone."""
+    """Yield the removal of the .edit files."""
     for path in edit_paths(song, charts):
         yield removed(path, read_bytes(path, CHART_LIMIT), None)
 
 
 def edit_files(song: Song, feet: Sequence[ChartFeet]) -> Iterator[tuple[Path, bytes | EditError]]:
-    """For each single: the path of its .edit file, and its bytes or why there cannot be one."""
+    """Yield for each single chart the path of its .edit file, and its bytes or the error."""
     names = _names(song)
     for one in feet:
         if one.chart.steps_type != SOURCE:
@@ -130,7 +131,7 @@ def _edit_file(song: Song, one: ChartFeet, name: str) -> bytes | EditError:
 
 
 def _read_back(song: Song, one: ChartFeet, data: bytes) -> bytes | EditError:
-    """The file, if our own reader finds as many notes in it as in the chart it was made from."""
+    """Return the file if the reader finds as many notes in it as in its chart, else an error."""
     chart = parse(data, song.path.with_suffix(".sm")).charts[0]
     if len(chart.notes) != len(one.chart.notes):
         return EditError(song.path, f"{one.chart.label}: the .edit file would lose notes; nothing was written")
@@ -138,7 +139,7 @@ def _read_back(song: Song, one: ChartFeet, data: bytes) -> bytes | EditError:
 
 
 def edit_paths(song: Song, charts: Sequence[Chart]) -> list[Path]:
-    """The .edit files of our own that belong to charts of a song, and those whose chart the song no longer has."""
+    """Return this program's .edit files for charts of a song, and those whose chart no longer exists."""
     names = _names(song)
     meant = {chart.index for chart in charts}
     others = {_path(song, name) for index, name in names.items() if index not in meant}
@@ -148,7 +149,7 @@ def edit_paths(song: Song, charts: Sequence[Chart]) -> list[Path]:
 
 
 def added_charts(song: Song, feet: Sequence[ChartFeet]) -> bytes:
-    """What to append to a chart file: a block for each single. It starts on the file's last line."""
+    """Return the text to append to a chart file: a block for each single chart, starting on the file's last line."""
     eol = b"\r\n" if b"\r\n" in song.data else b"\n"
     names = _names(song)
     if any(song.data[c.notes_span[1] : c.notes_span[1] + 1] != b";" for c in song.charts[-1:]):
@@ -168,7 +169,7 @@ def added_charts(song: Song, feet: Sequence[ChartFeet]) -> bytes:
 
 
 def without_added(song: Song, charts: Sequence[Chart]) -> list[Splice]:
-    """Replacements that take out of a file what was added for these charts, or for charts that it no longer has."""
+    """Return the replacements that remove charts added for these charts, or for charts that no longer exist."""
     names = _names(song)
     meant = {chart.index for chart in charts}
     kept = {name for index, name in names.items() if index not in meant}
@@ -188,7 +189,7 @@ def _block(song: Song, chart: Chart) -> Splice:
 
 
 def _names(song: Song) -> dict[int, str]:
-    """A name for each single, which tells those of one difficulty and meter apart."""
+    """Return a unique name for each single chart, even with the same difficulty and meter."""
     names: dict[int, str] = {}
     for chart in song.charts:
         if chart.steps_type == SOURCE:
@@ -199,7 +200,7 @@ def _names(song: Song) -> dict[int, str]:
 
 
 def _value(text: str) -> str:
-    """Text as a part of a value: what would end it is escaped."""
+    """Return text for a tag's value, with special characters escaped."""
     return _SPECIAL.sub(r"\\\1", text)
 
 

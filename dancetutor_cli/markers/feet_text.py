@@ -1,6 +1,6 @@
-"""The style of a .ucs for people: `SONG.feet.txt`, its lines with the feet behind its rows, "..M.X  ..L.R".
+"""The style of a .ucs for people: `SONG.feet.txt`, a copy with the feet after each row, "..M.X ..L.R".
 
-Nothing but rows may stand in a .ucs, so nothing is written into it. Lines have the same numbers in both files.
+A .ucs file cannot have comments, so nothing is written into it. Lines have the same numbers in both files.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ _OURS = b"feet by dancetutor, preset "  # begins its last line
 
 
 def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileChange]:
-    """The text with the feet of a .ucs."""
+    """Yield the text with the feet of a .ucs."""
     path = folder / (song.path.stem + SUFFIX)
     old = old_content(path, song)
     yield written(path, old, write_feet_text(path, old, song, feet))
 
 
 def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
-    """The text gone."""
+    """Yield the removal of the text."""
     path = song.path.with_name(song.path.stem + SUFFIX)
     old = old_content(path, song)
     check_text(path, old)
@@ -32,7 +32,7 @@ def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
 
 
 def write_feet_text(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> bytes:
-    """The content of the text; FileError if what lies there is not ours."""
+    """Return the content of the text. Raises FileError if the old file was not written by this program."""
     check_text(path, old)
     lines = [line.rstrip(b"\r\n") for line in song.data.splitlines(keepends=True)]
     newline = b"\r\n" if b"\r\n" in song.data else b"\n"
@@ -48,6 +48,6 @@ def write_feet_text(path: Path, old: bytes | None, song: Song, feet: Sequence[Ch
 
 
 def check_text(path: Path, old: bytes | None) -> None:
-    """FileError if a file that lies where the text goes is not ours."""
+    """Raise FileError if the old file was not written by this program."""
     if old is not None and not old.rstrip().rpartition(b"\n")[2].startswith(_OURS):
         raise FileError(path, "was not written by dancetutor; move it away or choose --markers sidecar")

@@ -15,14 +15,14 @@ from dancetutor_cli.markers.model import ChartFeet, Lack, NoteChange
 
 
 class State(Enum):
-    """The content of a file compared with what it should be."""
+    """The state of a measure's marker compared with the solved feet."""
 
     CURRENT = "current"
     MISSING = "missing"
-    STALE = "stale"  # tokens do not fit the rows
-    DIFFERENT = "different"  # they fit, but say other feet
+    STALE = "stale"  # the tokens do not fit the rows
+    DIFFERENT = "different"  # the tokens fit, but with other feet
     PINNED = "pinned"
-    IMPOSSIBLE = "impossible"  # rows stand on the line of the comma
+    IMPOSSIBLE = "impossible"  # the line of the comma has rows
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ _WORDS = {
 
 
 def write(song: Song, feet: ChartFeet, force: bool) -> NoteChange:
-    """Bring the markers of a chart up to date. What lacks is one line for each kind, with the first place."""
+    """Update the markers of a chart. Missing markers are reported in one line for each state, with the first place."""
     chart = feet.chart
     splices, states = write_measures(song.data, chart, feet.rows, feet.letters, force)
     change = NoteChange(splices, Counter(one.state.value for one in states))
@@ -61,7 +61,7 @@ def write(song: Song, feet: ChartFeet, force: bool) -> NoteChange:
 
 
 def strip(song: Song, chart: Chart, force: bool) -> NoteChange:
-    """Take the markers of a chart out, and count those that stay because somebody has pinned them."""
+    """Remove the markers of a chart, and count the pinned ones, which stay."""
     left = 0 if force else pinned(song.data, chart)
     return NoteChange(strip_measures(song.data, chart, force), Counter(pinned=left))
 
@@ -69,12 +69,12 @@ def strip(song: Song, chart: Chart, force: bool) -> NoteChange:
 def write_measures(
     data: bytes, chart: Chart, rows: StepRows, letters: Sequence[str], force: bool = False
 ) -> tuple[list[Splice], list[MeasureState]]:
-    """Replacements that bring the markers of a chart up to date, and how they were before.
+    """Return the replacements that update the markers of a chart, and the old state of each measure.
 
     Parameters
     ----------
     data : the bytes of the chart's file
-    rows, letters : its rows with steps, and the letters of each
+    rows, letters : the chart's rows with steps, and the letters of each row
     force : overwrite pinned measures too
     """
     wanted = _by_measure(chart, rows, letters)
@@ -97,7 +97,7 @@ def write_measures(
 
 
 def strip_measures(data: bytes, chart: Chart, force: bool = False) -> list[Splice]:
-    """Replacements that take the markers of a chart out; pinned ones only with `force`."""
+    """Return the replacements that remove the markers of a chart; pinned ones only with `force`."""
     splices = []
     for line in measure_lines(data, chart):
         comment = data[line.start : line.end]
@@ -108,7 +108,7 @@ def strip_measures(data: bytes, chart: Chart, force: bool = False) -> list[Splic
 
 
 def pinned(data: bytes, chart: Chart) -> int:
-    """How many measures of a chart somebody has pinned."""
+    """Return the number of pinned measures of a chart."""
     comments = (data[line.start : line.end] for line in measure_lines(data, chart))
     return sum(any(match["pin"] for match in markers_in(comment)) for comment in comments)
 
@@ -121,7 +121,7 @@ def _by_measure(chart: Chart, rows: StepRows, letters: Sequence[str]) -> dict[in
 
 
 def _state(comment: bytes, tokens: list[str] | None, force: bool) -> State | None:
-    """None: no marker, and none is needed."""
+    """Return the state of a comment's marker; None: there is no marker, and none is needed."""
     found = markers_in(comment)
     if not found:
         return State.MISSING if tokens else None
@@ -137,7 +137,7 @@ def _state(comment: bytes, tokens: list[str] | None, force: bool) -> State | Non
 
 
 def _with(comment: bytes, text: bytes, force: bool) -> bytes:
-    """The comment with its first marker replaced and no other; a marker added where there is none."""
+    """Return the comment with one marker: its first marker is replaced, or a marker is added."""
     found = markers_in(comment)
     if not found:
         return comment + b" " + text if comment else b"//" + text
@@ -149,14 +149,14 @@ def _with(comment: bytes, text: bytes, force: bool) -> bytes:
 
 
 def _without(comment: bytes, force: bool) -> bytes:
-    """The comment without markers; nothing of it is left if a marker was all there was."""
+    """Return the comment without markers; b"" if it had only markers."""
     while ours := [match for match in markers_in(comment) if force or not match["pin"]]:
-        comment = _cut(comment, *ours[-1].span())  # what is left may make a marker of two halves, hence the loop
+        comment = _cut(comment, *ours[-1].span())  # the parts around a removed marker may form another marker
     return comment
 
 
 def _cut(comment: bytes, start: int, end: int) -> bytes:
-    """Take one marker and the one blank that joined it to other text out of a comment."""
+    """Remove one marker and the blank between it and other text from a comment."""
     before, after = comment[:start], comment[end:]
     if before == b"//" and not after.strip(b" \t"):
         return after

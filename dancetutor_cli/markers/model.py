@@ -1,4 +1,4 @@
-"""What all styles of markers share: the feet of a chart, the files that would change, what `--check` reports."""
+"""Data that all styles of markers share: the feet of a chart, changes of files, and the reports of `--check`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from dancetutor_cli.run.reading import CHART_LIMIT, parse_json, read_bytes
 
 @dataclass(frozen=True, slots=True)
 class ChartFeet:
-    """A solved chart. rows : its written rows with steps; letters : of each of them, left to right."""
+    """A solved chart. rows : its written rows with steps; letters : the letters of each row, left to right"""
 
     chart: Chart
     rows: StepRows
@@ -34,23 +34,23 @@ class ChartFeet:
 
 @dataclass(frozen=True, slots=True)
 class Lack:
-    """Something that `--check` reports. line, column : 1-based place in the chart file, None: about another file."""
+    """A report of `--check`. line, column : 1-based place in the chart file, None: it is about another file"""
 
     message: str
     line: int | None = None
     column: int | None = None
 
     def at(self, path: Path) -> str:
-        """For people: file, place and what is missing."""
+        """Return the message with the file and the place."""
         place = "".join(f":{n}" for n in (self.line, self.column) if n is not None)
         return f"{path}{place}: {self.message}"
 
 
 @dataclass(slots=True)
 class NoteChange:
-    """What a style changes in the note data of one chart.
+    """The changes of a style in the note data of one chart.
 
-    counts : measures or rows by what is done about them; lacks : what `--check` reports; notes : for people
+    counts : number of measures or rows by state; lacks : reports of `--check`; notes : lines for people
     """
 
     splices: list[Splice]
@@ -59,7 +59,7 @@ class NoteChange:
     notes: list[str] = field(default_factory=list)
 
     def add(self, other: NoteChange) -> None:
-        """Take the changes of another chart or style in."""
+        """Add the changes of another chart or style."""
         self.splices += other.splices
         self.counts += other.counts
         self.lacks += other.lacks
@@ -68,7 +68,7 @@ class NoteChange:
 
 @dataclass(frozen=True, slots=True)
 class FileChange:
-    """A file that is to become something else. old : None if it is not there; new : None to remove it."""
+    """A change of a file. old : its content, None if it does not exist; new : None to remove it"""
 
     path: Path
     old: bytes | None
@@ -77,23 +77,23 @@ class FileChange:
 
     @property
     def needed(self) -> bool:
-        """Whether there is anything to do."""
+        """Whether the file changes."""
         return self.old != self.new
 
 
 def written(path: Path, old: bytes | None, new: bytes | None, problem: str | None = None) -> FileChange:
-    """A file with feet to write. problem : what `--check` says if they are not there, after the file's name."""
+    """Return the change of a file with feet. problem : the report of `--check` after the file's name"""
     problem = problem or f"is {'missing' if old is None else 'stale'}"
     return FileChange(path, old, new, () if old == new else (Lack(f"{path.name} {problem}"),))
 
 
 def removed(path: Path, old: bytes | None, new: bytes | None) -> FileChange:
-    """A file with feet to take out."""
+    """Return the change that removes feet from a file."""
     return written(path, old, new, "has feet to remove")
 
 
 def old_content(path: Path, song: Song) -> bytes | None:
-    """A file as it is, or for one that goes elsewhere the one that lies by the song; None if there is none."""
+    """Return the content of a file, else of the file with this name beside the song; None if neither exists."""
     for place in (path, song.path.with_name(path.name)):
         try:
             return read_bytes(place, CHART_LIMIT)
@@ -103,9 +103,10 @@ def old_content(path: Path, song: Song) -> bytes | None:
 
 
 def own_json(path: Path, old: bytes, what: str, fits: Callable[[Any], bool]) -> Any:
-    """The parsed JSON of an old file, if this program wrote it; FileError if not.
+    """Parse the JSON of an old file. Raises FileError if this program did not write it.
 
-    what : it should be, for people; fits : whether the parsed file is that; KeyError and TypeError say no
+    what : name of the expected file in messages; fits : whether the parsed file has the form; KeyError and TypeError
+    mean no
     """
     try:
         data = parse_json(encoded(old.decode("utf-8", "surrogateescape")), path)
@@ -117,12 +118,12 @@ def own_json(path: Path, old: bytes, what: str, fits: Callable[[Any], bool]) -> 
 
 
 def not_ours(path: Path, what: str) -> FileError:
-    """The error about a file of somebody else that lies where one of ours goes. what : it should be, for people."""
+    """Return the error about a file of another program at the place of this one's. what : the expected file, for people"""
     return FileError(path, f"is not {what}; move it away or choose another style")
 
 
 def json_lines(entries: Iterable[Any]) -> str:
-    """Entries of a JSON list, each on a line of its own, so that version control shows which have changed."""
+    """Return the entries of a JSON list, one per line, so that version control shows the changed ones."""
     return ",\n".join("   " + json.dumps(entry, ensure_ascii=False) for entry in entries)
 
 
@@ -133,7 +134,7 @@ _LETTER = np.array(  # by (limb - _LOW) * len(Part) + part
 
 
 def limbs_of(chart: Chart, rows: StepRows, play: Play) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """`Limb` and `Part` of every cell of `rows`, each (n, c); `Limb.NONE` where there is no step that is judged."""
+    """Return `Limb` and `Part` of every cell of `rows`, each (n, c); `Limb.NONE` for cells without a judged step."""
     limb = np.full(rows.steps.shape, int(Limb.NONE), dtype=np.int64)
     part = np.zeros(rows.steps.shape, dtype=np.int64)
     if not len(rows) or not len(play.rows):
@@ -149,7 +150,7 @@ def limbs_of(chart: Chart, rows: StepRows, play: Play) -> tuple[NDArray[np.int64
 
 
 def row_letters(chart: Chart, rows: StepRows, play: Play) -> list[str]:
-    """The letters of each row of `rows`, left to right; `.` for steps that nobody plays or that are not judged."""
+    """Return the letters of each row of `rows`, left to right; `.` for steps that are not played or not judged."""
     if not len(rows):
         return []
     limb, part = limbs_of(chart, rows, play)
@@ -160,7 +161,7 @@ def row_letters(chart: Chart, rows: StepRows, play: Play) -> list[str]:
 
 
 def limbs_of_steps(feet: ChartFeet) -> Iterator[tuple[int, int, int, int]]:
-    """Tick, column, `Limb` and `Part` of each written step of a chart."""
+    """Yield the tick, the column, the `Limb` and the `Part` of each written step of a chart."""
     limb, part = limbs_of(feet.chart, feet.rows, feet.play)
     row, column = feet.rows.steps.nonzero()
     ticks = feet.chart.rows.tick[feet.rows.row[row]].tolist()

@@ -1,4 +1,4 @@
-"""What would change in a chart file before anything is written: charts are solved, note data gets its markers."""
+"""The changes of a chart file, computed before anything is written: charts are solved, and markers are placed."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from dancetutor_cli.markers.styles import note_styles
 
 @dataclass(slots=True)
 class SolvedSong:
-    """The feet of a song. problems : contradictions in what people said about them; notes : for people, too."""
+    """The feet of a song. problems : contradictions in feet that people have set; notes : lines for people"""
 
     charts: list[ChartFeet] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -30,7 +30,7 @@ class SolvedSong:
 
 
 def solve_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart], Preset]) -> SolvedSong:
-    """The feet of each chart that has a pad."""
+    """Return the feet of each chart that has a pad."""
     found = SolvedSong()
     padless = set()
     for chart in charts:
@@ -58,7 +58,7 @@ def solve_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart
 
 
 def _in_shared_rows(song: Song, chart: Chart, feet: Sequence[ChartFeet]) -> ChartFeet:
-    """The feet of two players whose notes stand in the same rows: letters from left to right.
+    """Return the feet of players whose notes are in the same rows, with letters from left to right.
 
     The play is the first player's.
     """
@@ -73,7 +73,7 @@ def _in_shared_rows(song: Song, chart: Chart, feet: Sequence[ChartFeet]) -> Char
 
 
 def mark(song: Song, feet: Sequence[ChartFeet], names: Sequence[str], force: bool) -> NoteChange:
-    """The styles that live in note data, written. names : of styles; others are not meant."""
+    """Return the change that writes the styles of `names` that are in note data."""
     change = NoteChange([])
     for one in feet:
         for style in note_styles(names):
@@ -84,7 +84,7 @@ def mark(song: Song, feet: Sequence[ChartFeet], names: Sequence[str], force: boo
 
 
 def unmark(song: Song, charts: Sequence[Chart], names: Sequence[str], force: bool) -> NoteChange:
-    """The styles that live in note data, taken out. names : of styles; others are not meant."""
+    """Return the change that removes the styles of `names` that are in note data."""
     change = NoteChange([])
     for chart in charts:
         before = len(change.splices)
@@ -97,9 +97,10 @@ def unmark(song: Song, charts: Sequence[Chart], names: Sequence[str], force: boo
 
 
 def add_charts(song: Song, before: Song, data: bytes, feet: Sequence[ChartFeet]) -> tuple[bytes, list[Lack]]:
-    """The lane-split charts added to the file, and what `--check` says about them.
+    """Return the file with the lane-split charts added, and the reports of `--check` about them.
 
-    song : without them; before : the song as it was read, perhaps with older ones; data : of `song`, with its markers
+    song : the song without these charts; before : the song as read, perhaps with older ones; data : bytes of `song`
+    with markers
     """
     added = edit.added_charts(song, feet)
     singles = [one.chart for one in feet if one.chart.steps_type == edit.SOURCE]
@@ -113,6 +114,6 @@ def add_charts(song: Song, before: Song, data: bytes, feet: Sequence[ChartFeet])
 
 
 def check(song: Song, data: bytes) -> None:
-    """Raise `chart.edits.HarmError` if the new bytes do not read like the song they were made from."""
+    """Raise `chart.edits.HarmError` if the new bytes do not read like the original song."""
     if data != song.data:
         unchanged(song, data, edit.is_ours)

@@ -12,25 +12,25 @@ from dancetutor_cli.feet.annotations import StepRows
 from dancetutor_cli.markers.model import ChartFeet, Lack, NoteChange
 
 WARNING = "Etterna joins rows that carry a comment with the next one; the style 'rows' is for other games and editors"
-# Ours, directly behind the row; blanks that were there before, or the mark of an added chart, may follow.
+# This program's letters, directly after the row; older blanks or the mark of an added chart may follow.
 _OURS = re.compile(rb"//dt[LRlr<>.]+(?=[ \t]*(?:\r?\n|\Z)|//\{dt1 edit\})")
 _FREE = re.compile(rb"(?=[ \t]*(?:\r?\n|\Z))")
 
 
 def write(song: Song, feet: ChartFeet, force: bool) -> NoteChange:
-    """Put the letters behind the rows of a chart; nothing is pinned here, whatever `force` says."""
+    """Write the letters after the rows of a chart; `force` has no effect, because rows cannot be pinned."""
     splices, lacking = write_rows(song.data, feet.chart, feet.rows, feet.letters)
     lacks = [Lack(f"{feet.chart.label}: {lacking} rows have no letters", feet.chart.line)] if lacking else []
     return NoteChange(splices, Counter(rows=len(feet.rows)), lacks)
 
 
 def strip(song: Song, chart: Chart, force: bool) -> NoteChange:
-    """Take the letters of a chart out."""
+    """Remove the letters of a chart."""
     return NoteChange(strip_rows(song.data, chart))
 
 
 def write_rows(data: bytes, chart: Chart, rows: StepRows, letters: Sequence[str]) -> tuple[list[Splice], int]:
-    """Replacements that put the letters behind the rows of a chart, and how many rows lack theirs now."""
+    """Return the replacements that write the letters after the rows of a chart, and the number of rows without them."""
     wanted = dict(zip(rows.row.tolist(), letters, strict=True))
     splices = []
     for row, end in enumerate(chart.rows.end.tolist()):
@@ -45,11 +45,11 @@ def write_rows(data: bytes, chart: Chart, rows: StepRows, letters: Sequence[str]
 
 
 def strip_rows(data: bytes, chart: Chart) -> list[Splice]:
-    """Replacements that take the letters of a chart out."""
+    """Return the replacements that remove the letters of a chart."""
     ends = (end for end in chart.rows.end.tolist() if data[end : end + 4] == b"//dt")
     return [Splice(*match.span(), b"") for end in ends if (match := _OURS.match(data, end))]
 
 
 def _own_line_end(data: bytes, chart: Chart, row: int) -> bool:
-    """Whether the row has a CR inside, which some readers take for the end of a line."""
+    """Whether the row contains a CR, at which some readers end the line."""
     return b"\r" in data[chart.rows.start[row] : chart.rows.end[row]]

@@ -1,4 +1,4 @@
-"""The style `sidecar`: `SONG.dancetutor.json` beside the file; the form that no editor throws away when it saves."""
+"""The style `sidecar`: `SONG.dancetutor.json` beside the file, which editors do not remove when they save the chart."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _SCHEMA = 1
 
 
 def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileChange]:
-    """The sidecar of a chart file; the .sm and the .ssc of one song share theirs."""
+    """Yield the sidecar of a chart file; the .sm and the .ssc of one song share it."""
     path = folder / (song.path.stem + SUFFIX)
     old = old_content(path, song)
     new = write_sidecar(path, old, song, feet)
@@ -37,14 +37,14 @@ def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileC
 
 
 def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
-    """The sidecar without some charts of a file."""
+    """Yield the sidecar without some charts of a file."""
     path = song.path.with_name(song.path.stem + SUFFIX)
     old = old_content(path, song)
     yield removed(path, old, strip_sidecar(path, old, song, charts))
 
 
 def write_sidecar(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> bytes:
-    """The new content of a sidecar; what it says about other files and other charts stays."""
+    """Return the new content of a sidecar; entries of other files and charts stay."""
     files = _files(path, old)
     before = files.get(song.path.name, {}).get("charts", [])
     indices = {one.chart.index for one in feet}
@@ -55,7 +55,7 @@ def write_sidecar(path: Path, old: bytes | None, song: Song, feet: Sequence[Char
 
 
 def strip_sidecar(path: Path, old: bytes | None, song: Song, charts: Sequence[Chart]) -> bytes | None:
-    """The sidecar without what it says about some charts of a file; None if nothing is left of it."""
+    """Return the sidecar without the entries of some charts; None if it has no other entries."""
     if old is None:
         return None
     files = _files(path, old)
@@ -67,7 +67,7 @@ def strip_sidecar(path: Path, old: bytes | None, song: Song, charts: Sequence[Ch
 
 
 def lack(path: Path, old: bytes | None, song: Song, chart: Chart, new: bytes) -> str | None:
-    """Why a chart's entry is not what it should be, for `--check`; None if it is."""
+    """Return the report of `--check` about a chart's entry; None if it is current."""
     entry, wanted = (_find(_files(path, data), song, chart) for data in (old, new))
     if entry == wanted:
         return None
@@ -106,7 +106,9 @@ def _entry(one: ChartFeet) -> dict[str, Any]:
 
 
 def _steps(one: ChartFeet) -> list[list[Any]]:
-    """[beat, column, limb] of each step, and which part of the foot in a bracket; limb null: nobody is left for it."""
+    """Return [beat, column, limb] of each step, with the part of the foot in a bracket; limb null: the step is not
+    played.
+    """
     steps = []
     for tick, at, who, which in limbs_of_steps(one):
         step: list[Any] = [round(tick / TICKS_PER_BEAT, 6), at, None if who < 0 else Limb(who).name.lower()]

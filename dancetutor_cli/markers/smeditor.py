@@ -1,7 +1,7 @@
 """The style `smeditor`: feet as overrides in `data.sme`, which SMEditor reads and shows.
 
-What a person has set there is never touched. What we add is listed once more under a key of our own, so that it can
-be distinguished from theirs and removed again; SMEditor drops that key when it saves, and then all feet are theirs.
+Feet that a person has set are never changed. The feet that this program adds are also listed under a separate key, so
+that they can be recognised and removed. SMEditor drops that key when it saves; then all feet count as the person's.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _VALUES: dict[tuple[int, int], str | int] = {(limb, part): value for value, (lim
 
 
 def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileChange]:
-    """`data.sme` of a folder; it knows charts only by their place, so it can only serve one song."""
+    """Yield the `data.sme` of a folder; it identifies charts only by their place, so it can hold only one song."""
     path = folder / FILE_NAME
     if len(stems := song_stems(song.path.parent)) > 1:
         raise FileError(path, f"its folder has {len(stems)} songs, but data.sme can hold only one; it is not written")
@@ -33,27 +33,30 @@ def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileC
 
 
 def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
-    """`data.sme` without the feet that we wrote."""
+    """Yield the `data.sme` without the feet that this program wrote."""
     path = song.path.with_name(FILE_NAME)
     old = old_content(path, song)
     yield removed(path, old, strip_editor_data(path, old, song, charts))
 
 
 def write_editor_data(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> bytes | None:
-    """The new content of `data.sme` with the feet of these charts; those of other charts that we wrote stay."""
+    """Return the new content of `data.sme` with the feet of these charts; this program's feet of other charts stay."""
     new = {(one.chart.steps_type, place_in_type(song, one.chart)): overrides(one) for one in feet}
     return _rewrite(path, old, new)
 
 
 def strip_editor_data(path: Path, old: bytes | None, song: Song, charts: Sequence[Chart]) -> bytes | None:
-    """`data.sme` without the feet that we wrote for these charts; None if nothing is left of a file of our own."""
+    """Return `data.sme` without this program's feet of these charts; None if a file of the program would be empty."""
     if old is None:
         return None
     return _rewrite(path, old, {(chart.steps_type, place_in_type(song, chart)): [] for chart in charts})
 
 
 def overrides(one: ChartFeet) -> list[list[Any]]:
-    """The steps of a chart as SMEditor writes them: beat, column, foot. Hands have no word there and are left out."""
+    """Return the steps of a chart in SMEditor's form: beat, column, foot.
+
+    SMEditor has no hands, so they are left out.
+    """
     return [
         [_beat(tick), at, _VALUES[who, which]]
         for tick, at, who, which in limbs_of_steps(one)
@@ -78,19 +81,19 @@ def _rewrite(path: Path, old: bytes | None, new: dict[_Key, list[list[Any]]]) ->
         entry = _chart_entry(path, data, steps_type, place)
         theirs = {(tick_of(beat), column) for beat, column, _ in overrides_of(entry)}
         added = [item for item in wanted if (tick_of(item[0]), item[1]) not in theirs]
-        # Behind theirs: SMEditor looks notes up and does not mind the order.
+        # The order of overrides does not matter to SMEditor.
         entry["overrides"] = [*entry["overrides"], *added]
         listed = written.setdefault(steps_type, [])
         listed.extend({"overrides": []} for _ in range(place + 1 - len(listed)))
         listed[place] = {"overrides": added}
     if before is not None and not any(entry["overrides"] for entries in written.values() for entry in entries):
-        return before.encode("utf-8")  # every foot is theirs already
+        return before.encode("utf-8")  # a person has already set every foot
     data[OURS] = {"parity": written} if before is None else {"parity": written, "before": before}
     return _compact(data).encode("utf-8")
 
 
 def _split_own_entries(path: Path, old: bytes | None) -> tuple[str | None, dict[_Key, list[list[Any]]]]:
-    """The file as it was without us (None: not there), and what we had written into it."""
+    """Return the file without this program's feet (None: there was no file), and these feet."""
     if old is None:
         return None, {}
     try:
@@ -115,7 +118,7 @@ def _split_own_entries(path: Path, old: bytes | None) -> tuple[str | None, dict[
 
 
 def _remove(data: Any, steps_type: str, place: int, ours: list[list[Any]]) -> None:
-    """Take our overrides out of a chart's entry; one that a person has changed since is theirs and stays."""
+    """Remove this program's overrides from a chart's entry; overrides that a person has changed stay."""
     try:
         entry = data["parity"][steps_type][place]
         mine = {tuple(item) for item in ours}
@@ -125,13 +128,13 @@ def _remove(data: Any, steps_type: str, place: int, ours: list[list[Any]]) -> No
 
 
 def _hashable(item: Any) -> Any:
-    """An override as a tuple; anything else, which is not ours, as None."""
+    """Return an override as a tuple, and None for anything else."""
     flat = isinstance(item, list) and all(isinstance(value, str | int | float) for value in item)
     return tuple(item) if flat else None
 
 
 def _pruned(data: Any) -> Any:
-    """Without the empty entries that only keep the place of a chart."""
+    """Return the data without the empty entries that only keep the places of charts."""
     parity = data.get("parity")
     if not isinstance(parity, dict):
         return data
@@ -146,7 +149,7 @@ def _pruned(data: Any) -> Any:
 
 
 def _chart_entry(path: Path, data: Any, steps_type: str, place: int) -> Any:
-    """The entry of a chart in the parsed file, made if it is not there."""
+    """Return the entry of a chart in the parsed file, made if it does not exist."""
     parity = data.setdefault("parity", {})
     entries = parity.setdefault(steps_type, []) if isinstance(parity, dict) else None
     if not isinstance(entries, list):
@@ -170,5 +173,5 @@ def _parsed(path: Path, text: str) -> dict[str, Any]:
 
 
 def _compact(data: Any) -> str:
-    """JSON the way SMEditor writes it."""
+    """Return JSON in SMEditor's form."""
     return json.dumps(data, separators=(",", ":"), ensure_ascii=False)

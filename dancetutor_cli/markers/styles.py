@@ -1,11 +1,11 @@
 """The styles of markers, by the names that users type.
 
-A style is a module of this package that is called like it, with two functions:
+A style is a module of this package with the name of the style and two functions:
 
     IN_NOTES    write(song, feet of a chart, force) and strip(song, chart, force) -> NoteChange
     IN_FILES      write(song, folder, feet of all charts) and strip(song, charts) -> the FileChange of each file
 
-A new style is its module and its name in one of these lists.
+A new style needs a module, and its name in one of these lists.
 """
 
 from __future__ import annotations
@@ -23,39 +23,39 @@ if TYPE_CHECKING:
 IN_NOTES = ("measure", "rows")
 IN_FILES = ("sidecar", "smeditor", "edit", "theme")
 STYLES = (*IN_NOTES, *IN_FILES)
-STRIPPED = (*STYLES, "background")  # and a film that `render --background --into-file` has entered
-OF_EACH_FILE = ("sidecar",)  # of a .sm and a .ssc only the .ssc speaks for the song in the other files
+STRIPPED = (*STYLES, "background")  # the entry of a film by `render --background --into-file`
+OF_EACH_FILE = ("sidecar",)  # if there are a .sm and a .ssc, the other styles use only the .ssc
 OF_UCS = {"measure": "feet_text", "rows": "feet_text", "sidecar": "sidecar"}  # nothing is written into a .ucs
 
 
 class NoteStyle(Protocol):
-    """A style that lives in comments of the note data."""
+    """A style in comments of the note data."""
 
     def write(self, song: Song, feet: ChartFeet, force: bool) -> NoteChange:
-        """Put the feet of a chart in. force : over what people have pinned, too."""
+        """Write the feet of a chart. force : whether to overwrite pinned measures"""
 
     def strip(self, song: Song, chart: Chart, force: bool) -> NoteChange:
-        """Take the feet of a chart out."""
+        """Remove the feet of a chart."""
 
 
 class FileStyle(Protocol):
     """A style that writes files beside a chart file."""
 
     def write(self, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileChange | FileError]:
-        """The files of a song. folder : where they go; what is merged lies there or by the song.
+        """Yield the changed files of a song. folder : their place; old content is read there, or beside the song
 
-        Yields an error in place of a file that there cannot be; the others come nevertheless.
+        Yields an error for a file that is not possible, and the other files as usual.
         """
 
     def strip(self, song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
-        """What taking the feet of some charts out does to the files beside a song."""
+        """Yield the changes that remove the feet of some charts from the files beside a song."""
 
 
 def note_styles(names: Sequence[str]) -> list[NoteStyle]:
-    """The styles among `names` that live in the note data."""
+    """Return the styles among `names` that are in note data."""
     return [cast(NoteStyle, import_module(f"{__package__}.{name}")) for name in IN_NOTES if name in names]
 
 
 def file_style(name: str) -> FileStyle:
-    """A style that writes files, by the name of its module."""
+    """Return a style that writes files, by the name of its module."""
     return cast(FileStyle, import_module(f"{__package__}.{name}"))

@@ -1,4 +1,4 @@
-"""Cues for themes: what comes next, from when and for how long, as `SONG.cues.json` and `SONG.cues.lua`."""
+"""Cues for themes: coming moves with their start and length, in `SONG.cues.json` and `SONG.cues.lua`."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ from dancetutor_cli.markers.model import (
 from dancetutor_cli.markers.sidecar import notes_hash
 from dancetutor_cli.run.files import encoded
 
-# What a theme can show a player before it comes: crossovers, brackets and turns, from when and for how long.
+# The moves that a theme can announce to a player: crossovers, brackets and turns.
 
 CROSSOVER, BRACKET, TURN = "crossover", "bracket", "turn"
 KINDS = (CROSSOVER, BRACKET, TURN)
-LEAST_TURN = 135.0  # degrees between two rows with steps from which on it is a turn
+LEAST_TURN = 135.0  # degrees between two rows with steps; a smaller change is not a turn
 _NEAR = TICKS_PER_BEAT  # brackets at most a beat apart are one passage
 _EPSILON = 1e-6
 _FEET = {Limb.LEFT_FOOT: "left", Limb.RIGHT_FOOT: "right"}
@@ -59,7 +59,7 @@ class ThemeCue:
 
 
 def cues_of(play: Play) -> tuple[ThemeCue, ...]:
-    """All passages of a play, by time. A crossover ends with the row in which the feet are uncrossed."""
+    """Return all cues of a play, by time. A crossover ends with the row that uncrosses the feet."""
     return tuple(sorted((*_crossovers(play), *_brackets(play), *_turns(play)), key=lambda cue: (cue.tick, cue.kind)))
 
 
@@ -79,7 +79,9 @@ def _brackets(play: Play) -> Iterator[ThemeCue]:
 
 
 def _turns(play: Play) -> Iterator[ThemeCue]:
-    """Rows to which the body turns far at once, or on past 180 degrees. Before the first row any stance is allowed."""
+    """Yield the rows to which the body turns by at least `LEAST_TURN`, or past 180 degrees; the first row is never a
+    turn.
+    """
     if len(play.rows) < 2:
         return
     steps = np.diff(play.facing)
@@ -129,12 +131,12 @@ def _near(rows: Sequence[int], ticks: Sequence[int]) -> Iterator[list[int]]:
 
 JSON, LUA = ".cues.json", ".cues.lua"
 _SCHEMA = 1
-_HEAD = b"-- dancetutor cues"  # first words of a Lua table that is ours
+_HEAD = b"-- dancetutor cues"  # first words of this program's Lua tables
 _OURS = "a table of cues by dancetutor"
 
 
 def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileChange]:
-    """The two files of a song; its .sm and its .ssc share them."""
+    """Yield the two files of a song; the .sm and the .ssc share them."""
     table, lua = (folder / (song.path.stem + suffix) for suffix in (JSON, LUA))
     old, script = old_content(table, song), old_content(lua, song)
     check_lua(lua, script)
@@ -144,7 +146,7 @@ def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileC
 
 
 def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
-    """The two files without some charts of a song."""
+    """Yield the two files without some charts of a song."""
     table, lua = (song.path.with_name(song.path.stem + suffix) for suffix in (JSON, LUA))
     old, script = old_content(table, song), old_content(lua, song)
     check_lua(lua, script)
@@ -156,9 +158,9 @@ def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
 
 
 def cue_table(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> dict[str, Any]:
-    """What the files say, from the old JSON at `path` and new charts; charts that are not in `feet` stay.
+    """Return the content of the files, from the old JSON at `path` and new charts; charts that are not in `feet` stay.
 
-    Raises FileError if the old file is not ours.
+    Raises FileError if this program did not write the old file.
     """
     new = {one.chart.index: _entry(one) for one in feet}
     kept = [entry for entry in charts_in(path, old) if entry["index"] not in new and entry["index"] < len(song.charts)]
@@ -167,7 +169,7 @@ def cue_table(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFee
 
 
 def charts_in(path: Path, old: bytes | None) -> list[Any]:
-    """The charts of an old JSON file; FileError if it is not ours."""
+    """Return the charts of an old JSON file. Raises FileError if this program did not write it."""
     if old is None:
         return []
     return list(own_json(path, old, _OURS, _holds_charts)["charts"])
@@ -178,13 +180,13 @@ def _holds_charts(data: Any) -> bool:
 
 
 def check_lua(path: Path, old: bytes | None) -> None:
-    """FileError if the Lua file that is there is not ours."""
+    """Raise FileError if this program did not write the old Lua file."""
     if old is not None and not old.startswith(_HEAD):
         raise not_ours(path, _OURS)
 
 
 def as_json(table: dict[str, Any]) -> bytes:
-    """The JSON file: a line for each cue."""
+    """Return the JSON file, with a line for each cue."""
     head = {key: value for key, value in table.items() if key != "charts"}
     blocks = []
     for chart in table["charts"]:
@@ -196,7 +198,7 @@ def as_json(table: dict[str, Any]) -> bytes:
 
 
 def as_lua(table: dict[str, Any]) -> bytes:
-    """The Lua file: a chunk that returns the same table; it calls nothing."""
+    """Return the Lua file: a chunk that returns the same table and calls no function."""
     body = "\n".join(_lua_lines(table, 0))
     return _HEAD + b"; docs/theme.md tells what stands in it\nreturn " + encoded(body) + b"\n"
 
@@ -218,7 +220,7 @@ def _lua_lines(value: Any, depth: int) -> Iterator[str]:
 
 
 def _lua(value: Any) -> str:
-    """A number or a text; a text in the form that every Lua reads, whatever is in it."""
+    """Return a number, or a text in a form that every version of Lua reads."""
     if isinstance(value, int | float):
         return repr(value) if math.isfinite(value) else "0"
     letters = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r"}

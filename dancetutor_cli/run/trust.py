@@ -36,7 +36,7 @@ def exclude(path: Path) -> None:
 
 
 def fault_of(folder: Path) -> str:
-    """Return why a folder is not trusted, as a predicate such as "cannot be written", or ""; the folder need not exist."""
+    """Return why a folder is not trusted, such as "cannot be written", or ""; the folder need not exist."""
     if not folder.is_absolute():
         return "is not an absolute path"
     real = Path(os.path.realpath(folder))
@@ -102,7 +102,7 @@ def write_file(path: Path, data: bytes) -> None:
 
 
 def users_folder(name: str) -> Path | None:
-    """Return a folder in the system's place for the user's caches; None for a user without a home, as in a container."""
+    """Return a folder in the system's place for user caches; None for a user without a home, as in a container."""
     try:
         if sys.platform == "win32":
             folder = _absolute("LOCALAPPDATA") or Path.home() / "AppData" / "Local"
@@ -116,9 +116,7 @@ def users_folder(name: str) -> Path | None:
 
 
 def results_folder() -> tuple[Path | None, str]:
-    """Return the folder of cached results (DANCETUTOR_CACHE or the user's cache), or None and the reason, "" without a
-    home.
-    """
+    """Return the folder of results (DANCETUTOR_CACHE or the user's cache), or None and the reason, "" without a home."""
     named = os.environ.get(CACHE_VARIABLE)
     folder = Path(named) if named else users_folder("dancetutor")
     fault = "" if folder is None else fault_of(folder)
