@@ -1,4 +1,4 @@
-"""BVH out and in: motion capture files as Motion, and Motion as a file other animation programs read.
+"""Reading and writing of BVH, the motion capture format of many animation programs.
 
 Source: Biovision BVH as described by J. Lander, Game Developer, January 1998. Where a joint has position channels, they
 take the place of its OFFSET, as Blender and MotionBuilder have it: adding both would lift captured dancers off the
@@ -25,7 +25,7 @@ MAX_FILE = 100_000_000  # bytes
 MAX_JOINTS = 1024
 PIECE = 4000  # frames written at once
 UNITS = (1.0, 0.01, 0.0254, 0.001, 0.0254 / 0.45)  # metres: metre, centimetre, inch, millimetre, CMU's unit
-_HUMAN = 1.65  # metres from toe to crown joint, to find the unit by
+_HUMAN = 1.65  # metres from toe to crown joint, by which the unit is found
 _CHANNELS = {f"{axis}{kind}": (kind, "XYZ".index(axis)) for axis in "XYZ" for kind in ("position", "rotation")}
 _LEAF = 0.05  # metres: the length given to a leaf's End Site
 
@@ -62,12 +62,12 @@ class _Tree:
         return _Tree(joints, rotations, moved)
 
     def moves(self, j: int) -> bool:
-        """Whether a joint changes its place relative to its parent."""
+        """Whether a joint moves relative to its parent."""
         size = max(1.0, max(float(np.abs(joint.offset).max()) for joint in self.joints))
         return float(np.ptp(self.moved[:, j], axis=0).max()) > 1e-3 * size
 
     def below(self, base: int) -> list[int]:
-        """A joint and all that hang on it, parents first."""
+        """Return a joint and its descendants, parents first."""
         out = {base}
         for j in range(base + 1, len(self.joints)):
             if self.joints[j].parent in out:
@@ -75,13 +75,15 @@ class _Tree:
         return sorted(out)
 
     def moving_base(self) -> int:
-        """The lowest joint that moves from its parent and carries most of the skeleton: hips under a root; else 0."""
+        """Return the lowest joint that moves relative to its parent and carries most of the skeleton (hips under a
+        root), else 0.
+        """
         count = len(self.joints)
         carries = [j for j in range(count) if 2 * len(self.below(j)) > count]
         return max((j for j in carries if self.moves(j)), default=0)
 
     def in_world(self, base: int) -> tuple[Array, Array]:
-        """Place (f, 3) and turn (f, 4) of a joint in the world, through all that it hangs on."""
+        """Return the place (f, 3) and the rotation (f, 4) of a joint in the world."""
         place, turn = self.moved[:, base], self.rotations[:, base]
         above = self.joints[base].parent
         while above >= 0:
@@ -91,7 +93,7 @@ class _Tree:
         return place, turn
 
     def kept_still(self, below: list[int], scale: float) -> tuple[str, ...]:
-        """A note on joints whose bones change their length or place: they are kept at their median."""
+        """Return a note about joints that move relative to their parents, which are kept at their median place."""
         names = [self.joints[j].name for j in below if self.moves(j)]
         if not names:
             return ()
@@ -101,7 +103,7 @@ class _Tree:
 
 
 def read_bvh(path: Path, scale: float | None = None, ends: bool = False) -> Motion:
-    """The motion in a BVH file.
+    """Read the motion in a BVH file.
 
     Parameters
     ----------
@@ -116,7 +118,7 @@ def read_bvh(path: Path, scale: float | None = None, ends: bool = False) -> Moti
 
     Raises
     ------
-    FileError for a file that is no BVH, cut off or too large, with the line
+    FileError with the line, if the file is not BVH, is cut off or is too large
     """
     lines = _lines(path)
     joints, at = _hierarchy(path, lines)
@@ -142,7 +144,7 @@ def read_bvh(path: Path, scale: float | None = None, ends: bool = False) -> Moti
 
 
 def frame_count(motion: Motion, fps: float) -> int:
-    """How many frames a motion has at `fps`, from its first key on."""
+    """Return the number of frames of a motion at `fps`, from its first key on."""
     return max(1, math.floor(float(motion.times[-1] - motion.times[0]) * fps + 1e-6) + 1)
 
 
@@ -152,7 +154,7 @@ def write_bvh(path: Path, motion: Motion, fps: float | None = None, units_per_me
     BVH has one frame time, so the motion is sampled at `fps` (its own if None), from its first key on. Angles are given
     with 6 digits: a round trip is exact to a millionth of a degree at the frames.
 
-    Raises FileError when the file cannot be written.
+    Raises FileError if the file cannot be written.
     """
     fps = motion.fps if fps is None else fps
     count = frame_count(motion, fps)
@@ -162,7 +164,7 @@ def write_bvh(path: Path, motion: Motion, fps: float | None = None, units_per_me
 
     def write(file: BinaryIO) -> None:
         file.write(("\n".join(text) + "\n").encode("utf-8"))
-        for first in range(0, count, PIECE):  # an hour as text would need gigabytes at once
+        for first in range(0, count, PIECE):  # the whole text of an hour would need gigabytes
             times = motion.times[0] + np.arange(first, min(first + PIECE, count)) / fps
             file.write(_frame_lines(motion, times, order, units_per_metre))
 
@@ -170,7 +172,7 @@ def write_bvh(path: Path, motion: Motion, fps: float | None = None, units_per_me
 
 
 def _frame_lines(motion: Motion, times: Array, order: list[int], units_per_metre: float) -> bytes:
-    """The lines of the frames at `times`, seconds."""
+    """Return the lines of the frames at `times`, seconds."""
     still = len(motion.times) == 1
     rotations, root = (motion.rotations, motion.root) if still else sample(motion, times)
     angles = _zxy(rotations[:, order])
@@ -190,7 +192,7 @@ def _lines(path: Path) -> list[str]:
 
 
 def _hierarchy(path: Path, lines: list[str]) -> tuple[list[_Joint], int]:
-    """The joints, parents first, and the index of the line after MOTION."""
+    """Return the joints, parents first, and the index of the line after MOTION."""
     joints: list[_Joint] = []
     open_: list[int | None] = []  # joint of each open brace, None for an End Site
     coming: int | None = None
@@ -248,7 +250,7 @@ def _channels(words: list[str]) -> list[str]:
 
 
 def _frames(path: Path, lines: list[str], at: int, width: int) -> tuple[Array, float]:
-    """Values (frames, channels) and the seconds from frame to frame."""
+    """Return the values (frames, channels) and the seconds between frames."""
     try:
         count = int(lines[at].split(":")[1])
         frame_time = float(lines[at + 1].split(":")[1])
@@ -271,7 +273,7 @@ def _frames(path: Path, lines: list[str], at: int, width: int) -> tuple[Array, f
 
 
 def _turns(channels: list[str], values: Array) -> Array:
-    """Local rotations (f, 4): the product of the axis turns in the order of the channels."""
+    """Return local rotations (f, 4): the product of the rotations about the axes, in the order of the channels."""
     out = np.tile([1.0, 0.0, 0.0, 0.0], (len(values), 1))
     for k, name in enumerate(channels):
         kind, axis = _CHANNELS[name]
@@ -281,7 +283,7 @@ def _turns(channels: list[str], values: Array) -> Array:
 
 
 def _places(joint: _Joint, values: Array) -> Array:
-    """Place (f, 3) relative to the parent."""
+    """Return the place (f, 3) relative to the parent."""
     out = np.tile(np.array(joint.offset), (len(values), 1))
     for k, name in enumerate(joint.channels):
         kind, axis = _CHANNELS[name]
@@ -291,7 +293,7 @@ def _places(joint: _Joint, values: Array) -> Array:
 
 
 def _scale(joints: list[_Joint]) -> float:
-    """The unit that makes the skeleton at rest most like a human in height."""
+    """Return the unit with which the height of the skeleton at rest is most like a human's."""
     rest: list[Array] = []
     ends: list[Array] = []
     for joint in joints:
@@ -303,7 +305,7 @@ def _scale(joints: list[_Joint]) -> float:
 
 
 def _depth_first(skeleton: Skeleton) -> list[int]:
-    """Joints in the order a BVH file lists them."""
+    """Return the joints in the order in which a BVH file lists them."""
     children: dict[int, list[int]] = {}
     for j, p in enumerate(skeleton.parents.tolist()):
         children.setdefault(p, []).append(j)

@@ -1,4 +1,4 @@
-"""Motion of other people's skeletons in: .bvh, an animation of a .glb or .vrm, .npz; places as the file has them."""
+"""Reading of captured motions of any skeleton: .bvh, an animation of a .glb or .vrm, .npz."""
 
 from __future__ import annotations
 
@@ -20,29 +20,30 @@ from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.files import one_of
 
 SUFFIXES = (".bvh", ".glb", ".vrm", ".npz")
-LEAST, MOST = 10.0, 240.0  # frames per second that a file without a rate of its own is sampled at
+LEAST, MOST = 10.0, 240.0  # frames per second, limits for files without a frame rate
 LONGEST = 3600.0  # seconds of an animation
 _IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 def read_source(path: Path, animation: str | None = None) -> Motion | CapturedMotion:
-    """The motion in a file: one of the rig's joints (of `animate` or `retarget`) as it is, others as captured.
+    """Read the motion in a file: as a Motion if it has the rig's joints (from `animate` or `retarget`), else as
+    captured.
 
-    Takes and raises what `read_captured` does.
+    Parameters and errors are those of `read_captured`.
     """
     if path.suffix.lower() != ".npz":
         return read_captured(path, animation)
     motion = read_npz(path)
-    captured = captured_from_motion(path, motion)  # raises what is wrong with it
+    captured = captured_from_motion(path, motion)  # raises FileError if the motion is wrong
     return motion if set(dancer_skeleton().names) <= set(motion.skeleton.names) else captured
 
 
 def read_captured(path: Path, animation: str | None = None) -> CapturedMotion:
-    """The motion in a file, by its suffix.
+    """Read the captured motion in a file, by its suffix.
 
     Parameters
     ----------
-    animation : name of the one wanted of a .glb; None: the first
+    animation : name of the animation in a .glb or .vrm; None: the first
 
     Raises
     ------
@@ -57,7 +58,7 @@ def read_captured(path: Path, animation: str | None = None) -> CapturedMotion:
 
 
 def captured_from_motion(path: Path, motion: Motion) -> CapturedMotion:
-    """A motion as captured: its skeleton's rest pose has no turns."""
+    """Return a motion as captured, with a rest pose without rotations."""
     skeleton = motion.skeleton
     for name, values in (("times", motion.times), ("rotations", motion.rotations), ("root", motion.root)):
         if not np.isfinite(values).all():
@@ -91,7 +92,7 @@ def _captured_from_container(container: Container, wanted: str | None) -> Captur
     place = np.argsort(order)
     parents = np.array([-1 if nodes.parents[n] < 0 else place[nodes.parents[n]] for n in order], dtype=np.int32)
     rate = (len(times) - 1) / float(times[-1] - times[0])
-    items = container.items("nodes")  # one with a skin may be called Head, but has no place of its own
+    items = container.items("nodes")  # a node with a skin may be called Head, but it is not a joint
     names = tuple("" if "skin" in items[n] else nodes.names[n] for n in order)
     rest = (rest_places[0, order], rest_turns[0, order])
     return CapturedMotion(container.path, names, parents, *rest, rate, times, places[:, order], turns[:, order])
@@ -111,7 +112,7 @@ def _find_animation(container: Container, wanted: str | None) -> dict[str, Any]:
 
 
 def _channels(container: Container, animation: dict[str, Any]) -> list[tuple[int, str, Array, Array]]:
-    """(node, path, times (n,), values (n, w)) of each channel that moves a node; tangents of splines are left out."""
+    """Return (node, path, times (n,), values (n, w)) of each channel that moves a node, without tangents of splines."""
     channels, samplers = animation.get("channels"), animation.get("samplers")
     if not isinstance(channels, list) or not isinstance(samplers, list):
         raise container.fail("an animation has no channels; the file is broken")
@@ -140,7 +141,7 @@ def _channels(container: Container, animation: dict[str, Any]) -> list[tuple[int
 
 
 def _times(container: Container, channels: list[tuple[int, str, Array, Array]]) -> Array:
-    """Even times from the first key to the last, at the rate that its densest channel has."""
+    """Return evenly spaced times from the first key to the last, at the rate of the densest channel."""
     start, end = min(t[0] for _, _, t, _ in channels), max(t[-1] for _, _, t, _ in channels)
     if end - start < 1e-3:
         raise container.fail("its animation lasts no time; a motion needs at least two moments")
@@ -153,7 +154,7 @@ def _times(container: Container, channels: list[tuple[int, str, Array, Array]]) 
 def _node_transforms(
     container: Container, nodes: Nodes, channels: list[tuple[int, str, Array, Array]], times: Array
 ) -> tuple[Array, Array, Array]:
-    """Translations (f, n, 3), rotations (f, n, 4) and scales (f, n, 3) of all nodes at the times."""
+    """Return translations (f, n, 3), rotations (f, n, 4) and scales (f, n, 3) of all nodes at the times."""
     items = container.items("nodes")
     moved, turned, scaled = np.zeros((len(items), 3)), np.tile(_IDENTITY, (len(items), 1)), np.ones((len(items), 3))
     for k in range(len(items)):
@@ -177,14 +178,14 @@ def _node_transforms(
 
 
 def _quaternion(matrix: Array) -> Array:
-    """The quaternion (4,) of a rotation matrix."""
-    if np.linalg.det(matrix) < 0.5:  # mirrored or flat: there is no turn to find
+    """Return the quaternion (4,) of a rotation matrix."""
+    if np.linalg.det(matrix) < 0.5:  # a mirrored or flat matrix has no rotation
         return _IDENTITY
     return quat.from_matrix(matrix)
 
 
 def _world_transforms(nodes: Nodes, moved: Array, turned: Array, scaled: Array) -> tuple[Array, Array]:
-    """World places (f, n, 3) and turns (f, n, 4); scales make bones longer, and turn nothing."""
+    """Return world places (f, n, 3) and rotations (f, n, 4); scales change only the lengths of bones."""
     places, turns, scales = moved.copy(), turned.copy(), scaled.copy()
     for k in nodes.order:
         parent = int(nodes.parents[k])

@@ -1,4 +1,4 @@
-"""GLB out: a character with its skin, and the motion as an animation that any glTF viewer plays.
+"""Writing of GLB: a character with its skin, and a motion as an animation that any glTF viewer plays.
 
 Source: glTF 2.0 specification, Khronos Group.
 """
@@ -26,7 +26,7 @@ _BYTE, _SHORT, _USHORT, _UINT, _FLOAT = 5121, 5122, 5123, 5125, 5126
 _COMPONENTS = {"|u1": _BYTE, "<i2": _SHORT, "<u2": _USHORT, "<u4": _UINT, "<f4": _FLOAT}
 _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 _VERTICES, _INDICES = 34962, 34963
-SHORT = 0.3  # metres: joints with less below them are off by less than 0.01 mm in 16 bits
+SHORT = 0.3  # metres; with 16 bits, a joint with a shorter reach has an error of less than 0.01 mm
 MOST_PER_SECOND = 29_700  # bytes of an animation with exact legs: two minutes and the dancer's mesh stay below 5 MB
 
 
@@ -51,7 +51,7 @@ def write_glb(path: Path, character: Character, motion: Motion | None = None) ->
 
 
 class _Writer:
-    """Builds the JSON and the binary chunk."""
+    """A builder of the JSON and the binary chunk."""
 
     def __init__(self) -> None:
         self.binary = bytearray()
@@ -69,7 +69,7 @@ class _Writer:
         self.textures: dict[int, int] = {}
 
     def whole(self) -> bytes:
-        """The whole file."""
+        """Return the whole file."""
         self.doc["buffers"] = [{"byteLength": len(self.binary)}]
         text = json.dumps(self.doc, separators=(",", ":"), ensure_ascii=False).encode("utf-8")
         text += b" " * (-len(text) % 4)
@@ -176,7 +176,7 @@ class _Writer:
     def animation(self, motion: Motion) -> None:
         start = min(0.0, float(motion.times[0]))
         times = np.asarray(motion.times - start, dtype="<f4")
-        apart = np.concatenate([[True], np.diff(times) > 0])  # two keys may fall together in 32 bits
+        apart = np.concatenate([[True], np.diff(times) > 0])  # two keys may have the same time in 32 bits
         channels, before = _Channels(self), len(self.binary)
         legs, *groups = key_times_of(motion)
         for clock in groups:
@@ -201,7 +201,7 @@ class _Writer:
 
 
 class _Channels:
-    """Samplers and channels of an animation; what has the same times shares them."""
+    """The samplers and channels of an animation; channels with the same times share them."""
 
     def __init__(self, writer: _Writer) -> None:
         self.writer = writer
@@ -213,9 +213,9 @@ class _Channels:
         self, rotations: NDArray[np.float64], joints: tuple[int, ...], times: NDArray[Any], keep: NDArray[np.bool_],
         exact: bool,
     ) -> None:  # fmt: skip
-        """Channels of joints that turn, with the keys `keep` of rotations (f, j, 4) at times (f,).
+        """Add the channels of joints that turn, with the keys `keep` of rotations (f, j, 4) at times (f,).
 
-        exact : in 32 bits per number instead of 16
+        exact : whether to use 32 bits per number instead of 16
         """
         for j in joints:
             turned = quat.continuous(rotations[keep, j])[:, [1, 2, 3, 0]]
@@ -229,7 +229,7 @@ class _Channels:
                 self.add(j, "rotation", times[keep], short, normalized=True)
 
     def add(self, node: int, path: str, times: NDArray[Any], values: NDArray[Any], **more: Any) -> None:
-        """A channel; where its values stand still for a while only the keys at both ends are written, if that pays."""
+        """Add a channel. If this makes the file smaller, only the first and last of equal values are written."""
         changes = (values[1:] != values[:-1]).any(axis=1)
         keep = np.concatenate([[True], changes]) | np.concatenate([changes, [changes.any()]])
         own = keep.sum() * (times.itemsize + values[0].nbytes)
@@ -251,7 +251,7 @@ class _Channels:
 
 
 def _four_joints(mesh: Mesh) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Joints and weights as glTF wants them: no joint named where its weight is 0."""
+    """Return joints and weights in glTF's form: joint 0 for each weight of 0."""
     weights = np.asarray(mesh.weights, dtype="<f4")
     joints = np.where(weights > 0, mesh.joints, 0)
     return joints.astype("|u1" if joints.max(initial=0) < 256 else "<u2"), weights

@@ -1,8 +1,8 @@
-"""Which keys of a motion each joint needs: a file need not repeat, for the sake of the feet, what hands and hair do.
+"""The keys of a motion that each joint needs, so that a file does not repeat hands and hair at the keys of the feet.
 
-The keys that a bake adds between its frames hold soles on the ground and palms on panels and bar. The root and the
-legs keep all of them; other joints only those without which a viewer, who turns joints at even speed between their
-own keys, would draw something farther than a tolerance from where it is.
+The keys that a bake adds between its frames hold soles on the ground and palms on panels and bar. The root and the legs
+keep all of them. Other joints keep only the keys without which linear interpolation would have an error above a
+tolerance.
 """
 
 from __future__ import annotations
@@ -19,23 +19,23 @@ from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
 
 Mask = NDArray[np.bool_]
-FREE = 0.002  # metres that a part of the body which touches nothing may be off between frames
-GRIPPING = 0.0003  # the same for a hand on the bar
-WAVING = 0.03  # and for hair, which is thrown about by what is so fast
+FREE = 0.002  # metres; tolerance between frames for a part of the body that touches nothing
+GRIPPING = 0.0003  # metres; tolerance for a hand on the bar
+WAVING = 0.03  # metres; tolerance for hair, which moves fast
 TOUCH = 0.06  # seconds around the touch of a palm in which its arm keeps all keys: contacts are measured there
 _ANKLES, _WRISTS, _HAIR = ("l_talocrural", "r_talocrural"), ("l_radiocarpal", "r_radiocarpal"), "braid"
 
 
 @dataclass(frozen=True, slots=True)
 class KeyTimes:
-    """Joints that share their keys. keep : (f,) which keys of the motion those are."""
+    """Joints that share their keys. keep : (f,), whether each key of the motion is kept"""
 
     joints: tuple[int, ...]
     keep: Mask
 
 
 def key_times_of(motion: Motion) -> tuple[KeyTimes, ...]:
-    """Every joint of a motion once; the first has the root and all that carries the feet, and all keys."""
+    """Return the keys of every joint of a motion; the first group has the root and the legs, with all keys."""
     every = np.ones(len(motion.times), dtype=bool)
     frame = motion.times * motion.fps
     regular = np.abs(frame - np.rint(frame)) < 1e-6
@@ -52,7 +52,7 @@ def key_times_of(motion: Motion) -> tuple[KeyTimes, ...]:
 
 
 def joint_groups(skeleton: Skeleton) -> tuple[tuple[int, ...], ...]:
-    """Joints that carry the feet, that carry the hands, of the hair, and all others."""
+    """Return the joints that carry the feet, those that carry the hands, those of the hair, and all others."""
     parents = skeleton.parents.tolist()
 
     def line(ends: tuple[str, str]) -> set[int]:
@@ -75,7 +75,7 @@ def joint_groups(skeleton: Skeleton) -> tuple[tuple[int, ...], ...]:
 
 
 def _touches(motion: Motion) -> tuple[Mask, Mask]:
-    """Keys (f,) near a palm's touch, and those at which a hand holds the bar."""
+    """Whether each key (f,) is near a palm's touch, and whether a hand holds the bar at it."""
     held, gripped = np.zeros((2, len(motion.times)), dtype=bool)
     for contact in motion.contacts:
         if contact.limb >= Limb.LEFT_HAND:
@@ -88,7 +88,7 @@ def _touches(motion: Motion) -> tuple[Mask, Mask]:
 
 
 def _off(motion: Motion, joints: tuple[int, ...], regular: Mask) -> Array:
-    """How far (f,) joints would be drawn from where they are if only `regular` keys were there, metres."""
+    """Return the error (f,) of the joints with only the `regular` keys, metres."""
     extra, frames = np.flatnonzero(~regular), np.flatnonzero(regular)
     after = np.searchsorted(frames, extra)
     before, following = frames[after - 1], frames[after]
@@ -102,7 +102,7 @@ def _off(motion: Motion, joints: tuple[int, ...], regular: Mask) -> Array:
 
 
 def reaches(skeleton: Skeleton) -> Array:
-    """How far (j,) the vertices of each joint move at most, metres; a bone at the end is as long as the one before."""
+    """Return the longest reach (j,) of the vertices of each joint, metres; a last bone is as long as the one before."""
     length = np.linalg.norm(skeleton.offsets, axis=1)
     out = length.copy()
     for j in reversed(range(1, len(length))):

@@ -1,4 +1,4 @@
-"""Moves as JSON: what moves when, from where to where, for games and other tools that have their own dancer.
+"""Moves as JSON, with their times and places, for games and other tools with a dancer of their own.
 
 One object, schema 1, UTF-8; metres, seconds of the music, degrees; places are [x, z] on the ground, the pad's centre
 the origin, +z the screen, +x the dancer's left. Yaw is positive to the left.
@@ -53,7 +53,7 @@ SCHEMA = 1
 _FEET = ("left_foot", "right_foot")
 
 
-KINDS: dict[type[Move], str] = {  # what moves are called in the file
+KINDS: dict[type[Move], str] = {  # names of moves in the file
     Step: "step", Jump: "jump", Gallop: "gallop", Hover: "evade", Pivot: "pivot", Sidestep: "aside", Walk: "walk",
     Shake: "shake",
 }  # fmt: skip
@@ -67,9 +67,9 @@ def write_moves(path: Path, data: dict[str, Any]) -> None:
 def moves_data(
     plan: Plan, title: str, chart: str, section: tuple[float, float], bar: Bar | None = None
 ) -> dict[str, Any]:
-    """The object described above, as plain data: the moves of a plan that begin in a section, seconds.
+    """Return the object described above as plain data, with the moves of a plan that begin in a section, seconds.
 
-    bar : behind her, if any
+    bar : the bar behind the dancer, if any
     """
     start, end = section
     moves = [m for side, track in enumerate(plan.feet) for m in _foot_moves(track, _FEET[side])]
@@ -109,7 +109,7 @@ def moves_data(
 
 
 def _stand(plan: Plan, start: float) -> dict[str, Any]:
-    """Where the feet are, and how feet and body are turned, after all that began before `start`."""
+    """Return the places of the feet, and the yaw of feet and body, after all moves that began before `start`."""
     out: dict[str, Any] = {}
     for name, track in zip(_FEET, plan.feet, strict=True):
         at, yaw = track.start, track.start_yaw
@@ -123,7 +123,7 @@ def _stand(plan: Plan, start: float) -> dict[str, Any]:
 
 
 def _hand_moves(presses: tuple[Press, ...]) -> list[dict[str, Any]]:
-    """Ways to panels, and how long palms stay there."""
+    """Return the reaches to panels and the presses on them."""
     out: list[dict[str, Any]] = []
     last: dict[int, Press] = {}
     for p in presses:

@@ -1,4 +1,4 @@
-"""Motion as numpy arrays in one .npz file: what other programs read without a 3D library.
+"""Motion as numpy arrays in one .npz file, which other programs read without a 3D library.
 
 Schema 1, all metres, seconds and local unit quaternions (w, x, y, z); f frames, j joints, c contacts:
 
@@ -50,7 +50,7 @@ SCHEMA = 1
 _FAR = 1e5  # metres and seconds: a day of music
 _MOST_RATE = 1000.0  # frames per second
 _INDEX = 2**31 - 1
-_UNIT = 1e-3  # by how much a rotation's length may differ from 1
+_UNIT = 1e-3  # allowed difference between a rotation's length and 1
 _CONTACTS = {
     "start": Field("float", ("c",), -_FAR, _FAR),
     "end": Field("float", ("c",), -_FAR, _FAR),
@@ -74,7 +74,7 @@ _LET_GO = {
     "column": Field("integer", ("k",), 0, 1000, required=False),
     "why": Field("integer", ("k",), min(DropReason), max(DropReason), required=False),
 }
-_ATTRIBUTES = {"why": "reason"}  # of a note that is not played, where they are not called as in the file
+_ATTRIBUTES = {"why": "reason"}  # attributes of `DroppedNote` with other names than in the file
 FIELDS: Mapping[str, Field] = {
     "schema": Field("integer", (), 0, _INDEX),
     "names": Field("string", ("j",)),
@@ -142,7 +142,7 @@ def _bar(arrays: dict[str, Any]) -> tuple[Bar | None, tuple[Grip, ...]]:
         return None, ()
     height, behind, radius = (float(v) for v in arrays["bar"])
     spans = tuple((float(low), float(high)) for low, high in arrays["bar_spans"])
-    none = np.zeros(len(arrays.get("grip_start", ())))  # files of before hands crossed over do not say so
+    none = np.zeros(len(arrays.get("grip_start", ())))  # older files do not have `grip_across`
     columns = [arrays.get(f"grip_{name}", none) for name in _GRIPS]
     grips = tuple(
         Grip(float(a), float(b), int(side), float(x), bool(over)) for a, b, side, x, over in zip(*columns, strict=True)
@@ -151,7 +151,7 @@ def _bar(arrays: dict[str, Any]) -> tuple[Bar | None, tuple[Grip, ...]]:
 
 
 def read_npz(path: Path) -> Motion:
-    """Read a motion. Raises FileError, one line, for a file that is not one, that is broken, or of a newer schema."""
+    """Read a motion. Raises FileError if the file is not a motion, is broken, or has a newer schema."""
     arrays = read_arrays(path, FIELDS)
     if int(arrays["schema"]) != SCHEMA:
         raise FileError(path, f"written in schema {int(arrays['schema'])}; this program reads {SCHEMA}")
@@ -183,7 +183,7 @@ def _skeleton(path: Path, arrays: dict[str, Any]) -> Skeleton:
 
 
 def _check_motion(path: Path, arrays: dict[str, Any]) -> None:
-    """Times must go on, rotations must be turns."""
+    """Check that times increase and rotations are unit quaternions."""
     if not len(arrays["times"]):
         raise FileError(path, "has no frame; a motion needs at least two")
     if (np.diff(arrays["times"]) <= 0).any():
@@ -199,7 +199,7 @@ def _let_go(arrays: dict[str, Any]) -> tuple[DroppedNote, ...]:
 
 
 def _zipped(arrays: dict[str, Any]) -> bytes:
-    """As numpy.savez_compressed, but with a fixed date, so that the same motion gives the same bytes."""
+    """Return a zip as of numpy.savez_compressed, but with a fixed date, so that equal motions give equal bytes."""
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED, compresslevel=4) as archive:
         for name, array in arrays.items():

@@ -1,4 +1,4 @@
-"""Reads a stranger's .npz by a table of fields: shapes, types and sizes are checked before an array is unpacked.
+"""The reader of untrusted .npz files, which checks shapes, types and sizes by a table before it unpacks arrays.
 
 An .npz is a zip of .npy files, each a short header (type, shape, order) and the numbers. The headers are read first;
 only when all of them fit the table and each other is the rest unpacked, and no more bytes of it than they declare.
@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import MEGABYTE, read_bytes, shown_key
 
-LIMIT = 256 * MEGABYTE  # of the file, and of its arrays unpacked; half an hour of a whole body at 60 frames a second
+# limit of the file and of its unpacked arrays: half an hour of a whole body at 60 frames per second
+LIMIT = 256 * MEGABYTE
 MOST_ENTRIES = 1000
 LONGEST_NAME = 64  # letters of a string
 _ENTRY_MARK = b"PK\x01\x02"  # begins each entry of a zip's directory
@@ -47,7 +48,7 @@ _TAKEN: Mapping[Kind, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """What an array must be. shape : sizes; the same letter means the same size in all arrays, () one number
+    """The required form of an array. shape : sizes; a letter means the same size in all arrays, () one number
 
     low, high : the least and the greatest value; required : whether a file without the array is refused
     """
@@ -61,7 +62,7 @@ class Field:
 
 @dataclass(frozen=True, slots=True)
 class _Header:
-    """Of one array. at : where its numbers begin in the entry"""
+    """The header of one array. at : offset of its numbers in the entry"""
 
     entry: zipfile.ZipInfo
     dtype: np.dtype[Any]
@@ -71,12 +72,12 @@ class _Header:
 
     @property
     def size(self) -> int:
-        """Bytes of the numbers, as declared; whole numbers of Python, which no size is too large for."""
+        """The declared size of the numbers in bytes, as a Python integer, which cannot overflow."""
         return math.prod(self.shape) * self.dtype.itemsize
 
 
 def read_arrays(path: Path, fields: Mapping[str, Field]) -> dict[str, NDArray[Any]]:
-    """The arrays that `fields` names, as float64, int32 or strings; others in the file are not looked at.
+    """Read the arrays of `fields` as float64, int32 or strings; other arrays in the file are ignored.
 
     Raises FileError, one line: no regular file, no .npz, an array that is missing or is not as its field says, or
     together more than `LIMIT` bytes.
@@ -96,7 +97,7 @@ def read_arrays(path: Path, fields: Mapping[str, Field]) -> dict[str, NDArray[An
 
 
 def _headers(path: Path, archive: zipfile.ZipFile, fields: Mapping[str, Field]) -> dict[str, _Header]:
-    """The headers of the fields that are there, in the order of the table."""
+    """Return the headers of the fields that the file has, in the order of the table."""
     entries: dict[str, zipfile.ZipInfo] = {}
     for entry in archive.infolist():
         name = entry.filename.removesuffix(".npy")
@@ -136,7 +137,7 @@ def _check_type(path: Path, name: str, header: _Header, field: Field) -> None:
 
 
 def _check_shapes(path: Path, headers: Mapping[str, _Header], fields: Mapping[str, Field]) -> None:
-    """Each shape against its field, the sizes of all against each other and `LIMIT`."""
+    """Check each shape against its field, and the total size against `LIMIT`."""
     sizes: dict[str, int] = {}
     for name, header in headers.items():
         wanted = fields[name].shape

@@ -1,4 +1,4 @@
-"""From the suffix of a file to what writes a motion into it, for `animate` and `retarget`.
+"""The writers of motions by the suffix of the file, for `animate` and `retarget`.
 
 A new format is a function here that imports its module, and a line in `FORMATS`; the options of `animate` and their
 help follow.
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.dance.motion import Motion
 
-MOVES = ".json"  # no motion, only what feet and hands do: it does not matter who dances
+MOVES = ".json"  # only the moves of feet and hands, which do not depend on the character
 
 
 def _glb(path: Path, character: Character, motion: Motion) -> str:
@@ -40,18 +40,18 @@ def _bvh(path: Path, character: Character, motion: Motion) -> str:
     return f"{frame_count(motion, motion.fps)} frames, {end - start:.1f} s from second {start:.3f} of the music"
 
 
-# Each writes the motion, FileError if that fails, and returns how much is in the file, for people.
+# Each function writes the motion and returns a summary for people. Raises FileError.
 FORMATS: dict[str, Callable[[Path, Character, Motion], str]] = {".glb": _glb, ".npz": _npz, ".bvh": _bvh}
 
 
 def keys(motion: Motion) -> str:
-    """How much is in a motion, for people."""
+    """Return a summary of a motion for people."""
     start, end = motion.times[[0, -1]].tolist()
     return f"{len(motion.times)} keys, {end - start:.1f} s"
 
 
 def write_dancer(path: Path, dance: AnimatedDancer) -> str:
-    """Write a dancer of `animate`, as a motion or as moves; returns how much is in the file, for people."""
+    """Write a dancer of `animate`, as a motion or as moves; return a summary for people."""
     if path.suffix.lower() != MOVES:
         return FORMATS[path.suffix.lower()](path, dance.character, dance.motion)
     from dancetutor_cli.formats.moves_json import moves_data, write_moves

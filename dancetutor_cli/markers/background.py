@@ -41,7 +41,7 @@ class EntryInsertion:
 
 
 def check_name(name: str) -> None:
-    """Raise UsageError for a film's file name that the games cannot read, or that `annotate --strip` cannot recognise."""
+    """Raise UsageError for a film's name that games cannot read, or that `annotate --strip` cannot recognise."""
     if not _NAME.fullmatch(name):
         raise UsageError(
             f"{name}: with --into-file the film's name must end in {OURS}.mp4, so that `annotate --strip` knows it, "

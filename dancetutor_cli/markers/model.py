@@ -118,7 +118,7 @@ def own_json(path: Path, old: bytes, what: str, fits: Callable[[Any], bool]) -> 
 
 
 def not_ours(path: Path, what: str) -> FileError:
-    """Return the error about a file of another program at the place of this one's. what : the expected file, for people"""
+    """Return the error about a file that another program wrote. what : the expected file, for people"""
     return FileError(path, f"is not {what}; move it away or choose another style")
 
 

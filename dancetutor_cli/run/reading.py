@@ -54,7 +54,7 @@ def read_bytes(path: Path, limit: int) -> bytes:
 
 
 def read_ends(path: Path, first: int, last: int) -> tuple[bytes, bytes, int]:
-    """Return `first` bytes of the start and `last` of the end of a regular file, and its size; errors as `read_bytes`."""
+    """Return up to `first` bytes of the start and `last` of the end of a file, and its size; errors as `read_bytes`."""
     with _opened(path) as (file, size):
         head = file.read(first)
         file.seek(max(size - last, 0))

@@ -102,7 +102,7 @@ def write_file(path: Path, data: bytes) -> None:
 
 
 def users_folder(name: str) -> Path | None:
-    """Return a folder in the system's place for user caches; None for a user without a home, as in a container."""
+    """Return a folder in the place of user caches; None for a user without a home, as in a container."""
     try:
         if sys.platform == "win32":
             folder = _absolute("LOCALAPPDATA") or Path.home() / "AppData" / "Local"
@@ -116,7 +116,7 @@ def users_folder(name: str) -> Path | None:
 
 
 def results_folder() -> tuple[Path | None, str]:
-    """Return the folder of results (DANCETUTOR_CACHE or the user's cache), or None and the reason, "" without a home."""
+    """Return the folder of results (DANCETUTOR_CACHE or the user's cache), or None and why, "" without a home."""
     named = os.environ.get(CACHE_VARIABLE)
     folder = Path(named) if named else users_folder("dancetutor")
     fault = "" if folder is None else fault_of(folder)
@@ -152,7 +152,7 @@ def temporary_folder(name: str) -> Path | None:
 
 
 def _absolute(variable: str) -> Path | None:
-    """Return the folder in an environment variable, or None; relative paths are ignored, as in the XDG specification."""
+    """Return the folder in an environment variable, or None; relative paths are ignored, as in the XDG standard."""
     folder = Path(os.environ.get(variable, ""))
     return folder if folder.is_absolute() else None
 
