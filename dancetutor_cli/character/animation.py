@@ -1,4 +1,4 @@
-"""The dancers of `animate`: a performance, or a section of it, as each of its dancers is written to a file."""
+"""The dancers of `animate`: each dancer of a performance, or of a section of it, for one file."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Animation:
-    """What is animated of a performance; motions are made when they are first wanted.
+    """The animation of a performance; motions are made when they are first needed.
 
     section : first and last second of the music as it is heard, None: the whole dance
     """
@@ -33,12 +33,12 @@ class Animation:
 
     @cached_property
     def baked(self) -> list[BakedPiece]:
-        """Of each dancer the motion of the project's own dancer, on her own pad."""
+        """The motion of each dancer on the dancer's own pad, with the body of the project's dancer."""
         return self.performance.motions(None if self.section is None else Cut(*self.section), self.run)
 
     @property
     def begin(self) -> float:
-        """The second at which the motions of all begin."""
+        """The second at which the motions of all dancers begin."""
         return min(float(one.motion.times[0]) for one in self.baked)
 
 
@@ -46,7 +46,7 @@ class Animation:
 class AnimatedDancer:
     """One dancer of an animation, for a format; motion and moves are made when they are first needed.
 
-    number : which one; character : who dances
+    number : index of the dancer; character : the character that dances
     """
 
     animation: Animation
@@ -55,41 +55,41 @@ class AnimatedDancer:
 
     @property
     def title(self) -> str:
-        """Of the song."""
+        """The title of the song."""
         return self._dancer.solved.song.title
 
     @property
     def label(self) -> str:
-        """Of the chart, for people."""
+        """The label of the chart, for people."""
         return self._dancer.solved.chart.label
 
     @property
     def section(self) -> tuple[float, float]:
-        """First and last second that is wanted."""
+        """The first and the last second of the section."""
         return self.animation.section or (-math.inf, math.inf)
 
     @property
     def baked(self) -> BakedPiece:
-        """The motion of the project's own dancer on her own pad, whichever character dances."""
+        """The motion on the dancer's own pad, with the body of the project's dancer, whichever character dances."""
         return self.animation.baked[self.number]
 
     @property
     def place(self) -> tuple[float, float]:
-        """Where the middle of her pad is from that of all, (x, z) in metres; of one dancer (0, 0)."""
+        """The middle of the dancer's pad from the middle of all pads, (x, z) in metres; (0, 0) for one dancer."""
         return self._dancer.place
 
     @cached_property
     def motion(self) -> Motion:
-        """The motion for the character's skeleton, beginning with those of the others."""
+        """The motion for the character's skeleton, beginning at the same time as those of the other dancers."""
         return shifted(padded_from(onto(self.baked.motion, self.character.skeleton), self.animation.begin), *self.place)
 
     @property
     def moves(self) -> tuple[Plan, Bar | None]:
-        """Only the moves, and the bar that she holds."""
+        """The moves, and the bar that the dancer holds."""
         return self._dancer.plan, self._dancer.context.bar
 
     def notes(self, of_motion: bool) -> tuple[str, ...]:
-        """What there is to say, for people: of the whole motion, or only of the moves."""
+        """Return the notes for people, about the whole motion or only about the moves."""
         if of_motion:
             return self.baked.motion.notes
         start, end = self.section

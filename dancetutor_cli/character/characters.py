@@ -1,4 +1,4 @@
-"""The characters that come with the program, and a user's own, each ready to be moved and drawn."""
+"""The characters of the program, and those of users, ready to be moved and drawn."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.reading import PACKAGE
 
 DATA = PACKAGE / "character" / "data"
-DANCER = "dancer"  # who dances where nobody else is asked for
-IN_HEELS = "dancer-heels"  # the same dancer in heels.glb, whose shoes stand in for hers
+DANCER = "dancer"  # the default character
+IN_HEELS = "dancer-heels"  # the same dancer with the shoes of heels.glb
 BUILT_IN = (DANCER, "mannequin", IN_HEELS)
-_SHOES = ("left shoe", "right shoe", "shoes")  # her meshes that other shoes stand in for
+_SHOES = ("left shoe", "right shoe", "shoes")  # meshes of the dancer that heels replace
 SUFFIXES = (".glb", ".vrm")
 
 
@@ -25,15 +25,15 @@ SUFFIXES = (".glb", ".vrm")
 def load_dancer() -> Character:
     """The project's own dancer, on the joints of `dance.rig.skeleton.dancer_skeleton`, shoes in the configured colours.
 
-    Always the same one: her textures take a tenth of a second to read.
+    Every call returns the same object, because reading the textures takes 0.1 s.
     """
     return _built_in(DANCER)
 
 
 def load_character(name_or_path: str) -> Character:
-    """The character called `name_or_path` ("dancer", "mannequin"), or the one in that .glb or .vrm file.
+    """Return the character named `name_or_path` ("dancer", "mannequin"), or the one in that .glb or .vrm file.
 
-    A user's character comes fitted to the rig: see `fitting.fit_character`.
+    A user's character is fitted to the rig, see `fitting.fit_character`.
 
     Raises UsageError for an unknown name, FileError for a file that cannot be used; both are one line.
     """
@@ -47,9 +47,9 @@ def load_character(name_or_path: str) -> Character:
 
 
 def check_character(name_or_path: str) -> str:
-    """The name, or the file's absolute path, after making sure that `load_character` takes it.
+    """Check that `load_character` accepts a character; return its name, or the absolute path of its file.
 
-    Raises what `load_character` raises. It is for refusing a character before the slow work begins.
+    Raises the errors of `load_character`, before the slow work begins.
     """
     if name_or_path in BUILT_IN:
         return name_or_path
@@ -58,7 +58,7 @@ def check_character(name_or_path: str) -> str:
 
 
 def name_in_gait(name: str, gait: str) -> str:
-    """The character to draw: the project's own dancer wears heels if the gait is `heels`."""
+    """Return the name of the character to draw; the project's dancer wears heels if the gait is `heels`."""
     return IN_HEELS if name == DANCER and gait == "heels" else name
 
 
@@ -71,7 +71,7 @@ def _built_in(name: str) -> Character:
 
 
 def _coloured(mesh: Mesh) -> Mesh:
-    """A mesh whose material is named after a limb wears that limb's colour of configs/colours.yaml."""
+    """Return the mesh with the limb's colour of configs/colours.yaml, if its material is named after a limb."""
     name = mesh.material.name
     if name not in LIMBS:
         return mesh

@@ -1,6 +1,6 @@
 """The GLB container: JSON, binary chunk, accessors and images with every size checked, and its tree of nodes.
 
-A user's file may be broken or hostile: nothing outside the file is ever opened, and each bound is stated here.
+A user's file may be broken or hostile: nothing outside the file is ever opened, and all limits are defined here.
 Source: glTF 2.0 specification, Khronos Group, sections 3.6 (binary data) and 4 (GLB).
 """
 
@@ -40,7 +40,7 @@ _SUPPORTED = ("KHR_materials_", "KHR_mesh_quantization", "KHR_texture_transform"
 
 @dataclass(slots=True)
 class Container:
-    """A checked GLB. document : its JSON; binary : its binary chunk."""
+    """A checked GLB. document : the JSON; binary : the binary chunk"""
 
     path: Path
     document: dict[str, Any]
@@ -49,11 +49,14 @@ class Container:
     _checked: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
 
     def fail(self, message: str) -> FileError:
-        """The error to raise about this file."""
+        """Return the error to raise about this file."""
         return FileError(self.path, message)
 
     def items(self, name: str) -> list[dict[str, Any]]:
-        """A top-level array of objects, empty if absent; FileError if it is something else or too long."""
+        """Return a top-level array of objects, empty if absent.
+
+        Raises FileError if it is something else or too long.
+        """
         if name in self._checked:
             return self._checked[name]
         value = self.document.get(name, [])
@@ -65,25 +68,25 @@ class Container:
         return value
 
     def item(self, name: str, index: object) -> dict[str, Any]:
-        """One object of a top-level array; FileError if the index is not one of it."""
+        """Return one object of a top-level array. Raises FileError if the index is out of range."""
         items = self.items(name)
         return items[self.integer(index, 0, len(items) - 1, f"index into {name}")]
 
     def integer(self, value: object, low: int, high: int, what: str) -> int:
-        """`value` if it is an int in low..high, else FileError."""
+        """Return `value` if it is an int in low..high, else raise FileError."""
         if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
             raise self.fail(f"{what} {str(value)[:40]} is not from {low} to {high}; the file is broken")
         return value
 
     def numbers(self, value: object, count: int, what: str) -> NDArray[np.float64]:
-        """`value` if it is a list of `count` finite numbers, else FileError."""
+        """Return `value` if it is a list of `count` finite numbers, else raise FileError."""
         rows = value if isinstance(value, list) and len(value) == count else [None]
         if not all(isinstance(x, (int, float)) and abs(x) < 1e12 for x in rows):
             raise self.fail(f"{what} is not a list of {count} numbers; the file is broken")
         return np.array(rows, dtype=np.float64)
 
     def view(self, index: object) -> tuple[memoryview, int]:
-        """Bytes of a buffer view and its stride (0 where elements are packed)."""
+        """Return the bytes of a buffer view and its stride (0 if elements are packed)."""
         view = self.item("bufferViews", index)
         data = self._buffer(view.get("buffer"))
         start = self.integer(view.get("byteOffset", 0), 0, len(data), "byteOffset")
@@ -91,7 +94,7 @@ class Container:
         return data[start : start + length], self.integer(view.get("byteStride", 0), 0, 252, "byteStride")
 
     def accessor(self, index: object) -> NDArray[Any]:
-        """Values of an accessor, (n,) or (n, width); normalised integers come as float64."""
+        """Return the values of an accessor, (n,) or (n, width); normalised integers become float64."""
         item = self.item("accessors", index)
         dtype = np.dtype(_DTYPES.get(self.integer(item.get("componentType"), 0, 2**16, "componentType"), "V1"))
         width = _WIDTHS.get(str(item.get("type")), 0)
@@ -117,7 +120,7 @@ class Container:
         return values[:, 0] if width == 1 else values
 
     def _array(self, item: dict[str, Any], dtype: np.dtype[Any], count: int, width: int) -> NDArray[Any]:
-        """`count` rows of `width` numbers where the item's bufferView and byteOffset say, not copied."""
+        """Return `count` rows of `width` numbers at the item's bufferView and byteOffset, without a copy."""
         data, stride = self.view(item.get("bufferView"))
         size = dtype.itemsize * width
         stride = stride or size
@@ -127,7 +130,7 @@ class Container:
         return np.ndarray((count, width), dtype, data, offset, (stride, dtype.itemsize))
 
     def _with_sparse(self, sparse: object, raw: NDArray[Any]) -> NDArray[Any]:
-        """The rows with those replaced that a sparse accessor names."""
+        """Return the rows with the replacements of a sparse accessor."""
         sparse = as_dict(sparse)
         indices, values = as_dict(sparse.get("indices")), as_dict(sparse.get("values"))
         count = self.integer(sparse.get("count"), 1, len(raw), "count of a sparse accessor")
@@ -142,12 +145,12 @@ class Container:
         return out
 
     def image_size(self, index: object) -> tuple[int, int]:
-        """Width and height of an image, from its header."""
+        """Return the width and height of an image, from its header."""
         with self._open(index) as picture:
             return picture.width, picture.height
 
     def image(self, index: object, side: int = 4096) -> NDArray[np.uint8]:
-        """Pixels of an image, (h, w, 4) sRGB, reduced until neither side is longer than `side`."""
+        """Return the pixels of an image, (h, w, 4) sRGB, reduced until neither side is longer than `side`."""
         with self._open(index) as picture:
             pixels = picture.width * picture.height
             self._pixels += pixels
@@ -191,7 +194,7 @@ class Container:
 
 
 def as_dict(value: object) -> dict[str, Any]:
-    """`value` if it is an object of JSON, else an empty one."""
+    """Return `value` if it is a JSON object, else an empty one."""
     return value if isinstance(value, dict) else {}
 
 
@@ -254,7 +257,7 @@ def _check_head(container: Container) -> None:
                 container._uri(item["uri"])
 
 
-# The node tree of a glTF file: parents, names and rest matrices, refused where it is no tree.
+# The node tree of a glTF file: parents, names and rest matrices; a graph that is not a tree is refused.
 
 
 @dataclass(frozen=True, slots=True)

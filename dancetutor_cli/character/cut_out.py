@@ -1,7 +1,7 @@
 """Transparent parts of a texture cut out of its mesh: hair cards, lashes, lace, leaves.
 
-A triangle whose texture is solid all over stays, one that is transparent all over goes, others are split in four
-until they are small. Alpha that blends counts as solid from one half on.
+A triangle with a solid texture stays, and one with a transparent texture is removed. Other triangles are split in four
+until they are small. Blended alpha counts as solid from 0.5 on.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from numpy.typing import NDArray
 from dancetutor_cli.character.mesh import Mesh
 
 _SMALL = 0.003  # metres: about a pixel of the dancer at 720p; shorter triangles are not split
-_LEVELS = 7  # at most this many times
+_LEVELS = 7  # limit of splits of a triangle
 
 
 def cut_out(
     mesh: Mesh, places: NDArray[np.float64], spare: int, bled: dict[int, NDArray[np.uint8]]
 ) -> tuple[Mesh, NDArray[np.float64]]:
-    """The solid part of a mesh, and where its vertices are at rest.
+    """Return the solid part of a mesh, and the places of its vertices at rest.
 
-    places : of its vertices at rest, metres (v, 3); spare : how many triangles splitting may add
-    bled : textures made so far, by the id of the one they are made of, so that meshes that share one go on sharing
+    places : places of its vertices at rest, metres (v, 3); spare : limit of triangles that splitting may add
+    bled : textures made so far, by the id of the original, so that meshes still share them
     """
     material = mesh.material
     if material.cutoff is None:
@@ -55,7 +55,7 @@ def cut_out(
 
 
 class _Cutter:
-    """Splits triangles; its vertices grow. columns (v, 11): place in the mesh, normal, uv, place at rest."""
+    """A splitter of triangles that adds vertices. columns (v, 11): place in the mesh, normal, uv, place at rest"""
 
     def __init__(self, mesh: Mesh, places: NDArray[np.float64], solid: NDArray[np.bool_]) -> None:
         self.columns = np.hstack([mesh.positions, mesh.normals, mesh.uv, places]).astype(np.float64)
@@ -65,7 +65,7 @@ class _Cutter:
         self.sums = twice.cumsum(axis=0, dtype=np.int32).cumsum(axis=1, dtype=np.int32)
 
     def solid_triangles(self, triangles: NDArray[np.int64], spare: int) -> NDArray[np.int64]:
-        """What is left of the triangles (t, 3)."""
+        """Return the solid triangles, from triangles (t, 3)."""
         kept = []
         for level in range(_LEVELS + 1):
             share = self._share(triangles)
@@ -85,7 +85,9 @@ class _Cutter:
         return np.concatenate(kept)
 
     def _share(self, triangles: NDArray[np.int64]) -> NDArray[np.float64]:
-        """How much of the texels in a triangle's box is solid, (t,); a box larger than the texture counts as mixed."""
+        """Return the solid share of the texels in each triangle's box, (t,); a box larger than the texture counts as
+        mixed.
+        """
         height, width = self.solid.shape
         uv = self.columns[triangles, 6:8]
         low = uv.min(axis=1)
@@ -107,7 +109,7 @@ class _Cutter:
         return np.asarray(self.solid[np.minimum(y, height - 1), np.minimum(x, width - 1)])
 
     def _split(self, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Each triangle as four, with new vertices in the middle of its edges."""
+        """Return each triangle as four, with new vertices in the middle of its edges."""
         count = len(self.columns)
         edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
         keys, number = np.unique(edges[:, 0] * count + edges[:, 1], return_inverse=True)
@@ -122,7 +124,7 @@ class _Cutter:
 
 
 def _mixed(joints: NDArray[np.uint16], weights: NDArray[np.float32]) -> tuple[NDArray[np.uint16], NDArray[np.float32]]:
-    """The mean of two vertices' weights (n, 2, 4), its four greatest: joints and weights (n, 4)."""
+    """Return the four greatest of the mean weights of two vertices (n, 2, 4): joints and weights (n, 4)."""
     count = len(joints)
     joints, weights = joints.reshape(count, 8), weights.reshape(count, 8).copy()
     for k in range(4, 8):  # the same joint on both sides counts once, with both weights
@@ -136,7 +138,7 @@ def _mixed(joints: NDArray[np.uint16], weights: NDArray[np.float32]) -> tuple[ND
 
 
 def _bled(texture: NDArray[np.uint8], solid: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """The texture with the colour of solid texels run into the others, which else shine through at the rims."""
+    """Return the texture with the colour of solid texels spread into the others, which would shine through at rims."""
     colour = texture[..., :3].astype(np.float32) * solid[..., None]
     levels = [(colour, solid.astype(np.float32))]
     while max(levels[-1][1].shape) > 1:
@@ -152,7 +154,7 @@ def _bled(texture: NDArray[np.uint8], solid: NDArray[np.bool_]) -> NDArray[np.ui
 
 
 def _halved(image: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Sums of 2 by 2 texels; an odd last row or column stands alone."""
+    """Return the sums of 2 by 2 texels; an odd last row or column is summed alone."""
     height, width = image.shape[:2]
     rest = [(0, 0)] * (image.ndim - 2)
     padded = np.pad(image, [(0, height % 2), (0, width % 2), *rest])

@@ -35,8 +35,8 @@ _ALIGNED = tuple(
 def fit_character(path: Path) -> Character:
     """Read a .glb or .vrm file and fit it to the rig.
 
-    The joints that were found carry H-Anim names, joint 0 is HumanoidRoot; others keep their own names. The character
-    stands on y = 0, looks to +Z and is scaled to `HEIGHT`. Things in the hands are left out: a dancer needs free hands.
+    The joints that were found have H-Anim names, and joint 0 is HumanoidRoot; others keep their own names. The
+    character stands on y = 0, looks to +Z and is scaled to `HEIGHT`. Objects in the hands are left out.
 
     Raises FileError, one line, for a file that cannot be used; it lists bones that are missing or in the wrong place.
     """
@@ -63,7 +63,9 @@ def _hand_items(container: Container, nodes: Nodes, hands: set[int]) -> set[int]
 
 
 def _rooted(character: Character, names: dict[int, str]) -> Character:
-    """Joints renamed, the hips first, what is not below them hung on them; nodes above the hips go."""
+    """Return the character with renamed joints and the hips as the root; nodes above the hips become children of the
+    hips.
+    """
     skeleton = character.skeleton
     taken = set(names.values())
     labels = [names.get(j, n + "_" if n in taken else n) for j, n in enumerate(skeleton.names)]
@@ -132,7 +134,7 @@ def _upright(character: Character, path: Path) -> Character:
 
 
 def _ground(character: Character, vertices: Array) -> float:
-    """Height of the soles: the lowest vertex that a foot moves."""
+    """Return the height of the soles: that of the lowest vertex that a foot moves."""
     feet = [j for j, n in enumerate(character.skeleton.names) if n.endswith(("_talocrural", "_metatarsal"))]
     at = 0
     low = []
@@ -157,7 +159,7 @@ def _with_rest(character: Character, rest: Array, moves: Array) -> Character:
 
 
 def _in_rest_pose(character: Character) -> Character:
-    """Turn limbs so that they lie as ours do at rest: a T pose becomes our A pose."""
+    """Turn the limbs to the rig's rest pose, so that a T pose becomes an A pose."""
     skeleton, ours = character.skeleton, dancer_skeleton()
     rest, wanted = skeleton.rest, ours.rest
     turns = np.tile([1.0, 0.0, 0.0, 0.0], (len(skeleton.names), 1))
@@ -184,20 +186,20 @@ def _in_rest_pose(character: Character) -> Character:
 
 
 def _foot_turn(skeleton: Skeleton, side: str) -> Array:
-    """The turn about the vertical that points the toes to +Z; none without a toe joint."""
+    """Return the rotation about the vertical that points the toes to +Z; the identity without a toe joint."""
     if f"{side}_metatarsal" not in skeleton.names:
         return np.array([1.0, 0.0, 0.0, 0.0])
     way = skeleton.rest[skeleton.index(f"{side}_metatarsal")] - skeleton.rest[skeleton.index(f"{side}_talocrural")]
     return quat.from_axis_angle(np.array([0.0, 1.0, 0.0]), np.asarray(-np.arctan2(way[0], way[2])))
 
 
-# The body that a ragdoll gets of a character: the rig's joints in the character's own proportions.
+# The ragdoll's body of a character: the rig's joints in the proportions of the character.
 
 _TRUNK = ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4", "skullbase")
 
 
 def body_of(skeleton: Skeleton) -> Skeleton:
-    """The dancer's joints, resting where those of a fitted character rest; what it lacks lies in proportion.
+    """Return the rig's joints at the places of a fitted character's joints; missing joints are placed in proportion.
 
     skeleton : of a character of `character.characters.load_character`; the project's own dancers come back as they are
     """

@@ -28,7 +28,7 @@ _TRIANGLES, _STRIP, _FAN = 4, 5, 6  # glTF's primitive modes
 
 
 def read_character(path: Path) -> Character:
-    """Read the meshes and the skeleton of a .glb file. Raises FileError, one line, for what it cannot use."""
+    """Read the meshes and the skeleton of a .glb file. Raises FileError if they cannot be used."""
     container = read_container(path)
     return character_with_nodes(container, read_nodes(container), ())[0]
 
@@ -36,9 +36,9 @@ def read_character(path: Path) -> Character:
 def character_with_nodes(
     container: Container, nodes: Nodes, keep: Iterable[int], skip: Collection[int] = ()
 ) -> tuple[Character, dict[int, int]]:
-    """The character, and the joint index of each node that became a joint.
+    """Return the character, and the joint index of each node that became a joint.
 
-    keep : nodes that must become joints even if no vertex hangs on them; skip : nodes whose meshes are left out
+    keep : nodes that must become joints even without vertices; skip : nodes whose meshes are left out
     """
     reader = _Reader(container, nodes, keep)
     for index, node in enumerate(container.items("nodes")):
@@ -51,7 +51,7 @@ def character_with_nodes(
 
 
 class _Reader:
-    """Collects joints and meshes of one file."""
+    """A reader that collects the joints and meshes of one file."""
 
     def __init__(self, container: Container, nodes: Nodes, keep: Iterable[int]) -> None:
         self.container = container
@@ -72,9 +72,9 @@ class _Reader:
         self.tables = self._bind()
 
     def _bind(self) -> list[NDArray[np.uint16]]:
-        """Joint indices of each skin; sets the inverse bind matrices.
+        """Return the joint indices of each skin, and set the inverse bind matrices.
 
-        Where a second skin binds a node in another way than the first did, it gets a joint of its own that moves along.
+        If a second skin binds a node differently, it gets another joint that moves with the first.
         """
         rest = self.inverse_bind
         known: dict[int, list[tuple[NDArray[np.float64], int]]] = {}
@@ -102,7 +102,7 @@ class _Reader:
         return tables
 
     def _add_joints(self, extra: list[tuple[int, NDArray[np.float64]]]) -> None:
-        """Joints (parent, inverse bind matrix) at their parents' places."""
+        """Add joints (parent, inverse bind matrix) at the places of their parents."""
         old = self.skeleton
         names = (*old.names, *(f"{old.names[p]}_skin{k}" for k, (p, _) in enumerate(extra)))
         parents = np.concatenate([old.parents, np.array([p for p, _ in extra], dtype=np.int32)])
@@ -123,7 +123,7 @@ class _Reader:
         return joints, matrices[: len(joints)].reshape(-1, 4, 4).transpose(0, 2, 1)
 
     def _joints(self, keep: Iterable[int]) -> dict[int, int]:
-        """Joint index of each node that is a joint of a skin, or above one."""
+        """Return the joint index of each node that is a joint of a skin, or an ancestor of one."""
         used: set[int] = set()
         for joints in (*(joints for joints, _ in self.skins), list(keep)):
             for node in joints:
@@ -230,7 +230,7 @@ class _Reader:
     def _attach(
         self, node: int, positions: NDArray[np.float32], normals: NDArray[Any] | None
     ) -> tuple[NDArray[np.float32], NDArray[Any] | None, int] | None:
-        """A mesh without skin, moved into the space of the nearest joint above it."""
+        """Return a mesh without skin, moved into the space of the nearest joint above it, or None."""
         above = node
         while above >= 0 and above not in self.joint_of:
             above = int(self.nodes.parents[above])
@@ -246,7 +246,7 @@ class _Reader:
 
 
 def unit_normals(normals: NDArray[Any]) -> NDArray[np.float32]:
-    """Normals (n, 3) made 1 long; those whose squares no number holds are shortened first."""
+    """Return normals (n, 3) of length 1; very long ones are shortened first, so that squares do not overflow."""
     longest = np.abs(normals).max(axis=1, keepdims=True, initial=0)
     if (longest > _LONGEST_NORMAL).any():
         normals = normals / np.where(longest > _LONGEST_NORMAL, longest, 1)
@@ -255,7 +255,7 @@ def unit_normals(normals: NDArray[Any]) -> NDArray[np.float32]:
 
 
 def _in_threes(indices: NDArray[np.int32], mode: object) -> NDArray[np.int32]:
-    """Triangles (t, 3) of a list of vertices, all facing the same way."""
+    """Return the triangles (t, 3) of a list of vertices, all with the same orientation."""
     if mode == _TRIANGLES:
         return indices[: len(indices) // 3 * 3].reshape(-1, 3)
     if mode == _FAN:

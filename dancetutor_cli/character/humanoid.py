@@ -1,4 +1,4 @@
-"""Which node of a file is which bone of a human: by VRM's `humanoid` map, or by name.
+"""The search for the bones of a human among a file's nodes, by VRM's `humanoid` map or by name.
 
 Names are compared by their words, without separators, capitals, name spaces and side: this covers the styles of
 Mixamo, Unreal, Rigify, Blender, 3ds Max, VRoid, KayKit, CMU, H-Anim, MikuMikuDance and others. The result is checked
@@ -94,7 +94,7 @@ class Humanoid:
 
 
 def joint_of_bone(bone: str) -> str | None:
-    """Our joint for a VRM bone name; None for bones we do not move, and for the spine, which goes by its place."""
+    """Return the rig's joint for a VRM bone; None for bones that the rig does not have, and for the spine."""
     if bone in _MIDDLE:
         return _MIDDLE[bone][0]
     for side, letter in (("left", "l"), ("right", "r")):
@@ -104,13 +104,13 @@ def joint_of_bone(bone: str) -> str | None:
 
 
 def _first_of_each(joints: dict[int, str], trunk: tuple[int, ...]) -> dict[int, str]:
-    """Where a long spine gives a joint to two nodes, the upper one keeps it; the other moves along."""
+    """Keep only the upper of two spine nodes with the same joint; the other node moves with its parent."""
     last = {joint: node for node, joint in joints.items() if node in trunk}
     return {node: joint for node, joint in joints.items() if node not in trunk or last[joint] == node}
 
 
 def find_humanoid(container: Container, nodes: Nodes) -> Humanoid:
-    """The bones of a character file.
+    """Find the bones of a character file.
 
     Raises FileError, one line, that lists every required bone which is missing or hangs in the wrong place.
     """
@@ -121,7 +121,7 @@ def find_humanoid(container: Container, nodes: Nodes) -> Humanoid:
 
 
 def humanoid_of(path: Path, names: Sequence[str], parents: NDArray[np.int32]) -> Humanoid:
-    """The bones of a skeleton without a mesh, as motion capture has it: names, and parents before children.
+    """Find the bones of a skeleton without a mesh, as in motion capture, with parents before children.
 
     Raises FileError, one line, that lists every required bone which is missing or hangs in the wrong place.
     """
@@ -131,7 +131,7 @@ def humanoid_of(path: Path, names: Sequence[str], parents: NDArray[np.int32]) ->
 
 
 def _checked(path: Path, nodes: Nodes, bones: dict[str, int], advice: str) -> Humanoid:
-    """The humanoid of these bones; FileError, with advice, for what is missing or misplaced."""
+    """Return the humanoid of these bones. Raises FileError, with advice, for missing or misplaced bones."""
     trunk = _trunk(nodes, bones)
     if trunk:
         bones.setdefault("spine", trunk[0])
@@ -148,7 +148,7 @@ def _checked(path: Path, nodes: Nodes, bones: dict[str, int], advice: str) -> Hu
 
 
 def _from_vrm(container: Container) -> dict[str, int]:
-    """VRM 1.0's or 0.x's map, if the file has one."""
+    """Return the bones of the map of VRM 1.0 or 0.x, if the file has one."""
     extensions = container.document.get("extensions", {})
     extensions = extensions if isinstance(extensions, dict) else {}
     out: dict[str, int] = {}
@@ -215,7 +215,7 @@ def words_of(name: str) -> tuple[str, str]:
 
 
 def _from_names(nodes: Nodes, order: list[int]) -> dict[str, int]:
-    """Bones among the nodes `order`, by the words of their names."""
+    """Return the bones among the nodes `order`, by the words of their names."""
     words = {i: words_of(name) for i, name in _without_shared(_unnumbered({i: nodes.names[i] for i in order})).items()}
     rigify = _rigify_spine(words)
     bones: dict[str, int] = dict(rigify)
@@ -291,7 +291,7 @@ def _complete_tips(nodes: Nodes, words: dict[int, tuple[str, str]], bones: dict[
 
 
 def _is_second(plain: str) -> bool:
-    """A numbered bone other than the first: the second of a chain."""
+    """Whether a bone has a number above 1, so that it is not the first of a chain."""
     number = re.search(r"(\d+)$", plain)
     return number is not None and int(number.group(1)) > 1
 
@@ -305,7 +305,7 @@ def _rigify_spine(words: dict[int, tuple[str, str]]) -> dict[str, int]:
 
 
 def _above(nodes: Nodes, node: int) -> list[int]:
-    """The ancestors of a node, nearest first."""
+    """Return the ancestors of a node, nearest first."""
     out = []
     node = int(nodes.parents[node])
     while node >= 0:
@@ -329,7 +329,7 @@ def _trunk(nodes: Nodes, bones: dict[str, int]) -> tuple[int, ...]:
 
 
 def _misplaced(nodes: Nodes, bones: dict[str, int]) -> list[str]:
-    """A line for each bone that does not lie below the bone it must hang on."""
+    """Return a line for each bone that is not below its required ancestor."""
     pairs = [("spine", "hips"), ("head", "spine")]
     for side in ("left", "right"):
         pairs += [(f"{side}UpperLeg", "hips"), (f"{side}UpperArm", "hips")]

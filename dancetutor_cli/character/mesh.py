@@ -1,4 +1,4 @@
-"""A character: triangle meshes skinned to a skeleton; which part are its feet; two of them side by side."""
+"""A character: triangle meshes skinned to a skeleton, with coloured feet, and with a second dancer."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ class Material:
 
     name : a limb of `feet.limbs.LimbColours` gives our own characters' meshes that limb's colour when they are loaded
     texture : uint8 (h, w, 4) sRGB, or None; meshes that share a texture share the array
-    cutoff : least alpha that is there, None where alpha means nothing; double_sided : seen from behind too. The
-    renderers know neither: `surfaces.drawable` makes meshes of it
+    cutoff : least alpha that is drawn, None if alpha is ignored; double_sided : whether back faces are visible. The
+    renderers support neither; `surfaces.drawable` converts both to meshes
     """
 
     name: str
@@ -62,7 +62,7 @@ class Character:
 
 
 def rest_vertices(character: Character) -> NDArray[np.float64]:
-    """All vertices where the rest pose puts them, (v, 3), mesh after mesh."""
+    """Return all vertices in the rest pose, (v, 3), mesh after mesh."""
     matrices = character.inverse_bind.copy()
     matrices[:, :3, 3] += character.skeleton.rest
     out = []
@@ -72,23 +72,24 @@ def rest_vertices(character: Character) -> NDArray[np.float64]:
     return np.concatenate(out)
 
 
-# Which part of a character are its feet, and their colours: a user's character wears them, too, where it can.
+# The feet of a character and their colours, which a user's character gets, too.
 
 FOOT = ("talocrural", "metatarsal")  # joints of a foot, after l_ or r_
 SIDES = {"l": "left_foot", "r": "right_foot"}  # of `LimbColours`
 
 
 def on_foot(character: Character, mesh: Mesh, side: str) -> NDArray[np.bool_]:
-    """Which vertices of a mesh, (v,), hang mostly on the foot of a side, "l" or "r"."""
+    """Whether each vertex of a mesh, (v,), is moved mostly by the foot of a side, "l" or "r"."""
     names = character.skeleton.names
     joints = [names.index(name) for part in FOOT if (name := f"{side}_{part}") in names]
     return np.asarray((mesh.weights * np.isin(mesh.joints, joints)).sum(axis=1) > 0.5)
 
 
 def with_foot_colours(character: Character) -> Character:
-    """The character with feet in the colours that the notes' markers have.
+    """Return the character with feet in the colours of the notes' markers.
 
-    A foot is what hangs on ankle and toes alone; a mesh is cut there. Our own dancers wear these colours already.
+    A foot is the triangles that the ankle and the toes move; meshes are cut there. The program's characters have these
+    colours already.
     """
     colours = limb_colours()
     if any(mesh.material.name in SIDES.values() for mesh in character.meshes):
@@ -110,29 +111,29 @@ def with_foot_colours(character: Character) -> Character:
 
 
 def _part(mesh: Mesh, triangles: NDArray[np.bool_], name: str, material: Material) -> Mesh:
-    """Some triangles of a mesh, with only the vertices that they use."""
+    """Return some triangles of a mesh, with only the vertices that they use."""
     kept, place = np.unique(mesh.triangles[triangles], return_inverse=True)
     part = take(mesh, kept, place.reshape(-1, 3))
     return replace(part, name=f"{mesh.name} {name}".strip(), material=material)
 
 
 def take(mesh: Mesh, vertices: NDArray[np.integer[Any]], triangles: NDArray[np.int64]) -> Mesh:
-    """The mesh made of some of its vertices, in a new order and perhaps more than once."""
+    """Return the mesh with some of its vertices, in a new order and possibly repeated."""
     columns = {f: getattr(mesh, f)[vertices] for f in ("positions", "normals", "uv", "joints", "weights")}
     colors = None if mesh.colors is None else mesh.colors[vertices]
     return replace(mesh, **columns, triangles=triangles.astype(np.int32), colors=colors)
 
 
-# Two who dance: a character with a second one beside it, the same but for the colour of the clothes.
+# Two dancers: a character and a second one, which differs only in the colour of the clothes.
 
-_SEEN = 0.01  # part of the textures that has to change for two to be told apart
-PREFIX = "partner_"  # of the names of the second one's joints: a search by name gets the first one's
+_SEEN = 0.01  # least share of the textures that must change to distinguish two dancers
+PREFIX = "partner_"  # prefix of the second dancer's joints, so that a search by name finds the first dancer's
 
 
 def with_partner(character: Character) -> Character:
-    """Both as one character of twice as many joints, the second one's behind the first one's.
+    """Return both dancers as one character with twice as many joints, the second dancer's after the first's.
 
-    Their joints' matrices come from two motions: the joint tree of both only says where everything is at rest.
+    The matrices of joints come from two motions; the common joint tree is used only for the rest pose.
     """
     one, count = character.skeleton, len(character.skeleton.names)
     parents = np.where(one.parents < 0, 0, one.parents + count).astype(one.parents.dtype)
@@ -156,14 +157,14 @@ def with_partner(character: Character) -> Character:
 
 
 def partner_of(character: Character) -> Character:
-    """The second one alone: the same in clothes of other colours."""
+    """Return the second dancer alone: the same character in clothes of other colours."""
     paint = _Paint.of(character, partner_colours())
     return replace(character, meshes=tuple(_other(mesh, 0, paint) for mesh in character.meshes))
 
 
 @dataclass(frozen=True, slots=True)
 class _Paint:
-    """The second one's textures, by the `id` of the first one's (meshes share them); tint : where no hue is turned"""
+    """The second dancer's textures, by the `id` of the first's (meshes share them); tint : used if no hue is turned"""
 
     textures: Mapping[int, NDArray[np.uint8]]
     tint: tuple[float, float, float]
@@ -193,7 +194,7 @@ def _other(mesh: Mesh, count: int, paint: _Paint) -> Mesh:
 
 
 def turned(rgb: NDArray[np.uint8], colours: PartnerColours) -> NDArray[np.uint8]:
-    """Colours, uint8 (h, w, 3), those of some hues turned on the colour circle; others and greys stay."""
+    """Return colours, uint8 (h, w, 3), with some hues turned on the colour circle; other colours and greys stay."""
     values = rgb.astype(np.float32) / 255
     high, low = values.max(axis=2), values.min(axis=2)
     span = high - low

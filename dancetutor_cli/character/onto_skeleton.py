@@ -1,4 +1,4 @@
-"""The dancer's motion on another character: her world rotations, feet and pressing hands placed by its own limbs.
+"""The dancer's motion on another character: the same world rotations, with feet and pressing hands at the same places.
 
 A fitted character (`fitting.fit_character`) rests as the dancer does with identity rotations, so a world rotation
 delta is the world rotation itself. Legs are then solved in closed form with the character's own lengths, so that its
@@ -27,7 +27,7 @@ _LEG, _ARM = ("hip", "knee", "talocrural"), ("shoulder", "elbow", "radiocarpal")
 
 
 class _LimbGoal(NamedTuple):
-    """Where a limb must end. side : "l" or "r"; chain : three joints; target : (f, 3); weight : (f,), 0 to 1."""
+    """The target of a limb's end. side : "l" or "r"; chain : 3 joints; target : (f, 3); weight : (f,), 0 to 1"""
 
     side: str
     chain: tuple[str, str, str]
@@ -36,7 +36,7 @@ class _LimbGoal(NamedTuple):
 
 
 def onto(motion: Motion, own: Skeleton) -> Motion:
-    """The motion for a skeleton that rests as the dancer's does; the same motion if it is the dancer's already.
+    """Return the motion for a skeleton with the dancer's rest pose; the same motion if it is the dancer's skeleton.
 
     Joints without a counterpart keep their rest rotation. Times and contacts stay.
     """
@@ -58,7 +58,7 @@ def onto(motion: Motion, own: Skeleton) -> Motion:
 
 
 def _world_rotations(own: Skeleton, source: dict[str, tuple[Array, Array]], frames: int) -> Array:
-    """World rotation (f, j, 4) of every joint: its counterpart's, or its parent's."""
+    """Return the world rotation (f, j, 4) of every joint: that of its counterpart, or of its parent."""
     out = np.empty((frames, len(own.names), 4))
     for j, (name, parent) in enumerate(zip(own.names, own.parents.tolist(), strict=True)):
         out[:, j] = source[name][1] if name in source else out[:, parent]
@@ -66,7 +66,7 @@ def _world_rotations(own: Skeleton, source: dict[str, tuple[Array, Array]], fram
 
 
 def _ankle_target(dancer: Skeleton, own: Skeleton, source: dict[str, tuple[Array, Array]], side: str) -> Array:
-    """Where the character's ankle must be for its sole to stand where the dancer's does.
+    """Return the place of the character's ankle that puts its sole where the dancer's is.
 
     The ground under the ball of the foot is the point that both share: heels and toes turn about it.
     """
@@ -76,7 +76,7 @@ def _ankle_target(dancer: Skeleton, own: Skeleton, source: dict[str, tuple[Array
 
 
 def _under_ball(skeleton: Skeleton, side: str) -> Array:
-    """From the ankle to the ground under the ball of the foot, in the rest pose; the soles rest on y = 0."""
+    """Return the vector from the ankle to the ground under the ball of the foot, in the rest pose with soles on y = 0."""
     ankle = skeleton.rest[skeleton.index(f"{side}_talocrural")]
     ahead = 1.3 * ankle[1]  # where there is no toe joint
     if f"{side}_metatarsal" in skeleton.names:

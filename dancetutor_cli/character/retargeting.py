@@ -50,7 +50,7 @@ SCHEMA = b"1"  # of what a body's tuning depends on besides body and neutral sty
 
 @dataclass(frozen=True, slots=True)
 class RetargetTask:
-    """How to retarget. file : where the motion is from
+    """The user's options of `retarget`. file : file of the motion
 
     style : as `dance.physics.blend.load_choice` takes it; wishes : corrections, pushes, trips
     """
@@ -63,7 +63,7 @@ class RetargetTask:
 
 @dataclass
 class Retargeting:
-    """A task's results, made when they are first wanted. Everything raises a DancetutorError of one line.
+    """The results of a task, made when they are first needed. All members may raise DancetutorError.
 
     source : the file's motion, of the rig's joints (a Motion) or of joints of its own (see `formats.captured`)
     """
@@ -105,7 +105,7 @@ class Retargeting:
         return self.source.parents, places + (ours - theirs)[:, None]
 
     def _captured_joints(self, captured: CapturedMotion) -> dict[str, int]:
-        """The captured joint of each of the rig's that the file has."""
+        """Return the captured joint of each of the rig's joints that the file has."""
         rig_joint_of = humanoid_of(self.task.file, captured.names, captured.parents).joints()
         return {joint: node for node, joint in rig_joint_of.items()}
 
@@ -122,7 +122,7 @@ class Retargeting:
 
     @cached_property
     def ragdoll_result(self) -> RagdollResult:
-        """Behind the ragdoll, on the body."""
+        """The result of the ragdoll, on the body."""
         try:
             passed = through_ragdoll(self.input_on_body, self.blend, self.task.wishes)
         except FileError:
@@ -135,7 +135,7 @@ class Retargeting:
 
     @cached_property
     def output_on_character(self) -> Motion:
-        """Behind the ragdoll, for the character's skeleton."""
+        """The ragdoll's motion for the character's skeleton."""
         return onto(self.ragdoll_result.motion, self.character.skeleton)
 
     @cached_property
@@ -154,7 +154,7 @@ class Retargeting:
 
     @property
     def title(self) -> str:
-        """For people."""
+        """The title for people: the name of the file."""
         return self.task.file.stem
 
     def report(self) -> MotionReport:
@@ -183,7 +183,7 @@ class Retargeting:
 
 
 def tuning_of(body: Skeleton) -> Tuning:
-    """Springs and densities of a body: those found before, or a short search, whose result is kept."""
+    """Return the springs and densities of a body, from the cache or by a short search."""
     digest = hashlib.sha256(body.offsets.round(6).tobytes())
     digest.update(config_path(f"styles/{NEUTRAL}.yaml").read_bytes() + SCHEMA)
     folder = kept_folder("bodies")

@@ -76,7 +76,7 @@ def _swatches(palette: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np
 
 
 def _two_sided(mesh: Mesh, places: NDArray[np.float64]) -> Mesh:
-    """Open pieces of a two-sided mesh get a second layer that is seen from behind; closed ones have no behind."""
+    """Return the mesh with a second layer for the back of its open pieces, if it is two-sided."""
     two = mesh.material.double_sided
     mesh = replace(mesh, material=replace(mesh.material, cutoff=None, double_sided=False))
     behind = mesh.triangles[open_pieces(mesh.triangles, places)] if two and len(mesh.triangles) else mesh.triangles[:0]
@@ -90,7 +90,7 @@ def _two_sided(mesh: Mesh, places: NDArray[np.float64]) -> Mesh:
 
 
 def open_pieces(triangles: NDArray[np.int32], places: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which triangles (t,) belong to a connected piece with a rim. Vertices within 0.1 mm are one."""
+    """Whether each triangle (t,) belongs to a connected piece with a rim; vertices within 0.1 mm are merged."""
     steps = np.clip(np.round(places * 1e4), -1e6, 1e6).astype(np.int64) + 1_000_000
     _, same = np.unique((steps[:, 0] * 2_000_001 + steps[:, 1]) * 2_000_001 + steps[:, 2], return_inverse=True)
     welded = same.reshape(-1)[triangles].astype(np.int64)
@@ -105,7 +105,7 @@ def open_pieces(triangles: NDArray[np.int32], places: NDArray[np.float64]) -> ND
 
 
 def connected(edges: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """For each of `count` nodes the least node that edges (e, 2) connect it with.
+    """Return for each of `count` nodes the least node to which edges (e, 2) connect it.
 
     Each round every piece takes the name of the least piece beside it: pieces at least halve, so rounds are few.
     """
