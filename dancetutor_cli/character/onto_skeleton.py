@@ -66,7 +66,7 @@ def _world_rotations(own: Skeleton, source: dict[str, tuple[Array, Array]], fram
 
 
 def _ankle_target(dancer: Skeleton, own: Skeleton, source: dict[str, tuple[Array, Array]], side: str) -> Array:
-    """Return the place of the character's ankle that puts its sole where the dancer's is.
+    """Return the places of the character's ankle that put its sole where the dancer's is.
 
     The ground under the ball of the foot is the point that both share: heels and toes turn about it.
     """
@@ -76,7 +76,7 @@ def _ankle_target(dancer: Skeleton, own: Skeleton, source: dict[str, tuple[Array
 
 
 def _under_ball(skeleton: Skeleton, side: str) -> Array:
-    """Return the vector from the ankle to the ground under the ball of the foot, in the rest pose with soles on y = 0."""
+    """Return the vector from ankle to ground under the ball of the foot, in the rest pose with soles on y = 0."""
     ankle = skeleton.rest[skeleton.index(f"{side}_talocrural")]
     ahead = 1.3 * ankle[1]  # where there is no toe joint
     if f"{side}_metatarsal" in skeleton.names:

@@ -142,7 +142,7 @@ def _bar(arrays: dict[str, Any]) -> tuple[Bar | None, tuple[Grip, ...]]:
         return None, ()
     height, behind, radius = (float(v) for v in arrays["bar"])
     spans = tuple((float(low), float(high)) for low, high in arrays["bar_spans"])
-    none = np.zeros(len(arrays.get("grip_start", ())))  # older files do not have `grip_across`
+    none = np.zeros(len(arrays.get("grip_start", ())))  # older files do not have this array of grips
     columns = [arrays.get(f"grip_{name}", none) for name in _GRIPS]
     grips = tuple(
         Grip(float(a), float(b), int(side), float(x), bool(over)) for a, b, side, x, over in zip(*columns, strict=True)

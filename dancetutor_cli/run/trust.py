@@ -1,8 +1,8 @@
 """The check of folders and files from which machine code is loaded: only this user or root may be able to write them.
 
-Loaded machine code and pickles can do anything, and whoever can write a file can write its checksum. So the owners of a
-file and of every folder above it are checked (as for ssh's keys), and none may be in a folder of songs. On Windows,
-Python cannot check permissions, so only paths are checked.
+Loaded machine code and pickles can do anything, and a user who can write a file can write its checksum. So the owners
+of a file and of every folder above it are checked (as for ssh's keys), and none may be in a folder of songs. On
+Windows, Python cannot check permissions, so only paths are checked.
 """
 
 from __future__ import annotations

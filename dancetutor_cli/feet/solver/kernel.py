@@ -173,7 +173,7 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def wait(rows):  # type: ignore[no-untyped-def]
-    """Write the milliseconds since the last row with steps into `rows.elapsed`, for every row."""
+    """Write the milliseconds since the last row with steps into `RowArrays.elapsed`, for every row."""
     steps, milliseconds, elapsed = rows.steps, rows.milliseconds, rows.elapsed
     waited = MOST_MS
     for r in range(len(elapsed)):
