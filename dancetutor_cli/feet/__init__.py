@@ -1,15 +1,15 @@
 """Which limb steps which note: pads, limbs, feet that people have set, cost presets, and the solver -> `Play`.
 
-solved.solve_song             the way to feet of a song's charts; `markers` goes it chart by chart: solver.solve
+solved.solve_song             solves a song's charts; `markers` solves chart by chart, by solver.solve
   |   pads, preset              where panels are; what each undesired thing costs; which preset a chart gets
-  |   song_feet                 what people laid down: annotations in the file, sme (SMEditor), dancetutor.yaml
-  |   overrides                 the same for one chart, and what of it cannot be danced
+  |   song_feet                 feet that people have set: annotations in the file, sme (SMEditor), dancetutor.yaml
+  |   overrides                 the same for one chart, and the contradictions
   |   play.prepare_all          rows of notes
   |   solver.solve              the play that costs least
 solved.Solved                 a chart, its `play.Play`, its pad and preset
 
 limbs, play_json              names and letters of limbs; plays in the JSON of `analyze`
 move_spans                    crossovers and other moves of a play that last for several rows
-conditions                    which charts an entry of dancetutor.yaml is about
+conditions                    which charts an entry of dancetutor.yaml applies to
 passages                      the hardest passages of a chart
 """

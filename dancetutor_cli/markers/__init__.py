@@ -1,6 +1,6 @@
-"""Feet written into chart files and beside them, and taken out again.
+"""Feet written into chart files and beside them, and removed again.
 
-annotate, plan                  the piece of work of `annotate`: the files of one song; what would change in one of them
+annotate, plan                  the task of `annotate` for the files of one song; the changes of one file
 styles, model                   the styles of markers by name; what all of them share
 measure, rows                   feet in comments of the note data
 sidecar, smeditor, feet_text    feet in files beside the chart file
