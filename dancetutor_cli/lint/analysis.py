@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dancetutor_cli.chart.names import is_lights
-from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.preset import PresetChoice, mismatch, preset_for
 from dancetutor_cli.lint.check import check_chart, check_file, merged_by_foot
@@ -315,6 +314,8 @@ def _unselected(song: Song, selected: tuple[Chart, ...]) -> tuple[str, ...]:
 
 def load_song(task: AnalyzeTask) -> Song:
     """Read the task's file; FileError if that fails."""
+    from dancetutor_cli.chart.reader import load, parse  # numpy, which a kept result does without
+
     return load(task.path) if task.data is None else parse(task.data, task.path)
 
 

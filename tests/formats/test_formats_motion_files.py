@@ -127,7 +127,7 @@ def test_a_play_from_json_dances_the_same(demo, tmp_path: Path) -> None:  # type
         (lambda d: d["files"][0]["charts"][0].update(index=99), "holds no chart"),
         (lambda d: d["files"][0]["charts"][0]["rows"].pop(3), "is missing"),
         (lambda d: d["files"][0]["charts"][0]["rows"][0].update(beat=0.01), "no row|is missing"),
-        (lambda d: d["files"][0]["charts"][0]["rows"][0]["steps"][0].update(limb="tail"), "no limb is called 'tail'"),
+        (lambda d: d["files"][0]["charts"][0]["rows"][0]["steps"][0].update(limb="tail"), "there is no limb 'tail'"),
         (lambda d: d["files"][0]["charts"][0]["rows"][0]["feet"].update(left=7), "not a panel"),
         (lambda d: d["files"][0]["charts"][0]["rows"][0].update(facing="north"), "not a number"),
         (lambda d: d.update(schema=2), "schema 2"),

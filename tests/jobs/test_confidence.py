@@ -66,7 +66,7 @@ def test_the_rule_names_the_least_sure_passages(song: Path, monkeypatch: pytest.
     knows(monkeypatch, SURE)
     found = chart_of(song)["findings"]
     assert [(one["rule"], one["severity"], one["beat"]) for one in found] == [("DT213", "info", 0.0)]
-    assert found[0]["message"] == "the feet of 4 rows up to beat 3.5 are unsure: on beat 3.5 they are only 0 % sure"
+    assert found[0]["message"] == "the solver is unsure of 4 rows, beats 0 to 3.5: only 0 % sure on beat 3.5"
 
 
 def test_the_sheet_marks_them(song: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -74,7 +74,7 @@ def test_the_sheet_marks_them(song: Path, monkeypatch: pytest.MonkeyPatch) -> No
     page = song.with_name("sheet.html")
     run(song, "--sheet", page)
     text = page.read_text("utf-8")
-    assert "4 rows less than 70 % sure" in text and text.count('class="sure"') == 5  # one in the legend
+    assert "4 rows with feet less than 70 % sure" in text and text.count('class="sure"') == 5  # one in the legend
 
 
 def test_what_is_unknown_is_nowhere(song: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -43,10 +43,15 @@ def test_every_form_that_help_names_is_read(song: Song) -> None:
     assert part(song, "dt202:1") == (first, last)
 
 
-@pytest.mark.parametrize("text", ["DT202:99", "DT999:1", "DT202:0", "spin", "9:2", ""])
+@pytest.mark.parametrize("text", ["DT202:99", "DT202:0", "spin", "9:2", ""])
 def test_a_wrong_section_is_reported(song: Song, text: str) -> None:
     with pytest.raises(UsageError, match="section"):
         part(song, text)
+
+
+def test_a_section_of_a_rule_that_does_not_exist(song: Song) -> None:
+    with pytest.raises(UsageError, match="there is no rule 'DT999'"):
+        part(song, "DT999:1")
 
 
 @pytest.mark.parametrize("command", ["animate", "render"])

@@ -255,7 +255,7 @@ def test_the_author_gives_the_other_foot_and_takes_files_home(browser: Browser, 
     browser.key(".", "Period")
     browser.key("o", "KeyO")
     about = text(browser, "#panel-author .about")
-    assert "left R" in about and re.search(r"You gave it the other foot: [a-z ]*awkward \(cost \+\d+\)", about)
+    assert "left R" in about and re.search(r"You gave it the other foot: [a-z ]*awkward \(\+\d+ cost units\)", about)
     assert "Kept in this browser" in text(browser, "#panel-author .saved")
     browser.key("o", "KeyO")  # and back
     about = text(browser, "#panel-author .about")

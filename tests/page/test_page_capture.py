@@ -37,8 +37,8 @@ def work(tmp_path_factory: pytest.TempPathFactory) -> Retargeting:
 
 @pytest.fixture(scope="module")
 def capture_file(work: Retargeting) -> Path:
-    path = work.task.source.with_suffix(".html")
-    command.main([str(work.task.source), "-o", str(path)], standalone_mode=False)
+    path = work.task.file.with_suffix(".html")
+    command.main([str(work.task.file), "-o", str(path)], standalone_mode=False)
     return path
 
 
@@ -72,14 +72,14 @@ def test_it_loads_nothing_and_holds_the_capture(work: Retargeting, capture_file:
     assert "default-src 'none'" in head and not re.findall(r"https?://", page.decode("utf-8"))
     doc = unpacked(page)
     assert doc["words"]["title"] == "walker"
-    assert len(doc["parents"]) == len(read_bvh(work.task.source, ends=True).skeleton.names)
+    assert len(doc["parents"]) == len(read_bvh(work.task.file, ends=True).skeleton.names)
     assert doc["points"] == list(work.point_paths()[0])
 
 
 def test_the_input_figure_is_the_files_own_skeleton(work: Retargeting) -> None:
     """Each bone as long as in the file, in one proportion; hips and looks where the input has them on the body."""
     parents, places = work.input_figure
-    own = read_bvh(work.task.source, ends=True).skeleton
+    own = read_bvh(work.task.file, ends=True).skeleton
     joints = np.arange(1, len(parents))
     drawn = np.linalg.norm(places[:, joints] - places[:, parents[joints]], axis=2)
     given = np.linalg.norm(own.offsets[joints], axis=1)

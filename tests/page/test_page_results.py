@@ -116,7 +116,7 @@ def test_days_make_a_streak_and_a_clean_pass_is_remembered(opened: Browser, page
     opened.open(page_file)
     shown = results(opened)
     assert (
-        "Nothing played today. Days in a row: 3, the most so far: 3." in shown
+        "Nothing played today. Days in a row: 3 (record: 3)." in shown
         and "How early or late, all days" in shown
     )
     assert opened.run("document.querySelectorAll('.bars:not(.timing):not(.through) > *').length") == 3
@@ -284,7 +284,7 @@ def test_the_coach_has_passages_where_nothing_was_missed(opened: Browser) -> Non
 def test_delays_are_measured_and_shown(opened: Browser, button: str, late: float, setting: str) -> None:
     opened.click("#tab-along")
     opened.run("document.querySelector('#calibrate').click()")
-    assert text(opened, ".calibrate .hint") == "In use now: 0 ms by ear, 0 ms of the screen."
+    assert text(opened, ".calibrate .hint") == "In use now: 0 ms by ear, 0 ms visual delay."
     opened.click(button)
     opened.turn(1.2)
     for number in range(12):
@@ -310,7 +310,7 @@ def test_delays_are_measured_and_shown(opened: Browser, button: str, late: float
     assert opened.run("document.querySelector('dialog.calibrate')") is None and opened.problems == []
 
 
-@pytest.mark.parametrize(("spread", "told"), [(0.1, "spread too wide"), (0.0, "2 ms before the sound")])
+@pytest.mark.parametrize(("spread", "told"), [(0.1, "presses vary too much"), (0.0, "2 ms before the sound")])
 def test_taps_that_spread_are_refused_and_early_ones_are_before(opened: Browser, spread: float, told: str) -> None:
     opened.click("#tab-along")
     opened.run("document.querySelector('#calibrate').click()")

@@ -209,9 +209,9 @@ def test_the_ramp_says_why_it_does_nothing(opened: Browser, page_file: Path) -> 
     opened.key("r", "KeyR")
     assert said(opened) == "The ramp raises the speed of a loop: make one first."
     opened.open(page_file, "#m1-1")
-    assert "ramp: nothing left to raise at 100 %" in said(opened)
+    assert "ramp: 100 % speed, the highest" in said(opened)
     opened.key("-", "Minus")
-    assert "nothing left" not in said(opened)
+    assert "the highest" not in said(opened)
 
 
 def test_the_keys_are_said_for_a_while(opened: Browser) -> None:
@@ -224,7 +224,7 @@ def test_the_keys_are_said_for_a_while(opened: Browser) -> None:
 
 def test_links_of_nothing_and_of_endless_numbers_are_refused(opened: Browser, page_file: Path) -> None:
     opened.open(page_file, "#m0.001-0.002")
-    assert said(opened).startswith("The link's loop is too short")
+    assert said(opened).startswith("The loop in this link is too short")
     for link in (f"#m{'9' * 400}", f"#m1-{'9' * 400}", f"#m1@{'9' * 400}", f"#m0.{'1' * 400}"):
         opened.open(page_file, link)
         assert said(opened).startswith("This link is not understood") and len(said(opened)) < 200
