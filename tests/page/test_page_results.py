@@ -115,10 +115,7 @@ def test_days_make_a_streak_and_a_clean_pass_is_remembered(opened: Browser, page
     opened.call("Page.navigate", url="about:blank")
     opened.open(page_file)
     shown = results(opened)
-    assert (
-        "Nothing played today. Days in a row: 3 (record: 3)." in shown
-        and "How early or late, all days" in shown
-    )
+    assert "Nothing played today. Days in a row: 3 (record: 3)." in shown and "How early or late, all days" in shown
     assert opened.run("document.querySelectorAll('.bars:not(.timing):not(.through) > *').length") == 3
     assert "88 %" in opened.run("document.querySelector('.bars:not(.timing):not(.through)').getAttribute('aria-label')")
 

@@ -46,26 +46,20 @@ from dancetutor_cli.dance.trajectory.posture import Trajectory
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.dance.waits import waiting_at
 
-# Hands: hanging and swinging against the legs, or a palm going down to a panel.
-
-# directions of the fingers that are tried, around the preferred one
-FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))
+FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))  # directions of fingers to try, around the preferred one
 POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest
 EASE, EASY = 15.0, 40.0  # degrees within its limits at which a joint is at ease; how much turned fingers count
 WAVES = 1.3  # about the size of the sum of both waves
 LEVEL = np.array([0.6, 0.5, 1.0])  # hands wander less up and down, for their height shows effort, and less aside
 PUMP_UP = 0.4  # a hand that is pumped ahead rises by this part of it
-# differences of the hands: one is a little lower and farther back
-ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])
-# part of a stretch in which a hand is too quick; from this part on it is held back in the whole stretch
-HELD_BACK = 0.25
+ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # one hand is a little lower and farther back
+HELD_BACK = 0.25  # share of a stretch in which a hand is too quick, from which on it is held back all through
 ASIDE_SOFT = 0.02  # metres over which a hand comes to its least distance outward in a lean
 UP_SOFT = 0.06  # metres over which a hand begins to rise as it swings ahead or is raised aside
 BENT_SOFT = 0.006  # metres over which an arm comes to its greatest length
 LOOSE_SOFT = 0.015  # metres over which a forearm that is held up comes to sink
 SUNK = 1.8  # a hand sinks so much farther, because its elbow comes down with it
-# part of their way by which elbows turn to the body for another dancer; the whole way would put them into the body
-ELBOWS_IN = 0.62
+ELBOWS_IN = 0.62  # part of the way by which elbows turn to the body for another dancer; all of it is too much
 GIVEN_WAY = 0.145  # metres that a hand gives way to another dancer with which its elbow turns to the body
 SIDEWAYS = np.array([[1.0, 1.0], [-1.0, 1.0]])  # outward and up, of both hands
 SPUN = 0.5  # seconds before and after over which a spin is looked for
