@@ -68,6 +68,24 @@ def test_a_phone_shows_all_of_it_without_scrolling(browser: Browser, page_file: 
     assert browser.problems == []
 
 
+def test_a_phone_that_lies_across_gives_the_lanes_the_panels_width(browser: Browser, page_file: Path) -> None:
+    browser.size(740, 380, touch=True)
+    browser.open(page_file)
+    before, panel = boxes(browser, ".lanes", ".side")
+    assert panel[2] - panel[0] >= 200
+    browser.key("p", "KeyP")
+    browser.click(".way.step")
+    browser.drawn()
+    lanes, tab = boxes(browser, ".lanes", ".side.folded [role=tab][aria-selected=true]")
+    assert (lanes[2] - lanes[0] - 22) / 8 >= 40 > (before[2] - before[0] - 22) / 8
+    assert tab[2] - tab[0] >= 44 and tab[3] - tab[1] >= 44 and tab[2] <= 740
+    browser.click(".side.folded [aria-selected=true]")
+    assert browser.run("document.querySelector('.side.folded') === null")
+    browser.click(".tabs [aria-selected=true]")  # the open tab folds it away again
+    assert browser.run("document.querySelector('.side.folded') !== null")
+    assert browser.run("document.documentElement.scrollWidth <= 740") and browser.problems == []
+
+
 def test_nothing_moves_while_it_plays(browser: Browser) -> None:
     browser.run(
         "window.shift = 0;"

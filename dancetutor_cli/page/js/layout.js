@@ -164,9 +164,9 @@ function makeTabs(app, ui, panels) {
     side.classList.toggle("folded", fold);
     app.fresh = true;
   }
-  /** A phone that is held upright has no room for both. */
+  /** A phone has no room for both; a page at 400 % (a small one that lies across) scrolls instead. */
   function fold() {
-    if (!matchMedia("(max-width: 860px) and (orientation: portrait)").matches) return;
+    if (!matchMedia("(max-width: 860px) and (orientation: portrait), (min-width: 561px) and (max-width: 860px)").matches) return;
     ui.fewer();
     side.classList.add("folded");
   }
