@@ -19,6 +19,7 @@ const ENDS = { left: AXES, right: AXES + 1, up: AXES + 2, down: AXES + 3 };
 /** What else a mat's buttons do, and which do so unless others were chosen: as controllers number them. */
 export const CONTROLS = /** @type {const} */ (["start", "select"]);
 const OWN = [9, 8];
+const EVERY = 4; // ms between two looks at the pads
 const PUSHED = 0.5; // of an axis' way
 
 const SIGNS = ["↑", "↗", "→", "↘", "↓", "↙", "←", "↖"]; // clockwise
@@ -178,7 +179,12 @@ export class Input {
     this.held.forEach((is, column) => { if (is) this.release(column); });
   }
 
-  /** Look at the pads; to be called for every picture. */
+  /** Look at the pads apart from drawing, so that a short press between two pictures is not lost. @returns what `clearInterval` takes */
+  watch() {
+    return setInterval(() => this.poll(), EVERY);
+  }
+
+  /** Look at the pads. */
   poll() {
     const pads = this.pads();
     for (const name of this.down.keys()) {

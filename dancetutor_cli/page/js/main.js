@@ -63,6 +63,7 @@ async function main() {
     requestAnimationFrame(frame);
   };
   frame();
+  app.input.watch();
   document.documentElement.dataset.ready = performance.now().toFixed(0);
   if (app.musicLoading) await loadMusic(/** @type {ArrayBuffer} */ (fromBase64(text("music")).buffer));
 

@@ -94,3 +94,17 @@ test("Start and Select of a mat do what they say, others that were chosen do so 
   tap(8);
   assert.deepEqual([done.length, pressed.at(-1)], [4, 0]);
 });
+
+test("a press of 50 ms between two pictures is not lost", async () => {
+  const { input, pressed, pad } = plugged({});
+  const pause = (/** @type {number} */ ms) => new Promise((done) => setTimeout(done, ms));
+  const timer = input.watch();
+  await pause(30);
+  pad.axes = [-1, 0];
+  await pause(50);
+  pad.axes = [0, 0];
+  await pause(50);
+  clearInterval(timer);
+  assert.deepEqual(pressed, [0]);
+  assert.ok(!input.held.includes(true));
+});
