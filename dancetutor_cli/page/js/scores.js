@@ -6,6 +6,8 @@ import { BINS, errorBin, missedOf, scoreShare } from "./record.js";
 import { timing } from "./results.js";
 import { meanText, passedOf } from "./said.js";
 
+const NOTABLE = 50; // %: the least that a first play is called a best score for
+
 /** The score while it plays; the panel of playing along says it to readers. @param {import("./app.js").App} app */
 export function standing(app) {
   const { share, shares, row, bar, show } = countsOf(app);
@@ -65,7 +67,8 @@ export function resultCard(app) {
     part.textContent = partText(app, over);
     mean.textContent = [meanText(app, over).replace(/^\((.*)\)$/, "$1"), t("longestRun", { notes: practice.longest })].filter(Boolean).join(" · ");
     const { top } = app.record;
-    best.textContent = top > practice.topBefore ? t("bestNew") : top ? t("bestPlay", { percent: top }) : "";
+    const better = top > practice.topBefore && (practice.topBefore > 0 || top >= NOTABLE); // a first try that went badly is no record
+    best.textContent = better ? t("bestNew") : top ? t("bestPlay", { percent: top }) : "";
     feet.replaceChildren(...(over.count ? [feetPart(app)] : []));
     slow.hidden = !missed();
     const bad = !slow.hidden && scoreShare(over) < FAIR;
