@@ -68,6 +68,17 @@ def test_a_phone_shows_all_of_it_without_scrolling(browser: Browser, page_file: 
     assert browser.problems == []
 
 
+def test_while_one_plays_the_ways_are_one_row(browser: Browser, page_file: Path) -> None:
+    browser.size(1280, 800)
+    browser.open(page_file)
+    browser.click(".way.step")
+    browser.drawn()
+    assert browser.run("new Set([...document.querySelectorAll('.way')].map(e => e.offsetTop)).size") == 1
+    assert browser.run(
+        "[...document.querySelectorAll('.way strong')].every(e => e.scrollWidth <= e.parentElement.clientWidth)"
+    )
+
+
 def test_a_phone_that_lies_across_gives_the_lanes_the_panels_width(browser: Browser, page_file: Path) -> None:
     browser.size(740, 380, touch=True)
     browser.open(page_file)
