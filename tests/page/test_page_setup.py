@@ -178,3 +178,27 @@ def test_the_rules_of_judging_are_folded(opened: Browser) -> None:
     assert not shown(opened, "#panel-along details p")
     opened.click("#panel-along summary")
     assert shown(opened, "#panel-along details p") and "within ±45 ms" in text(opened, "#panel-along details p")
+
+
+def test_a_thumb_that_scrolls_the_settings_changes_none(opened: Browser, page_file: Path) -> None:
+    opened.size(380, 740, touch=True)
+    opened.open(page_file)
+    opened.click("#tab-settings")
+    x, y, w, h = opened.box("#leadBeats")
+    before = opened.run("document.querySelector('#leadBeats').value")
+    points = [[{"x": x + 0.8 * w, "y": y + h / 2 - 12 * k}] for k in range(8)]
+    for kind, where in [("touchStart", points[0]), *(("touchMove", one) for one in points[1:]), ("touchEnd", [])]:
+        opened.call("Input.dispatchTouchEvent", type=kind, touchPoints=where)
+    opened.drawn()
+    assert opened.run("document.querySelector('#leadBeats').value") == before and opened.problems == []
+
+
+def test_a_phone_shows_the_speed_and_all_tabs(opened: Browser, page_file: Path) -> None:
+    opened.size(740, 380, touch=True)
+    opened.open(page_file)
+    tabs = "[...document.querySelectorAll('.tabs button')].filter(e => e.checkVisibility())"
+    inside = "b.left >= 0 && b.right <= innerWidth && b.width >= 44 && b.height >= 44"
+    assert opened.run(f"{tabs}.map(e => e.getBoundingClientRect()).every(b => {inside})")
+    assert text(opened, ".more") == "⋯"
+    opened.key("-", "Minus")
+    assert text(opened, ".more") == "95 % ⋯" and opened.problems == []

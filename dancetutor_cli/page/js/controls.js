@@ -178,6 +178,7 @@ export function makeBar(app, ui) {
     }
     rate.value = String(transport.rate);
     rateText.textContent = `${Math.round(100 * transport.rate)} %`;
+    more.textContent = transport.rate === 1 ? "⋯" : `${rateText.textContent} ⋯`; // on a phone the speed is behind it
     clear.disabled = !transport.loop;
     for (const one of toggles) one.button.setAttribute("aria-pressed", String(one.is()));
   });

@@ -139,6 +139,9 @@ export function settingsPanel(app, load) {
     const shown = el("output", { for: name });
     const show = () => { input.value = String(settings[name]); shown.textContent = name === "latency" || name === "sight" ? `${Math.round(1000 * settings[name])} ms` : t("number", { number: Math.round(100 * settings[name]) / 100 }); };
     input.addEventListener("input", () => { app.set(name, Number(input.value)); show(); });
+    let before = settings[name];
+    input.addEventListener("pointerdown", () => { before = settings[name]; }, { capture: true });
+    input.addEventListener("pointercancel", () => { app.set(name, before); show(); }); // the finger scrolled the panel
     app.listeners.add((what) => { if (what === "settings") show(); });
     show();
     return el("p", { class: "field" }, el("label", { for: name }, t(`setting-${name}`)), input, shown);
