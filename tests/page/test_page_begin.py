@@ -202,6 +202,21 @@ def test_a_pause_is_no_new_beginning(opened: Browser) -> None:
     assert opened.problems == []
 
 
+def test_a_second_play_that_is_better_is_a_new_best_score(opened: Browser) -> None:
+    opened.run(pad_script())
+    for hits, words in ((1, "your best score"), (3, "a new best score")):
+        opened.key("Home")
+        opened.click(".way.step")
+        opened.turn(0.06 + 2.0)
+        for column in (0, 1, 3)[:hits]:
+            step(opened, column)
+            opened.turn(0.25)
+        for _ in range(4):
+            opened.turn(30)
+        assert words in text(opened, ".result")
+    assert opened.problems == []
+
+
 def test_music_that_comes_while_somebody_plays_is_no_new_beginning(opened: Browser) -> None:
     opened.run(pad_script())
     opened.click(".way.step")
