@@ -20,10 +20,10 @@ from dancetutor_cli.film.overlay.header import Lines
 from dancetutor_cli.film.overlay.highway import Highway, Score
 from dancetutor_cli.film.overlay.marks import HighwayGeometry, lane_width_for_words
 from dancetutor_cli.film.overlay.phrases import standing_tags
-from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
+from dancetutor_cli.film.overlay.sprites import WordStyle, callout_words, highway_style
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import Frame, darkened
-from dancetutor_cli.film.placement import PartBoxes, Placement, Stay, WordStyle, placement, stay
+from dancetutor_cli.film.placement import PartBoxes, Placement, Stay, placement, stay
 from dancetutor_cli.film.plan import FilmPlan, turned
 from dancetutor_cli.film.scene.props import Television
 from dancetutor_cli.film.scroll import parse_scroll

@@ -24,10 +24,8 @@ from dancetutor_cli.film.overlay.marks import visible_limbs
 from dancetutor_cli.film.words import LIMBS
 
 if TYPE_CHECKING:
-    from dancetutor_cli.film.overlay.sprites import HighwayStyle
-    from dancetutor_cli.film.overlay.text import Typeface
+    from dancetutor_cli.film.overlay.sprites import WordStyle
     from dancetutor_cli.film.plan import FilmPlan
-    from dancetutor_cli.run.languages import Language
 
 SQUARE = 2.5  # maximum panel widths between the outer columns of a pad of one square
 LEGEND_OFF = 14.0  # pixels between the song's words and a legend below them
@@ -64,14 +62,6 @@ class PartBoxes:
         return self.layout.box(name, self.size, self.breadth)
 
 
-class WordStyle(NamedTuple):
-    """The typeface, colours and language of a film's words."""
-
-    face: Typeface
-    highway: HighwayStyle
-    language: Language
-
-
 @dataclass(frozen=True, slots=True)
 class Placement:
     """The words of a film in their places; None for words that the film does not have.
@@ -106,14 +96,14 @@ def placement(plan: FilmPlan, boxes: PartBoxes, style: WordStyle, seen: SeenAt |
     header = None
     if (part := boxes.layout.header) is not None:
         room = WordsRoom(part.room, taken(lambda: dancing(plan.presses, passes)))
-        header = Header(plan.words, boxes.box("header"), boxes.scale * part.text, style.face, style.highway, room)
+        header = Header(plan.words, boxes.box("header"), boxes.scale * part.text, style, room)
     feet = _feet_box(plan, boxes, header)
     legend = _legend(plan, boxes, style, header, feet, turned)
     calls = None
     if boxes.layout.dancer is not None and plan.callouts:
         box, scale = calls_room(boxes, None if header is None else header.title_end)
         box = clear(box, taken(lambda: moments(plan.callouts, passes)), CALLS_WIDE * scale)
-        calls = Calls(plan.callouts, box, scale, *style)
+        calls = Calls(plan.callouts, box, scale, style)
     return Placement(header, legend, feet, _runs(plan, boxes, style, header), calls)
 
 
@@ -165,7 +155,7 @@ def _runs(plan: FilmPlan, boxes: PartBoxes, style: WordStyle, header: Header | N
         scale *= layout.header.text
         box = boxes.box("header")[0], header.bottom + RUNS_OFF * scale
     count = (0, 0, *boxes.size) if layout.count is None else boxes.box("count")
-    return Runs(plan.clock, box, count, scale, style.face, style.language)
+    return Runs(plan.clock, box, count, scale, style)
 
 
 # Room for words beside the dancer: the part of a box into which neither her head nor her feet come.

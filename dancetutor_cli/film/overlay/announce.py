@@ -14,7 +14,7 @@ from dancetutor_cli.film.layout import PixelBox
 from dancetutor_cli.film.notes import Callout
 from dancetutor_cli.film.overlay.blit import Box, Sprite, blit, rectangle
 from dancetutor_cli.film.overlay.captions import SOFT, WHITE, box_of
-from dancetutor_cli.film.overlay.sprites import FLAG_EDGE, HighwayStyle, flag, flag_height
+from dancetutor_cli.film.overlay.sprites import FLAG_EDGE, WordStyle, flag, flag_height
 from dancetutor_cli.film.overlay.text import Typeface, fitted, wrapped
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.film.words import LIMBS
@@ -35,10 +35,9 @@ class Runs:
     count : the box of the count-in's numbers
     """
 
-    def __init__(
-        self, clock: Clock, box: tuple[float, ...], count: PixelBox, scale: float, face: Typeface, language: Language
-    ) -> None:
-        self.clock, self.box, self.count, self._words = clock, box, count, language.film
+    def __init__(self, clock: Clock, box: tuple[float, ...], count: PixelBox, scale: float, style: WordStyle) -> None:
+        self.clock, self.box, self.count = clock, box, count
+        face, self._words = style.face, style.language.film
         several = len(clock.passes) > 1 or any(one.rate != 1 for one in clock.passes)
         texts = [self._text(number) for number in range(len(clock.passes))] if several else []
         self.labels = [flag([text], 19 * scale, SOFT, face) for text in texts]
@@ -161,12 +160,10 @@ class Calls:
         callouts: tuple[Callout, ...],
         box: PixelBox,
         scale: float,
-        face: Typeface,
-        style: HighwayStyle,
-        language: Language,
+        style: WordStyle,
     ) -> None:
-        self._language = language
-        self.callouts, self.box, self.scale, self.face, self.style = callouts, box, scale, face, style
+        self.callouts, self.box, self.scale = callouts, box, scale
+        self.face, self.style, self._language = style
         self._begins = np.array([one.begin for one in callouts])
         self._ends = np.array([max(one.end, one.second) + CALL_STAYS for one in callouts])
         self._sprite = lru_cache(maxsize=32)(self._plate)

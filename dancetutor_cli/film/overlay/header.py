@@ -16,7 +16,7 @@ from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.film.layout import PixelBox, lowered
 from dancetutor_cli.film.overlay.blit import Box, Sprite, blit
 from dancetutor_cli.film.overlay.captions import SOFT, WHITE, box_of, plate
-from dancetutor_cli.film.overlay.sprites import HighwayStyle
+from dancetutor_cli.film.overlay.sprites import WordStyle
 from dancetutor_cli.film.overlay.text import LONGEST, Typeface, clean, fitted, in_lines
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.run.languages import Language
@@ -89,10 +89,9 @@ class Header:
     bottom : y below the last line; title_end : right and bottom of the title, pixels
     """
 
-    def __init__(
-        self, words: Words, box: PixelBox, scale: float, face: Typeface, style: HighwayStyle, room: WordsRoom = ALL
-    ) -> None:
+    def __init__(self, words: Words, box: PixelBox, scale: float, style: WordStyle, room: WordsRoom = ALL) -> None:
         self.lines: list[tuple[Sprite, float, float]] = []
+        face, colours = style.face, style.highway.difficulty
         self._scale, self._face, self._taken = scale, face, room.taken
         self._left, self._right = box[0], box[0] + room.share * (box[2] - box[0])
         self._least = min(NARROWEST * room.share, LEAST) * (box[2] - box[0])
@@ -103,9 +102,7 @@ class Header:
         self.title_end = (max(x + ink.shape[1] for ink, x, _ in self.lines), self.bottom)
         if words.artist:
             self._artist(words.artist, small)
-        badge = plate(
-            [words.badge], small * 0.95, style.difficulty.get(words.difficulty, style.difficulty["Edit"]), face
-        )
+        badge = plate([words.badge], small * 0.95, colours.get(words.difficulty, colours["Edit"]), face)
         top = self.bottom + 6 * scale
         self._add(badge, box[0] + 2 * scale, 6 * scale)
         if words.detail:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +63,14 @@ class HighwayStyle:
     callout: dict[str, RGB]
     difficulty: dict[str, RGB]
     accent: RGB
+
+
+class WordStyle(NamedTuple):
+    """The typeface, colours and language of a film's words."""
+
+    face: Typeface
+    highway: HighwayStyle
+    language: Language
 
 
 def highway_style() -> HighwayStyle:

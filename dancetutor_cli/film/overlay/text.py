@@ -208,9 +208,7 @@ class Typeface:
             size = max(low, 0.98 * size)
         return self.fit(text, size, width), size
 
-    def sprite(
-        self, text: str, size: float, colour: RGB, weight: float = 0.0, shadow: float = 0.0, opacity: float = 1.0
-    ) -> Sprite:
+    def sprite(self, text: str, size: float, colour: RGB, weight: float = 0.0, shadow: float = 0.0) -> Sprite:
         """Draw one line of text. The sprite's height depends on `size` alone, so that baselines line up.
 
         weight : extra stroke in pixels (0 regular, size/25 bold); shadow : width of a dark halo in pixels
@@ -225,7 +223,7 @@ class Typeface:
         out *= 1 - ink[..., None]
         out[..., :3] += ink[..., None] * np.array(colour) / 255
         out[..., 3] += ink
-        return np.rint(out * opacity * 255).astype(np.uint8)
+        return np.rint(out * 255).astype(np.uint8)
 
     def _ink(
         self, text: str, size: float, box: tuple[int, int], at: tuple[float, float], weight: float

@@ -13,7 +13,7 @@ from dancetutor_cli.film.layout import PixelBox, load_layout
 from dancetutor_cli.film.notes import Callout
 from dancetutor_cli.film.overlay import announce
 from dancetutor_cli.film.overlay.announce import CALL_STAYS, Calls, Runs, _foot_colour, _phrases, _remaining_share
-from dancetutor_cli.film.overlay.sprites import highway_style
+from dancetutor_cli.film.overlay.sprites import WordStyle, highway_style
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.film.placement import CALLS_WIDE, PartBoxes, calls_room
@@ -22,6 +22,7 @@ from dancetutor_cli.run.reading import config_names
 
 SIZE = (640, 360)
 FACE = Typeface()
+STYLE = WordStyle(FACE, highway_style(), load_language())
 
 
 def black() -> Frame:
@@ -58,7 +59,7 @@ def test_the_count_in_covers_nothing_that_is_taught(name: str, columns: int) -> 
 def test_numbers_are_counted_down_inside_their_box() -> None:
     box = (400, 20, 520, 100)
     clock = Clock((Pass(8.0, 12.0, 1.0, sound_from=10.0, count=4),), 30)
-    runs = Runs(clock, (0, 300), box, 1.0, FACE, load_language())
+    runs = Runs(clock, (0, 300), box, 1.0, STYLE)
     seen = []
     said = runs.counted.shape
     for beat in range(4):
@@ -78,7 +79,7 @@ def test_numbers_are_counted_down_inside_their_box() -> None:
 def test_the_label_of_a_run_is_quieter_than_the_feet() -> None:
     """It was the brightest thing of the picture, dark words on white."""
     clock = Clock((Pass(0.0, 4.0, 0.5), Pass(0.0, 4.0)), 30)
-    runs = Runs(clock, (0, 0, 640, 40), (400, 20, 520, 100), 1.0, FACE, load_language())
+    runs = Runs(clock, (0, 0, 640, 40), (400, 20, 520, 100), 1.0, STYLE)
     for run in (0, 1):
         frame = black()
         runs.draw(frame, 1.0, run)
@@ -152,7 +153,7 @@ def test_a_call_has_two_lines_at_most(name: str, columns: int, monkeypatch: pyte
     long = "heel on down-right, toe on up-left ×12"
     for text, tag in ((f"right foot: {long}", long), ("full crossover ×12, left foot again ×12", "full crossover ×12")):
         for wide in (right - left, CALLS_WIDE * room.scale):
-            one = Calls((), (0, top, int(wide), bottom), room.scale, FACE, highway_style(), load_language())
+            one = Calls((), (0, top, int(wide), bottom), room.scale, STYLE)
             picture = one._plate(text, "move", tag)
             assert len(made[-1][0]) <= 2 and made[-1][1] >= 11.5, (text, wide)
             assert " ".join(made[-1][0]) in (text, text.replace(" foot:", ":"), long)
@@ -162,7 +163,7 @@ def test_a_call_has_two_lines_at_most(name: str, columns: int, monkeypatch: pyte
 def calls(*passages: tuple[float, float, str]) -> Calls:
     """Calls of passages (begin, end, words), called out a second before."""
     found = tuple(Callout(begin, 2 * begin, text, "move", begin - 1.0, end, text) for begin, end, text in passages)
-    return Calls(found, (300, 10, 630, 350), 1.0, FACE, highway_style(), load_language())
+    return Calls(found, (300, 10, 630, 350), 1.0, STYLE)
 
 
 def test_a_passage_is_called_out_before_it_begins_and_until_it_is_over() -> None:
@@ -200,7 +201,7 @@ def test_calls_stay_in_a_box_of_their_own(name: str) -> None:
     for texts, least in ((("crossover", "spin"), 0.5), ((long, "spin"), 0.4), ((long, long + " ×2"), 0.4)):
         found = tuple(Callout(5.0 + k, 10.0, text, "move", 4.0, 9.0, text) for k, text in enumerate(texts))
         frame = np.zeros((layout.size[1], layout.size[0], 3), dtype=np.uint8)
-        Calls(found, box, layout.calls.text, FACE, highway_style(), load_language()).draw(frame, 6.5)
+        Calls(found, box, layout.calls.text, STYLE).draw(frame, 6.5)
         _, top, _, bottom = drawn(frame)
         assert top >= box[1] and bottom <= box[3], texts
         assert bottom - top > least * (box[3] - box[1])
@@ -219,7 +220,7 @@ def test_words_of_a_call_are_never_cut(width: int, monkeypatch: pytest.MonkeyPat
     said = "right foot: heel on down-right, toe on centre, footswitch"
     found = (Callout(5.0, 10.0, said, "move", 4.0, 5.0, said),)
     frame = black()
-    Calls(found, (300, 10, 300 + width, 350), 1.0, FACE, highway_style(), load_language()).draw(frame, 4.5)
+    Calls(found, (300, 10, 300 + width, 350), 1.0, STYLE).draw(frame, 4.5)
     assert " ".join(written) == said
     assert drawn(frame)[0] >= 300 - 2, "inside of its box"
 
@@ -227,7 +228,7 @@ def test_words_of_a_call_are_never_cut(width: int, monkeypatch: pytest.MonkeyPat
 def test_a_call_goes_quickly() -> None:
     """Its grey ghost in the corner was taken for a mistake."""
     one = Callout(2.0, 4.0, "crossover", "move", 1.0, 2.0, "crossover")
-    calls = Calls((one,), (0, 0, 600, 200), 1.0, FACE, highway_style(), load_language())
+    calls = Calls((one,), (0, 0, 600, 200), 1.0, STYLE)
     seen = []
     for second in np.arange(2.0, 2.3, 0.01):
         frame = black()

@@ -17,9 +17,15 @@ from dancetutor_cli.film.layout import WIDE_PAD, FilmLook, load_layout
 from dancetutor_cli.film.overlay import text
 from dancetutor_cli.film.overlay.captions import Legend
 from dancetutor_cli.film.overlay.header import Header, Words, WordsRoom
-from dancetutor_cli.film.overlay.sprites import highway_style
+from dancetutor_cli.film.overlay.sprites import WordStyle, highway_style
 from dancetutor_cli.film.overlay.text import Typeface, clean, fitted, in_lines, parts_of, system_fonts, wrapped
+from dancetutor_cli.run.languages import load_language
 from dancetutor_cli.run.reading import config_names
+
+
+def word_style() -> WordStyle:
+    """The words of a film in English, in the built-in typeface."""
+    return WordStyle(Typeface(), highway_style(), load_language())
 
 
 @pytest.fixture
@@ -117,7 +123,7 @@ def test_titles_and_artists_are_not_cut(name: str, title: str, artist: str, colu
     words = Words(title, artist, "Hard 8", "Hard", "dance-double · 128-164 BPM", "steps by somebody")
     assert layout.header is not None
     box = layout.box("header", layout.size, columns)
-    header = Header(words, box, layout.header.text, Typeface(), highway_style(), WordsRoom(layout.header.room))
+    header = Header(words, box, layout.header.text, word_style(), WordsRoom(layout.header.room))
     all_of_it = "".join(written).replace(" ", "")
     assert all_of_it.startswith((title + artist + "Hard 8").replace(" ", ""))
     assert header.right <= box[0] + layout.header.room * (box[2] - box[0]) + 10 * layout.header.text
@@ -139,7 +145,7 @@ def test_a_subtitle_stands_below_its_title_and_smaller(
     title: str, subtitle: str, lines: list[str], written: list[str]
 ) -> None:
     words = Words(title, "x", "Hard 8", "Hard", "", subtitle=subtitle)
-    header = Header(words, (0, 0, 270, 200), 1.0, Typeface(), highway_style())
+    header = Header(words, (0, 0, 270, 200), 1.0, word_style())
     assert written[: len(lines)] == lines and written[len(lines)] == "x"
     if len(lines) > 1 and title != "(all of it stands in brackets)":
         assert header.lines[len(lines) - 1][0].shape[0] < header.lines[0][0].shape[0]
@@ -153,9 +159,9 @@ def test_lines_are_about_as_long_as_each_other() -> None:
 
 
 def test_what_does_not_fit_ends_at_a_word(written: list[str]) -> None:
-    face, style = Typeface(), highway_style()
+    style = word_style()
     words = Words("Many Long Words of a Song " * 12, "Very Many Artists, " * 9, "Hard 8", "Hard", "", "steps by x")
-    header = Header(words, (0, 0, 280, 200), 1.0, face, style)
+    header = Header(words, (0, 0, 280, 200), 1.0, style)
     title, artist = written[:4], written[4:6]
     assert written[6] == "Hard 8" and len(written) == 7  # no room for the credit
     for lines, whole in ((title, words.title), (artist, words.artist)):
@@ -182,15 +188,15 @@ def test_a_title_of_a_stranger_is_not_tried_in_every_size(monkeypatch: pytest.Mo
     width = Typeface.width
     monkeypatch.setattr(Typeface, "width", lambda self, text, size: (asked.append(text), width(self, text, size))[1])
     words = Words("a " * 50_000, "", "Hard 8", "Hard", "")
-    Header(words, (0, 0, 740, 200), 1.0, Typeface(), highway_style())
+    Header(words, (0, 0, 740, 200), 1.0, word_style())
     assert len(asked) < 100
 
 
 def test_what_does_not_fit_beside_the_badge_stands_below_it() -> None:
-    face, style = Typeface(), highway_style()
+    style = word_style()
     words = Words("Possession", "", "Challenge 18", "Challenge", "dance-double · 184-371 BPM")
     for width, lines in ((700, 3), (260, 3)):
-        header = Header(words, (0, 0, width, 200), 1.0, face, style)
+        header = Header(words, (0, 0, width, 200), 1.0, style)
         assert len(header.lines) == lines
         (_, _, badge), (ink, x, y) = header.lines[1], header.lines[2]
         assert (y > badge + 20) == (width == 260)
