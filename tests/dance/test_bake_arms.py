@@ -6,14 +6,18 @@ import numpy as np
 import pytest
 from bake_plays import L, R, chart, pad, play, stream
 
+from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.ik.hands import Torso
 from dancetutor_cli.dance.ik.targets import _out_from_a_lean
 from dancetutor_cli.dance.motion import Motion, sample
+from dancetutor_cli.dance.performance import perform, solve
 from dancetutor_cli.dance.quality.report import report
+from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.settings import default_settings
+from dancetutor_cli.run.reading import charts_path
 
 STREAM, WAIT = np.arange(3.0, 6.5, 0.05), np.arange(9.0, 16.0, 0.05)
 
@@ -111,3 +115,36 @@ def test_the_hand_of_the_higher_shoulder_goes_outward(side: int) -> None:
     assert np.abs(way[0]).max() == 0.0
     assert way[1, side, 0] * out == pytest.approx(arms.aside_out, abs=0.002)
     assert np.abs(way[1, 1 - side]).max() == 0.0
+
+
+@pytest.mark.parametrize("index", [3, 4])
+def test_both_arms_are_not_held_aside_like_wings(index: int) -> None:
+    """Wrists 22 cm outside their shoulders, both at once: rarely in a whole chart, and never for long."""
+    request = DanceRequest(charts_path() / "two_left_feet" / "two_left_feet.ssc", Selection(index=index))
+    motion = perform(solve(request), request).motions()[0].motion
+    at = np.arange(motion.times[0], motion.times[-1], 1 / 30)
+    places, _ = world_transforms(motion.skeleton, *sample(motion, at))
+    joint = motion.skeleton.index
+    across = places[:, joint("l_shoulder")] - places[:, joint("r_shoulder")]
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    outward = [
+        sign * ((places[:, joint(f"{s}_radiocarpal")] - places[:, joint(f"{s}_shoulder")]) * across).sum(axis=1)
+        for s, sign in (("l", 1.0), ("r", -1.0))
+    ]
+    wings = np.minimum(*outward) > 0.22
+    runs = np.split(wings, np.flatnonzero(np.diff(wings)) + 1)
+    longest = max((len(run) / 30 for run in runs if run[0]), default=0.0)
+    assert wings.mean() < 0.02 and longest < 0.3
+
+
+def test_arms_pump_against_the_steps_of_a_stream() -> None:
+    """At four steps a second the hand on the other side is ahead of the foot that has landed last."""
+    motion = bake(chart().timing, play(stream(2.0, 40, 0.25)), pad())
+    at = np.arange(3.0, 11.5, 1 / 60)
+    left, right = hands(motion, at)[:, :, 2]
+    ahead = left - right
+    ahead = (ahead - np.convolve(ahead, np.full(60, 1 / 60), "same"))[30:-30]  # without what is slower than a second
+    lands = np.array([contact.start for contact in motion.contacts])
+    sides = np.array([1.0 if contact.limb == 0 else -1.0 for contact in motion.contacts])
+    last = sides[np.searchsorted(lands, at, side="right") - 1][30:-30]
+    assert np.corrcoef(ahead, last)[0, 1] < -0.5
