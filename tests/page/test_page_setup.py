@@ -199,3 +199,23 @@ def test_a_phone_shows_another_speed(opened: Browser, page_file: Path) -> None:
     assert text(opened, ".more") == "⋯"
     opened.key("-", "Minus")
     assert text(opened, ".more") == "95 % ⋯" and opened.problems == []
+
+
+@pytest.mark.parametrize("language", ["", "de"])
+def test_a_phone_that_lies_across_shows_feet_tabs_and_pills(opened: Browser, page_file: Path, language: str) -> None:
+    """Pills stand in the bar, clear of the dancer and of the clock; each tab can be tapped, the settings too."""
+    opened.size(740, 380, touch=True)
+    opened.open(page_file)
+    if language:
+        opened.run(f"document.querySelector('#language').value = '{language}'")
+        opened.run("document.querySelector('#language').dispatchEvent(new Event('change'))")
+    tabs = "[...document.querySelectorAll('[role=tab]')].filter(e => e.checkVisibility())"
+    inside = "b.left >= 0 && b.right <= innerWidth && b.width >= 44 && b.height >= 44"
+    assert opened.run(f"{tabs}.map(e => e.getBoundingClientRect()).every(b => {inside})")
+    opened.click(".card")
+    opened.drawn()
+    picture, clock = opened.box(".picture"), opened.box(".where span:last-child")
+    for pill in ("#chip-along", "#chip-wait", "#chip-loop"):
+        x, y, w, h = opened.box(pill)
+        assert y >= picture[1] + picture[3] and x >= clock[0] + clock[2] and x + w <= 740 and h >= 44
+    assert opened.problems == []
