@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -54,6 +55,7 @@ SECONDS, START, TURN = 3.0, 1.0, 0.4  # of a clip that goes forward, and from wh
 LOOSE = (
     5.0  # hertz: springs at which this ragdoll is as far from its input as the thesis's (mean 1 to 2, most 3 to 7 cm)
 )
+LINE = 140  # letters of a line of the page
 DRAWN = 60  # values of a curve that are kept
 Array = NDArray[np.float64]
 NEUTRAL = load_style("neutral")
@@ -310,7 +312,8 @@ def block(data: dict[str, Any]) -> str:
             *(name for name, _, _ in experiment.columns),
             f"{experiment.everywhere[0]}: {' / '.join(map(_short, names))}",
         ]
-        out += [f"### {experiment.title}", "", f"The thesis: {experiment.source}.", ""]
+        said = textwrap.fill(f"The thesis: {experiment.source}.", LINE, break_long_words=False, break_on_hyphens=False)
+        out += [f"### {experiment.title}", "", said, ""]
         out += [_line(head), _line(["---"] * len(head))]
         for row in rows:
             if "figures" not in row:
