@@ -245,6 +245,8 @@ def parse(data: bytes, path: Path) -> Song:
 
         return read_ucs(data, path)
     tags = [Tag(_ALIASES.get(tag.name, tag.name), tag.start, tag.spans) for tag in msd.scan(data)]
+    if not data.strip():
+        raise ChartError(path, "no charts: the file is empty; save it again from the editor", 1)
     if not tags:
         raise ChartError(path, "no charts: the file has no tags such as #TITLE; check that it is a chart file", 1)
     is_ssc = suffix == ".ssc" or (suffix == EDIT_SUFFIX and any(tag.name == "NOTEDATA" for tag in tags))

@@ -29,8 +29,8 @@ COMMANDS = {
     "annotate": ("annotate", "Write L/R foot markers into chart files, or remove them."),
     "animate": ("animate", "Write the motion of a 3D dancer who plays a chart."),
     "retarget": ("retarget", "Put captured motion on a character."),
-    "render": ("render", "Make a tutorial film, picture sequence or GIF of a chart."),
-    "page": ("page", "Make a web page to practise a chart with: loops, speeds, a pad."),
+    "render": ("render", "Make a film, picture sequence or GIF of a chart."),
+    "page": ("page", "Make a web page to practise a chart with: loops, any speed, playing along."),
     "doctor": ("doctor", "Check renderers, encoders, caches, fonts and disk."),
     "warmup": ("warmup", "Compile everything now, so that later runs start quickly."),
     "completion": ("completion", "Make the Tab key complete commands, options and names."),
@@ -104,7 +104,7 @@ class _LazyGroup(click.Group):
 @click.version_option(dancetutor_cli.__version__, prog_name="dancetutor")
 @click.pass_context
 def cli(context: click.Context) -> None:
-    """Find which foot steps each arrow of a stepchart, check the chart, and show a 3D dancer who plays it.
+    """Find which foot steps each note of a chart, check the chart, and show a 3D dancer who plays it.
 
     Charts are .sm and .ssc files (StepMania, ITGmania and others) and .ucs files (Pump It Up).
     """

@@ -11,7 +11,7 @@ import click
 
 from dancetutor_cli.chart.selection import Selection, find_files, note_bytes
 from dancetutor_cli.commands.analyze_options import AnalyzeOptions
-from dancetutor_cli.commands.arguments import GivenPath, Source, open_output, sources
+from dancetutor_cli.commands.arguments import GivenPath, Source, WholeNumber, open_output, sources
 from dancetutor_cli.commands.drawings import check_plot, check_sheet, write_plot, write_sheet
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
@@ -149,7 +149,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 )
 @click.option(
     "--alternatives",
-    type=click.IntRange(min=0, max=100),
+    type=WholeNumber(0, 100),
     default=0,
     metavar="N",
     help="Print the N next best feet of a chart: which rows differ, and which costs decide.  [formats text and json]",
@@ -166,7 +166,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 @click.option("--backup", is_flag=True, help="Keep the old file as NAME.bak. Needs --fix.")
 @pack_options
 @click.option("--watch", is_flag=True, help="Run again whenever a file is saved, until Ctrl-C.")
-@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Number of processes.  [default: one per core]")
+@click.option("--jobs", type=WholeNumber(1), metavar="N", help="Number of processes.  [default: one per core]")
 @click.option("--no-cache", is_flag=True, help="Do not use or store results of earlier runs.")
 @click.option(
     "--stdin-filename",

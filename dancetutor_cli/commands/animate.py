@@ -10,7 +10,7 @@ import click
 
 from dancetutor_cli.chart.selection import Selection, note_bytes, one_song
 from dancetutor_cli.chart.timing import FASTEST, SLOWEST, heard
-from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, default_name, warn
+from dancetutor_cli.commands.arguments import LONG, GivenPath, Number, confirm_long, default_name, warn
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.motion_output import check_targets, write_report
@@ -21,7 +21,6 @@ from dancetutor_cli.commands.shared_options import (
     dance_options,
     into,
     jobs_option,
-    number,
     preset_option,
     ragdoll_options,
     report_option,
@@ -69,8 +68,7 @@ class AnimateOptions:
 )
 @click.option(
     "--fps",
-    type=click.FloatRange(1, 1000),
-    callback=number,
+    type=Number(1, 1000),
     default=60.0,
     show_default=True,
     metavar="N",
@@ -79,8 +77,7 @@ class AnimateOptions:
 @section_option
 @click.option(
     "--rate",
-    type=click.FloatRange(SLOWEST, FASTEST),
-    callback=number,
+    type=Number(SLOWEST, FASTEST),
     default=1.0,
     show_default=True,
     metavar="RATE",

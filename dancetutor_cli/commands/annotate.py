@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.chart.selection import Selection, find_files, note_bytes
-from dancetutor_cli.commands.arguments import GivenPath, within_folders
+from dancetutor_cli.commands.arguments import GivenPath, WholeNumber, within_folders
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import (
@@ -65,8 +65,8 @@ class AnnotateOptions:
 @click.argument("paths", nargs=-1, required=True, type=GivenPath(holds_charts=True), metavar="PATH...")
 @click.option(
     "--markers", "styles", callback=_styles, metavar="KIND[,KIND]",
-    help=f"How to write the feet: {', '.join(STYLES)} (theme shows them during play).  [default: measure. "
-    "--strip removes all of them; background: the entry of a film that render added]",
+    help=f"How to write the feet: {', '.join(STYLES)} (theme shows them during play).  [default: measure; with "
+    "--strip all, and background: the entry that render --into-file added]",
 )  # fmt: skip
 @click.option("--strip", is_flag=True, help="Remove the markers: all, or only those of --markers.")
 @click.option("--check", is_flag=True, help="Write nothing; exit status 1 if feet are missing or stale.")
@@ -79,12 +79,16 @@ class AnnotateOptions:
     metavar="DIR",
     help="Write the output here: a folder.  [default: into the files]",
 )
-@click.option("--into-file", is_flag=True, help="Write into the chart file: with --markers edit, not into .edit files.")
+@click.option(
+    "--into-file",
+    is_flag=True,
+    help="Write into the chart file: with --markers edit, add the charts there, not in .edit files.",
+)
 @click.option("--force", is_flag=True, help="Also overwrite or remove pinned measures, {dt1! ...}.")
 @click.option("--backup", is_flag=True, help="Keep the old file as NAME.bak.")
 @click.option(
     "--jobs",
-    type=click.IntRange(min=1),
+    type=WholeNumber(1),
     metavar="N",
     help="Number of processes.  [default: one per core, as memory allows]",
 )

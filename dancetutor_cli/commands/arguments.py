@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import os
 import sys
 from collections.abc import Iterable, Iterator, Sequence
@@ -43,6 +44,47 @@ class GivenPath(click.Path):
         if self._holds_charts and value != "-":
             exclude(Path(os.fsdecode(path)))
         return path
+
+
+class _Range:
+    """What number types have in common: the words for a range, and one line for a value outside it."""
+
+    def __init__(self, low: float | None = None, high: float | None = None, *, what: str = "") -> None:
+        """low, high : smallest and largest value, in the option's unit; what : the words for a value"""
+        super().__init__(low, high)  # type: ignore[call-arg]
+        self._what, self._low, self._high = what, low, high
+
+    def _describe_range(self) -> str:
+        if self._low is None or self._high is None:
+            return f"{self._low:g} or more" if self._low is not None else ""
+        return f"{self._low:g} to {self._high:g}"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        try:
+            converted = super().convert(value, param, ctx)  # type: ignore[misc]
+        except click.BadParameter:
+            converted = math.nan
+        if converted == converted:  # not nan, which every range lets in
+            return converted
+        name = max(param.opts, key=len) if param is not None else "number"
+        limits = self._describe_range()
+        raise UsageError(f"{name} {value}: write {self._what}" + (f", {limits}" if limits else ""))
+
+
+class WholeNumber(_Range, click.IntRange):
+    """A whole number within limits, both included."""
+
+    def __init__(self, low: int | None = None, high: int | None = None) -> None:
+        """low, high : smallest and largest value, in the option's unit"""
+        super().__init__(low, high, what="a whole number")
+
+
+class Number(_Range, click.FloatRange):
+    """A number within limits, both included."""
+
+    def __init__(self, low: float | None = None, high: float | None = None, *, what: str = "a number") -> None:
+        """low, high : smallest and largest value, in the option's unit; what : the words for a value"""
+        super().__init__(low, high, what=what)
 
 
 def within_folders(paths: Sequence[Path], files: Sequence[Path]) -> list[Path]:

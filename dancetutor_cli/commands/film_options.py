@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.commands.arguments import GivenPath
+from dancetutor_cli.commands.arguments import GivenPath, Number, WholeNumber
 from dancetutor_cli.commands.shared_options import (
     DanceOptions,
     character_option,
     combined,
     dance_options,
     language_option,
-    number,
     ragdoll_options,
     section_option,
 )
@@ -54,7 +53,7 @@ class _Size(click.ParamType):  # type: ignore[type-arg,unused-ignore]
 # The decorator of the options of a film; `film_request` makes a request of their values.
 film_options = combined(
     click.option("--size", type=_Size(), help="Size in pixels.  [default: the layout's, 1280x720; smaller for GIF]"),
-    click.option("--fps", type=click.IntRange(1, 120), metavar="N", help="Frames per second.  [default: 30; GIF 25]"),
+    click.option("--fps", type=WholeNumber(1, 120), metavar="N", help="Frames per second.  [default: 30; GIF 25]"),
     section_option,
     click.option(
         "--layout",
@@ -69,7 +68,8 @@ film_options = combined(
     click.option(
         "--camera",
         metavar="NAME|POS/TARGET",
-        help="Where the camera is: back, front, side, three-quarter, top, or x,y,z/x,y,z in metres.",
+        help="Where the camera is: back, back-high, front, front-high, side, three-quarter, television, top, or "
+        "x,y,z/x,y,z in metres.",
     ),
     click.option(
         "--scroll", metavar="C600|X2|M600", help="Scroll speed of the notes, as in the games.  [default: the layout's]"
@@ -103,19 +103,16 @@ film_options = combined(
     ),
     click.option(
         "--loop",
-        type=click.IntRange(1, 99),
+        type=WholeNumber(1, 99),
         metavar="N",
         help="Play the song this many times.  [default: once at each rate]",
     ),
-    click.option(
-        "--count-in", type=click.IntRange(0, 16), metavar="BEATS", help="Count this many beats before each run."
-    ),
+    click.option("--count-in", type=WholeNumber(0, 16), metavar="BEATS", help="Count this many beats before each run."),
     click.option("--assist-tick", is_flag=True, help="Clap on each step."),
     click.option("--metronome", is_flag=True, help="Tick on each beat."),
     click.option(
         "--sync-offset",
-        type=click.FloatRange(-MOST_LATE, MOST_LATE),
-        callback=number,
+        type=Number(-MOST_LATE, MOST_LATE),
         default=0.0,
         metavar="MS",
         help="Play the music this many ms later (9 for ITG charts).",
@@ -123,7 +120,7 @@ film_options = combined(
     click.option(
         "--call-ahead",
         metavar="TIME",
-        help="Show the words for a move this long before it: seconds, or beats such as b2.  [default: 0.9]",
+        help="Show the words for a move this long before it: seconds, or beats such as b2.  [default: 0.9 s]",
     ),
     click.option(
         "--dance",

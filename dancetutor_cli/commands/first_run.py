@@ -76,13 +76,13 @@ def first_steps(folder: Path) -> str:
         f"  dancetutor page {name} --index 0 -o dance.html",
         "      a page to practise it with: open dance.html in a browser",
         f"  dancetutor annotate {name} --diff",
-        "      what L and R in the file would look like; without --diff they are written, --strip removes them",
+        "      the L and R that it would write; leave out --diff to write them",
         f"  dancetutor render {name} --index 0 --section m1:m8 -o dance.mp4",
         "      a film of the first measures; the first film on a machine takes about 30 s longer",
         "",
         "  dancetutor analyze Songs/MyPack    a pack of your own",
         "  dancetutor doctor                  what works on this machine, and how to repair the rest",
-        "  dancetutor completion              make the Tab key complete all this",
+        "  dancetutor completion              make the Tab key complete commands and options",
         "  dancetutor --help                  every command; dancetutor COMMAND --help: its options",
     ]
     return "\n".join(lines)

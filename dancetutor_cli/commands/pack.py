@@ -9,8 +9,8 @@ from typing import IO, TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.commands.arguments import GivenPath
-from dancetutor_cli.commands.shared_options import combined, number
+from dancetutor_cli.commands.arguments import GivenPath, Number
+from dancetutor_cli.commands.shared_options import combined
 from dancetutor_cli.lint.findings import AUTO, SCALES
 from dancetutor_cli.reports.terminal import safe, safe_path
 from dancetutor_cli.run.errors import UsageError, plural
@@ -55,10 +55,9 @@ pack_options = combined(
     ),
     click.option(
         "--rate",
-        type=click.FloatRange(min=0.1, max=10),
+        type=Number(0.1, 10),
         default=1.0,
         show_default=True,
-        callback=number,
         metavar="RATE",
         help="Speed of the music, 1 is normal. It changes the estimated meters; the feet stay those of rate 1.",
     ),

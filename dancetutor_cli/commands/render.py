@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from dancetutor_cli.chart.selection import Selection, one_song
-from dancetutor_cli.commands.arguments import LONG, GivenPath, confirm_long, default_name, warn
+from dancetutor_cli.commands.arguments import LONG, GivenPath, WholeNumber, confirm_long, default_name, warn
 from dancetutor_cli.commands.film_options import RenderOptions, film_options, film_request
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
@@ -74,7 +74,7 @@ _NO_BACKGROUND = (
 @click.option(
     "--into-file", is_flag=True, help="Write into the chart file: with --background, add the film to #BGCHANGES."
 )
-@click.option("--jobs", type=click.IntRange(1, 256), metavar="N", help="Number of processes.  [default: one per core]")
+@click.option("--jobs", type=WholeNumber(1, 256), metavar="N", help="Number of processes.  [default: one per core]")
 @yes_option
 @quiet_option
 @exclude_option
@@ -124,7 +124,8 @@ def command(path: Path, selection: Selection, dance: DanceOptions, options: Rend
         return
     for name in ("meter", "name", "shard", "results", "scheduler", "exclude"):
         if getattr(options, name):
-            raise UsageError(f"--{name} is for folders of charts, and {path} is not a folder")
+            cure = f"give folders as PATH and --output, or leave out --{name} to make one film of {path}"
+            raise UsageError(f"--{name} is for many films: {cure}")
     if not files:
         _render_one(path, selection, dance, options)
         return

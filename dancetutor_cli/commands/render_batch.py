@@ -41,7 +41,7 @@ def render_batch(path: Path, selection: Selection, dance: DanceOptions, options:
         check_file(options.results, (".jsonl", ".json"), or_device=True)
     films, unreadable, without = film_list(batch)
     if not films and not unreadable:
-        raise UsageError(f"{path}: no chart matches, so there is nothing to render")
+        raise UsageError(f"{path}: no chart matches{_filters(selection, options)}")
     if not films and [bad.path for bad in unreadable] == [path]:  # a folder without chart files, or a closed one
         raise DancetutorError(unreadable[0].error)
     if films:
@@ -151,3 +151,10 @@ def _sum_up(outcomes: list[FilmOutcome], unreadable: list[UnreadableFile], witho
         rows += [(str(one.job.request.path), one.job.label, str(one.error)) for one in failed]
         failures_table(rows)
         sys.exit(2)
+
+
+def _filters(selection: Selection, options: RenderOptions) -> str:
+    """The options that choose among the charts of a folder, as the user typed them, and what to do."""
+    typed = [selection.options, f"--meter {options.meter}" if options.meter else "", "--shard" if options.shard else ""]
+    words = ", ".join(one for one in typed if one)
+    return f" {words}; change or leave out one of these options" if words else ", so there is nothing to render"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from dancetutor_cli.commands.arguments import GivenPath
+from dancetutor_cli.commands.arguments import GivenPath, Number, WholeNumber
 from dancetutor_cli.commands.tab_names import characters, difficulties, folder, named, steps_types
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.reading import config_names
@@ -33,13 +33,6 @@ def combined(*options: Callable[[_Command], _Command]) -> Callable[[_Command], _
         return command
 
     return decorate
-
-
-def number(_context: click.Context, _option: click.Parameter, value: float) -> float:
-    """The value, unless it is nan, which no range keeps out."""
-    if value != value:
-        raise click.BadParameter("nan is not a number.")
-    return value
 
 
 def into(name: str, kind: type) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
@@ -77,13 +70,13 @@ selection_options = combined(
         help="Only charts of this difficulty, such as hard.",
     ),
     click.option(
-        "--index", type=click.IntRange(min=0), metavar="N", help="Only the chart with this number in the file, from 0."
+        "--index", type=WholeNumber(0), metavar="N", help="Only the chart with this number in the file; the first is 0."
     ),
     click.option(
         "--player",
-        type=click.IntRange(min=1),
+        type=WholeNumber(1),
         metavar="N",
-        help="In charts for several players: only this player, from 1.",
+        help="In charts for several players: only this player; the first is 1.",
     ),
 )
 
@@ -126,7 +119,7 @@ character_option = click.option(
     default="dancer",
     show_default=True,
     metavar="NAME|FILE",
-    help="Who moves: dancer, mannequin, or a humanoid from a .glb or .vrm file.",
+    help="Who moves: dancer, dancer-heels, mannequin, or a humanoid from a .glb or .vrm file.",
 )
 
 # How a chart is danced: fields of `dance.request.DanceRequest`.
@@ -172,8 +165,8 @@ ragdoll_options = combined(
         shell_complete=named(folder("styles")),
         metavar="NAME[:WEIGHT],...",
         help="Add physics: a ragdoll follows the motion. NAME is neutral, lazy, fierce, heavy, feminine, or a style "
-        "file like those in configs/styles. It also changes how the dancer steps. Blend styles with weights, such as "
-        "fierce:0.6,heavy:0.4.",
+        "file like those in configs/styles. In a dance to a chart, a style also changes the steps. Blend styles with "
+        "weights, such as fierce:0.6,heavy:0.4.",
     ),
     click.option(
         "--push",
@@ -183,7 +176,7 @@ ragdoll_options = combined(
     ),
     click.option(
         "--trip",
-        type=float,
+        type=Number(what="seconds, such as 12.5"),
         multiple=True,
         metavar="TIME",
         help="Make the dancer stumble: something catches the foot that is in the air at this second of the song.",
@@ -216,7 +209,7 @@ def jobs_option(words: str) -> Callable[[_Command], _Command]:
     """Adds --jobs of a command that usually runs in one process. words : for what more of them are faster"""
     return click.option(
         "--jobs",
-        type=click.IntRange(1, 256),
+        type=WholeNumber(1, 256),
         default=1,
         show_default=True,
         metavar="N",

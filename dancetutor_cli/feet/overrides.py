@@ -163,7 +163,7 @@ def _row_problem(row: Sequence[CellOverride], near: _Near) -> FeetProblem | None
             continue
         name = _NAMES[Limb(a.limb)]
         if _far(a.column, b.column, near):
-            return _problem("feet-far", f"{name} cannot be on columns {a.column} and {b.column} at once", b)
+            return _problem("feet-far", f"{name} cannot be on columns {a.column + 1} and {b.column + 1} at once", b)
         if Part.TOE not in (a.part, b.part) or a.part == b.part:
             return _problem("feet-twice", f"{name} is named twice; write a bracket with its toe, like (Ll)", b)
     return None
@@ -173,7 +173,8 @@ def _hold_problem(step: CellOverride, hold: CellOverride, near: _Near) -> FeetPr
     """Return the problem of a step by a limb that holds another panel; a foot may bracket a neighbouring panel."""
     name = _NAMES[Limb(step.limb)]
     if step.limb in (Limb.LEFT_HAND, Limb.RIGHT_HAND) or _far(step.column, hold.column, near):
-        return _problem("feet-far", f"{name} cannot step on column {step.column} while it holds {hold.column}", step)
+        where = f"column {step.column + 1} while it is on a hold in column {hold.column + 1}"
+        return _problem("feet-far", f"{name} cannot step on {where}", step)
     return None
 
 
@@ -183,4 +184,5 @@ def _far(a: int, b: int, near: _Near) -> bool:
 
 def _problem(code: str, what: str, at: CellOverride) -> FeetProblem:
     beat = at.tick / TICKS_PER_BEAT
-    return FeetProblem(code, f"beat {beat:g}: {what} ({at.source}); not used", at.line, at.place)
+    cure = "the pinned feet of this row are ignored: correct the letters"
+    return FeetProblem(code, f"beat {beat:g}: {what} ({at.source}); {cure}", at.line, at.place)

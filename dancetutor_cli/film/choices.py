@@ -34,5 +34,5 @@ def parse_ahead(text: str) -> Ahead:
     """Parse the time before a move, such as "0.9" (seconds) or "b2" (beats); UsageError shows both forms."""
     match = re.fullmatch(r"(b?)(\d{1,4}(?:\.\d{1,6})?)", text.strip().lower())
     if match is None or not 0 < float(match[2]) <= MOST_AHEAD:
-        raise UsageError(f"'{text}': write the time before a move as 0.9 (seconds) or b2 (beats)")
+        raise UsageError(f"--call-ahead {text}: write seconds, such as 0.9, or beats, such as b2")
     return Ahead(float(match[2]), bool(match[1]))

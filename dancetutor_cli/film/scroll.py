@@ -72,8 +72,8 @@ def parse_scroll(text: str) -> Scroll:
         low, high = (0.1, 20.0) if mode == "X" else (30.0, 3000.0)
         if low <= float(value) <= high:
             return Scroll(mode, float(value))
-        raise UsageError(f"scroll speed {text!r} is out of range: {mode} takes {low:g} to {high:g}")
-    raise UsageError(f"unknown scroll speed {text!r}: write C600 (constant), X2 (times the song) or M600 (at most)")
+        raise UsageError(f"--scroll {text}: {mode} takes {low:g} to {high:g}")
+    raise UsageError(f"--scroll {text}: write C600 (constant speed), X2 (twice the song's speed) or M600 (600 at most)")
 
 
 @dataclass(frozen=True, slots=True)
