@@ -43,7 +43,7 @@ def test_the_mine_under_the_foot_is_marked_and_no_other(film: PreparedFilm) -> N
 
 def test_words_say_it_and_what_the_linter_finds_there(film: PreparedFilm) -> None:
     (one,) = (one for one in film.plan.callouts if "mine" in one.text)
-    assert one.text == "mine: not cleared (DT303 mine under hold)" and one.tag == "not cleared"
+    assert one.text == "mine: not avoided (DT303 mine under hold)" and one.tag == "not avoided"
     assert one.severity == "move"
 
 
@@ -57,7 +57,7 @@ def test_for_two_dancers_it_says_whose_foot_it_is(whose: int, tmp_path: Path) ->
     request = film_request(path, Selection(), look, fps=10, mute=True)
     plan = prepare(request, look_up(request)).plan
     (one,) = (one for one in plan.callouts if "mine" in one.text)
-    assert one.text == f"player {whose}: mine not cleared (DT303 mine under hold)" and one.tag == "not cleared"
+    assert one.text == f"player {whose}: mine not avoided (DT303 mine under hold)" and one.tag == "not avoided"
     assert plan.notes.limb[(plan.notes.kind == Kind.MINE) & (plan.notes.column == 4 * whose - 4)].tolist() == [0]
 
 

@@ -86,15 +86,30 @@ def test_arrays_come_back_from_their_planes(differences: int) -> None:
 
 
 def test_moves_are_called_what_films_call_them() -> None:
-    """One table per language. Who and where stand beside the list of a row's moves, so not in it."""
+    """One table per language. Who and where stand beside the list of a row's moves, so not in it.
+
+    A list has commas, so what explains a move is in brackets: "footswitch (swap feet)".
+    """
     every = (*EVENTS, *HALF_TURNS)
     english = languages()["en"]
     for name, said in load_language().moves.items():
         if "{" not in said and name in every:
-            assert english[f"move-{name}"] == said.replace(": ", ", "), name
+            assert english[f"move-{name}"] in (re.sub(": (.+)", r" (\1)", said), f"{name} ({said})"), name
     for labels in languages().values():
-        said = " ".join(labels[f"move-{name}"] for name in every).lower()
-        assert not [word for word in ("candle", "jack", "gallop", "stream", "drill", "doublestep") if word in said]
+        named = [labels[f"move-{name}"] for name in every]
+        assert not [said for said in named if "," in said or "、" in said or re.search(r"candle|gallop|stream|drill", said)]
+
+
+@pytest.mark.parametrize("language", languages())
+@pytest.mark.parametrize(("move", "rule"), [("bracket", "DT210"), ("doublestep", "DT201"), ("jack", "DT214")])
+def test_a_move_has_one_name_on_cards_in_rows_and_in_findings(language: str, move: str, rule: str) -> None:
+    """Its row explains it in brackets; beside the notes the move and its rule have one short name."""
+    labels = languages()[language]
+    called, _, means = labels[f"move-{move}"].partition(" (")
+    assert means.endswith(")")
+    for place in (labels[f"tag-{move}"], labels[f"finding-{rule}"].partition(":")[0]):
+        assert called.lower() in place.lower()
+    assert labels.get(f"short-{move}", labels[f"short-{rule}"]) == labels[f"short-{rule}"]
 
 
 def test_every_label_that_the_modules_use_exists() -> None:

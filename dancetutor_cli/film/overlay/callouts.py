@@ -18,7 +18,7 @@ from dancetutor_cli.feet.play import MOVE
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
 from dancetutor_cli.film.notes import Callout
 from dancetutor_cli.film.overlay.phrases import Phrase, crossing_phrase, plain, stepped_phrase, turning_phrase
-from dancetutor_cli.film.words import IMPLIED_BY_BRACKET, MINE, PanelNames, filled
+from dancetutor_cli.film.words import IMPLIED_BY_BRACKET, MINE, PanelNames, filled, short_words
 from dancetutor_cli.run.languages import Language, load_language
 
 if TYPE_CHECKING:
@@ -247,9 +247,10 @@ def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[in
     for span in crossover_spans(play):
         for row, kind in span.begins:
             if kind in words and not {*HALF_TURNS}.intersection(turns[row]).intersection(words):
-                phrase = plain(words[kind])
                 if kind != FULL:
                     phrase = crossing_phrase(words[kind], (play, row), pad, style.language)
+                else:  # the first row's call has said that it is a crossover
+                    phrase = plain(words[kind] if row == span.first else short_words(words[kind]))
                 yield _Move(ticks[row], ticks[span.last], phrase)
     for row, names in enumerate(turns):
         named = {n for n in names if n in words and n not in CROSSED}

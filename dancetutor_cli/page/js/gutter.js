@@ -9,8 +9,8 @@ const LINES = 3; // of a label at most
 /** @typedef {{label: import("./labels.js").Label, y: number}} Seen a label and where its row is on the canvas, pixels */
 
 /**
- * Each label at its row, its whole text where there is room until the next one, else its short name; one that would lie
- * over the one before is only a tick at the lanes. It fades when its row is over.
+ * Each label at its row: its whole text where there is room until the next one, else without what is in brackets, else its
+ * short name. One that would lie over the one before is only a tick at the lanes. It fades when its row is over.
  * @param {CanvasRenderingContext2D} c @param {Seen[]} seen in order of time
  * @param {{x: number, receptor: number, lane: number, size: number, wide: number, ratio: number}} m x: the lanes' right edge; size: of the words
  * @param {Record<string, string>} colours
@@ -26,13 +26,17 @@ export function drawGutter(c, seen, { x, receptor, lane, size, wide, ratio }, co
     c.fillRect(x, y - ratio, PAD * ratio, 2 * ratio);
     if (y - high / 2 < free) return;
     const room = Math.floor(((seen[k + 1]?.y ?? Infinity) - y) / high + 0.01);
-    const lines = wrapped(label.text, fits);
-    const shown = lines && lines.length <= clamp(room, 1, LINES) ? lines : [cut(label.short, fits)];
+    const most = clamp(room, 1, LINES);
+    const shown = [label.text, unexplained(label.text)].map((text) => wrapped(text, fits)).find((lines) => lines && lines.length <= most)
+      ?? [cut(label.short, fits)];
     shown.forEach((line, n) => c.fillText(line, x + (PAD + 4) * ratio, y + n * high));
     free = y + (shown.length - 0.5) * high;
   });
   c.globalAlpha = 1;
 }
+
+/** The names of moves without what explains them: "bracket (two panels with one foot)" is "bracket". @param {string} text */
+export const unexplained = (text) => text.replace(/ \([^)]*\)/g, "");
 
 /** Lines of words that fit; null if a word does not. @param {string} text @param {(line: string) => boolean} fits */
 export function wrapped(text, fits) {

@@ -89,6 +89,8 @@ def test_a_turn_away_from_the_screen_is_reported_where_it_is_full() -> None:
     (one,) = called(turning((0, "", -45), (1, half, -135), (2, full, -180), (3, half, -135), (4, "", -45)))
     assert (one.text, one.second, one.end) == ("crossover, back to the screen", 0.5, 1.5)
     assert one.further == ((1.0, 2.0, "back to the screen"),)
+    (one,) = called(turning((0, "", -45), (1, full, -180), (2, "", -45)))
+    assert (one.text, one.tag) == ("crossover: back to the screen", "back to the screen")
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ import { test } from "node:test";
 import { passedAlpha, scrollSpeed } from "../../../dancetutor_cli/page/js/highway.js";
 import { widestGap } from "../../../dancetutor_cli/page/js/highway.js";
 import { findingFigures, labelsOf, moveNames } from "../../../dancetutor_cli/page/js/labels.js";
+import { unexplained } from "../../../dancetutor_cli/page/js/gutter.js";
 import { fillIn } from "../../../dancetutor_cli/page/js/words.js";
 import { delayOf } from "../../../dancetutor_cli/page/js/calibrate.js";
 import { Judge, ramp } from "../../../dancetutor_cli/page/js/judge.js";
@@ -164,8 +165,8 @@ test("a row's moves are named in a dancer's words, each once", () => {
   };
   assert.equal(named("en", "crossover-front", "crossover-half"), "crossover in front");
   assert.equal(named("en", "crossover-half", "candle", "stream"), "crossover, long step, long run");
-  assert.equal(named("en", "doublestep", "forced-doublestep"), "same foot twice in a row");
-  assert.equal(named("de", "crossover-back", "crossover-half", "jack"), "Überkreuzen hinten, noch einmal dasselbe Feld");
+  assert.equal(named("en", "footswitch-up", "footswitch-down"), "footswitch (swap feet)");
+  assert.equal(named("de", "crossover-back", "crossover-half", "jack"), "Überkreuzen hinten, Jack (noch einmal dasselbe Feld)");
 });
 
 test("words beside the notes have short forms for narrow lanes", () => {
@@ -181,6 +182,20 @@ test("words beside the notes have short forms for narrow lanes", () => {
   }
   assert.deepEqual([0, 1, 2].map((count) => fillIn("{count} {count|press|presses}", { count })), ["0 presses", "1 press", "2 presses"]);
   assert.equal(fillIn("{a} {b}", { a: 2.5, b: "2.5" }, ","), "2,5 2.5"); // numbers only, no names
+});
+
+test("where what explains a move has no room, its name stands alone", () => {
+  assert.equal(unexplained("half turn (back to the screen), footswitch (swap feet)"), "half turn, footswitch");
+  assert.equal(unexplained("ブラケット (片足で2枚)"), "ブラケット");
+});
+
+test("one other row is singular", () => {
+  const said = (file, label, rows) => fillIn(wordsOf(file)[label], { rows, where: "x", word: "x", extra: 1 });
+  assert.equal(said("en", "besideRows", 1), "other feet in 1 row: x");
+  assert.match(said("en", "costRows", 1), /feet of 1 other row\.$/);
+  assert.match(said("en", "givenRows", 2), /and 2 other rows get other feet\.$/);
+  assert.match(said("de", "costRows", 1), /1 weitere Reihe bekommt andere Füße\.$/);
+  assert.match(said("es", "givenRows", 1), /de 1 fila más\.$/);
 });
 
 test("words lie where most lanes are free beside the notes of their row", () => {
