@@ -97,7 +97,7 @@ def test_moves_are_called_what_films_call_them() -> None:
             assert english[f"move-{name}"] in (re.sub(": (.+)", r" (\1)", said), f"{name} ({said})"), name
     for labels in languages().values():
         named = [labels[f"move-{name}"] for name in every]
-        assert not [said for said in named if "," in said or "、" in said or re.search(r"candle|gallop|stream|drill", said)]
+        assert not [said for said in named if re.search("[,、]|candle|gallop|stream|drill", said)]
 
 
 @pytest.mark.parametrize("language", languages())
