@@ -125,7 +125,10 @@ def report_changes(options: AnalyzeOptions, output: IO[str]) -> int:
     """`--compare`: print what changed; the exit status."""
     is_brief = not options.full if options.full is not None else output.isatty()
     lines = list(_changes(options, _BRIEF_ROWS if is_brief else None))
-    shown = (lines[: _BRIEF + 1] if is_brief else lines) or [f"no changes since {safe_path(str(options.compare))}"]
+    from dancetutor_cli.lint.snapshots import LAST
+
+    since = "the last run" if options.compare == LAST else safe_path(str(options.compare))
+    shown = (lines[: _BRIEF + 1] if is_brief else lines) or [f"no changes since {since}"]
     if len(shown) < len(lines):
         shown.append(f"... and {len(lines) - len(shown)} more lines; --full shows them")
     output.writelines(f"{line}\n" for line in shown)

@@ -173,8 +173,8 @@ def _hold_problem(step: CellOverride, hold: CellOverride, near: _Near) -> FeetPr
     """Return the problem of a step by a limb that holds another panel; a foot may bracket a neighbouring panel."""
     name = _NAMES[Limb(step.limb)]
     if step.limb in (Limb.LEFT_HAND, Limb.RIGHT_HAND) or _far(step.column, hold.column, near):
-        where = f"column {step.column + 1} while it is on a hold in column {hold.column + 1}"
-        return _problem("feet-far", f"{name} cannot step on {where}", step)
+        columns = f"column {step.column + 1} while it is on a hold in column {hold.column + 1}"
+        return _problem("feet-far", f"{name} cannot step on {columns}", step, _STEP_IGNORED)
     return None
 
 
@@ -182,7 +182,10 @@ def _far(a: int, b: int, near: _Near) -> bool:
     return near is not None and max(a, b) < len(near) and not near[a, b]
 
 
-def _problem(code: str, what: str, at: CellOverride) -> FeetProblem:
+_ROW_IGNORED = "the feet that are set in this row are ignored: correct them"
+_STEP_IGNORED = "this foot is ignored: correct it"
+
+
+def _problem(code: str, what: str, at: CellOverride, outcome: str = _ROW_IGNORED) -> FeetProblem:
     beat = at.tick / TICKS_PER_BEAT
-    cure = "the pinned feet of this row are ignored: correct the letters"
-    return FeetProblem(code, f"beat {beat:g}: {what} ({at.source}); {cure}", at.line, at.place)
+    return FeetProblem(code, f"beat {beat:g}: {what} ({at.source}); {outcome}", at.line, at.place)

@@ -121,7 +121,7 @@ def _as_sure_as_they_are(
             continue
         margin, confidence = subject.confidence(finding.beat)
         if margin is not None and margin <= settings.coin_toss:
-            qualified = f"either foot: both feet are equally good here; with the feet shown, {finding.message}"
+            qualified = f"both feet are equally good here; with the feet shown, {finding.message}"
             if ambiguity is None:
                 yield replace(finding, severity="info", message=qualified)
             elif finding.beat not in known:

@@ -51,6 +51,11 @@ class Finding:
     excerpt: tuple[ExcerptRow, ...] = ()
     suggestion: str | None = None
 
+    @property
+    def sentence(self) -> str:
+        """For people: the message after the rule's name in plain words, "unsure feet: the solver is only 63 % sure"."""
+        return f"{self.name.replace('-', ' ')}: {self.message}"
+
     def with_excerpt(self, rows: tuple[ExcerptRow, ...]) -> Finding:
         """The same with the rows around it; many times quicker than `dataclasses.replace`."""
         values: tuple[Any, ...] = _VALUES(self)

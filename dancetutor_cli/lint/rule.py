@@ -99,7 +99,7 @@ class SyncRule(FileRule):
         for index, sync in heard.of_charts.items():
             if sync.is_sure and (message := self.message(sync, subject)):
                 chart = subject.song.charts[index]
-                yield self.finding(f"{chart.label}: {message}", subject.place(chart.line), chart=index)
+                yield self.finding(f"in {chart.label} {message}", subject.place(chart.line), chart=index)
 
     @abstractmethod
     def message(self, sync: Sync, subject: FileSubject) -> str | None:

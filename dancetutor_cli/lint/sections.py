@@ -57,8 +57,9 @@ def _hardest(song: Song, chart: Chart, preset: Preset, number: int) -> tuple[flo
     play = solved_chart(song, chart, preset).play
     found = () if play is None else hardest(play, chart.timing)
     if not 1 <= number <= len(found):
-        many = plural(len(found), "passage")
-        raise UsageError(f"--section hardest:{number}: the chart has only {many} harder than the rest of it")
+        most = len(found)
+        has = f"only {plural(most, 'hard passage')}: write {_numbered('hardest', most)}" if most else "no hard passage"
+        raise UsageError(f"--section hardest:{number}: the chart has {has}")
     return max(0.0, found[number - 1].start), found[number - 1].end
 
 
@@ -72,13 +73,19 @@ def _around_finding(song: Song, chart: Chart, preset: Preset, rule: str, number:
     if not 1 <= number <= len(found):
         rule_named(rule)
         counts = Counter(one.rule for one in findings if one.beat is not None)
-        has = ", ".join(f"{code}:{count}" for code, count in sorted(counts.items()))
+        choices = [_numbered(code, count) for code, count in sorted(counts.items())]
+        has = " or ".join(filter(None, (", ".join(choices[:-1]), *choices[-1:])))
         many = plural(len(found), "finding") if found else "no finding"
-        there = f"; the last ones of each rule are {has}" if has else ""
+        there = f"; choose {has}" if has else ""
         raise UsageError(f"--section {rule}:{number}: the chart has {many} of {rule}{there}")
     beat = found[number - 1]
     ends = chart.timing.seconds_of_beats(np.array([max(0.0, beat - AROUND), beat + AROUND]))
     return float(ends[0]), float(ends[1])
+
+
+def _numbered(name: str, count: int) -> str:
+    """All of `count` choices that are numbered from 1: "DT202:1", "DT213:1 to DT213:4"."""
+    return f"{name}:1" + (f" to {name}:{count}" if count > 1 else "")
 
 
 def check_section(text: str) -> None:
@@ -101,8 +108,10 @@ def parse_section(text: str, timing: Timing, end_second: float) -> tuple[float, 
     end = _second(*last, timing) if last else end_second
     if start >= end_second:
         raise UsageError(f"--section {text} starts at {start:.1f} s, after the end of the song at {end_second:.1f} s")
-    if end <= start:
-        raise UsageError(f"--section {text} ends at {end:.1f} s, not after its start at {start:.1f} s")
+    if end < start:
+        raise UsageError(f"--section {text} ends at {end:.1f} s, before it starts at {start:.1f} s: exchange the two")
+    if end == start:
+        raise UsageError(f"--section {text} starts and ends at {start:.1f} s; write a later end")
     return start, min(end, end_second)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import shutil
+import textwrap
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -123,32 +124,44 @@ class BriefReport(Report):
         for entry in self._entries:
             rules[entry.first.rule].append(entry)
         ranked = sorted(rules.values(), key=lambda all_: (min(one.order[0] for one in all_), -_sum(all_)))
-        each = 2 if len(ranked) * 3 <= page - len(lines) else 1
-        for found in ranked[: max(1, (page - len(lines) - 2) // (each + 1))]:
+        blocks: list[list[str]] = []
+        each = 2 if len(ranked) * 5 <= page - len(lines) else 1
+        for found in ranked:
             first = min(found, key=lambda one: one.order)
             rule = self._paint(f"{first.first.rule} {first.first.name}", STYLES[first.first.severity])
             charts = len({(one.path, one.chart and one.chart.index) for one in found})
             what = "file" if first.chart is None else "chart"
             such = ", such as" if len(found) > each else ":"
-            lines.append(f"{rule}: {plural(_sum(found), 'finding')} in {plural(charts, what)}{such}")
-            lines += [
-                self._cut(f"  {self._entry_line(one, False)}") for one in sorted(found, key=lambda x: x.order)[:each]
-            ]
+            block = [f"{rule}: {plural(_sum(found), 'finding')} in {plural(charts, what)}{such}"]
+            for one in sorted(found, key=lambda x: x.order)[:each]:
+                head = self._cut(f"  {self._name(one.path)}:{one.first.line or 1}: {_where(one)}")
+                block += [head, *self._message(one)]
+            blocks.append(block)
+        room = page - len(lines) - 2
+        for block in blocks[:1] + [one for n, one in enumerate(blocks) if n and sum(map(len, blocks[: n + 1])) <= room]:
+            lines += block
         return [*lines, "", _HINT]
 
     def _listed(self, room: int) -> list[str]:
         kinds: dict[tuple[str, str], list[_Entry]] = defaultdict(list)
         for entry in sorted(self._entries, key=lambda one: one.order):
             kinds[entry.first.rule, entry.first.severity].append(entry)
-        lines = [self._cut(line) for of_kind in kinds.values() for line in self._kind_lines(of_kind)]
-        if not lines:
+        found = [one for of_kind in kinds.values() for one in self._kind_lines(of_kind)]
+        if not found:
             return []
-        shown = lines[: max(4, room - 3)]
-        return ["", *shown, *_more(len(lines) - len(shown), "such lines"), _HINT]
+        shown = found[: max(4, room - 3)]
+        free = room - 3 - len(shown)
+        lines = [""]
+        for head, message in shown:
+            lines.append(self._cut(head))
+            if len(message) <= free:
+                lines += message
+                free -= len(message)
+        return [*lines, *_more(len(found) - len(shown), "such lines"), _HINT]
 
-    def _kind_lines(self, entries: Sequence[_Entry]) -> list[str]:
-        """What is found of a rule in the charts of a song: a line for each, three and more in one."""
-        lines = list(dict.fromkeys(self._entry_line(entry, True) for entry in entries))
+    def _kind_lines(self, entries: Sequence[_Entry]) -> list[tuple[str, tuple[str, ...]]]:
+        """What is found of a rule in the charts of a song: a line for each, three and more in one; lines of a message."""
+        lines = list(dict.fromkeys((f"{self._rule(one)}: {_where(one)}", self._message(one)) for one in entries))
         if len(lines) < _ALIKE:
             return lines
         # The .sm and the .ssc of a song say the same, mostly.
@@ -156,24 +169,22 @@ class BriefReport(Report):
         labels = list(dict.fromkeys(entry.chart.label if entry.chart else "" for entry in entries))
         first = entries[0].first
         where = "" if first.measure is None else f", first in measure {first.measure} of {safe(labels[0])}"
-        rule = self._paint(f"{first.rule} {first.name}", STYLES[first.severity])
-        return [f"{rule}: {sum(own.values())} in {plural(len(labels), 'chart')}{where}"]
+        return [(f"{self._rule(entries[0])}: {sum(own.values())} in {plural(len(labels), 'chart')}{where}", ())]
 
     def _name(self, path: str) -> str:
         """A file by its path below the folder that all of them are in."""
         return safe_path(os.path.relpath(path, self._below or "."))
 
-    def _entry_line(self, entry: _Entry, one_file: bool) -> str:
-        """ "DT201 doublestep, dance-single Hard 9, 14 times, measures 3 7 9 ...: the left foot doublesteps" """
-        first, many = entry.first, len(entry.findings)
-        measures = list(dict.fromkeys(f.measure for f in entry.findings if f.measure is not None))
-        places = " ".join(map(str, measures[:_PLACES])) + (" ..." if len(measures) > _PLACES else "")
-        where = f", measure{'' if len(measures) == 1 else 's'} {places}" if measures else ""
-        times = f", {many} times" if many > 1 else ""
-        label = f", {safe(entry.chart.label)}" if entry.chart else ""
-        rule = self._paint(f"{first.rule} {first.name}", STYLES[first.severity]) if one_file else ""
-        place = "" if one_file else f"{self._name(entry.path)}:{first.line or 1}"
-        return f"{rule}{place}{label}{times}{where}: {safe(first.message)}"
+    def _rule(self, entry: _Entry) -> str:
+        return self._paint(f"{entry.first.rule} {entry.first.name}", STYLES[entry.first.severity])
+
+    def _message(self, entry: _Entry) -> tuple[str, ...]:
+        """The message of a single finding in full, on lines as wide as the terminal; nothing of several."""
+        if len(entry.findings) > 1:
+            return ()
+        indent = " " * 4
+        width = max(self._width, 40)
+        return tuple(textwrap.wrap(safe(entry.first.message), width, initial_indent=indent, subsequent_indent=indent))
 
     def _cut(self, line: str) -> str:
         """As much of a line as the terminal is wide; colours take no room."""
@@ -181,7 +192,7 @@ class BriefReport(Report):
         return line if plain <= self._width else line[: self._width - 1 + len(line) - plain] + "…"
 
 
-_HINT = "--full prints all findings with rows, --statistics counts, --format json all"
+_HINT = "--full: findings with rows; --statistics: count by rule; --format json: all data"
 
 
 _MOVES = {  # those that the line of a chart counts, by name
@@ -195,8 +206,8 @@ _MOVES = {  # those that the line of a chart counts, by name
 def _head(widest: int, charts: Sequence[ChartResult]) -> str:
     """The names of the columns of `_counts`, and what a "?" in them means."""
     guess = any(chart.estimate and not chart.estimate.is_scale_known for chart in charts)
-    names = f"{'':{widest + 2}}  plays like  to score on   rows"
-    return f"{names}  (?: guessed scale)" if guess else names
+    names = f"{'':{widest + 2}}  plays like  scores like   rows"
+    return f"{names}  (? = the scale is a guess)" if guess else names
 
 
 def _counts(chart: ChartResult, widest: int) -> str:
@@ -210,6 +221,16 @@ def _counts(chart: ChartResult, widest: int) -> str:
     more = "; ".join(filter(None, (", ".join(words), ", ".join(counted))))
     line = f"{safe(chart.label):{widest}}  {plays:>11} {scores:>11} {rows:>6}  {more}"
     return line.rstrip()
+
+
+def _where(entry: _Entry) -> str:
+    """ "2 in dance-single Medium 5, measures 4 and 18" """
+    measures = [str(one) for one in dict.fromkeys(f.measure for f in entry.findings if f.measure is not None)]
+    *before, last = measures[:_PLACES] if measures else [""]
+    listed = f"{', '.join(before)}{' and ' if len(measures) <= _PLACES else ', '}{last}" if before else last
+    more = " ..." if len(measures) > _PLACES else ""
+    where = f", measure{'' if len(measures) == 1 else 's'} {listed}{more}" if measures else ""
+    return f"{len(entry.findings)} in {safe(entry.chart.label) if entry.chart else 'the file'}{where}"
 
 
 def _sum(entries: Sequence[_Entry]) -> int:

@@ -74,7 +74,7 @@ class SarifReport(Report):
             "ruleId": finding.rule,
             "ruleIndex": self._places[finding.rule],
             "level": _LEVELS[finding.severity],
-            "message": {"text": entry.message},
+            "message": {"text": entry.sentence},
             "locations": [location],
             "partialFingerprints": {"chartBeatRule/v1": entry.fingerprint},
         }
@@ -200,7 +200,7 @@ class JunitReport(Report):
         inside = [f'  <error type="unreadable" message={quoteattr(safe(error))}/>\n'] if error else []
         failed = [entry for entry in found if entry.finding.severity != "info"] if not error else []
         if failed:
-            first = f"{failed[0].finding.rule} {safe(failed[0].finding.message)}"
+            first = f"{failed[0].finding.rule} {safe(failed[0].finding.sentence)}"
             lines = "\n".join(escape(_line(entry)) for entry in failed)
             inside.append(f'  <failure type="{failed[0].finding.rule}" message={quoteattr(first)}>{lines}</failure>\n')
         infos = [_line(entry) for entry in found if entry.finding.severity == "info"]
@@ -213,4 +213,4 @@ class JunitReport(Report):
 
 def _line(entry: Entry) -> str:
     place = f"{entry.path}:{entry.finding.line}" if entry.finding.line else entry.path
-    return f"{place} {entry.finding.rule} {entry.message}"
+    return f"{place} {entry.finding.rule} {entry.sentence}"

@@ -35,8 +35,16 @@ class Entry:
     @property
     def message(self) -> str:
         """The finding's message with the edit that would remove it and the chart it is about."""
+        return self._placed(self.finding.message)
+
+    @property
+    def sentence(self) -> str:
+        """The same after the rule's name, for formats that show no name beside it."""
+        return self._placed(self.finding.sentence)
+
+    def _placed(self, text: str) -> str:
         better = self.finding.suggestion
-        text = safe(self.finding.message) + (f"; better: {safe(better)}" if better else "")
+        text = safe(text) + (f"; better: {safe(better)}" if better else "")
         return f"{text} [{safe(self.chart.label)}]{self.moment}" if self.chart else text
 
     @property

@@ -50,7 +50,7 @@ class Sheet:
 
     def message(self, finding: Finding) -> str:
         """What a finding says; the linter speaks English, in other languages its rule's meaning stands in its place."""
-        return safe(finding.message) if self.language == ENGLISH else self.words.findings[finding.rule]
+        return safe(finding.sentence) if self.language == ENGLISH else self.words.findings[finding.rule]
 
     @property
     def style(self) -> SheetStyle:

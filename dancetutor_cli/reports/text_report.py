@@ -189,7 +189,7 @@ class LineReport(Report):
         place = ":".join(str(n) for n in (finding.line, finding.column) if n is not None)
         where = f"{safe_path(result.path)}:{place}" if place else safe_path(result.path)
         label = f" [{safe(chart.label)}]" if chart else ""
-        self._line(f"{where} {rule} {safe(finding.message)}{more}", self._paint(label + moment(finding), "dim"))
+        self._line(f"{where} {rule} {safe(finding.sentence)}{more}", self._paint(label + moment(finding), "dim"))
 
     def _line(self, *parts: str) -> None:
         self._stream.write("".join(parts) + "\n")
@@ -264,8 +264,10 @@ class TextReport(LineReport):
                 if cause.column is not None and chart.arrows and not self._plain
                 else ""
             )
-            since = "" if cause.at_beat is None else f" of beat {round(cause.at_beat, 3):g}"
-            self._line(f"forced doublestep on beat {round(cause.beat, 3):g}, by the {cause.cause}{since}{panel}")
+            why = "the other foot is not free"
+            if cause.at_beat is not None:
+                why = f"the other foot is on the {cause.cause} from beat {round(cause.at_beat, 3):g}{panel}"
+            self._line(f"forced doublestep on beat {round(cause.beat, 3):g}: {why}")
         if len(forced) > _MOST_FORCED:
             self._line(f"... and {len(forced) - _MOST_FORCED} more; --format json has all")
 

@@ -33,7 +33,7 @@ def shape_figures(body: Body, skeleton: Skeleton) -> tuple[tuple[Figure, ...], t
     for degrees in beyond.values():
         frames |= degrees > PAST
     notes = tuple(
-        f"{name} is past its limit in {int((d > PAST).sum())} frames, by {d.max():.1f} degrees at most, first at "
+        f"{_named(name)} is past its limit in {int((d > PAST).sum())} frames, by {d.max():.1f} degrees at most, first at "
         f"{body.times[np.argmax(d > PAST)]:.2f} s"
         for name, d in beyond.items()
     )
@@ -44,6 +44,21 @@ def shape_figures(body: Body, skeleton: Skeleton) -> tuple[tuple[Figure, ...], t
         Figure("hair in back", float((hair_depth(body, skeleton) > HAIR_ALLOWED).sum()), "frames", 0.0),
     )
     return figures, notes
+
+
+# Joints in plain words, those of a side without it.
+_PLAIN = {
+    "hip": "hip", "knee": "knee", "talocrural": "ankle", "metatarsal": "toe joint", "sternoclavicular": "collarbone",
+    "shoulder": "shoulder", "elbow": "elbow", "radiocarpal": "wrist", "eyeball_joint": "eye", "vl5": "lower back",
+    "vt10": "middle back", "vt4": "upper back", "vc4": "neck", "skullbase": "head",
+}  # fmt: skip
+
+
+def _named(joint: str) -> str:
+    """Return a joint in plain words, with its H-Anim name: "right ankle (r_talocrural)"."""
+    side = {"l_": "left ", "r_": "right "}.get(joint[:2], "")
+    plain = _PLAIN.get(joint[2:] if side else joint)
+    return f"{side}{plain} ({joint})" if plain else joint
 
 
 def limb_depth(body: Body, skeleton: Skeleton) -> Array:

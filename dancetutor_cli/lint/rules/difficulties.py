@@ -43,7 +43,7 @@ class SameNotes(FileRule):
             parts = (notes.tick, notes.column, notes.kind, notes.end, notes.judged)
             key = (chart.steps_type, chart.timing, *(part.tobytes() for part in parts))
             if key in first:
-                message = f"{chart.label} has the same notes as {first[key]}"
+                message = f"{chart.label} has those of {first[key]}"
                 yield self.finding(message, subject.place(chart.line), chart=chart.index)
             first.setdefault(key, chart.label)
 
@@ -116,7 +116,7 @@ class MeterOff(SongRule):
         off = estimate.meter - chart.meter
         if chart.meter > 0 and abs(off) >= self.options["by"] and not estimate.low <= chart.meter <= estimate.high:
             how = "harder" if off > 0 else "easier"
-            message = f"plays {abs(off):.1f} levels {how} than its meter {chart.meter}: like {estimate.most(4)}"
+            message = f"plays {abs(off):.1f} levels {how} than its meter {chart.meter}, like {estimate.most(4)}"
             yield self.finding(message, chart.place)
 
 

@@ -99,7 +99,7 @@ class Doublestep(MoveRule):
 
     def message(self, subject: ChartSubject, row: int) -> str:
         """Which foot."""
-        return f"the {subject.foot_name(row)} foot doublesteps although the other foot is free"
+        return f"the {subject.foot_name(row)} foot steps twice although the other foot is free"
 
 
 def _at_a_pause(subject: ChartSubject, row: int) -> bool:

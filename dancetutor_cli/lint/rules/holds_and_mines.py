@@ -86,7 +86,7 @@ class MineUnderHold(TimedRule):
         """Each row with such a mine, with the time since the foot's step; none where it cannot leave at all."""
         reported: set[int] = set()
         for row, column, foot, seconds in subject.facts.mines_under_pinned_feet() if subject.facts else ():
-            message = f"a mine is under the {('left', 'right')[foot]} foot, which cannot step aside because of a hold"
+            message = f"the {('left', 'right')[foot]} foot cannot step aside from the mine because of a hold"
             if row not in reported and seconds <= self.longest(subject) + EPSILON:  # once for a row, not for each foot
                 reported.add(row)
                 yield Occurrence(row, seconds, message, column)

@@ -54,7 +54,7 @@ class LowBracket(TimedRule):
         for row in subject.rows_with("bracket"):
             if feet and feet.down[row] < 3 and not _jumped(subject, row):
                 pause = subject.pause(row)
-                message = f"a bracket: two panels {1000 * pause:.0f} ms after a step, too quick for a jump,"
+                message = f"two panels {1000 * pause:.0f} ms after a step, too quick for a jump,"
                 yield Occurrence(row, pause, f"{message} in a chart of meter {meter}")
 
     def _quick_throughout(self, subject: ChartSubject) -> bool:
@@ -189,4 +189,4 @@ class Hand(MoveRule):
     def message(self, subject: ChartSubject, row: int) -> str:
         """Whether a bracket would do."""
         bracketed = self.move not in (subject.play.moves[row] if subject.play else ())
-        return "three panels at once: " + ("a bracket or a hand" if bracketed else "a hand has to press one")
+        return "three panels at once, " + ("for a bracket or a hand" if bracketed else "and a hand has to press one")

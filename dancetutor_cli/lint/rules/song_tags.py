@@ -277,7 +277,7 @@ class Credit(FileRule):
         message, place = "the charts name no author", subject.tag_place("CREDIT")
         if len(anonymous) < len(charts):
             message, place = f"no author is named for {_labels(anonymous)}", subject.place(anonymous[0].line)
-        yield self.finding(f"{message}: #CREDIT is empty; write the name there", place)
+        yield self.finding(f"{message}, and #CREDIT is empty; write the name there", place)
 
 
 _MOST_LABELS = 3  # charts that are named

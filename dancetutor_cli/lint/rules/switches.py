@@ -47,7 +47,7 @@ class Footswitch(MoveRule):
     foot_rank = 8
     move = "footswitch"
     times = "footswitch"
-    description = "footswitch: a foot takes over the panel of the other foot"
+    description = "a foot takes over the panel of the other foot"
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Footswitches on one panel; those with a bracket belong to DT210."""
@@ -118,7 +118,7 @@ class Sideswitch(MoveRule):
     editor_code = "FS"
     foot_rank = 9
     move = "sideswitch"
-    description = "sideswitch: a foot takes over a side panel from the other foot"
+    description = "a foot takes over a side panel from the other foot"
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
         """Quick ones that nobody plays as a jack."""
@@ -159,7 +159,7 @@ class Holdswitch(MoveRule):
     editor_code = "FS"
     foot_rank = 10
     move = "holdswitch"
-    description = "holdswitch: the other foot takes over a hold"
+    description = "the other foot takes over a hold"
 
 
 class JumpFootswitch(MoveRule):
@@ -189,7 +189,7 @@ class JumpFootswitch(MoveRule):
     foot_rank = 11
     move = "jump-footswitch"
     times = "jump-footswitch"
-    description = "jump footswitch: the other foot takes over a panel in this jump"
+    description = "the other foot takes over a panel in this jump"
 
 
 class SwitchJack(TimedRule):
@@ -227,5 +227,5 @@ class SwitchJack(TimedRule):
         for rows, limbs in subject.facts.switching_runs(least, self.longest(subject)) if subject.facts else ():
             if limbs[0] != limbs[-1]:  # otherwise who jacks them all comes out on the right foot
                 change = next(at for at in range(1, len(rows)) if limbs[at] != limbs[at - 1])
-                message = f"footswitch or jack? the feet change in {len(rows)} quick steps on one panel"
+                message = f"the feet change in {len(rows)} quick steps on one panel, which look like a jack"
                 yield Occurrence(rows[change], max(map(subject.pause, rows[1:])), message)

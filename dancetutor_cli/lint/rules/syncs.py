@@ -40,7 +40,7 @@ class SyncDrift(SyncRule):
             return ""
         bpm = float(next(iter(bpms)))
         right = bpm * (1 - drift / 1000 / ((found.last - found.first) * 2 / 3))
-        return f": the tempo is {right:.3f} BPM rather than {bpm:.3f}"
+        return f", so the tempo is {right:.3f} BPM rather than {bpm:.3f}"
 
 
 class BeatOff(SyncRule):
@@ -62,7 +62,7 @@ class BeatOff(SyncRule):
             return None
         side = "after" if sync.bias_ms > 0 else "before"
         change = f"change #OFFSET by {-sync.bias_ms / 1000:+.3f}, or as much the other way"
-        return f"half a beat off: the music is {abs(sync.bias_ms):.1f} ms {side} the beats; {change}"
+        return f"the music is {abs(sync.bias_ms):.1f} ms {side} the beats, about half a beat; {change}"
 
 
 _KINDS = {"null": "null", "itg": "ITG"}
@@ -89,7 +89,7 @@ class MixedSync(PackRule):
         more = f" and {len(kinds[rarer]) - _LISTED} more" if len(kinds[rarer]) > _LISTED else ""
         listed = f"{', '.join(kinds[rarer][:_LISTED])}{more}"
         many, few = (_count(len(kinds[kind]), _KINDS[kind]) for kind in (usual, rarer))
-        return f"mixed sync: {many} sync, {few} sync: {listed}"
+        return f"{many} sync, {few} sync: {listed}"
 
 
 def _count(count: int, kind: str) -> str:

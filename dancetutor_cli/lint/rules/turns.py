@@ -65,7 +65,7 @@ class Spin(MoveRule):
     fixed_by_moves = True
     unwanted_move = "spin"
     move = "spin"
-    description = "spin: the pattern turns the dancer past 180 degrees, unless a foot doublesteps"
+    description = "the pattern turns the dancer past 180 degrees, unless a foot doublesteps"
     times = "spin"
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
@@ -201,7 +201,7 @@ class JumpSpin(ChartRule):
         """One finding for each spin that ends in a jump."""
         for row in subject.rows_with("spin"):
             if subject.is_jump(row):
-                yield self.finding("spin in a jump: the body turns past 180 degrees", subject.at_row(row))
+                yield self.finding("the body turns past 180 degrees in this jump", subject.at_row(row))
 
 
 class HalfTurn(ChartRule):
@@ -236,7 +236,7 @@ class HalfTurn(ChartRule):
         for row in subject.facts.half_turns() if subject.facts else ():
             if subject.pause(row) <= self.options["max_seconds"] + EPSILON:
                 yield self.finding(
-                    f"half turn: the body turns by 180 degrees at once{_landing(subject, row)}", subject.at_row(row)
+                    f"the body turns by 180 degrees at once{_landing(subject, row)}", subject.at_row(row)
                 )
 
 
@@ -252,4 +252,4 @@ def _landing(subject: ChartSubject, row: int) -> str:
         return ""
     way = "in front of" if ahead[foot] > ahead[1 - foot] else "behind"
     one, other = ("left", "right")[foot], ("right", "left")[foot]
-    return f": the {one} foot lands {way} the {other} one"
+    return f", and the {one} foot lands {way} the {other} one"

@@ -26,7 +26,7 @@ class NoPad(ChartRule):
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding if there is no play."""
         if subject.play is None:
-            message = f"steps type '{subject.chart.steps_type}' has no pad: no feet"
+            message = f"configs/pads.yaml has no steps type '{subject.chart.steps_type}', so its feet are not known"
             yield self.finding(message, subject.at_chart())
 
 
@@ -85,7 +85,7 @@ class EitherFoot(ChartRule):
             if (begins or not resolved) and not subject.is_jump(row):
                 after = "the feet after it are the same" if resolved else "the feet after it depend on this choice"
                 what = "to begin with" if begins else "on this step"
-                yield self.finding(f"either foot: both feet are equally good {what}; {after}", subject.at_row(row))
+                yield self.finding(f"both feet are equally good {what}; {after}", subject.at_row(row))
 
 
 class UnsureFeet(ChartRule):
@@ -124,9 +124,9 @@ class UnsureFeet(ChartRule):
         for rows in passages[: int(self.options["most"])]:
             row, least = min(rows, key=lambda one: one[1])
             if len(rows) == 1:
-                message = f"the solver is only {least:.0%} sure of the feet in this row".replace("%", " %")
+                message = f"the solver is only {least:.0%} sure of this row".replace("%", " %")
             else:
                 at, first, last = (round(subject.beat(one), 3) for one in (row, rows[0][0], rows[-1][0]))
-                message = f"the solver is unsure of {len(rows)} rows, beats {first:g} to {last:g}: only "
-                message += f"{least:.0%} sure on beat {at:g}".replace("%", " %")
+                message = f"{len(rows)} rows from beat {first:g} to {last:g}; the solver is only "
+                message += f"{least:.0%} sure of beat {at:g}".replace("%", " %")
             yield self.finding(message, subject.at_row(rows[0][0]))

@@ -104,7 +104,7 @@ export function findingsPanel(app) {
     const box = el("input", { type: "checkbox", "aria-label": t("tickOff", { rule: one.rule, place: one.beat === null ? "" : placeOf(t, one.beat) }) });
     box.checked = app.notes.ticked.includes(key);
     const go = el("button", {
-      type: "button", class: "card", title: `${one.rule}: ${one.message}`, disabled: one.second === null,
+      type: "button", class: "card", title: `${one.rule} ${one.name.replaceAll("-", " ")}: ${one.message}`, disabled: one.second === null,
       onclick: () => { app.transport.pause(); app.seek(one.second ?? 0); },
     },
       el("strong", {}, el("span", { class: "sign-of" }, SIGNS[/** @type {keyof typeof SIGNS} */ (one.severity)] ?? ""),
