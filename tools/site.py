@@ -18,7 +18,7 @@ import click
 
 from dancetutor_cli.commands import COMMANDS
 from dancetutor_cli.lint.rule import all_rules
-from dancetutor_cli.reports.text_report import explain
+from dancetutor_cli.reports.rule_pages import explain
 
 ROOT = Path(__file__).resolve().parent.parent
 TOP = {"README.md": "index.md", "CHANGELOG.md": "CHANGELOG.md", "CONTRIBUTING.md": "CONTRIBUTING.md"}

@@ -47,7 +47,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     if value is None or context.resilient_parsing:
         return
     from dancetutor_cli.lint.rule import rule_named
-    from dancetutor_cli.reports.text_report import explain, explain_all
+    from dancetutor_cli.reports.rule_pages import explain, explain_all
 
     click.echo(explain_all() if value.lower() == "all" else explain(rule_named(value)), nl=False)
     context.exit()

@@ -23,6 +23,8 @@ _SONG = 2  # files that are one song: its .sm and its .ssc
 _MOST_UNREADABLE = 8
 _PAGE = 60  # lines of a pack
 _PLACES = 6  # of a rule in a chart
+_LEAST = 20  # characters of a path that are shown
+_BLANK = "\0"  # one at which no line is cut
 _ALIKE = 3  # lines of one rule that become one
 
 
@@ -124,23 +126,19 @@ class BriefReport(Report):
         for entry in self._entries:
             rules[entry.first.rule].append(entry)
         ranked = sorted(rules.values(), key=lambda all_: (min(one.order[0] for one in all_), -_sum(all_)))
-        blocks: list[list[str]] = []
-        each = 2 if len(ranked) * 5 <= page - len(lines) else 1
-        for found in ranked:
+        shown_of_rules: list[tuple[str, tuple[str, ...]]] = []
+        each = 2 if len(ranked) * 3 <= page - len(lines) else 1
+        for found in ranked[: max(1, (page - len(lines) - 2) // (each + 1))]:
             first = min(found, key=lambda one: one.order)
             rule = self._paint(f"{first.first.rule} {first.first.name}", STYLES[first.first.severity])
             charts = len({(one.path, one.chart and one.chart.index) for one in found})
             what = "file" if first.chart is None else "chart"
             such = ", such as" if len(found) > each else ":"
-            block = [f"{rule}: {plural(_sum(found), 'finding')} in {plural(charts, what)}{such}"]
+            found_in = f"{plural(_sum(found), 'finding')} in {plural(charts, what)}"
+            shown_of_rules.append((f"{rule}: {found_in}{such}", ()))
             for one in sorted(found, key=lambda x: x.order)[:each]:
-                head = self._cut(f"  {self._name(one.path)}:{one.first.line or 1}: {_where(one)}")
-                block += [head, *self._message(one)]
-            blocks.append(block)
-        room = page - len(lines) - 2
-        for block in blocks[:1] + [one for n, one in enumerate(blocks) if n and sum(map(len, blocks[: n + 1])) <= room]:
-            lines += block
-        return [*lines, "", _HINT]
+                shown_of_rules.append((f"  {self._place(one)}", self._message(one) if one.chart else ()))
+        return [*lines, *self._with_messages(shown_of_rules, page - len(lines) - 2), "", _HINT]
 
     def _listed(self, room: int) -> list[str]:
         kinds: dict[tuple[str, str], list[_Entry]] = defaultdict(list)
@@ -150,17 +148,22 @@ class BriefReport(Report):
         if not found:
             return []
         shown = found[: max(4, room - 3)]
-        free = room - 3 - len(shown)
-        lines = [""]
-        for head, message in shown:
-            lines.append(self._cut(head))
+        lines = self._with_messages(shown, room - 3)
+        return ["", *lines, *_more(len(found) - len(shown), "such lines"), _HINT]
+
+    def _with_messages(self, found: Sequence[tuple[str, tuple[str, ...]]], room: int) -> list[str]:
+        """Each line, and below it the lines of its message, as far as there is room."""
+        lines: list[str] = []
+        free = room - len(found)
+        for line, message in found:
+            lines.append(self._cut(line))
             if len(message) <= free:
                 lines += message
                 free -= len(message)
-        return [*lines, *_more(len(found) - len(shown), "such lines"), _HINT]
+        return lines
 
     def _kind_lines(self, entries: Sequence[_Entry]) -> list[tuple[str, tuple[str, ...]]]:
-        """What is found of a rule in the charts of a song: a line for each, three and more in one; lines of a message."""
+        """What is found of a rule in the charts of a song: a line and its message for each; three and more in one."""
         lines = list(dict.fromkeys((f"{self._rule(one)}: {_where(one)}", self._message(one)) for one in entries))
         if len(lines) < _ALIKE:
             return lines
@@ -168,7 +171,7 @@ class BriefReport(Report):
         own = {(e.chart and e.chart.label, tuple(f.beat for f in e.findings)): len(e.findings) for e in entries}
         labels = list(dict.fromkeys(entry.chart.label if entry.chart else "" for entry in entries))
         first = entries[0].first
-        where = "" if first.measure is None else f", first in measure {first.measure} of {safe(labels[0])}"
+        where = "" if first.measure is None else f", first: measure {first.measure} of {safe(labels[0])}"
         return [(f"{self._rule(entries[0])}: {sum(own.values())} in {plural(len(labels), 'chart')}{where}", ())]
 
     def _name(self, path: str) -> str:
@@ -184,12 +187,29 @@ class BriefReport(Report):
             return ()
         indent = " " * 4
         width = max(self._width, 40)
-        return tuple(textwrap.wrap(safe(entry.first.message), width, initial_indent=indent, subsequent_indent=indent))
+        text = safe(entry.first.message)
+        return tuple(
+            textwrap.wrap(text, width, initial_indent=indent, subsequent_indent=indent, break_on_hyphens=False)
+        )
+
+    def _place(self, entry: _Entry) -> str:
+        """ "Pack/Song/song.ssc:12: 2 in dance-single Hard 9, measures 4 and 18"; of a long path the end.
+
+        A single finding about a file has its message there.
+        """
+        alone = entry.chart is None and len(entry.findings) == 1
+        where = f":{entry.first.line or 1}: {safe(entry.first.message) if alone else _where(entry)}"
+        path, room = self._name(entry.path), max(self._width - len(where) - 2, 2 * _LEAST)
+        return (path if len(path) <= room else f"…{path[1 - room :]}") + where
 
     def _cut(self, line: str) -> str:
-        """As much of a line as the terminal is wide; colours take no room."""
+        """As many words of a line as the terminal is wide; colours take no room."""
         plain = len(_COLOUR.sub("", line))
-        return line if plain <= self._width else line[: self._width - 1 + len(line) - plain] + "…"
+        if plain > self._width:
+            line = line[: self._width - 1 + len(line) - plain]
+            words, _, rest = line.rpartition(" ")
+            line = f"{words} …" if words.strip() and len(rest) < _LEAST else f"{line}…"
+        return line.replace(_BLANK, " ")
 
 
 _HINT = "--full: findings with rows; --statistics: count by rule; --format json: all data"
@@ -207,14 +227,14 @@ def _head(widest: int, charts: Sequence[ChartResult]) -> str:
     """The names of the columns of `_counts`, and what a "?" in them means."""
     guess = any(chart.estimate and not chart.estimate.is_scale_known for chart in charts)
     names = f"{'':{widest + 2}}  plays like  scores like   rows"
-    return f"{names}  (? = the scale is a guess)" if guess else names
+    return f"{names}  (? = guessed scale)" if guess else names
 
 
 def _counts(chart: ChartResult, widest: int) -> str:
     """The line of a chart in a table whose names are `widest` characters wide."""
     found = [sum(f.severity == severity for f in chart.findings) for severity in ("error", "warning")]
     words = [plural(n, name) for n, name in zip(found, ("error", "warning"), strict=True) if n]
-    counted = [plural(n, name) for move, name in _MOVES.items() if (n := chart.counts.get(move))]
+    counted = [plural(n, name).replace(" ", _BLANK) for move, name in _MOVES.items() if (n := chart.counts.get(move))]
     plays, scores = chart.estimate.short if chart.estimate else "", chart.score.short if chart.score else ""
     plays += "" if plays.endswith("?") else " "  # so that digits stand below digits
     rows = str(chart.row_count) if chart.playable else "no pad"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import json
 from collections.abc import Iterable
 from pathlib import PurePath
@@ -16,6 +15,7 @@ from dancetutor_cli.lint.rule import FAMILIES, Rule, all_rules
 from dancetutor_cli.lint.rule_settings import default_rules
 from dancetutor_cli.reports.analyze_formats import Output, Report
 from dancetutor_cli.reports.data_formats import Entry, entries, relative
+from dancetutor_cli.reports.rule_pages import documentation
 from dancetutor_cli.reports.tally import Tally
 from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.foreign_text import json_without_commands, write_command, xml_without_commands
@@ -87,7 +87,7 @@ def uri(path: str) -> str:
 
 
 def _rule(rule: type[Rule]) -> dict[str, Any]:
-    text = inspect.cleandoc(rule.__doc__ or "")
+    text = documentation(rule)
     severity = default_rules()[rule.code]["severity"]
     return {
         "id": rule.code,

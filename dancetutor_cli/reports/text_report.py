@@ -1,8 +1,7 @@
-"""`--format text`: per chart a table and its findings with rows drawn beside them; a rule explained."""
+"""`--format text`: per chart a table and its findings with rows drawn beside them."""
 
 from __future__ import annotations
 
-import inspect
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
@@ -11,8 +10,6 @@ from typing import NamedTuple
 from dancetutor_cli.feet.limbs import hex_colour, limb_colours
 from dancetutor_cli.lint.findings import ExcerptRow, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
-from dancetutor_cli.lint.rule import BY_METER, FAMILIES, Rule, TimedRule, all_rules
-from dancetutor_cli.lint.rule_settings import default_rules, default_severity, described
 from dancetutor_cli.reports.analyze_formats import Output, Report
 from dancetutor_cli.reports.moments import moment
 from dancetutor_cli.reports.tally import Tally
@@ -283,42 +280,3 @@ class TextReport(LineReport):
 def _cut(letters: str) -> str:
     rows = letters.split(" ")
     return " ".join(rows[:_MOST_LETTERS]) + (f" ... ({len(rows)} rows)" if len(rows) > _MOST_LETTERS else "")
-
-
-# `--explain`: the documentation of a rule, from its docstring, with its severity and options.
-
-
-def explain(rule: type[Rule]) -> str:
-    """What a rule finds, how its bad and its better pattern look, and how it is set."""
-    settings = dict(default_rules()[rule.code])
-    del settings["severity"]
-    lines = [
-        f"{rule.code} {rule.name} ({FAMILIES[int(rule.code[2])]}, {default_severity(rule.code)})",
-        "",
-        inspect.getdoc(rule) or "",
-    ]
-    if settings:
-        lines += ["", "Options: " + ", ".join(f"{name} = {value}" for name, value in settings.items())]
-    if issubclass(rule, TimedRule) and settings.get("max_seconds") == BY_METER:
-        share = settings["share"]
-        lines += [
-            "",
-            f"The slowest {rule.times} that is reported, by meter (at most {share:g} % of the charts are as quick):",
-        ]
-        lines += [f"  {line}" for line in described(rule.times, share, rule.slowest)]
-    return "\n".join(lines) + "\n"
-
-
-def explain_all() -> str:
-    """One line for each rule: code, name, severity, first sentence."""
-    lines: list[str] = []
-    family = ""
-    for code, rule in all_rules().items():
-        if FAMILIES[int(code[2])] != family:
-            family = FAMILIES[int(code[2])]
-            lines.append(f"{'' if not lines else chr(10)}{family}")
-        summary = (inspect.getdoc(rule) or "").splitlines()[0]
-        severity, more, _ = default_severity(code).partition(";")
-        lines.append(f"  {code} {rule.name:22} {severity + '*' * len(more):8} {summary}")
-    lines += ["", "* different for some charts; --explain RULE lists them"]
-    return "\n".join(lines) + "\n"

@@ -84,7 +84,13 @@ def test_measures_without_the_mark_are_no_overrides() -> None:
         (b"(RR)", b"1001\n", "feet-far", "the right foot cannot be on columns 1 and 4 at once", 12),
         (b"(LL)", b"1100\n", "feet-twice", "the left foot is named twice", 12),
         (b"(<<)", b"1100\n", "feet-twice", "the left hand is named twice", 12),
-        (b"LL", b"2000\n0001\n3000\n0000\n", "feet-far", "cannot step on column 4 while it is on a hold", 11),
+        (
+            b"LL",
+            b"2000\n0001\n3000\n0000\n",
+            "feet-far",
+            "cannot step on column 4 while it is on a hold in column 1",
+            11,
+        ),
     ],
 )
 def test_contradictions_have_a_line_and_a_column(pin: bytes, rows: bytes, code: str, words: str, column: int) -> None:

@@ -66,7 +66,7 @@ def test_the_rule_names_the_least_sure_passages(song: Path, monkeypatch: pytest.
     knows(monkeypatch, SURE)
     found = chart_of(song)["findings"]
     assert [(one["rule"], one["severity"], one["beat"]) for one in found] == [("DT213", "info", 0.0)]
-    assert found[0]["message"] == "the solver is unsure of 4 rows, beats 0 to 3.5: only 0 % sure on beat 3.5"
+    assert found[0]["message"] == "4 rows from beat 0 to 3.5; the solver is only 0 % sure of beat 3.5"
 
 
 def test_the_sheet_marks_them(song: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -96,7 +96,7 @@ def test_the_cause_of_a_doublestep_is_printed() -> None:
     words = [str(DEMO), "--difficulty", "hard", "--steps-type", "dance-single", "--select", "DT201", "--full"]
     told = [CliRunner().invoke(command, [*words, *more], standalone_mode=False).stdout for more in ((), ("--suggest",))]
     forced = [line for line in told[1].splitlines() if line.startswith("forced doublestep")]
-    assert "forced doublestep on beat 21, by the hold of beat 20 ←" in forced
+    assert "forced doublestep on beat 21: the other foot is on the hold from beat 20 ←" in forced
     assert "forced doublestep on" not in told[0]
 
 

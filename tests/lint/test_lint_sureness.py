@@ -53,8 +53,8 @@ def test_a_coin_toss_is_an_ambiguity(margins: list[int]) -> None:  # of its row,
     (finding,) = found(margins)
     assert (finding.rule, finding.name, finding.severity) == ("DT207", "either-foot", "info")
     assert finding.message == (
-        "either foot: both feet are equally good here; with the feet shown, "
-        "the right foot doublesteps although the other foot is free"
+        "both feet are equally good here; with the feet shown, "
+        "the right foot steps twice although the other foot is free"
     )
 
 
@@ -69,7 +69,7 @@ def test_an_ambiguity_is_reported_once_in_a_row() -> None:
 def test_a_coin_toss_without_the_rule_for_it_is_an_info() -> None:
     (finding,) = found([SURE, SURE, 0, SURE, SURE, SURE, SURE], only="DT201")
     assert (finding.rule, finding.severity) == ("DT201", "info")
-    assert finding.message.startswith("either foot: both feet are equally good here")
+    assert finding.message.startswith("both feet are equally good here")
 
 
 @pytest.mark.parametrize("rule", ["DT201", "DT207"])

@@ -10,7 +10,7 @@ from dancetutor_cli.lint import rule_settings
 from dancetutor_cli.lint.configuration import load_configuration, with_assignments
 from dancetutor_cli.lint.rule import BY_METER, TimedRule, all_rules
 from dancetutor_cli.lint.rule_settings import default_rules
-from dancetutor_cli.reports.text_report import explain
+from dancetutor_cli.reports.rule_pages import explain
 from dancetutor_cli.run.errors import UsageError
 
 TIMED = [code for code, options in default_rules().items() if options.get("max_seconds") == BY_METER]

@@ -39,7 +39,7 @@ def test_text_has_the_terms() -> None:
 
 def test_the_brief_form_has_the_number_alone() -> None:
     assert "plays like" in printed("--brief")
-    assert "to score on" in printed("--brief")
+    assert "scores like" in printed("--brief")
     assert "streams +" not in printed("--brief", "--select", "DT501")
 
 

@@ -33,8 +33,8 @@ def shape_figures(body: Body, skeleton: Skeleton) -> tuple[tuple[Figure, ...], t
     for degrees in beyond.values():
         frames |= degrees > PAST
     notes = tuple(
-        f"{_named(name)} is past its limit in {int((d > PAST).sum())} frames, by {d.max():.1f} degrees at most, first at "
-        f"{body.times[np.argmax(d > PAST)]:.2f} s"
+        f"{_named(name)} is past its limit in {int((d > PAST).sum())} frames, by {d.max():.1f} degrees at most, "
+        f"first at {body.times[np.argmax(d > PAST)]:.2f} s"
         for name, d in beyond.items()
     )
     figures = (

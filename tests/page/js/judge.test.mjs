@@ -209,8 +209,8 @@ test("the figures of a finding are shown in another language too", () => {
   const words = wordsOf("de");
   const t = (name, values = {}) => fillIn(words[name] ?? name, values, words.decimal);
   const figures = (message) => findingFigures(t, { message });
-  assert.equal(figures("the solver is unsure of 2 rows, beats 49 to 49.5: only 50 % sure on beat 49"), "(50 % sicher)");
-  assert.equal(figures("the solver is only 55 % sure of the feet in this row"), "(55 % sicher)");
+  assert.equal(figures("2 rows from beat 49 to 49.5; the solver is only 50 % sure of beat 49"), "(50 % sicher)");
+  assert.equal(figures("the solver is only 55 % sure of this row"), "(55 % sicher)");
   assert.equal(figures("the left foot has to travel 1.5 panel widths in 120 ms"), "(1,5 Felder in 120 ms)");
   assert.equal(figures("the chart lasts 95.3 s, not 100 to 150 s"), "(95,3 s statt 100 bis 150 s)");
   assert.equal(figures("8 rows 45 ms apart: too quick for feet"), "(8 Reihen, 45 ms auseinander)");
