@@ -83,11 +83,10 @@ def _head(code: str, match: re.Match[str], heads: list[str]) -> str:
     """ "Bad, if max_seconds is set to 0.6 s:" of "Bad (max_seconds = 0.6):"; not twice of both patterns."""
     if match[1] == "Better" and heads[0] == match[2]:
         return "Better:"
-    said = [f"{name} is set to {_with_unit(code, name, value)}" for name, value in _OPTION.findall(match[2])]
+    *said, last = (f"{name} is set to {_with_unit(code, name, value)}" for name, value in _OPTION.findall(match[2]))
+    said = [", ".join(said), last] if said else [last]
     spacing = _SPACING if "seconds" in match[2] else ""
-    return textwrap.fill(
-        f"{match[1]}, if {' and '.join(filter(None, (', '.join(said[:-1]), said[-1])))}{spacing}:", _WIDTH
-    )
+    return textwrap.fill(f"{match[1]}, if {' and '.join(said)}{spacing}:", _WIDTH)
 
 
 def _value(code: str, name: str, value: Any) -> str:

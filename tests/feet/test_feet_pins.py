@@ -88,7 +88,7 @@ def test_measures_without_the_mark_are_no_overrides() -> None:
             b"LL",
             b"2000\n0001\n3000\n0000\n",
             "feet-far",
-            "cannot step on column 4 while it is on a hold in column 1",
+            "column 4 while it is on a hold in column 1",
             11,
         ),
     ],

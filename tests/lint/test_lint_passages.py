@@ -75,7 +75,7 @@ def test_a_section_can_be_the_hardest_passage(song: Song) -> None:
     check_part("hardest:1")
     part = part_of("Hardest:2", song, chart, load_preset("itg"), 60.0)
     assert part == (found[1].start, found[1].end)
-    with pytest.raises(UsageError, match=rf"section hardest:99: the chart has only {len(found)} passages"):
+    with pytest.raises(UsageError, match=rf"section hardest:99: the chart has only {len(found)} hard passages: write "):
         part_of("hardest:99", song, chart, load_preset("itg"), 60.0)
     with pytest.raises(UsageError, match="cannot be read"):
         check_part("hardest:x")

@@ -124,3 +124,24 @@ def test_a_terminal_gets_the_screen() -> None:
     started.wait(60)
     lines = text.decode().splitlines()
     assert len(lines) <= 24 and "--full" in lines[-2]
+
+
+def test_no_line_is_wider_than_the_terminal_or_ends_within_a_word(pack: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    for path in (SONG, SONG / "two_left_feet.ssc", pack):
+        lines = run("--brief", path, "--sync").stdout.splitlines()
+        assert max(map(len, lines)) <= 80
+        assert not [line for line in lines if re.search(r"[a-z]…$", line)]
+
+
+def test_a_single_finding_has_its_message_in_full(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    lines = run("--brief", SONG / "two_left_feet.ssc", "--select", "DT509,DT213", "--index", "4").stdout.splitlines()
+    at = next(n for n, line in enumerate(lines) if line.startswith("DT509"))
+    (data,) = json.loads(run("--format", "json", SONG / "two_left_feet.ssc", "--select", "DT509").stdout)["files"]
+    (found,) = [one for chart in data["charts"] for one in chart["findings"]]
+    assert lines[at] == "DT509 meter-off: 1 in dance-single Challenge 11"
+    assert " ".join(line.strip() for line in lines[at + 1 : at + 3]) == found["message"]
+    assert any(
+        re.fullmatch(r"DT213 unsure-feet: 2 in dance-single Challenge 11, measures \d+ and \d+", x) for x in lines
+    )

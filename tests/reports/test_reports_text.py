@@ -9,11 +9,13 @@ import sys
 from dataclasses import replace
 
 import pytest
+from click.testing import CliRunner
 from rich import box
 from rich.color import ColorSystem
 from rich.console import Console
 from rich.table import Table
 
+from dancetutor_cli.commands import cli
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.reports import text_report
@@ -22,6 +24,7 @@ from dancetutor_cli.reports.moments import clock
 from dancetutor_cli.reports.tally import Tally
 from dancetutor_cli.reports.terminal import Terminal, terminal_of
 from dancetutor_cli.reports.text_report import TextReport, chart_table
+from dancetutor_cli.run.reading import charts_path
 
 FINDING = Finding("DT201", "doublestep", "warning", "twice", 133, 2, 1, 16.0, 4, 7.512, 12, 0)
 CHART = ChartResult(
@@ -48,14 +51,17 @@ def printed(*results: FileResult, stream: io.StringIO | None = None) -> tuple[st
 
 def test_a_finding_is_one_line_in_lint_form() -> None:
     out, _ = printed(FILE)
-    assert "charts/x.ssc:133:2 DT201 twice [dance-single Hard 8] measure 4 beat 16 0:07.512" in out.splitlines()
+    assert (
+        "charts/x.ssc:133:2 DT201 doublestep: twice [dance-single Hard 8] measure 4 beat 16 0:07.512"
+        in out.splitlines()
+    )
     assert out.splitlines()[-1] == "1 file, 1 chart: 1 warning"
 
 
 def test_a_finding_about_the_file_has_no_chart() -> None:
     about_file = Finding("DT104", "odd-tag", "warning", "strange offset", 3, 1)
     out, _ = printed(replace(FILE, findings=(about_file,), charts=()))
-    assert "charts/x.ssc:3:1 DT104 strange offset" in out.splitlines()
+    assert "charts/x.ssc:3:1 DT104 odd tag: strange offset" in out.splitlines()
 
 
 def test_numbers_of_the_table_stand_under_their_names() -> None:
@@ -165,3 +171,12 @@ def test_columns_that_most_charts_do_not_need_show_only_where_they_count() -> No
     header = lines[lines.index(values) - 2]
     assert values[: header.index("brackets") + len("brackets")].endswith(" 7")
     assert " 5 " in values
+
+
+@pytest.mark.parametrize("name", ["github", "gitlab", "sarif", "junit"])
+def test_formats_for_review_name_the_rule_once_beside_the_message(name: str) -> None:
+    song = charts_path() / "two_left_feet" / "two_left_feet.ssc"
+    said = CliRunner().invoke(cli, ["analyze", str(song), "--select", "DT509", "--format", name], standalone_mode=False)
+    message = "plays 2.7 levels easier than its meter 11, like 8.3 "
+    shown = {"github": "title=DT509 meter-off::", "gitlab": '"description": "'}.get(name, "meter off: ")
+    assert f"{shown}{message}" in said.stdout
