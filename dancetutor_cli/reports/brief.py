@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import shutil
 import textwrap
 from collections import defaultdict
@@ -14,17 +13,15 @@ from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.reports.analyze_formats import Output, Report
 from dancetutor_cli.reports.tally import Tally
-from dancetutor_cli.reports.terminal import safe, safe_path, terminal_of
+from dancetutor_cli.reports.terminal import FIXED_BLANK, cut, safe, safe_path, terminal_of
 from dancetutor_cli.reports.text_report import STYLES
 from dancetutor_cli.run.errors import plural
 
-_COLOUR = re.compile("\x1b\\[[0-9;]*m")
 _SONG = 2  # files that are one song: its .sm and its .ssc
 _MOST_UNREADABLE = 8
 _PAGE = 60  # lines of a pack
 _PLACES = 6  # of a rule in a chart
-_LEAST = 20  # characters of a path that are shown
-_BLANK = "\0"  # one at which no line is cut
+_LEAST = 28  # characters of a path that are shown
 _ALIKE = 3  # lines of one rule that become one
 
 
@@ -118,7 +115,8 @@ class BriefReport(Report):
         worst = [item for item in worst if any(item[1])]
         shown = worst[: page // 3]
         self._below = os.path.commonpath([os.path.dirname(path) for path in self._found])  # noqa: PTH120
-        lines = [self._paint(f"errors warnings  file below {safe_path(self._below or '.')}", "dim")] if shown else []
+        head = self._cut(f"errors warnings  file below {safe_path(self._below or '.')}")
+        lines = [self._paint(head, "dim")] if shown else []
         lines += [self._cut(f"{errors:6} {warnings:8}  {self._name(path)}") for path, (errors, warnings) in shown]
         lines += _more(len(worst) - len(shown), "files with errors or warnings")
         lines.append("")
@@ -199,17 +197,11 @@ class BriefReport(Report):
         """
         alone = entry.chart is None and len(entry.findings) == 1
         where = f":{entry.first.line or 1}: {safe(entry.first.message) if alone else _where(entry)}"
-        path, room = self._name(entry.path), max(self._width - len(where) - 2, 2 * _LEAST)
+        path, room = self._name(entry.path), max(self._width - len(where) - 2, _LEAST)
         return (path if len(path) <= room else f"…{path[1 - room :]}") + where
 
     def _cut(self, line: str) -> str:
-        """As many words of a line as the terminal is wide; colours take no room."""
-        plain = len(_COLOUR.sub("", line))
-        if plain > self._width:
-            line = line[: self._width - 1 + len(line) - plain]
-            words, _, rest = line.rpartition(" ")
-            line = f"{words} …" if words.strip() and len(rest) < _LEAST else f"{line}…"
-        return line.replace(_BLANK, " ")
+        return cut(line, self._width)
 
 
 _HINT = "--full: findings with rows; --statistics: count by rule; --format json: all data"
@@ -234,7 +226,9 @@ def _counts(chart: ChartResult, widest: int) -> str:
     """The line of a chart in a table whose names are `widest` characters wide."""
     found = [sum(f.severity == severity for f in chart.findings) for severity in ("error", "warning")]
     words = [plural(n, name) for n, name in zip(found, ("error", "warning"), strict=True) if n]
-    counted = [plural(n, name).replace(" ", _BLANK) for move, name in _MOVES.items() if (n := chart.counts.get(move))]
+    counted = [
+        plural(n, name).replace(" ", FIXED_BLANK) for move, name in _MOVES.items() if (n := chart.counts.get(move))
+    ]
     plays, scores = chart.estimate.short if chart.estimate else "", chart.score.short if chart.score else ""
     plays += "" if plays.endswith("?") else " "  # so that digits stand below digits
     rows = str(chart.row_count) if chart.playable else "no pad"

@@ -11,7 +11,7 @@ from pathlib import Path
 from dancetutor_cli.chart.pack_files import pack_folder, read_pack_ini
 from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
-from dancetutor_cli.reports.terminal import safe, safe_path
+from dancetutor_cli.reports.terminal import cut, safe, safe_path
 from dancetutor_cli.run.errors import plural
 
 # What a pack's charts are sorted by: name -> the moves that it is.
@@ -244,7 +244,7 @@ def pack_lines(pack: Pack, width: int) -> list[str]:
     lines.append(_by_technique(charts))
     lines += _listed("", pack.missing(), _MISSING)
     lines += _listed("stands out: ", pack.outliers(), _OUTLIERS)
-    return [line if len(line) <= width else line[: width - 1] + "…" for line in lines[:LINES]]
+    return [cut(line, width) for line in lines[:LINES]]
 
 
 def _meters_line(steps_type: str, charts: list[PackChart]) -> str:

@@ -255,3 +255,18 @@ class FilmProgress:
         if not self.fps or drawn < max(self.fps, ENOUGH * self.frames) or now <= self.began:
             return None
         return drawn / self.fps / (now - self.began)
+
+
+FIXED_BLANK = "\0"  # a blank at which `cut` does not end a line
+_COLOUR = re.compile("\x1b\\[[0-9;]*m")
+_LONGEST_WORD = 20
+
+
+def cut(line: str, width: int) -> str:
+    """As many words of a line as have room in `width` characters, colours aside. Long words, such as paths, are cut."""
+    plain = len(_COLOUR.sub("", line))
+    if plain > width:
+        line = line[: width - 1 + len(line) - plain]
+        words, _, rest = line.rpartition(" ")
+        line = f"{words} …" if words.strip() and len(rest) < _LONGEST_WORD else f"{line}…"
+    return line.replace(FIXED_BLANK, " ")

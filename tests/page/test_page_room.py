@@ -109,6 +109,5 @@ def test_findings_say_what_they_mean_before_the_names_of_rules(opened: Browser) 
     one = ".finding button"
     assert text(opened, f"{one} strong").lower().endswith("a note that never counts.")
     assert text(opened, f"{one} .figure").endswith("hidden note\u00a0·\u00a0DT402")  # no line of the rule alone
-    assert (
-        opened.run(f"document.querySelector('{one}').title").startswith("DT402 hidden note: ") and opened.problems == []
-    )
+    assert opened.run(f"document.querySelector('{one}').title").startswith("DT402 hidden note: ")
+    assert opened.problems == []

@@ -126,12 +126,13 @@ def test_a_terminal_gets_the_screen() -> None:
     assert len(lines) <= 24 and "--full" in lines[-2]
 
 
-def test_no_line_is_wider_than_the_terminal_or_ends_within_a_word(pack: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_lines_fit_the_terminal_and_end_with_a_word(pack: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(SONG)
     monkeypatch.setenv("COLUMNS", "80")
-    for path in (SONG, SONG / "two_left_feet.ssc", pack):
+    for path in (".", "two_left_feet.ssc", pack):
         lines = run("--brief", path, "--sync").stdout.splitlines()
         assert max(map(len, lines)) <= 80
-        assert not [line for line in lines if re.search(r"[a-z]…$", line)]
+        assert not [line for line in lines if re.search(r"\w…$", line)]
 
 
 def test_a_single_finding_has_its_message_in_full(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -142,6 +143,4 @@ def test_a_single_finding_has_its_message_in_full(monkeypatch: pytest.MonkeyPatc
     (found,) = [one for chart in data["charts"] for one in chart["findings"]]
     assert lines[at] == "DT509 meter-off: 1 in dance-single Challenge 11"
     assert " ".join(line.strip() for line in lines[at + 1 : at + 3]) == found["message"]
-    assert any(
-        re.fullmatch(r"DT213 unsure-feet: 2 in dance-single Challenge 11, measures \d+ and \d+", x) for x in lines
-    )
+    assert "DT213 unsure-feet: 3 in dance-single Challenge 11, measures 8, 11 and 18" in lines
