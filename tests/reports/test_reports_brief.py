@@ -127,9 +127,9 @@ def test_a_terminal_gets_the_screen() -> None:
 
 
 def test_lines_fit_the_terminal_and_end_with_a_word(pack: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(SONG)
     monkeypatch.setenv("COLUMNS", "80")
-    for path in (".", "two_left_feet.ssc", pack):
+    for folder, path in ((SONG, "."), (SONG, "two_left_feet.ssc"), (pack.parent, "pack")):
+        monkeypatch.chdir(folder)
         lines = run("--brief", path, "--sync").stdout.splitlines()
         assert max(map(len, lines)) <= 80
         assert not [line for line in lines if re.search(r"\w…$", line)]
