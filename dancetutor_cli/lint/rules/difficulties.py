@@ -43,7 +43,7 @@ class SameNotes(FileRule):
             parts = (notes.tick, notes.column, notes.kind, notes.end, notes.judged)
             key = (chart.steps_type, chart.timing, *(part.tobytes() for part in parts))
             if key in first:
-                message = f"{chart.label} has those of {first[key]}"
+                message = f"{chart.label} has the notes of {first[key]}"
                 yield self.finding(message, subject.place(chart.line), chart=chart.index)
             first.setdefault(key, chart.label)
 

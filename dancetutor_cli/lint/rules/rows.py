@@ -101,7 +101,7 @@ class HiddenNote(ChartRule):
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each run of such notes, at its first."""
         for tick, line, count in subject.notes.unjudged():
-            what = "inside" if count == 1 else f"{count} notes inside"
+            what = "this note is inside" if count == 1 else f"{count} notes are inside"
             yield self.finding(f"{what} a warp or a fake segment, where nothing counts", subject.at_tick(tick, line))
 
 
