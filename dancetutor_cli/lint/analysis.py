@@ -1,4 +1,4 @@
-"""The piece of work of `analyze`: one file in, one `FileResult` out; a failure is part of the result."""
+"""The unit of work of `analyze`: one file in, one `FileResult` out; a failure is part of the result."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def chart_result(subject: ChartSubject, task: AnalyzeTask) -> ChartResult:
-    """The results for a chart that a task asks for."""
+    """Return the results for a chart, with the parts that the task asks for."""
     from dancetutor_cli.chart.hash import chart_hash
     from dancetutor_cli.lint.figures import arrows, with_excerpts
 
@@ -68,8 +68,9 @@ def _rows(subject: ChartSubject) -> str:
 def _findings(
     subject: ChartSubject, task: AnalyzeTask, preset: Preset
 ) -> tuple[tuple[Finding, ...], tuple[Cause, ...] | None]:
-    """The findings of the linter; causes of doublesteps and suggestions only if they are wanted, because they take
-    long.
+    """Return the findings of the linter and the causes of doublesteps.
+
+    Causes and suggestions are found only if the task wants them, because they take long.
     """
     findings, causes = check_chart(subject, task.settings), None
     if task.want_rows or task.suggest:
@@ -112,19 +113,19 @@ def _ambiguous(subject: ChartSubject) -> Iterator[tuple[float, str]]:
             yield round(int(play.rows.tick[row]) / TICKS_PER_BEAT, 6), kind
 
 
-_ROWS = 16_000  # of charts that are looked at together; some more, so that no chart stands alone
-_CHART = 50  # rows that a chart counts for, however short
-_OTHERS = 20  # charts of a file that are solved only because they give the scale of its meters
+_ROWS = 16_000  # rows of charts that are checked together; the last chart may exceed it
+_CHART = 50  # rows that each chart counts in addition to its own
+_OTHERS = 20  # most charts of a file that are solved only to find the scale of its meters
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ResultOptions:
-    """What the results of a run contain besides findings. All of it except `want_rows` is part of a kept result's key.
+    """The parts of a run's results besides findings. All fields except `want_rows` are part of a kept result's key.
 
-    want_rows : every row, for JSON; want_figures : densities and technical steps, for CSV
-    want_excerpts : the rows around each finding, for text; suggest : the edit that would remove it
-    alternatives : how many other plays
-    meter_scale, rate : the scale that meters are estimated on, and how fast the music plays for that
+    want_rows : include every row, for JSON; want_figures : include densities and technical steps, for CSV
+    want_excerpts : include the rows around each finding, for text; suggest : include the edit that would remove it
+    alternatives : how many other plays to include
+    meter_scale, rate : the scale on which meters are estimated, and the speed of the music for that estimate
     """
 
     want_rows: bool = False
@@ -136,16 +137,16 @@ class ResultOptions:
     rate: float = 1.0
 
     def options(self) -> dict[str, Any]:
-        """These fields alone, of whatever else has them."""
+        """Return the fields of this class alone, by name, also for a subclass with more fields."""
         return {one.name: getattr(self, one.name) for one in fields(ResultOptions)}
 
 
 @dataclass(frozen=True, slots=True)
 class AnalyzeTask(ResultOptions):
-    """What to do with one file. Pickles, so that another process can do it.
+    """The work to do on one file. It pickles, so that another process can do it.
 
     presets : which cost preset each chart gets
-    data : the bytes to read in place of the file's, for standard input
+    data : the bytes to read instead of the file, for standard input
     """
 
     path: Path
@@ -161,10 +162,10 @@ def analyze_file(task: AnalyzeTask) -> FileResult:
 
 
 def analyze_files(tasks: Iterable[AnalyzeTask]) -> Iterator[FileResult]:
-    """Read, solve and lint files, in order; charts of several are looked at together.
+    """Read, solve and lint files in order; the charts of several files are checked together.
 
-    Never raises for what is wrong with a chart file: that is `error` in its result. FileError if dancetutor.yaml cannot
-    be read, after the results of the files before.
+    A fault of a chart file never raises: it is the `error` of the file's result. FileError if dancetutor.yaml cannot be
+    read, after the results of the files before.
     """
     window = _Window()
     for task in tasks:
@@ -175,12 +176,15 @@ def analyze_files(tasks: Iterable[AnalyzeTask]) -> Iterator[FileResult]:
             raise
         if window.is_full:
             yield from window.results()
-            freeze_objects()  # everything that is needed is imported
+            freeze_objects()  # by now all modules are imported
     yield from window.results()
 
 
 class _Window:
-    """Files whose charts wait to be checked together: most charts have few rows, and each question has a fixed cost."""
+    """Files whose charts wait to be checked together.
+
+    Most charts have few rows, and each array operation has a fixed cost.
+    """
 
     def __init__(self) -> None:
         self._files: list[_File] = []
@@ -192,7 +196,7 @@ class _Window:
         return self._rows >= _ROWS
 
     def add(self, file: _File) -> None:
-        """Solve the charts of a file. One that fails leaves the window as it was."""
+        """Solve the charts of a file. A file that fails leaves the window as it was."""
         before = len(self._waiting), self._rows
         try:
             for subject in file.solved():
@@ -208,7 +212,7 @@ class _Window:
         self._files.append(file)
 
     def results(self) -> Iterator[FileResult]:
-        """The results of all files that have been added since the last time."""
+        """Yield the results of all files that were added since the last call."""
         self._look()
         files, self._files = self._files, []
         for file in files:
@@ -222,14 +226,14 @@ class _Window:
         for file, subject in waiting:
             try:
                 file.add(subject)
-            except Exception:  # only the files before are reported: of others some charts are missing
+            except Exception:  # only the files before this one are reported: the others lack some charts
                 if file in self._files:
                     del self._files[self._files.index(file) :]
                 raise
 
 
 class _File:
-    """A file on its way from its task to its result."""
+    """A file whose result is not complete yet."""
 
     def __init__(self, task: AnalyzeTask) -> None:
         self._task = task
@@ -248,16 +252,16 @@ class _File:
             self._meters = Meters(self._song, task.settings)
 
     def solved(self) -> Iterator[ChartSubject]:
-        """The charts that are asked for, one by one."""
+        """Return the selected charts, solved one by one."""
         return iter(()) if self._failed else solved(self._song, self._selected, self._task)
 
     def add(self, subject: ChartSubject) -> None:
-        """Take down what is reported of one of them."""
+        """Keep the results for one of the selected charts."""
         self._charts.append(chart_result(subject, self._task))
         self._meters.add(subject, self._task.rate)
 
     def result(self) -> FileResult:
-        """What is reported of the file."""
+        """Return the result of the file."""
         if self._failed:
             return self._failed
         from dancetutor_cli.lint.subject import FileSubject
@@ -282,7 +286,7 @@ class _File:
         )
 
     def _with_meters(self) -> tuple[ChartResult, ...]:
-        """The charts with the results that need all of them: the scale of the meters."""
+        """Return the charts with their meters. The scale of the meters depends on all charts of the file."""
         task = self._task
         for subject in _others(self._song, self._selected, task, self._meters):
             self._meters.add(subject, task.rate)
@@ -296,8 +300,9 @@ def _with_report(chart: ChartResult, report: MeterReport) -> ChartResult:
 
 
 def _others(song: Song, selected: tuple[Chart, ...], task: AnalyzeTask, meters: Meters) -> Iterator[ChartSubject]:
-    """Charts that were not asked for but are solved: a chart must play like the same meter, whichever charts are asked
-    for.
+    """Yield charts that are not selected but are solved for the scale of the meters.
+
+    The estimate of a chart's meter must not depend on the selection.
     """
     from dancetutor_cli.lint.subject import solved_chart
 
@@ -314,13 +319,13 @@ def _unselected(song: Song, selected: tuple[Chart, ...]) -> tuple[str, ...]:
 
 def load_song(task: AnalyzeTask) -> Song:
     """Read the task's file; FileError if that fails."""
-    from dancetutor_cli.chart.reader import load, parse  # numpy, which a kept result does without
+    from dancetutor_cli.chart.reader import load, parse  # imports numpy, which a kept result does not need
 
     return load(task.path) if task.data is None else parse(task.data, task.path)
 
 
 def solved(song: Song, charts: tuple[Chart, ...], task: AnalyzeTask) -> Iterator[ChartSubject]:
-    """Each of the charts with its play; of those for two, each player's part."""
+    """Yield each chart with its play; for a chart for two players, the part of each player."""
     from dancetutor_cli.lint.subject import solved_charts
 
     parts = [part for chart in charts for part in task.selection.parts(chart)]
@@ -330,9 +335,9 @@ def solved(song: Song, charts: tuple[Chart, ...], task: AnalyzeTask) -> Iterator
 def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
     yield from (warning.message for warning in song.warnings)
     for result in charts:
-        if is_lights(result.steps_type):  # nobody dances them
+        if is_lights(result.steps_type):  # nobody dances the lights
             continue
-        if result.player < 2:  # of charts for two reported once
+        if result.player < 2:  # the warnings of a chart for two players are reported once
             yield from (f"{result.label}: {warning.message}" for warning in song.charts[result.index].warnings)
         if not result.playable:
             yield f"{result.label}: steps type '{result.steps_type}' has no pad, so its feet are not known"
@@ -341,7 +346,7 @@ def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
 
 
 def failed(task: AnalyzeTask, message: str) -> FileResult:
-    """The result of a task that broke down."""
+    """Return the result of a task that failed with this message."""
     return _unreadable(task, FileError(task.path, message))
 
 
@@ -350,12 +355,12 @@ def _unreadable(task: AnalyzeTask, error: FileError) -> FileResult:
     return FileResult(str(task.path), "", "", str(error), (), (finding,), ())
 
 
-# Charts to be drawn as a sheet: solved, linted and counted.
+# Charts for a sheet: solved, linted and counted.
 
 
 @dataclass(frozen=True)
 class Drawable:
-    """A chart with all that a sheet shows of it. `counts` : name of a move -> rows."""
+    """A chart with everything that a sheet shows. `counts` : name of a move -> number of rows."""
 
     subject: ChartSubject
     findings: tuple[Finding, ...]
@@ -364,7 +369,7 @@ class Drawable:
 
 
 def drawable_charts(task: AnalyzeTask) -> Iterator[Drawable]:
-    """The selected charts of a file that have notes; FileError if the file cannot be read."""
+    """Yield the selected charts of a file that have notes; FileError if the file cannot be read."""
     from dancetutor_cli.chart.density import density
 
     song = load_song(task)

@@ -1,4 +1,4 @@
-"""The baseline: findings that were there before and are not reported again, known by chart, beat and rule."""
+"""The baseline: accepted findings that are not reported again, identified by chart, beat and rule."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Key = tuple[str, str, str, int]
 
 @dataclass
 class Baseline:
-    """Known findings with how often each may occur; counts down as findings are matched."""
+    """Accepted findings and how often each may occur. Each match lowers the count that remains."""
 
     path: Path
     allowed: Counter[Key] = field(default_factory=Counter)
@@ -37,32 +37,32 @@ class Baseline:
         self._remaining = Counter(self.allowed)
 
     def key(self, file: str, chart: str, finding: Finding) -> Key:
-        """What identifies a finding: file, chart, rule and beat."""
+        """Return the key that identifies a finding: file, chart, rule and beat."""
         place = (finding.line or 0) if finding.beat is None else round(finding.beat * TICKS_PER_BEAT)
         return self._relative(file), chart, finding.rule, place
 
     def absorbs(self, key: Key) -> bool:
-        """Whether a finding is known; each entry absorbs one finding."""
+        """Whether the baseline accepts a finding. Each call uses up one occurrence of the entry."""
         if self._remaining[key] <= 0:
             return False
         self._remaining[key] -= 1
         return True
 
     def mark_seen(self, file: str, chart: str, rules: Iterable[str]) -> None:
-        """Remember which rules ran on a chart, or with chart "" on the file as a whole: theirs can be unused."""
+        """Remember which rules ran on a chart, or with chart "" on the file: only their entries can be unused."""
         self._ran.setdefault((self._relative(file), chart), set()).update(rules)
 
     def mark_all_seen(self, file: str) -> None:
-        """Remember that every chart of a file was analysed: entries of any other chart are of one that is gone."""
+        """Remember that every chart of a file was analysed: entries with any other chart are of a removed chart."""
         name = self._relative(file)
         self._whole[name] = set().union(*(rules for (of, _), rules in self._ran.items() if of == name))
 
     def unused(self) -> list[Key]:
-        """Entries that no finding matched though their rule ran: the finding is gone, the entry can go too."""
+        """Return the entries that no finding matched although their rule ran. They are no longer needed."""
         return sorted(key for key, count in self._remaining.items() if count > 0 and self._could_match(key))
 
     def replaced(self, keys: Iterable[Key]) -> Baseline:
-        """A baseline with these findings, and the old entries of all charts and rules that were not looked at."""
+        """Return a baseline with these findings, and with the old entries of charts and rules that did not run."""
         kept = Counter({key: count for key, count in self.allowed.items() if not self._could_match(key)})
         return Baseline(self.path, kept + Counter(keys))
 
@@ -72,7 +72,7 @@ class Baseline:
         return rule in (self._whole.get(file, set()) if ran is None else ran)
 
     def write(self) -> None:
-        """Write the file, sorted, one entry a line."""
+        """Write the file with sorted entries, one on each line."""
         entries = [json.dumps(_entry(key, count), ensure_ascii=False) for key, count in sorted(self.allowed.items())]
         body = ",\n  ".join(entries)
         text = f'{{"schema": {SCHEMA}, "entries": [\n  {body}\n]}}\n'
@@ -89,7 +89,7 @@ def _entry(key: Key, count: int) -> dict[str, Any]:
 
 
 def load_baseline(path: Path) -> Baseline:
-    """Read a baseline; FileError says what is wrong with it."""
+    """Read a baseline; FileError says which entry or key is wrong."""
     try:
         data = read_json(path)
     except MissingFileError:

@@ -1,4 +1,4 @@
-"""Technical steps of several plays, and the rows in each that rules have to look at."""
+"""Technical steps of several plays, and the rows of each play that rules have to check."""
 
 from __future__ import annotations
 
@@ -19,13 +19,14 @@ from dancetutor_cli.lint.meter.model import Feature, features_of
 from dancetutor_cli.lint.meter.score import played_oddities
 from dancetutor_cli.lint.plays import ALL_KINDS, Plays
 
-# Technical steps of plays, counted as ITGmania counts them, so that the numbers can be laid beside the game's.
+# Technical steps of plays, counted as ITGmania counts them, so that the numbers can be compared with the game's.
 #
-# The game looks at rows with steps, each with the row before it; the first is nothing. A footswitch is a panel pressed
-# by another foot than in the row before, within 0.3 s; a jack the same foot on the same panel (0.176 s) and a
-# doublestep on another (0.235 s), both rows single. A crossover is one step after which the foot stands on the wrong
-# side of the other, which stepped in the row before: full where that foot came from its own side, half where it came
-# from the middle. So a crossed passage of five rows is one crossover or two, not five.
+# The game compares each row that has steps with the row before it, so the first row counts as nothing. A footswitch is
+# a panel that the other foot pressed in the row before, within 0.3 s. A jack is the same foot on the same panel within
+# 0.176 s; a doublestep is the same foot on another panel within 0.235 s. For both, each row has a single step. A
+# crossover is one step to the wrong side of the other foot, which stepped in the row before. It is full if the crossing
+# foot came from its own side, half if it came from the middle. So a crossed passage of five rows is one crossover or
+# two, not five.
 
 _JACK, _DOUBLESTEP, _FOOTSWITCH = 176_000, 235_000, 300_000  # microseconds between two rows, the game's own limits
 _NEVER = 10**15
@@ -35,13 +36,13 @@ CandidateRows = dict[str, NDArray[np.int64]]
 
 @dataclass(frozen=True)
 class _Steps:
-    """Rows with steps that a foot presses, n; columns c. -1: none.
+    """The n rows of the plays with steps, for c columns; -1 means no column.
 
-    row : of the plays; place : (n,) its place among those of its play; gap : (n - 1,) microseconds from one to the next
-    of the same play, free of float noise; count : steps in the row
-    heel, toe : for each foot (n,) the column that it presses
-    x : for each foot (n,) its place, NaN without; of a bracket between its panels; heel_x : that of the heel
-    cell : steps of feet, in order: row * c + column; foot : who presses it
+    row : row of the plays; place : (n,) index of the row among the rows with steps of its play
+    gap : (n - 1,) whole microseconds to the next row of the same play; count : number of steps in the row
+    heel, toe : for each foot, (n,) the column that it presses
+    x : for each foot, (n,) its position, between the panels of a bracket, NaN if it does not step; heel_x : of the heel
+    cell : the steps of feet in order, as row * c + column; foot : the foot that presses each cell
     """
 
     row: NDArray[np.int64]
@@ -57,7 +58,7 @@ class _Steps:
 
 
 def techniques(plays: Plays) -> CandidateRows:
-    """The rows of the plays that are counted as each of `TECH_COUNTS`, one for each time, not in order."""
+    """Return the rows of the plays that count as each of `TECH_COUNTS`, one row for each occurrence, not in order."""
     steps = _steps_of(plays)
     inner = np.flatnonzero(steps.place > 0)
     both = [steps.row[inner[(steps.heel[foot][inner] >= 0) & (steps.toe[foot][inner] >= 0)]] for foot in (0, 1)]
@@ -103,15 +104,15 @@ def _steps_of(plays: Plays) -> _Steps:
 def _first(
     number: NDArray[np.int64], column: NDArray[np.int64], which: NDArray[np.bool_], rows: int
 ) -> NDArray[np.int64]:
-    """The column of the first of some steps in each row, or -1."""
+    """Return the column of the first step in each row, of the steps that `which` marks; -1 for a row without one."""
     found = np.full(rows, -1, dtype=np.int64)
     steps = np.flatnonzero(which)[::-1]
-    found[number[steps]] = column[steps]  # of several the one that comes last counts: the first column
+    found[number[steps]] = column[steps]  # in reverse order, so that the first column overwrites the others
     return found
 
 
 def _switches(steps: _Steps, plays: Plays) -> CandidateRows:
-    """Panels taken over, by where their arrows point."""
+    """Return the rows of footswitches and sideswitches, by the direction of the panel's arrow."""
     c, pad = len(plays.pad), plays.pad
     before = np.full((len(steps.row) + 1) * c, -1, dtype=np.int8)
     before[steps.cell + c] = steps.foot
@@ -131,7 +132,7 @@ def _switches(steps: _Steps, plays: Plays) -> CandidateRows:
 
 
 def _repeats(steps: _Steps, plays: Plays) -> CandidateRows:
-    """The same foot in two single rows one after the other: on its panel, or on another."""
+    """Return the rows of jacks and doublesteps: the same foot steps in two single rows, one after the other."""
     single = steps.count == 1
     near = single[1:] & single[:-1] & (steps.gap < _DOUBLESTEP)
     jacks, doublesteps = [], []
@@ -152,7 +153,7 @@ def _repeats(steps: _Steps, plays: Plays) -> CandidateRows:
 
 
 def _crossovers(steps: _Steps) -> CandidateRows:
-    """Steps of one foot to the wrong side of the other, which stepped in the row before; half or full."""
+    """Return the rows of half and full crossovers: one foot steps to the wrong side of the foot that stepped before."""
     half, full = [], []
     for foot, outward in ((0, -1.0), (1, 1.0)):
         x, other = steps.x[foot], steps.x[1 - foot]
@@ -171,7 +172,7 @@ def _crossovers(steps: _Steps) -> CandidateRows:
     return {"Crossovers": np.concatenate([halves, fulls]), "HalfCrossovers": halves, "FullCrossovers": fulls}
 
 
-# The rows of several plays that rules have to look at: most rules have nothing to look at in most plays.
+# The rows of several plays that rules have to check. For most rules, most plays have no such row.
 
 _LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
 _HAND = 3  # panels that are down at once
@@ -179,9 +180,10 @@ _FACING = (22.5, 67.5, 112.5, 157.5)  # degrees from the screen
 
 
 class Repeats(NamedTuple):
-    """Steps, alone in their rows, by the foot that stepped in the row before on another panel, with nothing in the way.
+    """Single steps of the foot that stepped on another panel in the row before, where the other foot was free.
 
-    place : among all steps that are alone in their rows; row; seconds : since the step before
+    place : index among all presses that are alone in their rows; row : row of the plays
+    seconds : time since the step before
     """
 
     place: NDArray[np.int64]
@@ -190,14 +192,14 @@ class Repeats(NamedTuple):
 
 
 class Candidates:
-    """Of k plays on a pad. Rows count from the first row of the first play, see `Plays`."""
+    """The rows of k plays on one pad that rules have to check. Rows count from the first play's first row (`Plays`)."""
 
     def __init__(self, plays: Sequence[Play], pad: Pad) -> None:
         self.plays = Plays(plays, pad)
         self._features: dict[tuple[tuple[Feature, ...], float], list[list[float]]] = {}
 
     def features(self, number: int, wanted: Sequence[Feature], rate: float) -> list[float]:
-        """What the meter of one of the plays is estimated from, see `lint.meter.model`."""
+        """Return the features from which the meter of one play is estimated, see `lint.meter.model`."""
         asked = tuple(wanted), rate
         if asked not in self._features:
             self._features[asked] = features_of(self.plays.plays, wanted, rate)
@@ -211,11 +213,11 @@ class Candidates:
 
     @cached_property
     def crossed_runs(self) -> list[list[tuple[int, int]]]:
-        """For each play the first row, of the play, and the number of rows of every run of steps with crossed feet."""
+        """For each play, every run of steps with crossed feet: its first row, counted in the play, and its length."""
         plays = self.plays
         rows = plays.stepped
         crossed, number = plays.crossed[rows], plays.number[rows]
-        again = np.zeros(len(rows) + 1, dtype=bool)  # whether a step is crossed, and that before it in the same play
+        again = np.zeros(len(rows) + 1, dtype=bool)  # both the step and the one before it are crossed
         again[1:-1] = crossed[1:] & crossed[:-1] & (number[1:] == number[:-1])
         first, last = np.flatnonzero(crossed & ~again[:-1]), np.flatnonzero(crossed & ~again[1:])
         found: list[list[tuple[int, int]]] = [[] for _ in plays.first[1:]]
@@ -226,24 +228,24 @@ class Candidates:
 
     @cached_property
     def half_turns(self) -> list[list[int]]:
-        """For each play the rows to which the body turns by 180 degrees."""
+        """For each play, the rows to which the body turns by 180 degrees."""
         plays = self.plays
         return plays.of_each(np.flatnonzero(half_turned(plays.facing) & (plays.number[1:] == plays.number[:-1])) + 1)
 
     @cached_property
     def triples(self) -> list[list[int]]:
-        """For each play the rows with a step in which three panels or more are down."""
+        """For each play, the rows with a step in which three or more panels are down."""
         return self.plays.of_each(np.flatnonzero((self.plays.down >= _HAND) & self.plays.real.any(axis=0)))
 
     @cached_property
     def free_doublesteps(self) -> list[list[int]]:
-        """For each play the rows of doublesteps with nothing in the way, which do not cross the feet."""
+        """For each play, the rows of doublesteps that do not cross the feet, where the other foot was free."""
         rows = self.plays.rows_with("doublestep")
         return self.plays.of_each(rows[self.plays.free[rows] & ~self.plays.crossed[rows]])
 
     @cached_property
     def ties(self) -> list[list[int]]:
-        """For each play the first rows of every run of steps that cost the same with other limbs."""
+        """For each play, the first row of every run of steps that cost the same with other limbs."""
         plays = self.plays
         rows = plays.stepped
         tied, number = plays.margin[rows] == 0, plays.number[rows]
@@ -253,7 +255,7 @@ class Candidates:
     @cached_property
     def repeats(self) -> Repeats:
         """Steps that may be the second or third of one foot in a row."""
-        plays, p = self.plays, self.plays.pressed  # a roll's taps are steps that come between, too
+        plays, p = self.plays, self.plays.pressed  # the taps of a roll also interrupt a run of steps
         new = np.ones(len(p.row) + 1, dtype=bool)
         np.not_equal(p.row[1:], p.row[:-1], out=new[1:-1])
         alone = np.flatnonzero(new[1:] & new[:-1])  # presses that are the only one of their row
@@ -266,14 +268,17 @@ class Candidates:
 
     @cached_property
     def least_triple_seconds(self) -> list[float]:
-        """For each play the least time (s) between three steps of one foot in a row, endless where there are none."""
+        """For each play, the least time (s) between steps of which one foot makes three in a row; inf if none.
+
+        Of the two pauses between three steps, the longer one counts.
+        """
         place, row, seconds = self.repeats
         twice = place[1:] - place[:-1] == 1
         return self.plays.least(row[1:][twice], np.maximum(seconds[1:], seconds[:-1])[twice])
 
     @cached_property
     def least_switch_seconds(self) -> list[float]:
-        """For each play the least time (s) between single steps on one panel by different limbs."""
+        """For each play, the least time (s) between single steps on one panel by different limbs."""
         plays = self.plays
         lone = np.flatnonzero(plays.lone)
         column, limb = plays.limb_by_column[:, lone].argmax(axis=0), plays.foot[lone]
@@ -283,14 +288,14 @@ class Candidates:
 
     @cached_property
     def least_travel_seconds(self) -> list[float]:
-        """For each play the least time (s) that a foot takes for a panel width of its way."""
+        """For each play, the least time (s) in which a foot travels one panel width."""
         left, right = self.plays.travels
         pairs = [self.plays.least(one.row, one.seconds / one.way) for one in (left, right)]
         return [min(both) for both in zip(*pairs, strict=True)]
 
     @cached_property
     def least_foot_seconds(self) -> list[float]:
-        """For each play the least time (s) from one row that a foot presses to the next, taps of rolls too."""
+        """For each play, the least time (s) from one row that a foot presses to the next, with the taps of rolls."""
         plays, found = self.plays, [np.inf] * len(self.plays.plays)
         for limb in (_LEFT, _RIGHT):
             row = plays.pressed.of(limb).row
@@ -301,18 +306,18 @@ class Candidates:
 
     @cached_property
     def techniques(self) -> dict[str, NDArray[np.int64]]:
-        """Rows that are counted as each of `TECH_COUNTS`, one for each time, not in order."""
+        """The rows that count as each of `TECH_COUNTS`, one row for each occurrence, not in order."""
         return techniques(self.plays)
 
     @cached_property
     def tech_counts(self) -> list[dict[str, int]]:
-        """For each play how often each of `TECH_COUNTS` happens."""
+        """For each play, how often each of `TECH_COUNTS` happens."""
         counts = [self.plays.count_rows(self.techniques[name]) for name in TECH_COUNTS]
         return [dict(zip(TECH_COUNTS, of_play, strict=True)) for of_play in zip(*counts, strict=True)]
 
     @cached_property
     def facing_counts(self) -> list[tuple[int, ...]]:
-        """For each play its rows with a step by how far the dancer faces away from the screen, see `Figures.facing`."""
+        """For each play, the number of rows by how far the dancer faces away from the screen, see `Figures.facing`."""
         rows = self.plays.stepped
         away = np.abs(self.plays.facing[rows]) % 360.0
         bins = np.digitize(np.minimum(away, 360.0 - away), _FACING)

@@ -22,7 +22,7 @@ Rules = Mapping[str, ChartRule | ReaderRule]
 
 
 def check_file(subject: FileSubject, settings: Settings) -> tuple[Finding, ...]:
-    """Findings about the file as a whole, in order of line and rule."""
+    """Return the findings about the file as a whole, in order of line and rule."""
     findings: list[Finding] = []
     for code, options in settings.for_file(subject.song.path).items():
         if code in _rules_of_files():
@@ -32,7 +32,7 @@ def check_file(subject: FileSubject, settings: Settings) -> tuple[Finding, ...]:
 
 
 def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...]:
-    """Findings about one chart, in order of line and rule; none about the lights of a cabinet, which nobody dances."""
+    """Return the findings about one chart, in order of line and rule; a chart of a cabinet's lights has none."""
     if is_lights(subject.chart.steps_type):
         return ()
     rules = rules_of(subject, settings)
@@ -43,13 +43,13 @@ def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...
     return _in_order(finding for finding in results if not _silenced(finding, subject))
 
 
-# Steps types that fingers play, of a chart of which one line says enough: what makes a dance is nothing to them.
+# Steps types that are played with fingers. For such charts, only DT103 and errors are reported.
 _FINGERS = ("kb", "bm-", "iidx-", "pnm-", "popn-", "gh-", "gddm-")
 _NO_PAD = "DT103"
 
 
 def rules_of(subject: ChartSubject, settings: Settings) -> Rules:
-    """The rules that run on a chart, by their codes; the same again for the same options, as from chart to chart."""
+    """Return the rules that run on a chart, by their codes. Charts with the same options share the rules."""
     chart = subject.chart
     options = settings.for_chart(subject.song.path, chart.written_type, chart.difficulty, chart.meter)
     known = _rules_cache.get(id(options))
@@ -61,20 +61,20 @@ def rules_of(subject: ChartSubject, settings: Settings) -> Rules:
     return known[1]
 
 
-# By the object that the options are, which is kept here so that no other takes its place.
+# The key is the `id` of the options. The value keeps the options alive, so that no other object gets this `id`.
 _rules_cache: dict[int, tuple[Mapping[str, Options], Rules]] = {}
 
 
 def check_rule(code: str, rules: Rules, subject: ChartSubject, settings: Settings) -> tuple[Finding, ...]:
-    """The findings that one rule adds to `check_chart`; an ambiguity of other rules is reported again."""
+    """Return the findings that one rule adds to `check_chart`; an ambiguity of other rules is reported again."""
     results = _as_sure_as_they_are(_run_rule(rules[code], subject), subject, settings, rules.get(_AMBIGUITY))
     return tuple(finding for finding in results if not _silenced(finding, subject))
 
 
 def _run_rule(rule: ChartRule | ReaderRule, subject: ChartSubject) -> list[Finding]:
-    """The findings of a rule; in a chart for two, those about the whole chart are reported with the first player's.
+    """Return the findings of a rule; findings about a whole chart for two are reported with the first player's part.
 
-    What an author has silenced is left out here, before it may become an ambiguity, and again after that.
+    Findings that the author has silenced are left out here, before they may become an ambiguity, and again after that.
     """
     if _is_about_others(rule, subject):
         return []
@@ -84,12 +84,12 @@ def _run_rule(rule: ChartRule | ReaderRule, subject: ChartSubject) -> list[Findi
 
 
 def _is_about_others(rule: Rule, subject: FileSubject | ChartSubject) -> bool:
-    """Whether the rule is about tags, of which a .ucs says nothing."""
+    """Whether the rule is about tags and the file is a .ucs, which has none."""
     return rule.about_tags and subject.song.format == "ucs"
 
 
 def findings_of(subject: ChartSubject) -> tuple[Finding, ...]:
-    """The findings in a chart, with the configuration that holds for its file."""
+    """Return the findings in a chart, with the configuration that holds for its file."""
     from dancetutor_cli.lint.configuration import load_configuration
 
     settings = load_configuration(find_settings_file(subject.song.path.absolute().parent), found=True).settings
@@ -109,10 +109,10 @@ def _rules_of_charts() -> Mapping[str, type[ChartRule] | type[ReaderRule]]:
 def _as_sure_as_they_are(
     findings: list[Finding], subject: ChartSubject, settings: Settings, ambiguity: ChartRule | ReaderRule | None
 ) -> Iterator[Finding]:
-    """The findings; those that are true only with feet that players may not use are no warnings.
+    """Yield the findings; a finding that is true only with unsure feet becomes an info.
 
-    If other feet cost next to nothing more, the finding becomes DT207 either-foot (with its options if it runs), one
-    for a row.
+    If other feet cost hardly more, the finding becomes DT207 either-foot, one for each row. It gets the options of
+    DT207 if that rule runs.
     """
     known = {finding.beat for finding in findings if finding.rule == _AMBIGUITY}
     for finding in findings:
@@ -138,7 +138,10 @@ def _as_sure_as_they_are(
 
 
 def merged_by_foot(findings: tuple[Finding, ...], subject: ChartSubject) -> tuple[Finding, ...]:
-    """The findings without those that repeat another rule's report on a foot: the most severe and simplest stays."""
+    """Return the findings without repeats: if several rules report the same foot, the most severe finding stays.
+
+    Of equally severe findings, the one whose rule has the lowest `foot_rank` stays.
+    """
     if subject.play is None:
         return findings
     ticks, rows = subject.play.rows.tick, subject.step_rows
@@ -149,7 +152,7 @@ def merged_by_foot(findings: tuple[Finding, ...], subject: ChartSubject) -> tupl
         if one.beat is not None and rules[one.rule].foot_rank
     ]
     of_feet.sort(key=lambda entry: (-RANKS[entry[2].severity], rules[entry[2].rule].foot_rank))
-    kept: dict[int, list[str]] = {}  # by place of the row: rules that are reported there
+    kept: dict[int, list[str]] = {}  # index of the row -> rules that are reported there
     dropped: set[int] = set()
     for place, at, one in of_feet:
         reach = rules[one.rule].foot_reach
@@ -165,7 +168,7 @@ def merged_by_foot(findings: tuple[Finding, ...], subject: ChartSubject) -> tupl
 
 
 def _silenced(finding: Finding, subject: ChartSubject) -> bool:
-    """Whether the author said, in an editor or in dancetutor.yaml, that this finding is not wanted in this row."""
+    """Whether the author has silenced this finding in this row, in an editor or in dancetutor.yaml."""
     if finding.beat is None or not (subject.ignores.codes or subject.ignores.rules):
         return False
     tick, code = round(finding.beat * TICKS_PER_BEAT), all_rules()[finding.rule].editor_code

@@ -28,7 +28,7 @@ _MOST_EXTENDED = 16
 
 @dataclass(eq=False, repr=False, kw_only=True)
 class _Override(RulesKeys):
-    """An entry of `overrides`."""
+    """An entry of the key `overrides`."""
 
     when: When
     preset: Text | None = None
@@ -36,7 +36,7 @@ class _Override(RulesKeys):
 
 @dataclass(eq=False, repr=False)
 class _ConfigurationFile(RulesKeys):
-    """The keys of a configuration file; `feet` are checked by the code that reads them."""
+    """The keys of a configuration file; the code that reads `feet` also checks it."""
 
     HYPHENS: ClassVar[bool] = True
     extends: Texts = ()
@@ -55,9 +55,9 @@ class _ConfigurationFile(RulesKeys):
 class Configuration:
     """The contents of a configuration file.
 
-    sources : the files it was read from, with what they extend
-    preset : name or file of the cost preset for all charts, None: nothing is said
-    overridden : (condition, the preset of the charts for which it holds); later ones win, and all of them over `preset`
+    sources : the files that it was read from, with the files that they extend
+    preset : name or file of the cost preset for all charts; None if the file names none
+    overridden : pairs of a condition and the preset of its charts; later pairs win, and every pair wins over `preset`
     """
 
     settings: Settings
@@ -69,14 +69,14 @@ class Configuration:
 
     @property
     def presets(self) -> tuple[tuple[Condition, str], ...]:
-        """All settings about presets; of the conditions that hold for a chart the last one counts."""
+        """All pairs of a condition and a preset. Of the conditions that hold for a chart, the last one counts."""
         return self.overridden if self.preset is None else ((Condition(), self.preset), *self.overridden)
 
 
 def load_configuration(source: str | Path | None, *, found: bool = False) -> Configuration:
-    """The defaults, and on top of them a file or the name of one in configs/lint/ (None: only the defaults).
+    """Return the defaults with a file on top, or with a named file of configs/lint/ (None: only the defaults).
 
-    found : nobody has named the file, it lay there: it may be a stranger's, and stays in its folder
+    found : the user has not named the file: it may come from another user, so it may name no file outside its folder
     """
     base = _extend(Configuration(Settings()), config_path("lint/default.yaml"), (), confined=False)
     if source is None:
@@ -93,7 +93,7 @@ def with_assignments(configuration: Configuration, assignments: Iterable[str]) -
         if not equals or not key:
             raise UsageError(f"--set {text}: write it as KEY=VALUE, for example DT201.severity=error")
         parsed = parse_value(value, f"--set {key}")
-        if key == "preset":  # not confined: the user's own word
+        if key == "preset":  # not confined, because the user names it
             configuration = replace(configuration, preset=str(parsed), overridden=())
             continue
         rule, dot, option = key.partition(".")
@@ -106,7 +106,7 @@ def with_assignments(configuration: Configuration, assignments: Iterable[str]) -
 
 
 def with_selection(configuration: Configuration, select: Sequence[str], ignore: Sequence[str]) -> Configuration:
-    """Apply --select and --ignore of the command line; each entry may hold several, with commas."""
+    """Apply --select and --ignore of the command line; an entry may hold several names, with commas between them."""
     wanted = [part.strip() for text in select for part in text.split(",")]
     dropped = _codes(part.strip() for text in ignore for part in text.split(","))
     layer = Layer(select=_codes(wanted) if select else None, ignore=dropped, named=named_singly(wanted))
@@ -145,7 +145,7 @@ def _extend(base: Configuration, path: Path, seen: tuple[Path, ...], *, confined
 
 
 def _extended(source: MarkedYaml, name: str) -> Path:
-    """What `extends` names: a configuration of the program's, or a file in the folder of this one or below it."""
+    """Return the path that `extends` names: a file of configs/lint/, or a file in or below this file's folder."""
     folder = source.path.parent
     names = config_names("lint")
     if name in names and not is_regular(folder / name):
@@ -159,11 +159,11 @@ def _extended(source: MarkedYaml, name: str) -> Path:
 
 
 def _apply(base: Configuration, source: MarkedYaml, *, confined: bool) -> Configuration:
-    """The settings of a file, on top of `base`. confined : it stays in its folder"""
+    """Return `base` with the settings of a file on top. confined : the file may name no file outside its folder"""
     file, folder = convert(source, _ConfigurationFile), source.path.parent
     settings = base.settings.with_layer(layer_of(source, file, Condition(), ()))
     preset, overridden = base.preset, base.overridden
-    if file.preset is not None:  # of all charts: what the extended file says about some of them is over
+    if file.preset is not None:  # for all charts, so it also replaces the overrides of the extended file
         preset, overridden = _preset(source, file.preset, ("preset",)), ()
     for number, entry in enumerate(file.overrides):
         place, when = ("overrides", number), condition_of(entry.when, folder)
@@ -182,7 +182,7 @@ def _apply(base: Configuration, source: MarkedYaml, *, confined: bool) -> Config
 
 
 def _preset(source: MarkedYaml, name: str, place: Keys) -> str:
-    """A preset's name, or the path of its file, which lies in the folder of the configuration or below it."""
+    """Return a preset's name, or the path of its file in or below the folder of the configuration."""
     if name in preset_names():
         return name
     folder = source.path.parent
@@ -196,7 +196,7 @@ def _preset(source: MarkedYaml, name: str, place: Keys) -> str:
 
 
 def _check_feet(source: MarkedYaml) -> None:
-    """What `feet` says is read where feet are found; here it is only checked, for it knows no rules."""
+    """Check the rules that `feet` names. The package `feet` reads this key, but does not know the rules."""
     from dancetutor_cli.feet.song_feet import entries_of
 
     for number, entry in enumerate(entries_of(source)):

@@ -1,8 +1,8 @@
 """The shape of a chart that an edit must keep: jacks, figures that return, motifs that repeat, two dancers in unison.
 
-A correction keeps the rhythm and the figures of a chart: no note lands on the panel of the note beside it, no jack is
-broken, a phrase that comes three times is corrected three times, and of several edits the one that players notice least
-is best.
+An edit keeps the rhythm and the figures of a chart. No note moves to the panel of the note beside it, and no jack is
+broken. A phrase that comes three times is corrected three times. Of several edits, the best is the one that players
+notice least.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from dancetutor_cli.feet.pads import Pad
     from dancetutor_cli.feet.play import Play
 
-_APART = 1.0  # seconds between two rows that are no neighbours any more
+_APART = 1.0  # seconds; rows that are further apart are not neighbours
 _MOTIF = 4  # rows before and after a note that make its motif
-_NEAR = 32  # rows in which a figure of four is heard to return
+_NEAR = 32  # rows within which players notice that a figure of four rows returns
 _MARGIN = 2  # rows beside a phrase that belong to its motif
-_MOST_ALIKE = 12  # places of a motif; what comes more often is the pattern of the chart
+_MOST_ALIKE = 12  # places of a motif; a motif with more places is the pattern of the chart
 # How much players notice an edit: the worst last. A note that moves alone counts 1.
 _NOTE = 1.0
 _ACCENTS = (
@@ -34,17 +34,17 @@ _ACCENTS = (
     (TICKS_PER_BEAT, 1.0),
     (TICKS_PER_BEAT // 2, 0.5),
 )  # on the first beat, a beat ...
-_OTHER_KIND = 0.5  # a side panel for one of the middle, or the other way round
-_OF_CHORD = 1.5  # a note of several at once
-_RETURN_LOST = 2.0  # a figure A B A is none any more
-_RETURN_NEW = 1.0
-# A phrase left for right, each of its notes and of its chords: it stays what it was.
+_OTHER_KIND = 0.5  # from a side panel to a middle panel, or the other way round
+_OF_CHORD = 1.5  # a note in a row with several notes
+_RETURN_LOST = 2.0  # a figure A B A is lost
+_RETURN_NEW = 1.0  # a new figure A B A
+# A phrase that is mirrored left to right, and in addition each of its notes and chords.
 _MIRRORED, _MIRRORED_NOTE, _MIRRORED_CHORD = 2.0, 0.25, 1.0
-WORST = 5.0  # an edit that is heard more than this is no good
+WORST = 5.0  # an edit with a higher cost is not used
 
 
 class PanelMove(NamedTuple):
-    """A tap that goes to another panel. row : of the play; column, to : panels"""
+    """A tap that moves to another panel. row : row of the play; column, to : the panel before and after the move"""
 
     row: int
     column: int
@@ -53,9 +53,10 @@ class PanelMove(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """Taps that move together. cost : how much is heard of it; alike : places that are corrected alike, one at least
+    """Taps that move together.
 
-    mirrored : whether they are a phrase, left for right
+    cost : how much players notice the edit; alike : number of places that are corrected in the same way, at least one
+    mirrored : whether the taps are a phrase that is mirrored left to right
     """
 
     moves: tuple[PanelMove, ...]
@@ -65,9 +66,9 @@ class Edit:
 
 
 class Shape:
-    """The rows with steps of a chart as figures of panels; both dancers' rows where two dance it.
+    """The rows with steps of a chart as figures of panels; in a chart for two, also the rows of the other player.
 
-    play : of the chart; chart : itself, or of one for two the part of a player
+    play : the play of the chart; chart : the chart, or one player's part of a chart for two
     """
 
     def __init__(self, play: Play, pad: Pad, chart: Chart) -> None:
@@ -80,10 +81,10 @@ class Shape:
         self._ticks: list[int] = play.rows.tick[self.rows].tolist()
         self._seconds: list[float] = play.rows.second[self.rows].tolist()
 
-    # Single notes, and phrases left for right, as edits that keep the shape.
+    # Single notes and mirrored phrases, as edits that keep the shape.
 
     def with_repeats(self, moves: Sequence[PanelMove]) -> Edit | None:
-        """The edit of some moves wherever their motif stands; None where that does not keep the chart's shape."""
+        """Return the edit that repeats some moves wherever their motif stands; None if it breaks the chart's shape."""
         at = self._place[moves[0].row]
         away = {*self._repeats(at - _MOTIF, at + _MOTIF), *self._figures(at - 2, at + 1)}
         return self._everywhere(moves, away, self._cost(moves))
@@ -91,7 +92,7 @@ class Shape:
     def _everywhere(
         self, moves: Sequence[PanelMove], away: Iterable[int], cost: float, mirrored: bool = False
     ) -> Edit | None:
-        """Moves here and so many places away; None where that does not keep the shape."""
+        """Return the edit of some moves here and at places `away` from here; None if it breaks the shape."""
         found = [tuple(moves), *(tuple(self._moved(move, by) for move in moves) for by in sorted(away))]
         rows = [{move.row for move in one} for one in found]
         overlap = len(set[int]().union(*rows)) < sum(map(len, rows))
@@ -105,9 +106,9 @@ class Shape:
         return Edit(together, cost, len(found), mirrored) if self._keeps_jacks(together) else None
 
     def mirrored_phrases(self, row: int, most: int, begins: Collection[int]) -> Iterator[Edit]:
-        """Phrases that begin or end beside a row, left for right, the least heard first.
+        """Yield edits that mirror a phrase which begins or ends beside a row, those with the least cost first.
 
-        most : notes of a phrase; begins : rows in which a dancer begins again, which end a phrase before them
+        most : most rows of a phrase; begins : rows in which the dancer begins again, so a phrase may end before them
         """
         mirror = self._pad.mirrored(left_right=True)
         if mirror is None or float(np.ptp(self._pad.panels[:, 0])) > 2.0 or row not in self._place:
@@ -140,21 +141,21 @@ class Shape:
             for column in sorted(self._pressed[at])
             if mirror[column] != column and mirror[column] not in self._pressed[at]
         ]
-        if len(moves) < 2:  # one note for itself is no phrase
+        if len(moves) < 2:  # a single note is not a phrase
             return None
         chords = len({move.row for move in moves if len(self._pressed[self._place[move.row]]) > 1})
         cost = _MIRRORED + _MIRRORED_NOTE * len(moves) + _MIRRORED_CHORD * chords + self._returns(moves)
         return self._everywhere(moves, self._repeats(first - _MARGIN, last + _MARGIN), cost, mirrored=True)
 
     def _is_held(self, at: int) -> bool:
-        """Whether a hold is down in a row: what is mirrored beside it would be another figure."""
+        """Whether a hold is down in a row, so that mirrored steps beside it would be another figure."""
         notes, tick = self._chart.notes, self._ticks[at]
         return bool(((notes.tick < tick) & (notes.end >= tick)).any())
 
     # The effect of an edit on figures.
 
     def _after(self, moves: Sequence[PanelMove]) -> Mapping[int, frozenset[int]]:
-        """Place -> panels after the moves, of the rows that they are in."""
+        """Return place of the row -> panels after the moves, for the rows that the moves change."""
         rows: dict[int, frozenset[int]] = {}
         for row, column, to in moves:
             at = self._place[row]
@@ -162,7 +163,7 @@ class Shape:
         return rows
 
     def _keeps_jacks(self, moves: Sequence[PanelMove]) -> bool:
-        """Whether neighbours share as many panels as before: no jack comes, and none is torn apart."""
+        """Whether neighbouring rows share as many panels as before, so that no jack is made or broken."""
         after = self._after(moves)
         for at in {near for place in after for near in (place, place + 1)}:
             if not 0 < at < len(self.rows) or self._seconds[at] - self._seconds[at - 1] > _APART:
@@ -173,7 +174,7 @@ class Shape:
         return True
 
     def _returns(self, moves: Sequence[PanelMove]) -> float:
-        """What figures A B A, trills and triangles, lost and new ones, are heard."""
+        """Return the cost of the figures A B A (trills, triangles) that the moves break or make."""
         after, cost = self._after(moves), 0.0
         for at in {near for place in after for near in (place, place + 2)}:
             if 2 <= at < len(self.rows) and self._seconds[at] - self._seconds[at - 2] <= 2 * _APART:
@@ -183,7 +184,7 @@ class Shape:
         return cost
 
     def _cost(self, moves: Sequence[PanelMove]) -> float:
-        """How much players notice some moves."""
+        """Return how much players notice some moves."""
         cost = self._returns(moves)
         for row, column, to in moves:
             at = self._place[row]
@@ -197,19 +198,19 @@ class Shape:
 
     @cached_property
     def _sides(self) -> set[int]:
-        """Panels that lie to one side of the middle of their pad."""
+        """The panels that lie to one side of the middle of their pad."""
         x = self._pad.panels[:, 0]
         half = len(x) // 2 if np.ptp(x) > 2.0 else len(x)
         return {n for n in range(len(x)) if abs(x[n] - x[n // half * half :][:half].mean()) > 0.25}
 
-    # Where the same motif stands again, and where two dancers step the same.
+    # Places where the same motif returns, and rows where two dancers step the same.
 
     def _moved(self, move: PanelMove, by: int) -> PanelMove:
-        """The same move so many rows later."""
+        """Return the same move, `by` rows with steps later."""
         return move._replace(row=self.rows[self._place[move.row] + by])
 
     def _repeats(self, first: int, last: int) -> Iterator[int]:
-        """How many places away the rows of a motif stand again, in their rhythm and at their place of a beat."""
+        """Yield how many places away the rows of a motif return with the same rhythm and the same place in the beat."""
         first, last = max(first, 0), min(last, len(self.rows) - 1)
         motif = self._motif(first, last + 1)
         for start in self._starts[self._pressed[first]]:
@@ -218,7 +219,7 @@ class Shape:
                 yield start - first
 
     def _figures(self, first: int, last: int) -> Iterator[int]:
-        """How many places away the same panels follow each other, near by and at most twice as slowly or as quickly."""
+        """Yield how many places away the same panels return nearby, at most twice as slowly or as quickly."""
         first, last = max(first, 0), min(last, len(self.rows) - 1)
         size, figure = last + 1 - first, self._pressed[first : last + 1]
         pace = np.diff(self._ticks[first : last + 1])
@@ -234,14 +235,14 @@ class Shape:
 
     @cached_property
     def _starts(self) -> dict[frozenset[int], list[int]]:
-        """Panels -> the places where they are pressed."""
+        """Panels -> the places of the rows in which exactly these panels are pressed."""
         found: dict[frozenset[int], list[int]] = {}
         for at, pressed in enumerate(self._pressed):
             found.setdefault(pressed, []).append(at)
         return found
 
     def _breaks_unison(self, moves: Sequence[PanelMove]) -> bool:
-        """Whether two who dance a chart step the same, or its mirror image, in a row that would change for one only."""
+        """Whether the moves change one player's row in which both players step the same panels or mirrored ones."""
         if self._chart.written is None:
             return False
         return any(self._is_unison(self._place[move.row]) for move in moves)
@@ -253,7 +254,7 @@ class Shape:
 
     @cached_property
     def _others(self) -> dict[int, frozenset[int]]:
-        """Tick -> panels of the other player, as columns of this one's pad."""
+        """Tick -> panels of the other player, as columns of this player's pad."""
         assert self._chart.written is not None
         whole, own = self._chart.written.notes, self._chart.notes
         mine = set(zip(own.tick.tolist(), (own.column + self._chart.first_column).tolist(), strict=True))
@@ -265,7 +266,7 @@ class Shape:
 
 
 def free_panels(play: Play, chart: Chart, row: int) -> list[int]:
-    """Panels without a step or a mine in a row, where no hold or roll is or ends either."""
+    """Return the panels of a row without a step or a mine, on which no hold or roll is down or ends."""
     rows, notes = play.rows, chart.notes
     free, tick = (rows.steps[row] == StepKind.NONE) & ~rows.mines[row], int(rows.tick[row])
     free[notes.column[(notes.tick <= tick) & (notes.end >= tick)]] = False
@@ -274,7 +275,7 @@ def free_panels(play: Play, chart: Chart, row: int) -> list[int]:
 
 
 def _phrases(at: int, rows: int, most: int) -> Iterator[tuple[int, int]]:
-    """First and last place of phrases that begin with a place or the next one, or that end before it."""
+    """Yield the first and the last place of phrases that begin at a place or the next one, or end before the place."""
     for first in (at, at + 1):
         yield from ((first, last) for last in range(first, min(first + most, rows)))
     yield from ((first, at - 1) for first in range(max(at - most, 0), at))

@@ -18,11 +18,11 @@ from dancetutor_cli.feet.solver.alternatives import alternatives, blame
 from dancetutor_cli.lint.findings import TECH_COUNTS, AlternativeResult, Cause, DifferentRun, ExcerptRow, Finding
 from dancetutor_cli.lint.subject import ChartSubject
 
-# The next best plays of a chart in words: which rows other limbs step, and which cost terms decide against them.
+# The next best plays of a chart as plain data: the rows that other limbs step, and the cost terms that differ.
 
 
 def alternatives_of(subject: ChartSubject, preset: Preset, count: int) -> tuple[AlternativeResult, ...]:
-    """The `count` cheapest plays after the one that was found, the cheapest first; fewer if there are no more."""
+    """Return the `count` cheapest plays after the best play, the cheapest first; fewer if there are no more."""
     play = subject.play
     if play is None or subject.pad is None or count < 1:
         return ()
@@ -40,7 +40,7 @@ def alternatives_of(subject: ChartSubject, preset: Preset, count: int) -> tuple[
 
 
 def _runs(best: Play, other: Play, rows: tuple[int, ...]) -> Iterator[DifferentRun]:
-    """The rows that differ, those without a stepped row between them together."""
+    """Yield the runs of rows that differ. Rows with no other stepped row between them make one run."""
     stepped = np.flatnonzero(best.rows.steps.any(axis=1))
     places = np.searchsorted(stepped, rows)
     for group in np.split(np.array(rows, dtype=np.int64), np.flatnonzero(np.diff(places) != 1) + 1):
@@ -51,7 +51,7 @@ def _runs(best: Play, other: Play, rows: tuple[int, ...]) -> Iterator[DifferentR
 
 
 def _letters(play: Play, row: int) -> str:
-    """Who steps a row, left to right: "L", "LR"."""
+    """Return the letters of the limbs that step a row, left to right: "L", "LR"."""
     columns = np.flatnonzero(play.rows.steps[row] != StepKind.NONE).tolist()
     return "".join(letter(int(play.limb[row, column]), int(play.part[row, column])) for column in columns)
 
@@ -62,7 +62,7 @@ _DOUBLESTEP = "DT201"
 
 
 def causes_of(subject: ChartSubject, preset: Preset) -> tuple[Cause, ...]:
-    """The cause of every doublestep of a chart, forced or not, in order of rows."""
+    """Return the cause of every doublestep of a chart, forced or unforced, in order of rows."""
     play = subject.play
     if play is None or subject.pad is None:
         return ()
@@ -80,7 +80,7 @@ def causes_of(subject: ChartSubject, preset: Preset) -> tuple[Cause, ...]:
 
 
 def with_causes(findings: Sequence[Finding], causes: Sequence[Cause], panels: Sequence[str]) -> tuple[Finding, ...]:
-    """The findings; those about a doublestep name its cause, unless it is the pattern itself."""
+    """Return the findings. A finding about a doublestep names its cause, unless the cause is the pattern itself."""
     by_beat = {cause.beat: cause for cause in causes if cause.at_beat is not None and cause.column is not None}
     results = []
     for finding in findings:
@@ -97,19 +97,19 @@ def with_causes(findings: Sequence[Finding], causes: Sequence[Cause], panels: Se
 
 
 def tech_counts(subject: ChartSubject) -> dict[str, int]:
-    """How often each of `TECH_COUNTS` happens; all 0 for a chart without a play."""
+    """Return how often each of `TECH_COUNTS` happens; all 0 for a chart without a play."""
     if subject.facts is None:
         return dict.fromkeys(TECH_COUNTS, 0)
     return subject.facts.candidates.tech_counts[subject.facts.number]
 
 
 def hand_rows(subject: ChartSubject) -> list[int]:
-    """Rows with a step in which a hand helps or three panels are down, as the games and DT302 count hands."""
+    """Return the rows with a step in which a hand presses or three panels are down, as the games and DT302 count."""
     return [] if subject.facts is None else sorted({*subject.rows_with("hand"), *subject.facts.triples()})
 
 
 def tech_rows(subject: ChartSubject) -> dict[str, NDArray[np.int64]]:
-    """The rows of the play that are counted as each of `TECH_COUNTS`, one for each time, in order."""
+    """Return the rows of the play that count as each of `TECH_COUNTS`, one row for each occurrence, in order."""
     if subject.facts is None:
         return {name: np.zeros(0, dtype=np.int64) for name in TECH_COUNTS}
     candidates, number = subject.facts.candidates, subject.facts.number
@@ -117,24 +117,24 @@ def tech_rows(subject: ChartSubject) -> dict[str, NDArray[np.int64]]:
 
 
 def facing_counts(subject: ChartSubject) -> tuple[int, ...]:
-    """Rows with a step by how far the dancer faces away from the screen, see `Figures.facing`; () without a play."""
+    """Return the number of rows by how far the dancer is turned away (`Figures.facing`); () without a play."""
     return () if subject.facts is None else subject.facts.candidates.facing_counts[subject.facts.number]
 
 
-# The rows around a finding, to be drawn beside it.
+# The rows around a finding, which are shown below it.
 
 ROWS = 4
 _BEFORE = 2
 _NOTES = np.frombuffer(b" 1L244", dtype=np.uint8)  # by StepKind: nothing, tap, lift, hold, roll, tap of a roll
 _MINE, _HELD = b"M|"
-_LETTERS = np.frombuffer(b"? LR<> lr<>", dtype=np.uint8)  # by Limb, from -2 on; from 5 on those of toes
+_LETTERS = np.frombuffer(b"? LR<> lr<>", dtype=np.uint8)  # by Limb, from -2 on; the last five are letters of toes
 _TOE = int(Part.TOE)
 _ARROWS = {(-1, 0): "←", (0, -1): "↓", (0, 1): "↑", (1, 0): "→", (-1, -1): "↙", (-1, 1): "↖", (0, 0): "■",
            (1, 1): "↗", (1, -1): "↘"}  # fmt: skip
 
 
 def with_excerpts(findings: Sequence[Finding], play: Play) -> tuple[Finding, ...]:
-    """The findings, those with a beat together with the rows around it: up to four, two of them before it."""
+    """Return the findings; those with a beat have up to four rows around it, two of them before it."""
     ticks = np.array([round(finding.beat * TICKS_PER_BEAT) for finding in findings if finding.beat is not None])
     if not len(ticks) or not len(play.rows):
         return tuple(findings)
@@ -152,7 +152,7 @@ def with_excerpts(findings: Sequence[Finding], play: Play) -> tuple[Finding, ...
 
 
 def _excerpt_rows(play: Play, shown: NDArray[np.int64]) -> Iterator[ExcerptRow]:
-    """Some rows, as if the finding were about none of them."""
+    """Yield some rows of the play with `here` false; the caller marks the row of the finding."""
     rows, c = play.rows, play.limb.shape[1]
     kinds = rows.steps[shown]
     notes = np.where(kinds > 0, _NOTES[kinds], np.where(rows.mines[shown], _MINE, _hold_characters(play, shown)))
@@ -165,7 +165,7 @@ def _excerpt_rows(play: Play, shown: NDArray[np.int64]) -> Iterator[ExcerptRow]:
 
 
 def _hold_characters(play: Play, shown: NDArray[np.int64]) -> NDArray[np.int64]:
-    """For each cell of some rows the character of a hold that began in a row before and is still down, or a blank."""
+    """Return, for each cell of some rows, the character of a hold that is down from a row before, or a blank."""
     rows = play.rows
     out = np.full((len(shown), play.limb.shape[1]), ord(" "))
     for column in np.flatnonzero((rows.hold_end >= 0).any(axis=0)).tolist():
@@ -178,7 +178,7 @@ def _hold_characters(play: Play, shown: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def arrows(pad: Pad) -> str:
-    """A sign for each panel of a pad, as its arrow points."""
+    """Return a sign for each panel of a pad, in the direction of its arrow."""
     return _arrows(tuple(map(tuple, pad.arrows.tolist())))
 
 

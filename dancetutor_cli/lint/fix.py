@@ -1,6 +1,4 @@
-"""`analyze --fix` for one file: fixes are made one after the other, and each is checked by reading and solving the file
-again.
-"""
+"""`analyze --fix` for one file: each fix is made in turn, then checked by reading and solving the file again."""
 
 from __future__ import annotations
 
@@ -40,7 +38,7 @@ PresetOf = Callable[[Chart], Preset]
 
 @dataclass(frozen=True, slots=True)
 class AppliedFix:
-    """One thing done. finding : the finding it was asked for, None: one of the safe fixes; fix : what was written"""
+    """A fix that was made. finding : the finding that it removes, None for a safe fix; fix : the edit of the file"""
 
     chart: str
     fix: Fix
@@ -49,7 +47,7 @@ class AppliedFix:
 
 @dataclass(frozen=True, slots=True)
 class SkippedFinding:
-    """A finding that stays as it is, or has gone without an edit of its own, and why."""
+    """A finding that stays, or that an edit for another finding has removed, with the reason."""
 
     chart: str
     finding: Finding
@@ -57,17 +55,17 @@ class SkippedFinding:
 
     @property
     def is_gone(self) -> bool:
-        """Whether an edit made for another one has removed it too."""
+        """Whether an edit for another finding has also removed this finding."""
         return self.reason == ALREADY_REMOVED
 
 
 @dataclass(frozen=True, slots=True)
 class FixTask:
-    """The fixes that are asked for in one file.
+    """The fixes that the user wants in one file.
 
-    task : the file, with its configuration; safe : the safe fixes are wanted
-    findings : those that were asked for, each with the player of a chart for two in whose part it is, else 0
-    write : whether the file is written; backup : keep the old bytes beside it
+    task : the file with its configuration; safe : whether the safe fixes are wanted
+    findings : the findings to remove, each with the player in whose part of a chart for two it is, else 0
+    write : whether the file is written; backup : whether the old bytes are kept beside it
     """
 
     task: AnalyzeTask
@@ -79,10 +77,10 @@ class FixTask:
 
 @dataclass(frozen=True, slots=True)
 class FixOutcome:
-    """What became of a file.
+    """The outcome of the fixes in one file.
 
-    fixed : what was, or would be, changed; unfixed : findings that were asked for and are as they were; error : or None
-    diff : the lines of the change; notes : what to know besides
+    fixed : the fixes that were made, or would be; unfixed : wanted findings without a fix, with the reason
+    error : a message, or None; diff : the lines of the change; notes : other messages for the user
     """
 
     fixed: tuple[AppliedFix, ...] = ()
@@ -93,10 +91,10 @@ class FixOutcome:
 
 
 def fix_file(job: FixTask) -> FixOutcome:
-    """Correct one file; the result is checked before it is written. Never raises for errors in the file."""
+    """Make the fixes in one file; the result is checked before it is written. Errors in the file never raise."""
     try:
         return _fix(job)
-    except NoChartsError as error:  # music of a menu: nothing to fix
+    except NoChartsError as error:  # for example the music of a menu: there is nothing to fix
         return FixOutcome(notes=(str(error),))
     except FileError as error:
         return FixOutcome(error=str(error))
@@ -136,12 +134,12 @@ def _write(job: FixTask, old: bytes, new: bytes) -> None:
     try:
         write_atomic(path, new, expect=old)
     except ChangedError:
-        if path.read_bytes() != new:  # else another run has just done the same
+        if path.read_bytes() != new:  # if equal, another run has just made the same change
             raise
 
 
 def _notes(job: FixTask, session: FixSession) -> Iterator[str]:
-    """Other things that the author has to do, if something that is played was changed."""
+    """Yield what else the author has to do, if a fix has changed notes that are played."""
     if all(one.fix.is_silent for one in session.fixed):
         return
     path = job.task.path
@@ -150,19 +148,19 @@ def _notes(job: FixTask, session: FixSession) -> Iterator[str]:
 
 
 def pick(findings: Sequence[tuple[Finding, int]], rule: str, number: int | None) -> tuple[tuple[Finding, int], ...]:
-    """The findings of a rule, or the one of that number, from 1; empty if there is none."""
+    """Return all findings of a rule, or only the one with this number, counted from 1; empty if there is none."""
     found = tuple(one for one in findings if one[0].rule == rule)
     return found if number is None else found[number - 1 : number]
 
 
-# The song on its way from one fix to the next.
+# The song after each fix.
 
 
 @dataclass
 class FixSession:
-    """A song on its way: `song` is as far as it has come, with its bytes in `song.data`.
+    """A song and the fixes made so far: `song` is the song after the last fix, with its bytes in `song.data`.
 
-    settings : of the rules; preset_of : the costs of each chart
+    settings : settings of the rules; preset_of : function that gives the cost preset of a chart
     """
 
     song: Song
@@ -173,7 +171,7 @@ class FixSession:
     _latest: _State | None = None
 
     def safe(self, chart: int) -> None:
-        """All safe fixes of a chart: of a rule at once if that brings no finding, else each that brings none."""
+        """Make the safe fixes of a chart that cause no new finding: all fixes of a rule at once, or else one by one."""
         for player in range(max(len(self.song.charts[chart].players), 1)):
             for rule in fix_edits.RULES:
                 fixes = [fix for fix in self._safe_fixes(self._part(chart, player + 1)) if fix.rule == rule]
@@ -182,9 +180,9 @@ class FixSession:
                         self._try(self._state(chart, player + 1), [fix])
 
     def finding(self, chart: int, finding: Finding, player: int = 0) -> None:
-        """Remove one finding of a chart with the smallest edit that does it; `unfixed` says where there is none.
+        """Remove one finding of a chart with the smallest edit that does so, or add the finding to `unfixed`.
 
-        player : in whose part of a chart for two it was found
+        player : the player in whose part of a chart for two the finding is, else 0
         """
         state = self._state(chart, player)
         if not _count(state, finding):
@@ -208,7 +206,10 @@ class FixSession:
                 yield fix
 
     def _safe_fixes(self, chart: Chart) -> list[Fix]:
-        """Those of a chart as it is now; of the grid that rule DT401 has for it, none where that rule is off."""
+        """Return the safe fixes of a chart as it is now.
+
+        The grid is that of rule DT401 for this chart. If the rule is off, every tick is on the grid.
+        """
         if is_lights(chart.steps_type):
             return []
         path = self.song.path.absolute()
@@ -217,7 +218,7 @@ class FixSession:
         return fix_edits.safe_fixes(self.song.data, chart, [int(name) for name in grid])
 
     def _part(self, index: int, player: int) -> Chart:
-        """A chart as it is now, or of one for two the part of a player."""
+        """Return a chart as it is now, or one player's part of a chart for two."""
         return _part(self.song, index, player)
 
     def _state(self, index: int, player: int = 0) -> _State:
@@ -227,7 +228,7 @@ class FixSession:
         return self._latest
 
     def _try(self, state: _State, fixes: Sequence[Fix], finding: Finding | None = None) -> bool:
-        """Make fixes if the file then reads as it must, the finding is gone and there is no new one."""
+        """Make fixes if the file then reads as intended, the finding is gone and no new finding appears."""
         splices = [splice for fix in fixes for splice in fix.splices]
         if len({splice.start for splice in splices}) < len(splices):
             return False
@@ -247,7 +248,7 @@ class FixSession:
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """A chart as it is now, with what the linter finds in it."""
+    """A chart as it is now, with its findings."""
 
     chart: Chart
     subject: ChartSubject
@@ -259,9 +260,9 @@ class _State:
         return _State(chart, subject, check_chart(subject, settings))
 
     def is_no_worse_than(self, before: _State) -> bool:
-        """Whether nothing is found that was not found there before.
+        """Whether there is no finding that was not there before.
 
-        Of what the reader warns of only the first few are reported, so there it is the number that counts.
+        Only the first few warnings of the reader are reported, so for those rules the number of findings counts.
         """
         return not _finding_counts(self.findings) - _finding_counts(before.findings)
 
@@ -280,13 +281,13 @@ def _finding_counts(findings: Iterable[Finding]) -> Counter[tuple[str, float | N
 
 
 def _count(state: _State, finding: Finding) -> int:
-    """How many findings of its rule stand in a finding's place."""
+    """Return how many findings have the rule and the place of a finding."""
     place = (finding.rule, finding.line, finding.beat)
     return sum((one.rule, one.line, one.beat) == place for one in state.findings)
 
 
 def _is_other_player_unchanged(before: Chart, after: Song, fixes: Sequence[Fix]) -> bool:
-    """Whether the other player of a chart for two has the same notes as before, and none where one came to."""
+    """Whether the other player of a chart for two has the same notes as before, and none where a note moved to."""
     if before.written is None:
         return True
     places = {(tick, column + before.first_column) for fix in fixes for tick, column, _, _ in fix.come}
@@ -301,7 +302,7 @@ def _is_other_player_unchanged(before: Chart, after: Song, fixes: Sequence[Fix])
 
 
 def _as_meant(before: Chart, after: Chart, fixes: Sequence[Fix]) -> bool:
-    """Whether a chart reads as the one before it with these fixes, note by note, and all else is as it was."""
+    """Whether a chart reads as the chart before with these fixes, note by note, and everything else is unchanged."""
     gone = frozenset(note for fix in fixes for note in fix.gone)
     come = frozenset(note for fix in fixes for note in fix.come)
     same = ("steps_type", "difficulty", "meter", "description", "columns", "timing", "tags", "notes_span")

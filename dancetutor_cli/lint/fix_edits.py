@@ -1,4 +1,4 @@
-"""Fixes as bytes: characters of notes that are replaced, the notes that must result, and fixes that nobody notices."""
+"""Fixes as bytes: characters of notes that are replaced, the notes that must result, and the safe fixes."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.note_facts import NoteFacts
 from dancetutor_cli.lint.suggest import Suggestion
 
-# Where the characters of notes stand in a file, and the fix: some of them replaced, with what that must come to.
+# The characters of notes in a file, and a fix: some characters are replaced, with the notes that must result.
 
 EMPTY = b"0"
-_LETTERS = b"01234MLFK"  # of one player's notes; a row with more than these and PLAYERS (keysounds) is left alone
+_LETTERS = b"01234MLFK"  # of one player's notes; a row with other characters (keysounds), except PLAYERS, is not edited
 
 Note = tuple[int, int, int, int]  # tick, column, kind, end
 
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """A few characters of a chart's note data replaced, one for one.
+    """An edit that replaces a few characters of a chart's note data, one for one.
 
-    rule : code of the rule whose findings it removes; lines : where those stand, 1-based; words : it in words
-    gone, come : the notes that the games do not read any more, and those that they read in their place
+    rule : code of the rule whose findings it removes; lines : 1-based lines of the findings; words : the edit in words
+    gone, come : the notes that the games no longer read, and the notes that they read instead
     """
 
     rule: str
@@ -41,13 +41,13 @@ class Fix:
 
     @property
     def is_silent(self) -> bool:
-        """Whether the games read the very same notes after it."""
+        """Whether the games read the same notes after the fix."""
         return self.gone == self.come
 
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A note's character. at : its byte in the file; tick, column, line : of its row; text : the character"""
+    """A note's character. at : offset of its byte in the file; tick, column, line : its place; text : the character"""
 
     at: int
     tick: int
@@ -57,22 +57,22 @@ class Cell:
 
 
 def cells_of(data: bytes, chart: Chart) -> Iterator[Cell]:
-    """The written cells of a chart, also the empty ones, row by row in file order.
+    """Yield the written cells of a chart, also the empty ones, row by row in file order.
 
-    Rows with anything but the letters of notes in them are left out, and so is what stands beyond the chart's columns.
+    Rows with other characters than the letters of notes are left out, and so are cells beyond the chart's columns.
     """
     for row in range(len(chart.rows.tick)):
         yield from _cells_of_row(data, chart, row)
 
 
 def is_plain(data: bytes, chart: Chart) -> bool:
-    """Whether its rows are one player's notes and nothing else, a letter for each: `cells_of` sees all of them."""
+    """Whether the chart's rows hold only letters of one player's notes, so that `cells_of` yields all of them."""
     spans = zip(chart.rows.start.tolist(), chart.rows.end.tolist(), strict=True)
     return not chart.players and not any(data[start:end].translate(None, _LETTERS) for start, end in spans)
 
 
 def cells_at(data: bytes, chart: Chart, tick: int) -> dict[int, Cell]:
-    """Column -> cell of the row at a tick; empty if none or several stand there, or if it is no plain row."""
+    """Return column -> cell of the row at a tick; empty if the tick has no row or several, or the row is not plain."""
     rows = (chart.rows.tick == tick).nonzero()[0].tolist()
     return {cell.column: cell for cell in _cells_of_row(data, chart, rows[0])} if len(rows) == 1 else {}
 
@@ -88,23 +88,23 @@ def _cells_of_row(data: bytes, chart: Chart, row: int) -> Iterator[Cell]:
 
 
 def replaced(cells: Iterable[tuple[Cell, bytes]]) -> tuple[Splice, ...]:
-    """Other characters in the place of cells."""
+    """Return the splices that replace the characters of cells."""
     return tuple(Splice(cell.at, cell.at + 1, text) for cell, text in cells)
 
 
 def notes_of(table: NoteTable) -> frozenset[Note]:
-    """The notes as a set, to be compared."""
+    """Return the notes as a set that can be compared."""
     columns = (table.tick.tolist(), table.column.tolist(), table.kind.tolist(), table.end.tolist())
     return frozenset(zip(*columns, strict=True))
 
 
-# The edit that `--suggest` says, as a fix: characters of notes and of free panels in their rows change places.
+# The edit that `--suggest` names, as a fix: each note's character changes places with a free panel of its row.
 
 _TAPS = (b"1", b"L", b"l", b"X", b"Y")
 
 
 def move_notes(data: bytes, chart: Chart, finding: Finding, edit: Suggestion) -> Fix | None:
-    """The fix; None where a row is not one plain row of characters with the note and an empty place for it."""
+    """Return the fix; None if a row is not a single plain row that has the note and an empty cell for it."""
     cells: list[tuple[Cell, bytes]] = []
     gone, come = set[Note](), set[Note]()
     notes = chart.notes
@@ -121,23 +121,23 @@ def move_notes(data: bytes, chart: Chart, finding: Finding, edit: Suggestion) ->
     return Fix(finding.rule, line, edit.words, replaced(cells), frozenset(gone), frozenset(come))
 
 
-# The fixes that nobody notices: mines between the ends of a hold, halves of holds, notes less than 3 ms off the grid.
+# The safe fixes: mines between the ends of a hold, halves of holds, notes less than 3 ms off the grid.
 #
-# They change only what the games discard, or what nobody can distinguish, so finding them needs no solver. `fix` checks
-# them with the solver nevertheless.
+# They change only notes that the games discard, or times by less than anyone can notice, so they are found without the
+# solver. The module `fix` still checks them with the solver.
 
 BROKEN_HOLD, OFF_GRID = "DT106", "DT401"
 RULES = (BROKEN_HOLD, OFF_GRID)
-UNHEARD = 0.003  # seconds that no one hears or sees
+UNHEARD = 0.003  # seconds; nobody hears or sees a smaller difference
 _KIND = {b"2": Kind.HOLD, b"4": Kind.ROLL}
 _MINE, _TAIL = b"M", b"3"
-_SILENT = (EMPTY, b"K")  # cells that come between nothing
+_SILENT = (EMPTY, b"K")  # cells that do not interrupt a hold
 
 
 def safe_fixes(data: bytes, chart: Chart, grid: Sequence[int]) -> list[Fix]:
-    """All such fixes of a chart, in file order; none of a chart whose rows hold other things than notes.
+    """Return all safe fixes of a chart in file order; none for a chart whose rows are not plain (`is_plain`).
 
-    data : the bytes of its file; grid : the usual quantisations, as rule DT401 has them
+    data : the bytes of the file; grid : the usual quantisations, as in rule DT401
     """
     if not is_plain(data, chart):
         return []
@@ -145,7 +145,7 @@ def safe_fixes(data: bytes, chart: Chart, grid: Sequence[int]) -> list[Fix]:
 
 
 def _holds(data: bytes, chart: Chart) -> Iterator[Fix]:
-    """In every column: heads that find no end, ends that find no head, and mines that come between two of them."""
+    """Yield the fixes in every column: heads without an end, ends without a head, and mines between head and end."""
     columns: dict[int, list[Cell]] = {}
     for cell in cells_of(data, chart):
         if cell.text not in _SILENT:
@@ -175,13 +175,13 @@ def _of_column(cells: list[Cell]) -> Iterator[Fix]:
 
 
 def _dropped(cell: Cell, what: str) -> Fix:
-    """Half a hold goes: the games drop it too, so they read the same notes as before."""
+    """Return the fix that removes half a hold. The games discard it too, so they read the same notes as before."""
     words = f"remove {what} on beat {_beat(cell)}; the games drop it as well"
     return Fix(BROKEN_HOLD, frozenset({cell.line}), words, replaced([(cell, EMPTY)]))
 
 
 def _without_mines(head: Cell, mines: list[Cell], tail: Cell) -> Fix:
-    """The mines go, and the hold is one: the games delete a head that has a mine before its end."""
+    """Return the fix that removes the mines inside a hold. The games discard a head that has a mine before its end."""
     kind = _KIND[head.text]
     many = "a mine" if len(mines) == 1 else f"{len(mines)} mines"
     words = f"remove {many} from under the head of the {kind.name.lower()} on beat {_beat(head)}"
@@ -196,7 +196,7 @@ def _without_mines(head: Cell, mines: list[Cell], tail: Cell) -> Fix:
 
 
 def _off_grid(data: bytes, chart: Chart, grid: Sequence[int]) -> Iterator[Fix]:
-    """Runs of rows that go to the nearest row of the grid as they are, each by less than 3 ms."""
+    """Yield fixes that move each run of rows to the nearest rows of the grid, each row by less than 3 ms."""
     known = notes_of(chart.notes)
     steps = np.unique(chart.notes.tick[chart.notes.kind != Kind.MINE])
     for first, line, count in NoteFacts(chart).off_grid(grid):
@@ -218,10 +218,10 @@ def _is_on(tick: int, grid: Sequence[int]) -> bool:
 
 
 def _nearest(chart: Chart, tick: int, steps: NDArray[np.int64], grid: Sequence[int]) -> int | None:
-    """The tick of the grid that is nearest in time; None if it is 3 ms away or more, or if others are as near.
+    """Return the tick of the grid that is nearest in time; None if it is 3 ms away or more, or if other rows are near.
 
-    Where several rows come within 3 ms the song plays tricks with its tempo, and their order is there to be seen.
-    steps : ticks of all rows with notes
+    Several rows within 3 ms are a trick with the tempo, and players see their order.
+    steps : ticks of all rows with steps
     """
     reach = TICKS_PER_MEASURE // max(grid)
     near = [to for to in range(max(tick - reach, 0), tick + reach + 1) if _is_on(to, grid)]
@@ -237,7 +237,7 @@ def _nearest(chart: Chart, tick: int, steps: NDArray[np.int64], grid: Sequence[i
 
 
 def _move_cells(data: bytes, chart: Chart, tick: int, to: int) -> list[tuple[Cell, bytes]]:
-    """Everything of one row in another that is free there; nothing if that cannot be."""
+    """Return the cells that move all notes of one row to another row; empty if a target cell is not free."""
     away, there = cells_at(data, chart, tick), cells_at(data, chart, to)
     full = [cell for cell in away.values() if cell.text != EMPTY]
     if not full or any(cell.column not in there or there[cell.column].text != EMPTY for cell in full):
