@@ -1,4 +1,4 @@
-"""Facts about the notes of a chart and the files they stand in, for rules: grid, kinds, places, pairs of files."""
+"""Facts for rules about the notes of a chart and its files: grid, kinds, places, differences of .ssc and .sm."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ _IS_STEP[list(_STEPS)] = _IS_JUDGED[[*_STEPS, Kind.MINE]] = True
 
 
 class NoteFacts:
-    """What rules need to know of the notes of a chart."""
+    """The facts about the notes of a chart that rules need."""
 
     def __init__(self, chart: Chart) -> None:
         self._chart = chart
 
     def off_grid(self, grid: Sequence[int]) -> Iterator[tuple[int, int, int]]:
-        """Tick, line and number of rows of every run of rows with steps that no quantisation of `grid` has."""
+        """Yield tick, line and number of rows of every run of rows with steps that are on no quantisation of `grid`."""
         notes = self._chart.notes
         off = _off(tuple(grid))
         if not off[notes.tick % TICKS_PER_MEASURE].any():
@@ -42,7 +42,7 @@ class NoteFacts:
         yield from _runs(off[ticks % TICKS_PER_MEASURE], ticks, notes.line[steps][first])
 
     def unjudged(self) -> Iterator[tuple[int, int, int]]:
-        """Tick, line and number of the notes of every run that lies in a warp or a fake segment."""
+        """Yield tick, line and number of notes of every run of notes in a warp or a fake segment."""
         notes = self._chart.notes
         timing = self._chart.timing
         if not (timing.warps or timing.fakes) or notes.judged.all():
@@ -51,7 +51,7 @@ class NoteFacts:
         yield from _runs(hidden, notes.tick, notes.line)
 
     def of_kind(self, kind: str) -> list[tuple[int, int]]:
-        """Tick and line of every note of a kind of DT508; jumps and hands are rows."""
+        """Return tick and line of every note of a kind of DT508; for jumps and hands, of every such row."""
         notes = self._chart.notes
         if kind in _KINDS:
             found = notes.kind == _KINDS[kind]
@@ -64,7 +64,7 @@ class NoteFacts:
 
 @lru_cache(maxsize=64)
 def _off(grid: tuple[int, ...]) -> NDArray[np.bool_]:
-    """For each tick of a measure whether no quantisation of `grid` has it."""
+    """Return, for each tick of a measure, whether it is on no quantisation of `grid`."""
     off = np.ones(TICKS_PER_MEASURE, dtype=bool)
     for quantisation in grid:
         off[:: max(TICKS_PER_MEASURE // quantisation, 1)] = False
@@ -78,35 +78,35 @@ def _runs(
         yield int(ticks[first]), int(lines[first]), after - first
 
 
-# Where things stand in a chart's file: line, column, beat and second of rows of the play and of the note data.
+# Places in a chart's file: line, column, beat and second of the play's rows and of the note data.
 
 
 @dataclass(frozen=True)
 class PlacedChart:
-    """One chart and its play, which is None where the steps type has no pad; `at_...` are the places of findings."""
+    """A chart and its play, which is None if the steps type has no pad; methods `at_...` give places of findings."""
 
     song: Song
     chart: Chart
     play: Play | None
 
     def beat(self, row: int) -> float:
-        """Beat of a row of the play."""
+        """Return the beat of a row of the play."""
         assert self.play is not None
         return round(int(self.play.rows.tick[row]) / TICKS_PER_BEAT, 6)
 
     def margin(self, row: int) -> int | None:
-        """How much more the best play with other limbs in this row costs; None if there is none, or nobody asked."""
+        """Return how much more the best play with other limbs in this row costs; None if it is not known."""
         margin = -1 if self.play is None or self.play.margin is None else int(self.play.margin[row])
         return None if margin < 0 else margin
 
     def pressed(self, row: int) -> list[int]:
-        """Note columns that have a step in a row of the play."""
+        """Return the note columns that have a step in a row of the play."""
         assert self.play is not None
         return [column for column, kind in enumerate(self.play.rows.steps[row].tolist()) if kind]
 
     @cached_property
     def file_lines(self) -> NDArray[np.int32]:
-        """(n,) lines in the file of the rows of the play; where only a roll made one, of the row written before."""
+        """(n,) line in the file of each row of the play; for a row that only a roll makes, of the last written row."""
         assert self.play is not None
         lines, written = self.play.rows.line, self.chart.rows
         if not len(written.tick) or (lines > 0).all():
@@ -115,7 +115,10 @@ class PlacedChart:
         return np.where(lines > 0, np.maximum(lines, self.chart.line), written.line[np.maximum(before, 0)])
 
     def at_row(self, row: int, note_column: int | None = None) -> dict[str, Any]:
-        """Where a row of the play stands, as keyword arguments of `Finding`; without `note_column`: its first step."""
+        """Return the place of a row of the play, as keyword arguments of `Finding`.
+
+        Without `note_column`, it is the place of the row's first step.
+        """
         assert self.play is not None
         if note_column is None:
             note_column = next(iter(self.pressed(row)), None)
@@ -129,7 +132,7 @@ class PlacedChart:
         }
 
     def at_line(self, line: int | None) -> dict[str, Any]:
-        """Where a line of the chart stands; with a beat if it is a row of the note data."""
+        """Return the place of a line of the chart, with a beat if the line is a row of the note data."""
         line = self.chart.line if line is None else line
         place: dict[str, Any] = {"line": line, "column": 1, "chart": self.chart.index}
         rows = self.chart.rows
@@ -140,12 +143,12 @@ class PlacedChart:
         return place
 
     def at_tick(self, tick: int, line: int) -> dict[str, Any]:
-        """Where a note of the chart stands that may be in no row of the play."""
+        """Return the place of a note that may be in no row of the play."""
         second = float(self.chart.timing.seconds(np.array([tick]))[0])
         return {"line": line, "column": self._text_column(line, 0), **self._time(tick, second)}
 
     def at_chart(self) -> dict[str, Any]:
-        """Where the chart itself starts."""
+        """Return the place at which the chart starts."""
         return {"line": self.chart.line, "column": 1, "chart": self.chart.index}
 
     def _time(self, tick: int, second: float) -> dict[str, Any]:
@@ -157,7 +160,7 @@ class PlacedChart:
         }
 
     def _text_column(self, line: int, note_column: int) -> int:
-        """1-based column of a note's character on its line; keysounds and blanks before it are counted."""
+        """Return the 1-based column of a note's character on its line, including keysounds and blanks before it."""
         rows = self.chart.rows
         found = int(rows.line.searchsorted(line))
         if found >= len(rows.line) or rows.line[found] != line:
@@ -174,7 +177,7 @@ class PlacedChart:
 
 
 def _note_offsets(row: bytes) -> Iterator[int]:
-    """Offsets of the note characters of a row; ``[...]`` keysounds stand between them."""
+    """Yield the offsets of the note characters of a row; ``[...]`` keysounds may be between them."""
     inside_keysound = False
     for offset, byte in enumerate(row):
         if inside_keysound:
@@ -185,13 +188,13 @@ def _note_offsets(row: bytes) -> Iterator[int]:
             yield offset
 
 
-# How the .ssc of a song differs from the .sm beside it.
+# The differences between the .ssc of a song and the .sm beside it.
 
 Key = tuple[str, str, int]
 
 
 def differences(song: Song) -> Iterator[tuple[str, int | None, int | None]]:
-    """Message, line and chart of every difference between a .ssc and the .sm beside it; nothing for a .sm."""
+    """Yield message, line and chart of every difference between a .ssc and the .sm beside it; nothing for a .sm."""
     other_path = twin(song.path) if song.format == "ssc" else None
     if other_path is None:
         return
@@ -212,13 +215,13 @@ def differences(song: Song) -> Iterator[tuple[str, int | None, int | None]]:
 
 
 def _labels(charts: list[Chart]) -> str:
-    """ "dance-single Hard 9 and dance-single Easy 3 are"."""
+    """Return the labels with a verb: "dance-single Hard 9 and dance-single Easy 3 are"."""
     names = [chart.label for chart in charts]
     return f"{', '.join(names[:-1])} and {names[-1]} are" if len(names) > 1 else f"{names[0]} is"
 
 
 def _by_key(song: Song) -> dict[Key, Chart]:
-    """Charts, but of lights, by type and difficulty, and by their place among those that share both."""
+    """Return the charts, except lights, by steps type, difficulty, and number among the charts that share both."""
     found: dict[Key, Chart] = {}
     places: Counter[tuple[str, str]] = Counter()
     for chart in song.charts:
@@ -231,7 +234,7 @@ def _by_key(song: Song) -> dict[Key, Chart]:
 
 
 def _difference(a: Chart, b: Chart) -> str:
-    """The difference of two charts: "notes", "a meter" or "times"; "" if there is none."""
+    """Return the difference of two charts: "notes", "a meter" or "times"; "" if they are the same."""
     fields = ("tick", "column", "kind", "end")
     if any(not np.array_equal(getattr(a.notes, name), getattr(b.notes, name)) for name in fields):
         return "notes"

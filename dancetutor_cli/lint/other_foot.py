@@ -1,4 +1,4 @@
-"""Whether another way to dance a passage crosses the feet less, and where a dancer may begin with either foot."""
+"""Whether another way to dance a passage crosses the feet less, and where the dancer may begin with either foot."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
 
-# Where a dancer may begin again with either foot: worked out once for all steps of a play, and asked for often.
+# The steps at which the dancer may begin again with either foot, found once for all steps of a play.
 
-RESTED = 0.45  # seconds without a step after which nobody alternates: of labelled crossings nine of ten are quicker
+RESTED = 0.45  # seconds; after a longer pause, feet need not alternate: 9 of 10 labelled crossings are quicker
 REST = 1.75  # times the pace of the passage: a quarter among eighths, not the longer note of a gallop
-_SHORTEST = 0.22  # seconds of such a rest
-_AROUND = 7  # steps to either side that make the pace
+_SHORTEST = 0.22  # seconds of the shortest rest
+_AROUND = 7  # steps to either side that set the pace
 
 
 class Beginnings:
-    """The rows with a step of a play, by their places from 0 to k - 1.
+    """The k steps of a play, numbered from 0, and where the dancer begins again with either foot.
 
-    rows : (k,), their rows; pauses : (k,), seconds since the step before, endless for the first
+    rows : (k,) row of each step; pauses : (k,) seconds since the step before, inf for the first
     """
 
     def __init__(self, play: Play, rows: NDArray[np.int64], pauses: NDArray[np.float64]) -> None:
@@ -39,35 +39,35 @@ class Beginnings:
 
     @cached_property
     def rests(self) -> NDArray[np.bool_]:
-        """(k,) whether before a step about twice the time passes that the steps around it take."""
+        """(k,) whether the pause before a step is about twice the pace of the steps around it."""
         rests, count = self._pauses >= _SHORTEST, len(self._rows)
         long = np.flatnonzero(rests)
         around = long[:, None] + np.arange(-_AROUND, _AROUND + 1)
-        known = (around >= 1) & (around < count)  # nothing is known of the time before the first
+        known = (around >= 1) & (around < count)  # the first step has no pause before it
         times = np.sort(np.where(known, self._pauses[around.clip(0, count - 1)], np.inf), axis=1)
         many = known.sum(axis=1)
-        middle = times[np.arange(len(long)), np.maximum(many - 1, 0) // 2]  # the median, of two the lesser
+        middle = times[np.arange(len(long)), np.maximum(many - 1, 0) // 2]  # the median, or the lesser middle value
         rests[long] = self._pauses[long] >= REST * np.where(many > 0, middle, 0.0)
         return rests
 
     @cached_property
     def pairs(self) -> NDArray[np.bool_]:
-        """(k,) whether more than one panel is pressed: a pair is a jump as well as a bracket."""
+        """(k,) whether more than one panel is pressed, in a jump or a bracket."""
         return np.asarray((self._play.limb[self._rows] >= 0).sum(axis=1) > 1)
 
     @cached_property
     def after_walls(self) -> NDArray[np.bool_]:
-        """(k,) whether a wall of mines, for which everybody waits between the panels, stands before a step."""
+        """(k,) whether a wall of mines, for which dancers leave the panels, is between a step and the step before."""
         found = np.zeros(len(self._rows), dtype=bool)
         walls = np.concatenate([[0], (self._play.rows.mines.sum(axis=1) >= WALL).cumsum()])
         found[1:] = walls[self._rows[1:]] > walls[self._rows[:-1] + 1]
         return found
 
     def fresh_starts(self, quick: float) -> NDArray[np.bool_]:
-        """(k,) whether the dancer may begin with either foot at a step.
+        """Return (k,) whether the dancer may begin with either foot at a step.
 
-        After a rest, a wall of mines or two panels at once, or there is no step before; and at two panels at once.
-        quick : the longest time (s) between steps that is quick: no rest, even if longer than `RESTED`
+        This holds for the first step, for two panels at once, and after a rest, a wall of mines or two panels at once.
+        quick : the longest time (s) between steps that is quick and so no rest, even if longer than `RESTED`
         """
         if quick not in self._anew:
             anew = self.rests | self.pairs | self.after_walls | (self._pauses > max(RESTED, quick + EPSILON))
@@ -77,7 +77,7 @@ class Beginnings:
         return self._anew[quick]
 
     def segment(self, at: int, quick: float) -> tuple[int, int]:
-        """First and last place around one in which the dancer does not begin again."""
+        """Return the first and the last step of the passage around a step in which the dancer does not begin again."""
         if quick not in self._starts:
             self._starts[quick] = np.flatnonzero(self.fresh_starts(quick))
         starts = self._starts[quick]
@@ -85,7 +85,7 @@ class Beginnings:
         return int(starts[after - 1]), int(starts[after]) - 1 if after < len(starts) else len(self._rows) - 1
 
 
-# Whether a passage works as well on the other foot: after a rest or a jump, players begin with either foot.
+# Whether a passage is also uncrossed on the other foot: after a rest or a jump, players begin with either foot.
 
 _CROSSED = 90.0 + 1e-6  # degrees
 
@@ -93,9 +93,9 @@ _CROSSED = 90.0 + 1e-6  # degrees
 def goes_on_the_other_foot(subject: ChartSubject, row: int, quick: float, *, jacked: bool = False) -> bool:
     """Whether the steps around a row, from one rest or jump to the next, never cross with left and right exchanged.
 
-    quick : the longest time (s) between steps that the rule takes for quick: no rest, even if longer than `RESTED`
-    jacked : the exchange begins with the row itself, which the foot steps again that has just stepped; it need not
-        begin after a rest, but has to end at one
+    quick : the longest time (s) between steps that the rule calls quick, so no rest, even if longer than `RESTED`
+    jacked : the exchange begins at the row itself, where one foot steps twice; it need not begin after a rest, but must
+        end at one
     """
     if subject.facts is None or subject.play is None:
         return False
@@ -106,13 +106,13 @@ def goes_on_the_other_foot(subject: ChartSubject, row: int, quick: float, *, jac
 
 
 def segment(subject: ChartSubject, at: int, quick: float, *, forwards_only: bool = False) -> tuple[int, int]:
-    """First and last of the rows with a step around the `at`-th, in which the dancer does not begin again."""
+    """Return the first and the last step of the passage around step `at` in which the dancer does not begin again."""
     first, last = subject.beginnings.segment(at, quick)
     return at if forwards_only else first, last
 
 
 def standing(subject: ChartSubject, row: int) -> list[int]:
-    """Panels of both feet before a row, -1 where they may be anywhere."""
+    """Return the panels of both feet before a row, -1 for a foot that may be anywhere."""
     assert subject.play is not None
     return [int(one) for one in subject.play.feet[row - 1][:2]] if row else [-1, -1]
 
@@ -120,9 +120,9 @@ def standing(subject: ChartSubject, row: int) -> list[int]:
 def exchanged_is_uncrossed(
     subject: ChartSubject, rows: NDArray[np.int64], stand: list[int] | None = None, *, swap: bool = True
 ) -> bool:
-    """Whether these rows are single steps that leave the dancer facing the screen with left and right exchanged.
+    """Whether these rows are single steps that never cross the feet with left and right exchanged.
 
-    stand : panels of both feet before; swap : False: not exchanged, as they are
+    stand : panels of both feet before the rows; swap : whether the feet are exchanged
     """
     play, feet = subject.play, subject.facts
     if play is None or feet is None:
@@ -135,7 +135,7 @@ def exchanged_is_uncrossed(
 def exchanged_facings(
     subject: ChartSubject, rows: NDArray[np.int64], stand: list[int] | None = None, *, swap: bool = True
 ) -> list[float]:
-    """Degrees that the body is turned after each of some single steps, 0 while a foot may be anywhere."""
+    """Return the degrees that the body is turned after each of some single steps, 0 while a foot may be anywhere."""
     assert subject.play is not None
     left, right = (-1, -1) if stand is None else stand
     limbs = subject.play.limb[rows]
@@ -149,23 +149,25 @@ def exchanged_facings(
     return facings
 
 
-# Whether another way to dance the steps around a row crosses the feet less: people choose a foot after a breath.
+# Whether another way to dance the steps around a row crosses the feet less. After a breath, dancers choose a foot.
 
 _BEFORE, _AFTER = 16, 12  # steps to either side of the row, if no rest comes first
-_BREATH = 0.22  # seconds, at least: twice a shorter time is still a run
-_SWUNG = 0.2  # the same where the rule has breaths: the long half of a swing rhythm is one
+_BREATH = 0.22  # seconds of the shortest breath: a shorter pause is part of a run
+_SWUNG = 0.2  # seconds of the shortest breath if `Freedom.rest` is set: the long half of a swing rhythm is a breath
 _NEAR = 5  # steps
 _UNKNOWN = -1
 
 
 class Freedom(NamedTuple):
-    """What a dancer may do besides alternating left and right, with any foot first after a rest.
+    """The moves that the dancer may make besides alternating the feet. After a rest, either foot may begin.
 
-    quick : the longest time (s) between steps that the rule takes for quick; rest : seconds that are a breath after a
-    quicker step alone, see `is_breath`; switch : from so many seconds the feet may change on a panel that
-    is stepped on again; slip : from so many seconds one foot may step twice in a row, once, out of a run of jacks or to
-    the other of two pads; spins : whether the body may turn on round behind; lead : seconds that let either foot begin
-    if the next step comes in half of them
+    quick : the longest time (s) between steps that the rule calls quick
+    rest : a pause of at least so many seconds is compared only with the steps before it, see `is_breath`
+    switch : after at least so many seconds, the feet may change on a panel that is stepped on again
+    slip : after at least so many seconds, one foot may step twice in a row, once in the phrase: after a jack, or to the
+        other of two pads
+    spins : whether the body may turn on past the back
+    lead : after at least so many seconds, either foot may begin if the next step comes in about half that time
     """
 
     quick: float
@@ -177,7 +179,7 @@ class Freedom(NamedTuple):
 
 
 class _Stand(NamedTuple):
-    """Panels of the left and the right foot, the foot that stepped last, where the body faces, slips used up."""
+    """Panels of both feet (left, right), the last foot that stepped, degrees of the body, whether a foot slipped."""
 
     panels: tuple[int, int]
     last: int
@@ -186,9 +188,9 @@ class _Stand(NamedTuple):
 
 
 def fewest_crossed(subject: ChartSubject, row: int, freedom: Freedom) -> float:
-    """The least number of steps of the phrase around a row after which the feet are crossed, with this freedom.
+    """Return the least number of crossed steps with which the phrase around a row can be danced with this freedom.
 
-    Endless if there is no way, or if the phrase has a hold or two panels at once.
+    The result is inf if there is no way, or if the phrase has a hold or two panels at once.
     """
     play, feet = subject.play, subject.facts
     if play is None or feet is None or subject.pad is None:
@@ -215,16 +217,16 @@ def fewest_crossed(subject: ChartSubject, row: int, freedom: Freedom) -> float:
 
 
 def _begins(subject: ChartSubject, at: int, freedom: Freedom) -> bool:
-    """Whether a phrase begins with the `at`-th row with a step; where a rest is one for the rule, a breath is one."""
+    """Whether a phrase begins with step `at`; if `freedom.rest` is set, a breath also begins a phrase."""
     if subject.beginnings.fresh_starts(freedom.quick)[at]:
         return True
     return freedom.rest < math.inf and is_breath(subject, at, freedom.rest)
 
 
 def is_breath(subject: ChartSubject, at: int, rest: float = math.inf) -> bool:
-    """Whether the `at`-th row with a step begins a group: about twice the times inside this group and that before it.
+    """Whether step `at` begins a group: the pause before it is about twice the pauses before and after that pause.
 
-    rest : seconds that need only be twice the time in the group before
+    rest : a pause of at least so many seconds need only be about twice the pause before it
     """
     rows = subject.step_rows
     pause = subject.pause(int(rows[at]))
@@ -235,7 +237,7 @@ def is_breath(subject: ChartSubject, at: int, rest: float = math.inf) -> bool:
 
 
 def in_groups(subject: ChartSubject, row: int) -> bool:
-    """Whether one of the few steps before or after a row begins a group."""
+    """Whether one of the few steps before and after a row begins a group."""
     at = int(subject.step_rows.searchsorted(row))
     return any(
         is_breath(subject, one) for one in range(max(at - _NEAR, 1), min(at + _NEAR + 1, len(subject.step_rows)))
@@ -243,7 +245,7 @@ def in_groups(subject: ChartSubject, row: int) -> bool:
 
 
 def led_by_a_jack(subject: ChartSubject, row: int) -> bool:
-    """Whether one of the few panels stepped on before a row is stepped on twice."""
+    """Whether two of the few steps before a row, one after the other, are on the same panels."""
     rows = subject.step_rows
     at = int(rows.searchsorted(row))
     pressed = [subject.pressed(int(one)) for one in rows[max(at - _NEAR, 0) : at]]
@@ -251,7 +253,7 @@ def led_by_a_jack(subject: ChartSubject, row: int) -> bool:
 
 
 def has_mine_since_step(subject: ChartSubject, row: int) -> bool:
-    """Whether a mine comes after the step before a row, or with it: so authors mark that the feet switch."""
+    """Whether a mine is between the step before a row and the row, or in the row. Authors mark footswitches so."""
     assert subject.play is not None
     before = int(subject.step_rows[int(subject.step_rows.searchsorted(row)) - 1])
     return bool(subject.play.rows.mines[before + 1 : row + 1].any())
@@ -268,7 +270,7 @@ def _starts(subject: ChartSubject, first: int, *, anew: bool) -> dict[_Stand, in
 
 
 class _Step(NamedTuple):
-    """One step of the phrase: the `at`-th row with a step, on `column`, after one on `before`."""
+    """One step of the phrase: step `at` of the play, on panel `column`, after a step on panel `before`."""
 
     subject: ChartSubject
     at: int
@@ -277,7 +279,10 @@ class _Step(NamedTuple):
     freedom: Freedom
 
     def taken(self, ways: dict[_Stand, int], *, free: bool) -> dict[_Stand, int]:
-        """The ways to stand after this step, each with its fewest crossed steps; free : with either foot."""
+        """Return the stances after this step, each with its least number of crossed steps.
+
+        free : whether either foot may take the step
+        """
         subject, freedom = self.subject, self.freedom
         pause = subject.pause(int(subject.step_rows[self.at]))
         free = free or is_breath(subject, self.at, freedom.rest) or (pause >= freedom.lead and self._leads(pause))
@@ -298,7 +303,7 @@ class _Step(NamedTuple):
         return found
 
     def _stood(self, stand: _Stand, foot: int, slipped: bool) -> _Stand | None:
-        """The stance with this foot on the panel; None if the dancer would turn on around her back."""
+        """Return the stance with this foot on the panel; None if the dancer would turn past the back without leave."""
         left, right = (self.column, stand.panels[1]) if foot == 0 else (stand.panels[0], self.column)
         if left == right and left != _UNKNOWN:  # the foot that was there makes room
             left, right = (left, _UNKNOWN) if foot == 0 else (_UNKNOWN, right)

@@ -1,4 +1,4 @@
-"""What is wrong with the syncs of a pack's songs together: rules that need all of its results."""
+"""The rules about the syncs of all songs of a pack, which need the results of all its files."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.findings import Finding, Sync
     from dancetutor_cli.lint.rule_settings import Settings
 
-_FEWEST = 2  # songs of a pack
-_STEADY = 6.0  # ms of drift; with more a song is neither null nor ITG
+_FEWEST = 2  # the least number of songs in a pack
+_STEADY = 6.0  # ms; a song with more drift is neither null nor ITG
 
 
 class PackSyncs:
-    """Takes results as they come. A song that lies there as .sm and .ssc counts once, as .ssc."""
+    """Collects the syncs of songs, pack by pack. A song with a .sm and a .ssc counts once, by its .ssc."""
 
     def __init__(self) -> None:
         self._songs: dict[Path, dict[str, tuple[str, Sync]]] = {}
-        self._names: dict[Path, str] = {}  # of the folders, as their files were named
+        self._names: dict[Path, str] = {}  # names of the folders, relative if their files were named so
 
     def add(self, result: FileResult) -> None:
-        """Take note of a file whose sync is sure and steady."""
+        """Add a file, if its sync is sure and steady."""
         sync = result.sync
         if sync is None or not sync.is_sure or abs(sync.drift_ms or 0.0) > _STEADY:
             return
@@ -41,11 +41,11 @@ class PackSyncs:
 
     @property
     def folders(self) -> Iterator[Path]:
-        """The folders of packs, those with songs enough to be one."""
+        """The folders with enough songs for a pack."""
         return (folder for folder in sorted(self._songs) if len(self._songs[folder]) >= _FEWEST)
 
     def result(self, folder: Path, settings: Settings) -> FileResult | None:
-        """The findings for the pack of a folder, as a result of that folder; None if there are none."""
+        """Return the findings for the pack in a folder, as the result of that folder; None if it has none."""
         songs = [PackSong(*song) for _, song in sorted(self._songs[folder].items())]
         ini = read_pack_ini(folder)
         findings: list[Finding] = []

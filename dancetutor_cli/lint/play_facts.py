@@ -1,4 +1,4 @@
-"""Facts about the play of one chart, as rules need them: crossed runs, travels, mines under feet.
+"""Facts about the play of one chart for rules: crossed runs, travels, mines under feet.
 
 Rows are numbers of rows of the play. Limbs: 0 left foot, 1 right foot, 2 left hand, 3 right hand.
 """
@@ -17,19 +17,19 @@ from dancetutor_cli.feet.play import StepKind
 from dancetutor_cli.lint.candidates import Candidates
 from dancetutor_cli.lint.plays import CROSSED, EPSILON, PlayedSteps
 
-_BETWEEN = 2  # sure rows between two unsure ones of one passage, at most
-WALL = 3  # mines in a row
-HARDLY = 0.15  # seconds since a step in which no foot leaves
+_BETWEEN = 2  # most sure rows between two unsure rows of one passage
+WALL = 3  # the least number of mines in a wall
+HARDLY = 0.15  # seconds; a foot cannot leave its panel so soon after its step
 _HOLD, _ROLL_TAP = int(StepKind.HOLD), int(StepKind.ROLL_TAP)
 _LIMB_NAMES = {Limb.LEFT_FOOT: "left foot", Limb.RIGHT_FOOT: "right foot", Limb.LEFT_HAND: "left hand",
                Limb.RIGHT_HAND: "right hand"}  # fmt: skip
 
 
 class PlayFacts:
-    """One of several plays that are looked at together, and its timing.
+    """Facts about one of several plays that are checked together.
 
-    Most rules find nothing in most charts: `candidates` has the rows that they would have to look at, worked out for
-    all plays at once, and this class the part of the play with this number.
+    Most rules find nothing in most charts. `candidates` has the rows that rules have to check, found for all plays at
+    once. This class has the part of the play with index `number`.
     """
 
     def __init__(self, candidates: Candidates, number: int, timing: Timing) -> None:
@@ -41,12 +41,12 @@ class PlayFacts:
 
     @cached_property
     def _pressed(self) -> PlayedSteps:
-        """All presses, a roll's virtual taps too."""
+        """All presses of the play, with the virtual taps of rolls."""
         return self._plays.pressed.between(self._first, self._after)
 
     @cached_property
     def presses(self) -> PlayedSteps:
-        """All presses of the play but virtual taps."""
+        """All presses of the play, without virtual taps."""
         return self._plays.presses.between(self._first, self._after)
 
     @cached_property
@@ -55,39 +55,39 @@ class PlayFacts:
 
     @property
     def has_mines(self) -> bool:
-        """Whether there are mines."""
+        """Whether the play has mines."""
         return self._plays.with_mines[self.number]
 
     @property
     def has_holds(self) -> bool:
-        """Whether there are holds."""
+        """Whether the play has holds."""
         return self._plays.with_holds[self.number]
 
     @cached_property
     def stepped(self) -> NDArray[np.int64]:
-        """Rows with a step, also if nobody presses it."""
+        """The rows with a step, whether or not a limb presses it."""
         return self._plays.own(self._plays.stepped, self.number)
 
     @cached_property
     def pauses(self) -> NDArray[np.float64]:
-        """(n,) seconds since the row with a step before one of `stepped`; endless for the first, and for others."""
+        """(n,) seconds since the row with a step before, for rows of `stepped`; inf for the first and other rows."""
         return self._plays.pauses[self._first : self._after]
 
     def limb_name(self, row: int, column: int) -> str:
-        """ "left foot", "right hand" ... of what presses a cell."""
+        """Return the name of the limb that presses a cell: "left foot", "right hand" ..."""
         return _LIMB_NAMES.get(Limb(int(self._play.limb[row, column])), "limb")
 
     @cached_property
     def down(self) -> NDArray[np.int64]:
-        """(n,) how many panels are down in each row: stepped on, or held from before; taps of rolls do not count."""
+        """(n,) number of panels that are down in each row, stepped on or held; taps of rolls do not count."""
         return self._plays.down[self._first : self._after]
 
     def triples(self) -> list[int]:
-        """Rows with a step in which three panels or more are down."""
+        """Return the rows with a step in which three or more panels are down."""
         return self.candidates.triples[self.number]
 
     def doublesteps(self) -> list[int]:
-        """Rows of doublesteps with nothing in the way that do not cross the feet."""
+        """Return the rows of doublesteps that do not cross the feet, where the other foot was free."""
         return self.candidates.free_doublesteps[self.number]
 
     def crossed(self, row: int) -> bool:
@@ -95,16 +95,17 @@ class PlayFacts:
         return bool(abs(self._play.facing[row]) > CROSSED)
 
     def crossed_rows(self, least: float) -> Iterator[list[int]]:
-        """The rows of every run of at least so many stepped rows with crossed feet."""
+        """Yield the rows of every run of at least `least` stepped rows with crossed feet."""
         for first, count in self.crossed_runs():
             if count >= least:
                 at = int(self.stepped.searchsorted(first))
                 yield self.stepped[at : at + count].tolist()
 
     def switching_runs(self, least: float, max_seconds: float) -> Iterator[tuple[list[int], list[int]]]:
-        """Rows and limbs of every run of at least so many single steps on one panel while no other panel is held.
+        """Yield rows and limbs of every run of at least `least` single steps on one panel while no other panel is held.
 
-        Each comes at most `max_seconds` after the one before. Only of plays in which the feet change so quickly.
+        Each step comes at most `max_seconds` after the step before. Nothing is yielded if the limbs of a play never
+        change so quickly on a panel.
         """
         if self.candidates.least_switch_seconds[self.number] > max_seconds + EPSILON:
             return
@@ -121,7 +122,7 @@ class PlayFacts:
                 yield run.tolist(), limb[first : last + 1].tolist()
 
     def crossed_runs(self) -> list[tuple[int, int]]:
-        """First row and number of rows of every run of stepped rows with crossed feet."""
+        """Return first row and number of rows of every run of stepped rows with crossed feet."""
         return self.candidates.crossed_runs[self.number]
 
     def holds(self, foot: int, row: int) -> bool:
@@ -129,11 +130,14 @@ class PlayFacts:
         return bool(self._holding(foot, np.array([row]))[0] >= 0)
 
     def ties(self) -> list[int]:
-        """First row of every run of rows with steps that cost the same with other limbs."""
+        """Return the first row of every run of rows with steps that cost the same with other limbs."""
         return self.candidates.ties[self.number]
 
     def unsure_passages(self, below: float) -> list[list[tuple[int, float]]]:
-        """Runs of (row, confidence) less than `below`, with a few surer rows between them left out; none if unknown."""
+        """Return passages of unsure rows, as pairs of row and confidence less than `below`; none if it is not known.
+
+        A few surer rows may be between the unsure rows of a passage; they are left out.
+        """
         if self._play.confidence is None:
             return []
         sure = self._play.confidence[self.stepped]
@@ -149,15 +153,15 @@ class PlayFacts:
         return passages
 
     def half_turns(self) -> list[int]:
-        """Rows to which the body turns by 180 degrees, jumps too. Before the first row any stance is allowed."""
+        """Return the rows to which the body turns by 180 degrees, also jumps. The first row of a play is never one."""
         return self.candidates.half_turns[self.number]
 
     def triple_steps(self, min_seconds: float, max_seconds: float) -> Iterator[tuple[int, float]]:
-        """Rows in which one foot steps, alone, for the third time in a row and always on a new panel.
+        """Yield the rows in which one foot makes its third single step in a row, each on a new panel, with a time (s).
 
-        With the time (s) since the step before. A step while the other foot is held down does not count: there is no
-        choice; nor do taps of rolls, steps around a mine, and steps less than `min_seconds` or more than `max_seconds`
-        apart.
+        The time is that since the step before. A step does not count while the other foot is held down, because the
+        dancer has no choice. Taps of rolls, steps around a mine, and steps less than `min_seconds` or more than
+        `max_seconds` apart do not count either.
         """
         if self.candidates.least_triple_seconds[self.number] > max_seconds + EPSILON:
             return
@@ -174,14 +178,14 @@ class PlayFacts:
                 count = 1
 
     def _bounds(self, rows: NDArray[np.int64]) -> tuple[int, int]:
-        """From where to where some ascending rows of all plays are of this one."""
+        """Return the start and the stop index of this play's rows among ascending rows of all plays."""
         low, high = rows.searchsorted((self._first, self._after)).tolist()
         return low, high
 
     def too_fast(self, max_speed: float, min_seconds: float) -> Iterator[tuple[int, int, float, float]]:
-        """Row, column, way (panel widths) and time (s) of steps on a new panel that is farther than the speed allows.
+        """Yield row, column, way (panel widths) and time (s) of steps on a new panel that is too far for the speed.
 
-        max_speed : panel widths per second; min_seconds : steps that come sooner after the foot's last do not count
+        max_speed : panel widths per second; min_seconds : steps sooner after the foot's last step do not count
         """
         if self.candidates.least_travel_seconds[self.number] * max_speed >= 1.0 + EPSILON:
             return
@@ -193,7 +197,10 @@ class PlayFacts:
             yield from zip(*(values.tolist() for values in found), strict=True)
 
     def releases(self, min_seconds: float) -> Iterator[tuple[int, int, float]]:
-        """Row, column and time (s) since the end of a hold which the same limb left too soon for another panel."""
+        """Yield row, column and time (s) of each step that comes too soon after the end of the same limb's hold.
+
+        The step is on another panel than the hold; `min_seconds` is the least time between them.
+        """
         if min_seconds <= 0:
             return
         rows = self._play.rows
@@ -209,11 +216,11 @@ class PlayFacts:
             yield from zip(steps.row[moved + 1].tolist(), steps.column[moved + 1].tolist(), late.tolist(), strict=True)
 
     def mines_under_pinned_feet(self) -> Iterator[tuple[int, int, int, float]]:
-        """Row, column, foot and time (s) since its step of every mine under a foot that can hardly step aside.
+        """Yield row, column, foot and time (s) since its step of every mine under a foot that can hardly step aside.
 
-        The other foot holds a panel, or the foot itself holds the panel beside it. A foot that steps elsewhere in the
-        row has left, and before a wall of mines everybody waits between the panels: those are reported only of a foot
-        that has hardly stepped.
+        The other foot holds a panel, or the foot itself holds the other panel of a bracket. A foot that steps in the
+        row of the mine has left its panel. Before a wall of mines, dancers leave the panels, so a wall counts only for
+        a foot that has just stepped.
         """
         if not (self.has_mines and self.has_holds):
             return
@@ -236,31 +243,31 @@ class PlayFacts:
             yield at, int(column[mine]), foot, since
 
     def _since_step(self, foot: int, row: int) -> float:
-        """Seconds since the last step of a foot before a row."""
+        """Return the seconds since the last step of a foot before a row; inf without one."""
         steps, seconds = self._of_feet[foot].row, self._play.rows.second
         at = int(steps.searchsorted(row)) - 1
         return float(seconds[row] - seconds[steps[at]]) if at >= 0 else np.inf
 
     @cached_property
     def _holds(self) -> NDArray[np.int64]:
-        """Cells, row * columns + column, with holds."""
+        """The cells at which holds begin, as row * columns + column."""
         return np.flatnonzero(self._play.rows.hold_end.ravel() >= 0)
 
     def _holding(self, foot: int, rows: NDArray[np.int64]) -> NDArray[np.int64]:
-        """For each of some rows the row before in which a foot pressed a hold that is still down, or -1."""
+        """Return, for each of some rows, the earlier row in which a foot pressed a hold that is still down, or -1."""
         ends = self._play.rows.hold_end.ravel()
         cells = self._holds[self._play.limb.ravel()[self._holds] == foot]
         if not len(cells):
             return np.full(len(rows), -1)
         of_cell = cells // self._play.limb.shape[1]
         first = np.flatnonzero(np.diff(of_cell, prepend=-1))
-        heads, last = of_cell[first], np.maximum.reduceat(ends[cells], first)  # of a bracket the longer one
+        heads, last = of_cell[first], np.maximum.reduceat(ends[cells], first)  # in a bracket, the longer hold counts
         at = heads.searchsorted(rows) - 1
         down = (at >= 0) & (last[at] > self._play.rows.tick[rows])
         return np.where(down, heads[at], -1)
 
     def mines_after_holds(self, max_seconds: float) -> Iterator[tuple[int, int, float]]:
-        """Row, column and time (s) since the end of a foot's hold on its panel, of each mine that comes so soon."""
+        """Yield row, column and time (s) of each mine at most `max_seconds` after a foot's hold on its panel ends."""
         if not (self.has_mines and self.has_holds):
             return
         rows, play = self._play.rows, self._play
@@ -278,7 +285,10 @@ class PlayFacts:
                 yield row, column, seconds
 
     def mines_before_steps(self, max_seconds: float) -> Iterator[tuple[int, int, float]]:
-        """Row, column and time (s) since a mine on the same panel, of each step for which a foot has to come."""
+        """Yield row, column and time (s) of each step at most `max_seconds` after a mine on its panel.
+
+        A step by a foot that already stands on the panel does not count.
+        """
         if not self.has_mines:
             return
         rows, play = self._play.rows, self._play

@@ -1,4 +1,4 @@
-"""Plays on one pad, one after the other, as arrays: the rules' questions are answered for all of them at once."""
+"""Plays on one pad, joined in arrays, so that the facts for rules are found for all plays at once."""
 
 from __future__ import annotations
 
@@ -16,28 +16,28 @@ from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 
-# Most charts have few rows and most rules find nothing in them, so a question for each chart would take many times as
-# long as its answer. Here a question is an array over the rows of all plays, or one number for each.
+# Most charts have few rows, so most of the time for a single chart is the fixed cost of array operations. Here each
+# fact is an array over the rows of all plays, or one number for each play.
 
 EPSILON = 1e-6
-_PLAY = 40  # bits of a tick: a later play comes after every tick of the one before
+_PLAY = 40  # bits of a tick: the ticks of a later play come after all ticks of an earlier play
 CROSSED = 90 + EPSILON  # degrees that the body is turned
 _LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
 _NONE, _ROLL_TAP = int(StepKind.NONE), int(StepKind.ROLL_TAP)
-ALL_KINDS = np.ones(len(StepKind), dtype=bool)  # by kind: whether the file has such a step
+ALL_KINDS = np.ones(len(StepKind), dtype=bool)  # by kind: whether it is a step of the file
 ALL_KINDS[[_NONE, _ROLL_TAP]] = False
 
 
 @dataclass(frozen=True, slots=True)
 class PlayedSteps:
-    """Steps that are played, in order of rows and columns; arrays of one length."""
+    """The steps that limbs press, in order of rows and columns, as arrays of the same length."""
 
     row: NDArray[np.int64]
     column: NDArray[np.int64]
     limb: NDArray[np.int8]
 
     def of(self, limb: int) -> PlayedSteps:
-        """Those of one limb; of a bracket only its first panel."""
+        """Return the steps of one limb; of a bracket only the first panel."""
         mine = np.flatnonzero(self.limb == limb)
         row = self.row[mine]
         if (row[1:] == row[:-1]).any():
@@ -46,13 +46,13 @@ class PlayedSteps:
         return PlayedSteps(row, self.column[mine], self.limb[mine])
 
     def between(self, first: int, after: int) -> PlayedSteps:
-        """Those of rows from `first` on and before `after`, whose numbers count from `first`."""
+        """Return the steps in rows `first` to `after`, without `after`. Their rows count from `first`."""
         here = slice(*self.row.searchsorted((first, after)).tolist())
         return PlayedSteps(self.row[here] - first, self.column[here], self.limb[here])
 
 
 class Travels(NamedTuple):
-    """Steps of one foot on a new panel: row, column, way (panel widths), time (s) since the foot's last step."""
+    """The steps of one foot on a new panel: row, column, way (panel widths), time (s) since the foot's last step."""
 
     row: NDArray[np.int64]
     column: NDArray[np.int64]
@@ -61,9 +61,9 @@ class Travels(NamedTuple):
 
 
 class Plays:
-    """k plays of c columns; n rows in all, and what is about rows counts them from the first of the first play.
+    """k plays of c columns with n rows in all. Rows count from the first row of the first play.
 
-    plays : as they were given; first : for each its first row; and n
+    plays : the plays in the given order; first : the first row of each play, then n
     """
 
     def __init__(self, plays: Sequence[Play], pad: Pad) -> None:
@@ -74,96 +74,96 @@ class Plays:
         self._has_move: dict[str, list[bool]] = {}
 
     def own(self, rows: NDArray[np.int64], number: int) -> NDArray[np.int64]:
-        """Those of some ascending rows that are of one play, counted from its first."""
+        """Return the rows of one play among some ascending rows, counted from the play's first row."""
         first, after = self.first[number], self.first[number + 1]
         low, high = rows.searchsorted((first, after)).tolist()
         return np.asarray(rows[low:high] - first)
 
     def of_each(self, rows: NDArray[np.int64]) -> list[list[int]]:
-        """For each play those of some ascending rows that are of it, counted from its first."""
+        """Return, for each play, its rows among some ascending rows, counted from its first row."""
         bounds, own = rows.searchsorted(self.first).tolist(), (rows - self.start[rows]).tolist()
         return [own[low:high] for low, high in pairwise(bounds)]
 
     def least(self, rows: NDArray[np.int64], values: NDArray[np.float64]) -> list[float]:
-        """For each play the least of the values that some rows have; endless where it has none."""
+        """Return, for each play, the least value of its rows among `rows`; inf for a play without one."""
         found = np.full(len(self.plays), np.inf)
         np.minimum.at(found, self.number[rows], values)
         return found.tolist()
 
     def count_rows(self, rows: NDArray[np.int64]) -> list[int]:
-        """How many of some rows, which may come twice, each play has."""
+        """Return how many of some rows each play has; repeated rows count each time."""
         counts: list[int] = np.bincount(self.number[rows], minlength=len(self.plays)).tolist()
         return counts
 
     def joined(self, arrays: Iterator[NDArray[Any]]) -> NDArray[Any]:
-        """What each play has, of all plays."""
+        """Return the arrays of all plays, joined along the rows."""
         every = list(arrays)
         return every[0] if len(every) == 1 else np.concatenate(every)
 
     @cached_property
     def number(self) -> NDArray[np.int64]:
-        """(n,) of which play a row is."""
+        """(n,) index of the play of each row."""
         return np.arange(len(self.plays)).repeat(np.diff(self.first))
 
     @cached_property
     def start(self) -> NDArray[np.int64]:
-        """(n,) the first row of its play."""
+        """(n,) first row of the play of each row."""
         return np.asarray(np.array(self.first)[self.number])
 
     @cached_property
     def second(self) -> NDArray[np.float64]:
-        """(n,) seconds."""
+        """(n,) second of each row in its play."""
         return self.joined(play.rows.second for play in self.plays)
 
     @cached_property
     def tick(self) -> NDArray[np.int64]:
-        """(n,) ticks that ascend from play to play."""
+        """(n,) tick of each row, with an offset for each play, so that ticks ascend from play to play."""
         return np.asarray(self.joined(play.rows.tick for play in self.plays) + (self.number << _PLAY))
 
     @cached_property
     def margin(self) -> NDArray[np.int64]:
-        """(n,) margins, -1 where nobody asked."""
+        """(n,) margin of each row, -1 where it was not computed."""
         none = (np.full(len(play.rows), -1) if play.margin is None else play.margin for play in self.plays)
         return self.joined(none)
 
     @cached_property
     def facing(self) -> NDArray[np.float64]:
-        """(n,) degrees."""
+        """(n,) direction of the body after each row, degrees."""
         return self.joined(play.facing for play in self.plays)
 
     @cached_property
     def limb(self) -> NDArray[np.int8]:
-        """(n, c) limbs."""
+        """(n, c) limb that presses each cell."""
         return self.joined(play.limb for play in self.plays)
 
     @cached_property
     def part(self) -> NDArray[np.uint8]:
-        """(n, c) parts of feet."""
+        """(n, c) part of the foot that presses each cell."""
         return self.joined(play.part for play in self.plays)
 
     @cached_property
     def steps(self) -> NDArray[np.uint8]:
-        """(n, c) kinds of steps."""
+        """(n, c) kind of step in each cell."""
         return self.joined(play.rows.steps for play in self.plays)
 
     @cached_property
     def limb_by_column(self) -> NDArray[np.int8]:
-        """(c, n) limbs: numpy goes along few long rows ten times as fast as along many short ones."""
+        """(c, n) limb of each cell: numpy is ten times quicker on few long rows than on many short ones."""
         return np.ascontiguousarray(self.limb.T)
 
     @cached_property
     def steps_by_column(self) -> NDArray[np.uint8]:
-        """(c, n) kinds of steps."""
+        """(c, n) kind of step in each cell."""
         return np.ascontiguousarray(self.steps.T)
 
     @cached_property
     def real(self) -> NDArray[np.bool_]:
-        """(c, n) where a step is that the file has: no tap of a roll."""
+        """(c, n) whether a cell has a step of the file, not only a tap of a roll."""
         return ALL_KINDS[self.steps_by_column]
 
     @cached_property
     def _heads(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-        """Row, column and end (as `tick`) of every hold."""
+        """Row, column and end (with the offset of `tick`) of every hold."""
         ends = self.joined(play.rows.hold_end for play in self.plays).ravel()
         cell = np.flatnonzero(ends >= 0)
         row, column = np.divmod(cell, len(self.pad))
@@ -171,7 +171,7 @@ class Plays:
 
     @cached_property
     def mined(self) -> NDArray[np.bool_]:
-        """(n,) whether a row has a mine."""
+        """(n,) whether each row has a mine."""
         mines = self.joined(play.rows.mines for play in self.plays)
         found = np.zeros(len(mines), dtype=bool)
         found[np.flatnonzero(mines.ravel()) // len(self.pad)] = True
@@ -179,22 +179,22 @@ class Plays:
 
     @cached_property
     def with_holds(self) -> list[bool]:
-        """Which plays have holds."""
+        """For each play, whether it has holds."""
         return [count > 0 for count in self.count_rows(self._heads[0])]
 
     @cached_property
     def with_mines(self) -> list[bool]:
-        """Which plays have mines."""
+        """For each play, whether it has mines."""
         return [count > 0 for count in self.count_rows(np.flatnonzero(self.mined))]
 
     @cached_property
     def stepped(self) -> NDArray[np.int64]:
-        """Rows with a step, also if nobody presses it."""
+        """The rows with a step, whether or not a limb presses it."""
         return np.flatnonzero(self.steps_by_column.any(axis=0))
 
     @cached_property
     def pauses(self) -> NDArray[np.float64]:
-        """(n,) seconds since the row with a step before one of `stepped`; endless for the first, and for others."""
+        """(n,) seconds since the row with a step before, for rows of `stepped`; inf for the first and other rows."""
         rows, found = self.stepped, np.full(self.first[-1], np.inf)
         apart = self.second[rows[1:]] - self.second[rows[:-1]]
         found[rows[1:]] = np.where(self.number[rows[1:]] == self.number[rows[:-1]], apart, np.inf)
@@ -202,12 +202,12 @@ class Plays:
 
     @cached_property
     def foot(self) -> NDArray[np.int8]:
-        """(n,) the greatest limb of each row, -1 where none presses; of a row that one limb presses it is that."""
+        """(n,) greatest limb of each row, -1 if none presses; in a row with one limb, that limb."""
         return np.asarray(self.limb_by_column.max(axis=0, initial=-1))
 
     @cached_property
     def lone(self) -> NDArray[np.bool_]:
-        """(n,) whether one limb presses one panel in a row, and it is no tap of a roll."""
+        """(n,) whether exactly one panel is pressed in a row that has no tap of a roll."""
         lone = (self.limb_by_column >= 0).sum(axis=0) == 1
         taps = self.steps_by_column == _ROLL_TAP
         return np.asarray(lone & ~taps.any(axis=0) if taps.any() else lone)
@@ -219,7 +219,7 @@ class Plays:
 
     @cached_property
     def down(self) -> NDArray[np.int64]:
-        """(n,) how many panels are down in each row: stepped on, or held from before; taps of rolls do not count."""
+        """(n,) number of panels that are down in each row, stepped on or held; taps of rolls do not count."""
         down = self.real.sum(axis=0)
         rows, columns, ends = self._heads
         for column in np.unique(columns).tolist():
@@ -233,9 +233,9 @@ class Plays:
 
     @cached_property
     def free(self) -> NDArray[np.bool_]:
-        """(n,) whether a row and that before it step on one panel each, and neither a mine nor a hold has a say.
+        """(n,) whether a row and the row before are single steps, and neither a mine nor a hold limits the feet.
 
-        A foot whose hold ended after the row before these two has just been let go.
+        A hold limits the other foot if it ends after the row before these two.
         """
         foot, lone = self.foot, self.lone
         free = lone & (foot <= _RIGHT) & ~self.mined
@@ -254,7 +254,7 @@ class Plays:
 
     @cached_property
     def pressed(self) -> PlayedSteps:
-        """All presses, a roll's virtual taps too."""
+        """All presses, with the virtual taps of rolls."""
         limbs = self.limb.ravel()
         cell = np.flatnonzero(limbs >= 0)
         row, column = np.divmod(cell, len(self.pad))
@@ -262,14 +262,14 @@ class Plays:
 
     @cached_property
     def presses(self) -> PlayedSteps:
-        """All presses but virtual taps."""
+        """All presses, without virtual taps."""
         p = self.pressed
         real = self.real[p.column, p.row]
         return p if real.all() else PlayedSteps(p.row[real], p.column[real], p.limb[real])
 
     @cached_property
     def travels(self) -> tuple[Travels, Travels]:
-        """Of each foot its steps on a new panel."""
+        """The steps of the left and the right foot on a new panel."""
         left, right = (self.presses.of(foot) for foot in (_LEFT, _RIGHT))
         return self._travels(left), self._travels(right)
 
@@ -282,13 +282,13 @@ class Plays:
 
     @cached_property
     def bits(self) -> tuple[list[str], NDArray[np.int64]]:
-        """Names of moves, and (n,) which of them happen in a row: the bit of a name is its place in the list."""
+        """The names of moves, and (n,) the moves of each row as bits: the bit of a name is its index in the list."""
         names = list(EVENTS)
         of_plays = [_bits_of(play, names) if play.events is None else play.events for play in self.plays]
         return names, self.joined(iter(of_plays))
 
     def rows_with(self, move: str) -> NDArray[np.int64]:
-        """Rows with a move of this name or of a kind of it: "crossover" finds "crossover-half" too."""
+        """Return the rows with a move of this name or of a kind of it: "crossover" also finds "crossover-half"."""
         if move not in self._rows_with:
             names, bits = self.bits
             kinds = sum(1 << bit for bit, name in enumerate(names) if name == move or name.startswith(f"{move}-"))
@@ -296,14 +296,14 @@ class Plays:
         return self._rows_with[move]
 
     def has_move(self, move: str) -> list[bool]:
-        """Which plays have such rows."""
+        """Return, for each play, whether it has rows with a move or a kind of it."""
         if move not in self._has_move:
             self._has_move[move] = [count > 0 for count in self.count_rows(self.rows_with(move))]
         return self._has_move[move]
 
     @cached_property
     def counts(self) -> list[dict[str, int]]:
-        """For each play the name of every move in it -> rows in which it happens."""
+        """For each play, the name of every move in it -> number of rows in which it happens."""
         names, bits = self.bits
         counts: list[dict[str, int]] = [{} for _ in self.plays]
         present = int(np.bitwise_or.reduce(bits, initial=0))
@@ -316,7 +316,7 @@ class Plays:
 
 
 def _bits_of(play: Play, names: list[str]) -> NDArray[np.int64]:
-    """The moves of a play that has none as bits; names that are new are added."""
+    """Return the moves of a play whose `events` are None as bits; new names are added to `names`."""
     kinds, codes = play.kinds()
     names += sorted({name for kind in kinds for name in kind} - {*names})
     places = {name: place for place, name in enumerate(names)}

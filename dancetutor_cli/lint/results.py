@@ -1,4 +1,4 @@
-"""The result of `analyze` for a file: plain data that pickles, as JSON after a checksum."""
+"""The result of `analyze` for a file, as plain data, and the cache of results, kept as JSON after a checksum."""
 
 from __future__ import annotations
 
@@ -35,23 +35,25 @@ from dancetutor_cli.run.trust import results_folder
 if TYPE_CHECKING:
     from dancetutor_cli.lint.analysis import AnalyzeTask
 
-# Imports neither numpy nor numba, so that results can be read back quickly.
+# This module imports neither numpy nor numba, so that results can be read back quickly.
 
 
 @dataclass(frozen=True, slots=True)
 class ChartResult:
-    """One analysed chart. `rows` is the JSON text of its rows (docs/formats.md), None where nobody asked for it.
+    """The result for one chart.
 
-    counts : name of the move -> rows in which it happens
-    playable : False if the steps type has no pad; then there are no rows and no cost
-    arrows : a sign for each panel, to draw rows with; figures, alternatives, causes : None where nobody asked for them
-    ambiguous : beat of each row with ties, and "resolved" or "open", see `feet.play.Ambiguity`; None likewise
-    player : of a chart for several whose part this is, from 1, else 0
-    hash : by which leaderboards know the chart, see `chart.hash`; None where none does
-    sync : of a chart with timing or music of its own, where somebody asked for it; else None
-    estimate : how hard it plays; None for a pad without a model of meters
-    score : how hard it is to score on; None for a pad on which nobody has rated charts
-    preset : name of the cost preset, None without a pad; mismatch : a line if it was made for other pads, else None
+    rows, figures, alternatives, causes, ambiguous : None if the task does not want them; `rows` is the JSON text of the
+        chart's rows (docs/formats.md)
+    counts : name of the move -> number of rows in which it happens
+    playable : False if the steps type has no pad; the chart then has no rows and no cost
+    arrows : a sign for each panel, to draw rows with
+    ambiguous : beat of each row with ties, and "resolved" or "open", see `feet.play.Ambiguity`
+    player : number of the player whose part of a chart for several this is, from 1, else 0
+    hash : the identifier of the chart on leaderboards, see `chart.hash`; None if it has none
+    sync : the sync of a chart with timing or music of its own, if the task wants it; else None
+    estimate : how hard the chart plays; None for a pad without a meter model
+    score : how hard the chart is to score on; None for a pad without a score model
+    preset : name of the cost preset, None without a pad; mismatch : a message if it is for other pads, else None
     """
 
     index: int
@@ -80,18 +82,18 @@ class ChartResult:
 
     @property
     def label(self) -> str:
-        """For people: "dance-single Hard 8"; of one of several players "dance-couple Hard 8 P2"."""
+        """The name of the chart for people: "dance-single Hard 8"; a player's part is "dance-couple Hard 8 P2"."""
         return f"{self.steps_type} {self.difficulty} {self.meter}{self.whose}"
 
     @property
     def whose(self) -> str:
-        """ " P1", " P2" and so on of a chart for several, else ""."""
+        """The player in the label: " P1", " P2" and so on in a chart for several players, else ""."""
         return f" P{self.player}" if self.player else ""
 
 
 @dataclass(frozen=True, slots=True)
 class FileResult:
-    """One file: either an error in one line, or its charts. sync : None where nobody asked for it"""
+    """The result for one file: either an error in one line, or its charts. sync : None if the task does not want it"""
 
     path: str
     title: str
@@ -100,16 +102,16 @@ class FileResult:
     warnings: tuple[str, ...]
     findings: tuple[Finding, ...]  # about the file, not about one chart
     charts: tuple[ChartResult, ...]
-    unselected: tuple[str, ...] = ()  # index and label of the charts that were not asked for
+    unselected: tuple[str, ...] = ()  # index and label of the charts that are not selected
     sync: Sync | None = None
 
     def at_least(self, severity: str) -> FileResult:
-        """The same without findings of less severity, and without charts of which nothing is left to say."""
+        """Return the result without findings of less severity, and without charts that then have no finding."""
         charts = (replace(c, findings=_at_least(c.findings, severity)) for c in self.charts)
         return replace(self, findings=_at_least(self.findings, severity), charts=tuple(c for c in charts if c.findings))
 
     def all_findings(self) -> Iterator[tuple[Finding, ChartResult | None]]:
-        """Every finding with the chart it is about."""
+        """Yield every finding with its chart, None for a finding about the file."""
         for finding in self.findings:
             yield finding, None
         for chart in self.charts:
@@ -121,12 +123,12 @@ def _at_least(findings: tuple[Finding, ...], severity: str) -> tuple[Finding, ..
     return tuple(finding for finding in findings if RANKS[finding.severity] >= RANKS[severity])
 
 
-# A `FileResult` as bytes and back: JSON behind a checksum, so that a damaged or foreign file is no result.
+# A `FileResult` as bytes and back: JSON after a checksum, so that a damaged or foreign file is not a result.
 #
-# Nothing of what is read can run: of JSON come numbers and texts, and what is made of them are this module's own
-# classes. Values stand in lists, in the order of the fields, for there are thousands of findings in a pack.
+# No data that is read can run as code: JSON has only numbers and texts, and only this module's classes are made from
+# it. Values are in lists, in the order of the fields, because a pack has thousands of findings.
 
-_HEAD = b"dancetutor result 5\n"  # another number whenever the form below changes
+_HEAD = b"dancetutor result 5\n"  # the number changes whenever the format below changes
 _DIGEST = 32  # bytes of SHA-256
 _CLASSES = (
     FileResult, ChartResult, Finding, Figures, AlternativeResult, DifferentRun, Cause, Estimate, ScoreEstimate, Sync,
@@ -137,21 +139,21 @@ _EXCERPT = [field.name for field in fields(Finding)].index("excerpt")
 
 
 def to_bytes(result: FileResult, key: str) -> bytes:
-    """The content of the file of a result; `key` says what the result depends on, and belongs to it."""
+    """Return a result as the content of its file. The checksum includes `key`, the hash of the dependencies."""
     text = json.dumps(result, default=lambda one: _VALUES[type(one)](one), separators=(",", ":"))
     data = text.encode("ascii")
     return _HEAD + _digest(data, key) + data
 
 
 def from_bytes(content: bytes, key: str) -> FileResult | None:
-    """The result in a file's content; None unless it is just what `to_bytes` gave for this key."""
+    """Return the result in a file's content; None unless `to_bytes` made the content for this key."""
     data = content[len(_HEAD) + _DIGEST :]
     if content[: len(_HEAD)] != _HEAD or content[len(_HEAD) : len(_HEAD) + _DIGEST] != _digest(data, key):
         return None
     try:
         return _file(json.loads(data))
     except (ValueError, TypeError, KeyError, IndexError, RecursionError):
-        return None  # somebody else's work, whose checksum is right
+        return None  # another program made it, with a correct checksum
 
 
 def _digest(data: bytes, key: str) -> bytes:
@@ -210,21 +212,21 @@ def _alternative(values: list[Any]) -> AlternativeResult:
     return AlternativeResult(extra, tuple(map(tuple, terms)), tuple(DifferentRun(*run) for run in runs))
 
 
-# Results that need not be found again: one small file each, by the hash of all that a result depends on.
+# The cache: each result is a small file, named by the hash of everything that the result depends on.
 
 _LARGEST = CHART_LIMIT  # bytes of a kept result
-_KEEP_SECONDS = 30 * 24 * 3600  # results nobody asked for in so long are removed
+_KEEP_SECONDS = 30 * 24 * 3600  # a result that is not used for so long is removed
 
 
 class ResultCache:
-    """A folder of results, in files named by `key`. One that cannot be read or written is no result, never an error."""
+    """A folder of results in files named by `key`. A file that cannot be read or written is never an error."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._listings: dict[Path, str] = {}
 
     def key(self, task: AnalyzeTask) -> str | None:
-        """The hash of what the task's result depends on, or None if it cannot be kept."""
+        """Return the hash of everything that the task's result depends on, or None if the result cannot be kept."""
         if task.want_rows or task.data is not None:
             return None
         try:
@@ -238,7 +240,7 @@ class ResultCache:
         return digest.hexdigest()
 
     def get(self, key: str) -> FileResult | None:
-        """The result kept under a key."""
+        """Return the result kept under a key, or None."""
         path = self._path(key)
         try:
             content = read_bytes(path, _LARGEST)
@@ -249,8 +251,8 @@ class ResultCache:
         return from_bytes(content, key)
 
     def put(self, key: str, result: FileResult) -> None:
-        """Keep a result."""
-        import tempfile  # which takes long, and an unchanged file does without
+        """Keep a result under a key."""
+        import tempfile  # here because it takes long and a run on unchanged files does not need it
 
         path = self._path(key)
         with suppress(OSError):
@@ -264,14 +266,14 @@ class ResultCache:
                 Path(name).unlink(missing_ok=True)
 
     def prune(self) -> None:
-        """Remove results that nobody has asked for in a long time."""
+        """Remove results that have not been used for a long time."""
         with suppress(OSError):
             for path in self._folder.glob("*/*"):
                 if time.time() - path.stat().st_mtime > _KEEP_SECONDS:
                     path.unlink(missing_ok=True)
 
     def _dependencies(self, path: Path) -> Iterator[str]:
-        """What else beside it a result depends on: music and pictures by size and time, feet, the other format."""
+        """Yield the other dependencies of a result: music and pictures by size and time, feet, the other format."""
         if path.parent not in self._listings:
             self._listings[path.parent] = _listing(path.parent)
         yield self._listings[path.parent]
@@ -287,7 +289,7 @@ class ResultCache:
 
 
 def default_folder() -> Path | None:
-    """Where this system keeps caches; DANCETUTOR_CACHE names another folder. None: nowhere."""
+    """Return the folder for results in the user's cache, or in DANCETUTOR_CACHE; None if results cannot be kept."""
     folder, _ = results_folder()
     return None if folder is None else folder / "analyze"
 

@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject
 
 
-BY_METER = "by-meter"  # what `max_seconds` says where the table of times is to decide
+BY_METER = "by-meter"  # the value of `max_seconds` that means the table of times
 EPSILON = 1e-6
 Placed = TypeVar("Placed")
-_QUOTED = 4  # things that a message about several lists
+_QUOTED = 4  # most things that one message lists
 FAMILIES = {1: "file", 2: "feet", 3: "playability", 4: "timing", 5: "pack", 6: "sync and music"}
 
 
@@ -34,15 +34,15 @@ class Rule(ABC):
     """A check with a code ("DT201") and a name ("doublestep").
 
     The code's first digit is the family (`FAMILIES`). Severity and options come from configs/lint/default.yaml;
-    `options` is what holds for the chart in hand. `codes` : warnings of the reader that the rule is about.
-    `about_feet` : whether a finding is true only if the feet are these; where they are unsure it is no warning
-    `about_tags` : whether it is about what .sm and .ssc say of a song; a .ucs says nothing of it
-    `editor_code` : what SMEditor calls such findings in the `ignores` of data.sme; "" if nothing
-    `foot_rank` : of rules that see one wrong foot from several sides (what it does, where the body turns for it, how
-        unsure it is): of several about one row, or about neighbours, the lowest is reported; 0: none of these rules
-    `foot_reach` : how many rows with a step apart these may be; some speak of a step and of the one beside it
-    `fixed_by_moves` : whether a note on another panel may remove a finding; `unwanted_move` : what must be gone then
-    `only_worst` : whether only the worst rows are reported, so that a new finding in place of an old one is no harm
+    `options` are those that hold for the chart. `codes` : the warnings of the reader that the rule reports
+    `about_feet` : whether a finding depends on the feet of the chart; if they are unsure, the finding is an info
+    `about_tags` : whether the rule is about tags of .sm and .ssc that a .ucs does not have
+    `editor_code` : the code of such findings in SMEditor, in the `ignores` of data.sme; "" if it has none
+    `foot_rank` : rank among rules that may report the same wrong foot (its move, the turn of the body, how unsure it
+        is). Of several findings about one row or its neighbours, the lowest rank is reported; 0: not such a rule
+    `foot_reach` : how many rows with a step such findings may be apart, because some rules report the step beside it
+    `fixed_by_moves` : whether moving a note may remove a finding; `unwanted_move` : the move that must then be gone
+    `only_worst` : whether only the worst rows are reported, so that an edit may bring a new finding of the rule
     """
 
     code: ClassVar[str]
@@ -63,11 +63,11 @@ class Rule(ABC):
 
     @classmethod
     def fault(cls, option: str, value: Any) -> str | None:
-        """What is wrong with the value of an option, beyond its kind; None if nothing."""
+        """Return what is wrong with the value of an option, besides its type; None if nothing is."""
         return None
 
     def finding(self, message: str, place: Mapping[str, Any], **more: Any) -> Finding:
-        """A finding of this rule; `place` is what `at_row`, `at_line` or `place` of the subject gave."""
+        """Return a finding of this rule. `place` : the result of the subject's `at_row`, `at_line` or `place`"""
         return Finding(
             **{"severity": self.options["severity"], **place, **more}, rule=self.code, name=self.name, message=message
         )
@@ -78,19 +78,19 @@ class FileRule(Rule):
 
     @abstractmethod
     def check(self, subject: FileSubject) -> Iterable[Finding]:
-        """Findings in one file."""
+        """Return the findings in one file."""
 
 
 class SyncRule(FileRule):
-    """A rule about music that was decoded (`--sync`, or `sync: true`): about each sync of a file that is sure.
+    """A rule about the sure syncs of a file, whose music is decoded (`--sync`, or `sync: true`).
 
-    `tag` : of the file's tags the one that a finding stands at
+    `tag` : the tag of the file at which a finding is placed
     """
 
     tag: ClassVar[str] = "OFFSET"
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
-        """A finding for the file, and one for each chart with timing or music of its own."""
+        """Yield a finding for the file, and one for each chart with timing or music of its own."""
         heard = subject.sync
         if heard is None:
             return
@@ -103,22 +103,22 @@ class SyncRule(FileRule):
 
     @abstractmethod
     def message(self, sync: Sync, subject: FileSubject) -> str | None:
-        """What is wrong with a sync, or None."""
+        """Return what is wrong with a sync, or None."""
 
 
 class PackSong(NamedTuple):
-    """A song as a `PackRule` sees it. folder : its own, for people; sync : sure"""
+    """A song as a `PackRule` receives it. folder : name of the song's folder; sync : a sure sync"""
 
     folder: str
     sync: Sync
 
 
 class PackRule(Rule):
-    """A rule about the songs of a pack together, whose music was heard."""
+    """A rule about all songs of a pack whose music was decoded."""
 
     @abstractmethod
     def check_pack(self, songs: Sequence[PackSong], ini: PackIni | None) -> str | None:
-        """What is wrong with the pack, or None."""
+        """Return what is wrong with the pack, or None."""
 
 
 class ChartRule(Rule):
@@ -126,11 +126,11 @@ class ChartRule(Rule):
 
     @abstractmethod
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """Findings in one chart."""
+        """Return the findings in one chart."""
 
 
 class RatedChart(NamedTuple):
-    """A chart with how hard it plays, as a `SongRule` sees it; place : where it starts, for `Finding`."""
+    """A chart with its estimate, as a `SongRule` receives it. place : the place of the chart, for `Finding`"""
 
     steps_type: str
     difficulty: str
@@ -141,23 +141,23 @@ class RatedChart(NamedTuple):
 
 
 class SongRule(Rule):
-    """A rule about how hard the charts of a song play; those of one pad come together."""
+    """A rule about how hard the charts of a song play, compared with the other charts for the same pad."""
 
     @abstractmethod
     def check(self, chart: RatedChart, charts: Sequence[RatedChart]) -> Iterable[Finding]:
-        """Findings in one chart, beside all charts of its pad."""
+        """Return the findings in one chart. charts : all charts of the song for the same pad"""
 
 
 class ReaderRule(Rule):
-    """A rule that hands on warnings of the reader, about the song or about a chart: those of its `codes`.
+    """A rule that reports the reader's warnings with one of its `codes`, about the song or a chart.
 
-    usual : codes of what some authors do on purpose: never more than an info
+    usual : codes that are never more than an info, because some authors do this on purpose
     """
 
     usual: ClassVar[frozenset[str]] = frozenset()
 
     def check(self, subject: FileSubject | ChartSubject) -> Iterable[Finding]:
-        """One finding for each line with warnings that are claimed."""
+        """Yield one finding for each line with warnings of the rule's codes."""
         kinds: tuple[tuple[frozenset[str], dict[str, str]], ...]
         kinds = (self.codes - self.usual, {}), (self.usual, {"severity": "info"})
         for codes, least in kinds:
@@ -171,7 +171,10 @@ class ReaderRule(Rule):
 
 
 def _alike(messages: Iterable[str]) -> Iterator[str]:
-    """Messages; those that differ only in what they quote first are one: "entry 'a' is ignored; the same for 'b'"."""
+    """Yield the messages. Messages that differ only in the first quotation become one.
+
+    For example: "entry 'a' is ignored; the same for 'b'".
+    """
     kinds: dict[tuple[str, str], list[str]] = {}
     for message in messages:
         before, _, rest = message.partition("'")
@@ -183,7 +186,7 @@ def _alike(messages: Iterable[str]) -> Iterator[str]:
 
 
 class Occurrence(NamedTuple):
-    """One occurrence of what a rule is about: in a row, so many seconds after the step before (or what counts)."""
+    """One occurrence of a rule's move in a row. seconds : time since the step before, or another time that counts"""
 
     row: int
     seconds: float
@@ -194,10 +197,11 @@ class Occurrence(NamedTuple):
 class TimedRule(ChartRule):
     """A rule about moves that are reported only if they are quick.
 
-    Option `max_seconds` says how quick: a number, or "by-meter": what at most `share` per cent of the charts of this
-    meter contain, see `lint.rule_settings`, but not more than `slowest`. `times` : what the move is called there.
-    `passage_beats` : those at most so many beats apart are one finding, at the surest of them; 0: each is one,
-    endless: one for a chart
+    The option `max_seconds` is the longest time that is quick: a number, or "by-meter", the longest time within which
+    at most `share` per cent of the charts of this meter have the move (`lint.rule_settings`). It is at most `slowest`.
+    `times` : the name of the move in that table
+    `passage_beats` : occurrences less than so many beats apart are one finding, at the surest of them; 0: each
+    occurrence is one finding; inf: one finding for the chart
     """
 
     times: ClassVar[str] = ""
@@ -207,21 +211,21 @@ class TimedRule(ChartRule):
 
     def __init__(self, options: Mapping[str, Any]) -> None:
         super().__init__(options)
-        self._longest: dict[tuple[str, int], float] = {}  # by steps type and meter
+        self._longest: dict[tuple[str, int], float] = {}  # (steps type, meter) -> seconds
 
     @classmethod
     def fault(cls, option: str, value: Any) -> str | None:
-        """What is wrong with `max_seconds` (a number, or by-meter) or `share` (a percentage)."""
+        """Return what is wrong with `max_seconds` (a number, or by-meter) or `share` (a percentage), or None."""
         if option == "max_seconds" and isinstance(value, str) and value != BY_METER:
             return f"must be a number of seconds, or {BY_METER}"
         return "must be a number of per cent, at most 100" if option == "share" and value > 100 else None
 
     @abstractmethod
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
-        """Every time it happens, however slow."""
+        """Return the occurrences of the move; `check` leaves out the slow ones."""
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each that is quick enough, or for each passage of them."""
+        """Yield one finding for each quick occurrence, or for each passage of quick occurrences."""
         longest = self.longest(subject) + EPSILON
         quick = [one for one in self.occurrences(subject) if one.seconds <= longest]
         for passage in self.passages(quick, subject):
@@ -234,24 +238,24 @@ class TimedRule(ChartRule):
             yield self.finding(message, subject.at_row(row, column), **least)
 
     def representative(self, subject: ChartSubject, rows: list[int]) -> int:
-        """Place in the rows of a passage of the one that its finding stands at and speaks of."""
+        """Return the index of the row in a passage at which the finding is placed and whose message it has."""
         return subject.most_confident(rows) if self.about_feet else 0
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
-        """Whether players of this chart expect what happens in these rows; then it is never more than an info."""
+        """Whether players of this chart expect the move in these rows; then the finding is never more than an info."""
         return False
 
     def passages(self, found: list[Occurrence], subject: ChartSubject) -> Iterable[list[Occurrence]]:
-        """What is reported in one finding each."""
+        """Return the occurrences in groups, with one finding for each group."""
         return passages(found, lambda one: subject.beat(one.row), self.passage_beats)
 
     def quick(self, subject: ChartSubject, rows: Iterable[int]) -> list[int]:
-        """Those of some rows that come quickly enough after the step before: others need not be looked at."""
+        """Return the rows that come quickly enough after the step before; a rule need not check the others."""
         longest = self.longest(subject) + EPSILON
         return [row for row in rows if subject.pause(row) <= longest]
 
     def longest(self, subject: ChartSubject) -> float:
-        """The longest time (s) that is still quick in this chart; 0: nothing is."""
+        """Return the longest time (s) that is still quick in this chart; 0 if no time is."""
         kind = subject.chart.steps_type, subject.chart.meter
         if kind not in self._longest:
             self._longest[kind] = self._longest_of(*kind)
@@ -267,7 +271,7 @@ class TimedRule(ChartRule):
 
 
 def passages(found: Iterable[Placed], beat_of: Callable[[Placed], float], most_beats: float) -> Iterator[list[Placed]]:
-    """What is found in the order of its beats, in runs of which each is less than so many beats after the last."""
+    """Yield runs of items in order of beats, in which each item is less than `most_beats` after the item before."""
     passage: list[Placed] = []
     for one in found:
         if passage and beat_of(one) - beat_of(passage[-1]) > most_beats - EPSILON:
@@ -279,32 +283,32 @@ def passages(found: Iterable[Placed], beat_of: Callable[[Placed], float], most_b
 
 
 class MoveRule(TimedRule):
-    """A rule that reports every row in which a named move, or a kind of it, happens.
+    """A rule that reports every row with a named move, or with a kind of it.
 
-    With an option `max_seconds` only those rows count that come at most so long after the step before.
-    `description` : what to say about a row; a rule that has more to say has a `message` of its own
+    If the rule has an option `max_seconds`, only rows at most so long after the step before count.
+    `description` : the message for a row; a rule with several messages overrides `message`
     """
 
     move: ClassVar[str]
     description: ClassVar[str]
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
-        """Each quick row with the move, with the time since the step before."""
+        """Yield each quick row with the move, with the time since the step before."""
         for row in self.rows(subject):
             yield Occurrence(row, subject.pause(row), self.message(subject, row))
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
-        """Quick rows with the move."""
+        """Return the quick rows with the move."""
         return self.quick(subject, subject.rows_with(self.move))
 
     def message(self, subject: ChartSubject, row: int) -> str:
-        """What to say about this row."""
+        """Return the message for this row."""
         return self.description
 
 
 @cache
 def all_rules() -> Mapping[str, type[Rule]]:
-    """Code -> class of every rule, sorted by code."""
+    """Return code -> class of every rule, sorted by code."""
     found: dict[str, type[Rule]] = {}
     for module in pkgutil.iter_modules(rules.__path__):
         for value in vars(importlib.import_module(f"{rules.__name__}.{module.name}")).values():
@@ -313,11 +317,11 @@ def all_rules() -> Mapping[str, type[Rule]]:
     return dict(sorted(found.items()))
 
 
-_DIGITS = str.maketrans("OIL", "011")  # letters that are typed for digits of a code
+_DIGITS = str.maketrans("OIL", "011")  # letters that users type instead of a code's digits
 
 
 def rule_named(name: str) -> type[Rule]:
-    """The rule with this code or name; UsageError with the nearest name."""
+    """Return the rule with this code or name; UsageError with the nearest name if no rule has it."""
     for code, rule in all_rules().items():
         if name.upper() == code or (name and name.lower() in (rule.name, rule.former_name)):
             return rule
@@ -327,7 +331,7 @@ def rule_named(name: str) -> type[Rule]:
 
 
 def matching(selector: str) -> set[str]:
-    """Codes that a selector means: a code, a name, a beginning of codes such as "DT2", or "all"."""
+    """Return the codes that a selector means: a code, a name, a beginning of codes such as "DT2", or "all"."""
     if selector.lower() == "all":
         return set(all_rules())
     found = {code for code in all_rules() if code.startswith(selector.upper())} if selector else set()
@@ -335,7 +339,7 @@ def matching(selector: str) -> set[str]:
 
 
 def named_singly(selectors: Iterable[str]) -> frozenset[str]:
-    """Codes of the selectors that are the code or the name of one rule, not of a family."""
+    """Return the codes of the rules that the selectors name by code or name, not by family."""
     words = {selector.upper() for selector in selectors}
     return frozenset(
         code for code, rule in all_rules().items() if {code, rule.name.upper(), rule.former_name.upper()} & words - {""}

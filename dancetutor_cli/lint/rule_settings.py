@@ -1,4 +1,4 @@
-"""Which rules look at which chart, with which severity and options: layers of configuration; times."""
+"""Which rules run on which chart, with which severity and options: layers of configuration; times of moves."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.schema import Keys, MarkedYaml, NotNegative, Parsed, Text, Texts, check_value
 from dancetutor_cli.run.yaml_files import load, read
 
-# A layer is what one file says, or one entry of its `overrides`. Later layers win: configs/lint/default.yaml, what
-# `extends` names, dancetutor.yaml, the command line.
+# A layer has the settings of one file, or of one entry of its `overrides`. Later layers win, in this order:
+# configs/lint/default.yaml, the files that `extends` names, dancetutor.yaml, the command line.
 
 Options = Mapping[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
 class Layer:
-    """The settings of rules in one place.
+    """The settings of rules from one place.
 
-    select : codes of the only rules that are to run, None: says nothing
-    ignore : codes of rules that are not to run
+    select : codes of the only rules that run; None if the place does not say
+    ignore : codes of rules that do not run
     rules : code -> {"severity": ..., option: ...}
-    named : codes of `select` that were named singly: these run, as a warning, even if they are off
+    named : codes of `select` that were named one by one: these run as a warning, even if they are off
     """
 
     when: Condition = field(default_factory=Condition)
@@ -41,12 +41,12 @@ class Layer:
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """All layers in order. Plain data, so that it pickles and can be part of a cache key.
+    """All layers in order, as plain data that pickles and can be part of a cache key.
 
-    stream_rows : a measure with at least so many rows counts as stream
-    sure_feet : a finding about feet that are less sure than this, per cent, is an info
-    coin_toss : it is an ambiguity where other feet cost at most so much more
-    sync : whether the music is heard, for the rules about it
+    stream_rows : the least number of rows in a measure that counts as stream
+    sure_feet : a finding about feet with less confidence than this, per cent, is an info
+    coin_toss : a finding is an ambiguity if other feet cost at most so many cost units more
+    sync : whether the music is decoded, for the rules about it
     """
 
     layers: tuple[Layer, ...] = ()
@@ -58,25 +58,25 @@ class Settings:
     _holding: dict[tuple[str, str, int], tuple[int, ...]] = field(default_factory=dict, compare=False, repr=False)
 
     def with_layer(self, layer: Layer) -> Settings:
-        """The same with one more layer on top."""
+        """Return the settings with one more layer on top."""
         return replace(self, layers=(*self.layers, layer), _resolved={}, _holding={})
 
     def fingerprint(self) -> str:
-        """The same text for the same settings, in every process."""
+        """Return a text that is the same for the same settings in every process."""
         layers = [
             (x.when, x.select and sorted(x.select), sorted(x.ignore), x.rules, sorted(x.named)) for x in self.layers
         ]
         return repr((self.stream_rows, self.sure_feet, self.coin_toss, self.sync, layers))
 
     def for_file(self, path: Path) -> dict[str, Options]:
-        """Code -> severity and options of the rules that run on a file as a whole."""
+        """Return code -> severity and options of the rules that run on a file as a whole."""
         return self._of(
             n for n, layer in enumerate(self.layers)
             if not layer.when.is_about_charts and layer.when.holds_for_path(path)
         )  # fmt: skip
 
     def for_chart(self, path: Path, steps_type: str, difficulty: str, meter: int) -> dict[str, Options]:
-        """Code -> severity and options of the rules that run on a chart."""
+        """Return code -> severity and options of the rules that run on a chart."""
         kind = (steps_type, difficulty, meter)
         holding = self._holding.get(kind)
         if holding is None:
@@ -85,7 +85,7 @@ class Settings:
         return self._of(n for n in holding if self.layers[n].when.holds_for_path(path))
 
     def _of(self, layers: Iterable[int]) -> dict[str, Options]:
-        """The rules of some of the layers; most files and charts have the same."""
+        """Return the rules of the layers with these indices. They are cached, because most charts have the same."""
         holding = tuple(layers)
         if holding not in self._resolved:
             self._resolved[holding] = _resolve(self.layers[n] for n in holding)
@@ -113,14 +113,17 @@ def _resolve(layers: Any) -> dict[str, Options]:
     }
 
 
-# What a configuration says of rules, as layers: their defaults, and what is laid on them; faults have their place.
+# The settings of a configuration as layers: the defaults of rules, and the settings on top. Errors name their place.
 
 _Meaning = TypeVar("_Meaning")
 
 
 @cache
 def default_rules() -> Mapping[str, Options]:
-    """Every rule with its default severity and options: configs/lint/default.yaml; FileError for a rule without."""
+    """Return code -> default severity and options of every rule, from configs/lint/default.yaml.
+
+    FileError if a rule has no entry.
+    """
     path = config_path("lint/default.yaml")
     rules = dict(read(path).data["rules"])
     for code in sorted(all_rules().keys() - rules.keys()):
@@ -132,7 +135,7 @@ def default_rules() -> Mapping[str, Options]:
 
 @cache
 def default_severity(code: str) -> str:
-    """The severity of a rule by default, for people: "off", or "off; warning for Beginner of meter 6 or less"."""
+    """Return a rule's default severity for people: "off", or "off; warning for Beginner of meter 6 or less"."""
     data = read(config_path("lint/default.yaml")).data
     severity = str(data["rules"][code]["severity"])
     for entry in data.get("overrides", ()):
@@ -143,7 +146,7 @@ def default_severity(code: str) -> str:
 
 
 def _worded(value: object) -> str:
-    """A value of a condition: a list as "A, B", a range of meters as "meter 6 or less"."""
+    """Return a condition's value in words: a list as "A, B", a range of meters as "meter 6 or less"."""
     if isinstance(value, list):
         return ", ".join(map(str, value))
     low, _, high = str(value).partition("-")
@@ -152,7 +155,7 @@ def _worded(value: object) -> str:
 
 @dataclass(eq=False, repr=False)
 class RulesKeys:
-    """The keys about rules in a file, or in an entry of its overrides; `rules` are checked by `layer_of`."""
+    """The keys about rules in a file, or in an entry of its overrides; `layer_of` checks `rules`."""
 
     select: Texts | None = None
     ignore: Texts = ()
@@ -160,7 +163,7 @@ class RulesKeys:
 
 
 def layer_of(source: MarkedYaml, entry: RulesKeys, when: Condition, place: Keys) -> Layer:
-    """What a file, or one of its overrides, says of rules where a condition holds; FileError for what is wrong."""
+    """Return the layer of a file or of one of its overrides, for a condition; FileError for a wrong value."""
     rules: dict[str, Options] = {}
     for name, options in entry.rules.items():
         at = (*place, "rules", name)
@@ -201,31 +204,31 @@ _Severity = Annotated[Literal["error", "warning", "info", "off"], Parsed(_off)]
 
 
 def _like(default: Any, value: Any) -> Any:
-    """What an option may be, by its default: nothing that rules measure is negative."""
+    """Return the type of an option by its default value. Numbers may not be negative."""
     if isinstance(default, list):
         return tuple[float, ...] if default and not isinstance(default[0], str) else tuple[str, ...]
-    if default == BY_METER:  # a number or that word: `Rule.fault` looks at words
+    if default == BY_METER:  # a number or this word; `Rule.fault` checks words
         return str if isinstance(value, str) else NotNegative
     return type(default) if isinstance(default, bool | str) else NotNegative
 
 
 def resolve_name(source: MarkedYaml, look_up: Callable[[str], _Meaning], name: str, place: Keys) -> _Meaning:
-    """What a name in a file means; FileError with its place if it means nothing."""
+    """Return the result of `look_up` for a name in a file; FileError with its place if there is none."""
     try:
         return look_up(name)
     except DancetutorError as error:
         raise source.error(place, str(error)) from None
 
 
-# How quick a move must be to be reported: configs/move_times.yaml has the share of charts that contain it.
+# How quick a move must be to be reported. configs/move_times.yaml has the share of charts that contain the move.
 #
-# A move that one chart in five of a meter has belongs to that meter; the same move twice as quick may be in none.
+# A move that one chart in five of a meter has is usual for this meter. No chart may have the same move twice as quick.
 
-_OTHERS = "dance-single"  # the table that holds for pads nobody has measured
+_OTHERS = "dance-single"  # the pad whose table holds for pads without a table
 
 
 class Band(NamedTuple):
-    """Charts of one kind of pad, of meters `first` to `last` (None: and above). within : see `Table.milliseconds`"""
+    """Charts for one kind of pad, of meters `first` to `last` (None: no limit). within : see `milliseconds`"""
 
     pad: str
     first: int
@@ -235,19 +238,19 @@ class Band(NamedTuple):
 
     @property
     def meters(self) -> str:
-        """ "4 to 6", "13 and more"."""
+        """The meters of the band for people: "4 to 6", "13 and more"."""
         return f"{self.first} and more" if self.last is None else f"{self.first} to {self.last}"
 
 
 def pad_of(steps_type: str) -> str:
-    """The pad in the table that a steps type counts with."""
+    """Return the pad of the table that holds for a steps type."""
     family, _, kind = steps_type.partition("-")
     pad = f"{family}-{'double' if kind in ('halfdouble', 'double', 'routine') else 'single'}"
     return pad if pad in _times().meters else _OTHERS
 
 
 def bands(move: str) -> Iterator[Band]:
-    """Every band of charts with the shares of a move."""
+    """Yield every band of charts with the shares of a move."""
     times = _times()
     for pad, lasts in times.meters.items():
         edges: Sequence[int | None] = [*lasts, None]
@@ -258,26 +261,29 @@ def bands(move: str) -> Iterator[Band]:
 
 
 def milliseconds() -> tuple[int, ...]:
-    """The times of the table; `Band.within` has for each the per cent of charts with a move at most so long after."""
+    """Return the times of the table in milliseconds.
+
+    `Band.within` has, for each time, the per cent of charts that have the move within it.
+    """
     return _times().milliseconds
 
 
 @cache
 def limit(move: str, share: float, steps_type: str, meter: int) -> float:
-    """The longest time (s) within which at most `share` per cent of the charts of a meter have the move; 0: none."""
+    """Return the longest time (s) within which at most `share` per cent of a meter's charts have the move, or 0."""
     pad = pad_of(steps_type)
     here = next(band for band in bands(move) if band.pad == pad and (band.last is None or meter <= band.last))
     return limit_of(here, share) / 1000
 
 
 def limit_of(band: Band, share: float) -> int:
-    """The same of a band, in milliseconds."""
+    """Return the limit for a band in milliseconds, see `limit`."""
     few = [time for time, part in zip(milliseconds(), band.within, strict=True) if part <= share]
     return max(few, default=0)
 
 
 def described(move: str, share: float, slowest: float = math.inf) -> Iterator[str]:
-    """A line for each band: the limit, at most `slowest` (s), and the share of charts on either side of it."""
+    """Yield a line for each band: the limit, at most `slowest` (s), and the shares of charts on both sides of it."""
     times = milliseconds()
     for band in bands(move):
         at = limit_of(band, share)
@@ -293,7 +299,11 @@ def described(move: str, share: float, slowest: float = math.inf) -> Iterator[st
 
 @dataclass(eq=False, repr=False)
 class _MoveTimes:
-    """configs/move_times.yaml. meters, charts : by pad, of each band; moves : by move, pad, band and time, per cent"""
+    """The contents of configs/move_times.yaml.
+
+    meters, charts : for each pad, the last meter and the number of charts of each band
+    moves : per cent of charts, by move, pad, band and time
+    """
 
     meters: dict[str, tuple[int, ...]]
     charts: dict[str, tuple[int, ...]]

@@ -1,4 +1,4 @@
-"""A run of `analyze`: which configuration holds for which file, many files in order, packs, the baseline."""
+"""A run of `analyze`: the configuration for each file, many files in order, packs, the baseline."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class LintRequest(ResultOptions):
-    """What the command line asks for; None where it says nothing and the configuration decides.
+    """The options of the command line. The configuration decides where an option is None.
 
     config : file or name of a configuration; assignments : "key=value"; select, ignore : rules
-    sync : whether the music is heard, whatever the configuration says
+    sync : whether the music is decoded even if the configuration does not say so
     """
 
     selection: Selection = field(default_factory=Selection)
@@ -51,7 +51,7 @@ class LintRequest(ResultOptions):
 
 @dataclass
 class LintRun:
-    """Turns files into tasks, and raw results into what is reported."""
+    """A run that makes tasks of files, and reported results of raw results."""
 
     request: LintRequest
     _by_source: dict[Path | None, Configuration] = field(default_factory=dict)
@@ -61,7 +61,10 @@ class LintRun:
     _found_keys: list[Key] = field(default_factory=list)
 
     def configuration(self, path: Path) -> Configuration:
-        """What holds for a file: --config, or the nearest dancetutor.yaml up the tree, and the command line on top."""
+        """Return the configuration for a file: --config or the nearest dancetutor.yaml, with the command line on top.
+
+        The nearest dancetutor.yaml is in the file's folder or in a folder above it.
+        """
         given = self.request.config
         source = None if given is not None else self._source(path.parent)
         if source not in self._by_source:
@@ -78,16 +81,16 @@ class LintRun:
         return self._sources[folder]
 
     def presets(self, path: Path) -> PresetChoice:
-        """What is said about the cost presets of a file's charts; UsageError or FileError if one cannot be loaded."""
+        """Return the choice of cost presets for a file's charts; UsageError or FileError if one cannot be loaded."""
         configuration = self.configuration(path)
-        if id(configuration) not in self._choices:  # one object for all files of a source, see `_by_source`
+        if id(configuration) not in self._choices:  # all files of a source share it, see `_by_source`
             self._choices[id(configuration)] = choice_of(self.request.preset, configuration.presets)
         return self._choices[id(configuration)]
 
     def needs(self, path: Path) -> Iterator[Path]:
-        """What else the findings in a file depend on, there or not: what the author said elsewhere, settings, baseline.
+        """Yield the other files on which a file's findings depend, existing or not: feet, settings, presets, baseline.
 
-        A configuration that cannot be read is no error here: only what it names is not known.
+        If a configuration cannot be read, the files that it names are left out, without an error.
         """
         yield from places_of_feet(path)
         yield path.with_suffix(".sm" if path.suffix.lower() == ".ssc" else ".ssc")
@@ -104,12 +107,12 @@ class LintRun:
                 yield baseline
 
     def task(self, path: Path, data: bytes | None = None) -> AnalyzeTask:
-        """The piece of work for a file."""
+        """Return the task for a file."""
         settings, request = self.configuration(path).settings, self.request
         return AnalyzeTask(path, self.presets(path), request.selection, settings, data, **request.options())
 
     def with_packs(self, results: Iterable[FileResult]) -> Iterator[FileResult]:
-        """The results, and behind them one for each pack whose songs together have findings."""
+        """Yield the results, then one result for each pack with findings about its songs together."""
         packs = PackSyncs()
         for result in results:
             packs.add(result)
@@ -120,7 +123,7 @@ class LintRun:
                 yield found
 
     def fail_on(self, path: Path) -> str:
-        """The least severity that fails the run, as the configuration of the first file says."""
+        """Return the least severity that fails the run, from the command line or the configuration of this file."""
         return self.request.fail_on or self.configuration(path).fail_on or "warning"
 
     def open_baseline(self, path: Path) -> None:
@@ -138,14 +141,14 @@ class LintRun:
         return self._baseline is not None
 
     def without_baseline(self, result: FileResult) -> FileResult:
-        """The result without the findings that the baseline knows."""
+        """Return the result without the findings that the baseline accepts."""
         baseline = self._baseline
         if baseline is None or result.error is not None:
             return result
         self._note_rules_run(baseline, result)
         found = [(f, chart, baseline.key(result.path, _name(chart), f)) for f, chart in result.all_findings()]
         self._found_keys += [key for _, _, key in found]
-        known = self.request.update_baseline  # what is written now is known from now on
+        known = self.request.update_baseline  # all findings are accepted from now on
         left = [(f, chart) for f, chart, key in found if not known and not baseline.absorbs(key)]
         of_chart: dict[int, list[Finding]] = {}
         for finding, chart in left:
@@ -164,7 +167,7 @@ class LintRun:
             baseline.mark_all_seen(result.path)
 
     def close_baseline(self) -> list[str]:
-        """Write the baseline if that was asked for; lines to be said about it."""
+        """Write the baseline if the user wants it; return the messages about it."""
         if self._baseline is None:
             return []
         path = self._baseline.path
@@ -187,12 +190,12 @@ def _name(chart: ChartResult | None) -> str:
     return "" if chart is None else f"{chart.steps_type} {chart.difficulty} {chart.description}".strip() + chart.whose
 
 
-# Many files: results from the cache, the rest from this process or from worker processes, always in order.
+# Many files: results come from the cache, from this process or from worker processes, always in order.
 
 # Below this number of files the start of workers costs more than they save.
 _WORTH_WORKERS = 8
-_SHARES = 4  # a worker gets at once this part of what would be its share of the rest
-_MOST_AT_ONCE = 8  # files, whose results wait for each other
+_SHARES = 4  # a worker gets a batch of its share of the remaining files, divided by this
+_MOST_AT_ONCE = 8  # most files of a batch, because their results come together
 
 
 def analyze_all(
@@ -201,9 +204,9 @@ def analyze_all(
     cache: ResultCache | None,
     before_work: Callable[[Sequence[AnalyzeTask]], None] = lambda tasks: None,
 ) -> Iterator[FileResult]:
-    """The result of every task, in the order of the tasks, as early as they are known.
+    """Yield the result of every task in the order of the tasks, each as early as possible.
 
-    jobs : worker processes for what is not in the cache; None: one for each core, 1: this process does it
+    jobs : worker processes for results that are not in the cache; None: one for each core, 1: this process
     before_work : called with the tasks whose results are not in the cache, if there are any
     """
     keys = [cache.key(task) if cache else None for task in tasks]
@@ -227,7 +230,7 @@ def analyze_all(
         yield done.pop(n)
 
 
-# Place and result of each task, and whether the result is about the file: not that a worker broke down.
+# Index and result of each task, and whether the result is sound: false if a worker failed.
 _Fresh = Iterator[tuple[int, FileResult, bool]]
 
 
@@ -244,7 +247,7 @@ def _in_workers(tasks: Sequence[AnalyzeTask], jobs: int | None) -> _Fresh:
             if done.error is None:
                 for place, result in zip(done.key, done.result, strict=True):
                     yield place, result, True
-            elif len(done.key) > 1:  # one of them: each has a try of its own
+            elif len(done.key) > 1:  # one of the files has failed: each is tried again alone
                 for place in done.key:
                     workers.submit(Work(range(place, place + 1), _analyze, ([tasks[place]],)))
             else:
@@ -254,8 +257,11 @@ def _in_workers(tasks: Sequence[AnalyzeTask], jobs: int | None) -> _Fresh:
 
 
 def _batches(tasks: int, jobs: int) -> Iterator[range]:
-    """The places of tasks that go to a worker at once: many at first, so that it need not wait for more after each,
-    and has neighbours, whose charts are alike; one by one in the end, so that all are done at about the same time."""
+    """Yield the indices of the tasks in each batch for a worker.
+
+    At first a batch has many tasks, which are neighbours with similar charts, so that workers rarely wait. In the end
+    it has one task, so that all workers end at about the same time.
+    """
     first = 0
     while first < tasks:
         after = first + min(max((tasks - first) // (_SHARES * jobs), 1), _MOST_AT_ONCE)

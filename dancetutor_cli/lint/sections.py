@@ -1,4 +1,4 @@
-"""The part of a chart that a motion or a film shows, as users write it: a span, around a finding, a hard passage."""
+"""Parse the part of a chart that a motion or a film shows: a section, the rows around a finding, a hard passage."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ _HARDEST = re.compile(r"\s*hardest\s*:\s*(\d+)\s*", re.IGNORECASE)
 
 
 def check_part(text: str) -> None:
-    """UsageError for what is no part of any chart: so that a slip is reported before a chart is read."""
+    """Raise `UsageError` for a text that can be no part of any chart, before a chart is read."""
     if not _FINDING.fullmatch(text) and not _HARDEST.fullmatch(text):
         check_section(text)
 
 
 def part_of(text: str, song: Song, chart: Chart, preset: Preset, end: float) -> tuple[float, float]:
-    """First and last second of a part.
+    """Return the first and the last second of a part.
 
     Parameters
     ----------
     text : START:END in seconds, beats or measures (`parse_section`); RULE:N, four measures around the N-th finding; or
         hardest:N, the N-th hardest passage (`hardest`)
-    preset : with which the feet are found that the finding is about
-    end : second at which the chart ends; no part goes on after it, and one that begins after it is a UsageError
+    preset : the cost preset with which the feet are found
+    end : second at which the chart ends; no part continues after it, and UsageError if a part begins after it
     """
     if match := _FINDING.fullmatch(text):
         first, last = _around_finding(song, chart, preset, match[1].upper(), int(match[2]))
@@ -89,19 +89,19 @@ def _numbered(name: str, count: int) -> str:
 
 
 def check_section(text: str) -> None:
-    """Raise `UsageError` for what is no section, whatever the song, before a chart is read."""
+    """Raise `UsageError` for a text that can be no section of any song, before a chart is read."""
     _ends(text)
 
 
 def parse_section(text: str, timing: Timing, end_second: float) -> tuple[float, float]:
-    """First and last second of a section.
+    """Return the first and the last second of a section.
 
     Parameters
     ----------
-    text : `START:END`; a plain number is seconds, `b16` a beat, `m4` a measure of 4 beats; `16b`, `4m`, `10s` will do
-    end_second : where the song ends; an end left out means there, a start left out second 0
+    text : `START:END`; a plain number is seconds, `b16` a beat, `m4` a measure of 4 beats; also `16b`, `4m`, `10s`
+    end_second : where the song ends; it stands for a missing end, and second 0 for a missing start
 
-    Raises `UsageError` for what is no section, is empty or runs backwards, or lies outside the song.
+    Raises `UsageError` if the text is not a section, or if the section is empty, runs backwards or is after the song.
     """
     first, last = _ends(text)
     start = _second(*first, timing) if first else 0.0
@@ -116,7 +116,7 @@ def parse_section(text: str, timing: Timing, end_second: float) -> tuple[float, 
 
 
 def _ends(text: str) -> tuple[tuple[float, str] | None, tuple[float, str] | None]:
-    """Number and unit ("s", "b" or "m") of both ends; None for an end that is left out."""
+    """Return number and unit ("s", "b" or "m") of both ends; None for an end that is left out."""
     start, colon, end = text.partition(":")
     if not colon or ":" in end or not (start.strip() or end.strip()):
         raise UsageError(f"--section {text} cannot be read; {_SECTION_HELP}")

@@ -1,4 +1,4 @@
-"""Versions of a pack to compare with: another path, a revision of git, or what the last run of `analyze` has read."""
+"""Versions of a pack to compare with: another path, a revision of git, or the files that `analyze` last read."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ LAST = "last"  # the value of --compare that means the last run
 
 @dataclass(frozen=True, slots=True)
 class StoredFile:
-    """One file of a version. read : its bytes, or FileError; digest : of them, by `hash_of`, or "" """
+    """One file of a version. read : returns its bytes, or FileError; digest : `hash_of` of the bytes, "" if unknown"""
 
     read: Callable[[], bytes]
     digest: str = ""
     hash_of: Callable[[bytes], str] = str
 
     def is_same(self, data: bytes) -> bool:
-        """Whether it has these bytes; where a digest is known it is not read."""
+        """Whether the file has these bytes; it is read only if its digest is not known."""
         return self.hash_of(data) == self.digest if self.digest else self.read() == data
 
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """The chart files of a version, by their paths below the folder that is compared.
+    """The chart files of a version, by their paths below the compared folder.
 
-    label : the version for people; new : what is said of a file that is not in it
+    label : name of the version for people; new : the message for a file that is not in the version
     """
 
     label: str
@@ -46,9 +46,9 @@ class Snapshot:
 
 
 def snapshot_of(other: str, path: Path, exclude: Sequence[str] = ()) -> Snapshot:
-    """The version of `path` that `other` names: a file or folder, "last", or a revision. UsageError if there is none.
+    """Return the version of `path` that `other` names: a file or folder, "last", or a revision; UsageError if none.
 
-    exclude : as `find_files` has it
+    exclude : see `find_files`
     """
     there = Path(other)
     if os.path.lexists(there):
@@ -59,7 +59,7 @@ def snapshot_of(other: str, path: Path, exclude: Sequence[str] = ()) -> Snapshot
 
 
 def of_path(path: Path, exclude: Sequence[str] = (), name: str | None = None) -> Snapshot:
-    """What lies there now. name : that a single file is compared by, None: its own"""
+    """Return the chart files that a path has now. name : the name by which a single file is compared, None: its own"""
     if not path.is_dir():
         return Snapshot(str(path), {name or path.name: StoredFile(partial(read_bytes, path, CHART_LIMIT))})
     files = {Path(os.path.relpath(file, path)).as_posix(): file for file in find_files([path], exclude)}
@@ -70,9 +70,9 @@ def of_path(path: Path, exclude: Sequence[str] = (), name: str | None = None) ->
 
 # A revision of the git repository that a path lies in.
 #
-# A pack may bring a repository with a configuration of its own. Nothing of it is run: only objects are listed and read;
-# hooks, monitors and transports are off (a partial clone would fetch what it lacks by a command of its choice), and a
-# bare repository inside of the pack is none. Whether the repository is trusted at all (safe.directory) git decides.
+# A pack may contain a repository with a configuration of its own. No command of it is run: git only lists and reads
+# objects. Hooks, monitors and transports are off, because a partial clone would fetch objects with a command of its
+# choice. A bare repository inside the pack is not used. git decides if it trusts the repository (safe.directory).
 
 _GIT = "git.exe" if os.name == "nt" else "git"
 _OFF = (
@@ -83,16 +83,19 @@ _ENVIRONMENT = {
     "GIT_ALLOW_PROTOCOL": "none", "GIT_NO_LAZY_FETCH": "1", "GIT_OPTIONAL_LOCKS": "0", "GIT_TERMINAL_PROMPT": "0",
     "GIT_NO_REPLACE_OBJECTS": "1", "LC_ALL": "C",
 }  # fmt: skip
-_OF_ANOTHER = (  # what git sets for its hooks: of another repository, perhaps
+_OF_ANOTHER = (  # variables that git sets for its hooks, maybe for another repository
     "GIT_DIR", "GIT_WORK_TREE", "GIT_COMMON_DIR", "GIT_PREFIX", "GIT_INDEX_FILE", "GIT_OBJECT_DIRECTORY",
     "GIT_ALTERNATE_OBJECT_DIRECTORIES", "GIT_NAMESPACE",
 )  # fmt: skip
-_PATIENCE = 60.0  # seconds for an answer
-_HASHES = {40: hashlib.sha1, 64: hashlib.sha256}  # letters of an object's name -> what it is made with
+_PATIENCE = 60.0  # seconds; the longest that git may run
+_HASHES = {40: hashlib.sha1, 64: hashlib.sha256}  # letters of an object's name -> hash that makes the name
 
 
 def of_revision(revision: str, path: Path, exclude: Sequence[str] = ()) -> Snapshot:
-    """What git has of a path at a revision, such as HEAD~1; UsageError, one line, without git or such a revision."""
+    """Return the chart files of a path at a revision of git, such as HEAD~1.
+
+    UsageError, one line, if git is not installed or the revision does not exist.
+    """
     folder = path.absolute() if path.is_dir() else path.absolute().parent
     commit = _git(folder, revision, "rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}")
     name = commit.decode("ascii", "replace").strip()
@@ -106,16 +109,16 @@ def of_revision(revision: str, path: Path, exclude: Sequence[str] = ()) -> Snaps
 def _blobs(
     folder: Path, revision: str, listed: bytes, searched: bool, exclude: Sequence[str]
 ) -> Iterator[tuple[str, StoredFile]]:
-    """Of what `git ls-tree -l -z` lists the chart files: "mode type object size<tab>path"."""
+    """Yield the chart files in the output of `git ls-tree -l -z`, with entries "mode type object size<tab>path"."""
     for entry in listed.split(b"\0"):
         head, tab, name = entry.partition(b"\t")
         fields = head.decode("ascii", "replace").split()
         path = os.fsdecode(name)
-        if not tab or len(fields) != 4 or fields[0] not in ("100644", "100755"):  # links and submodules are no files
+        if not tab or len(fields) != 4 or fields[0] not in ("100644", "100755"):  # not links or submodules
             continue
         if searched and (not is_chart_name(path.rpartition("/")[2]) or is_excluded(path, exclude)):
             continue
-        digest, size = fields[2], int(fields[3]) if fields[3].isdigit() else 0  # "BAD" of what a partial clone lacks
+        digest, size = fields[2], int(fields[3]) if fields[3].isdigit() else 0  # "BAD" if a partial clone lacks it
         make = _HASHES.get(len(digest), hashlib.sha1)
 
         def read(digest: str = digest, size: int = size, path: str = path) -> bytes:
@@ -133,8 +136,8 @@ def _blobs(
 
 
 def _git(folder: Path, revision: str, *words: str) -> bytes:
-    """What git answers; UsageError with one line where it cannot."""
-    import subprocess  # which an ordinary run does without
+    """Return the output of a git command; UsageError with one line if it fails."""
+    import subprocess  # here because most runs do not need it
 
     program = next(programs(_GIT, os.environ.get("PATH", os.defpath)), None)
     message = f"--compare {revision}: there is no such file or folder"
@@ -163,24 +166,24 @@ def _git(folder: Path, revision: str, *words: str) -> bytes:
     raise UsageError(f"--compare {revision}: git: {' '.join(why.split())[:200] or f'status {done.returncode}'}")
 
 
-# What `analyze` has read of a chart file in its last run, compressed in the user's cache.
+# The chart files as the last run of `analyze` read them, compressed in the user's cache.
 #
-# A file of the store is a head, the SHA-256 of the chart file, the length of its path, the path, and its bytes.
+# A file of the store has a head, the SHA-256 of the chart file, the length of its path, the path, and its bytes.
 
 _HEAD = b"dancetutor chart 1\n"
 _DIGEST = 32
-_KEEP_SECONDS = 180 * 24 * 3600  # what nobody analyzed again in so long is removed
-_LONGEST = 1 << 16  # bytes of a path
+_KEEP_SECONDS = 180 * 24 * 3600  # a file that is not analyzed again for so long is removed
+_LONGEST = 1 << 16  # most bytes of a path
 
 
 class ChartStore:
-    """A folder of chart files as they were. What cannot be written or read is not kept, never an error."""
+    """A folder of chart files as they were. A file that cannot be written or read is not kept, without an error."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
 
     def keep(self, path: Path) -> None:
-        """Keep a file as it is now; where it is kept like that nothing is written."""
+        """Keep a file as it is now; nothing is written if the store has it already."""
         with suppress(OSError, FileError):
             data = read_bytes(path, CHART_LIMIT)
             head, name = _HEAD + hashlib.sha256(data).digest(), os.fsencode(path.absolute())
@@ -189,7 +192,7 @@ class ChartStore:
                 write_file(place, head + len(name).to_bytes(4, "big") + name + zlib.compress(data, 3))
 
     def files(self) -> Iterator[tuple[Path, StoredFile]]:
-        """Every file that is kept, by its absolute path."""
+        """Yield every kept file with its absolute path."""
         for place in sorted(self._folder.glob("*")):
             head = _head_of(place)
             start = len(_HEAD) + _DIGEST
@@ -200,7 +203,7 @@ class ChartStore:
                 yield path, StoredFile(partial(_unpacked, place, end), digest, _sha256)
 
     def prune(self) -> None:
-        """Remove what was not analyzed in a long time."""
+        """Remove files that have not been analyzed for a long time."""
         with suppress(OSError):
             for place in self._folder.glob("*"):
                 if time.time() - place.stat().st_mtime > _KEEP_SECONDS:
@@ -208,13 +211,13 @@ class ChartStore:
 
 
 def open_store() -> ChartStore | None:
-    """The store in the user's cache; None where nothing can be kept."""
+    """Return the store in the user's cache; None if nothing can be kept."""
     folder = kept_folder("charts")
     return None if folder is None else ChartStore(folder)
 
 
 def of_last_run(path: Path, exclude: Sequence[str] = ()) -> Snapshot:
-    """What the last run of `analyze` has read of a path; UsageError if it is not known."""
+    """Return the chart files of a path as the last run of `analyze` read them; UsageError if there are none."""
     store, files = open_store(), dict[str, StoredFile]()
     root = path.absolute()
     for file, stored in store.files() if store is not None else ():
@@ -234,7 +237,7 @@ def _sha256(data: bytes) -> str:
 
 
 def _head_of(place: Path) -> bytes:
-    """The beginning of a kept file, as far as a path may reach; empty if it cannot be read."""
+    """Return the first bytes of a kept file, up to the longest path; empty if it cannot be read."""
     try:
         with place.open("rb") as file:
             return file.read(len(_HEAD) + _DIGEST + 4 + _LONGEST)
@@ -243,7 +246,7 @@ def _head_of(place: Path) -> bytes:
 
 
 def _unpacked(place: Path, start: int) -> bytes:
-    """The bytes of a kept file; FileError if it is damaged."""
+    """Return the bytes of a kept chart file; FileError if it is damaged."""
     opened = zlib.decompressobj()
     try:
         data = opened.decompress(read_bytes(place, 2 * CHART_LIMIT)[start:], CHART_LIMIT)

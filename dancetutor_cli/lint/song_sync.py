@@ -1,4 +1,4 @@
-"""The sync of a file: charts of one timing and music are judged together, each music is heard once."""
+"""The sync of a file. Charts with the same timing and music are judged together, and each music is decoded once."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from dancetutor_cli.lint.sync import Judgement, Onsets, judge, onsets
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.ffmpeg import EncoderError
 
-_MOST_GROUPS = 4  # timings of one file that are judged: each takes a tenth of a second
-_KEPT = 2  # a song's .sm and .ssc follow each other
+_MOST_GROUPS = 4  # most timings of one file that are judged, because each takes a tenth of a second
+_KEPT = 2  # decoded music that is kept, because a song's .sm and .ssc follow each other
 
 
 class Heard(NamedTuple):
-    """What is kept of music that was decoded. silence : seconds before anything is heard; clipped : see `Sound`"""
+    """The results that are kept of decoded music. silence : seconds of silence at its start; clipped : see `Sound`"""
 
     onsets: Onsets
     silence: float
@@ -34,9 +34,10 @@ class Heard(NamedTuple):
 class SongSync:
     """The sync of a file.
 
-    sync : of the charts that use the song's own timing and music, or of most if none does; `judgement` : drawable
-    of_charts : by index, of charts with timing or music of their own
-    heard : the song's music, None where it cannot be decoded; damage : then why, if a decoder has tried
+    sync : the sync of the charts with the song's own timing and music; if none has, of the largest group of charts
+    judgement : the same with the curves for a plot, None if it could not be judged
+    of_charts : chart index -> sync, for charts with another timing or music
+    heard : the song's music, None if it cannot be decoded; damage : the error of the decoder, or None
     """
 
     sync: Sync
@@ -47,7 +48,7 @@ class SongSync:
 
 
 def song_sync(song: Song) -> SongSync:
-    """Judge all charts of a file that are danced. UnavailableError where there is no ffmpeg at all."""
+    """Judge all charts of a file except lights. UnavailableError if ffmpeg is not installed."""
     charts = [chart for chart in song.charts if not is_lights(chart.steps_type) and len(chart.notes)]
     groups: dict[tuple[Timing, str], list[Chart]] = {}
     for chart in charts:
@@ -64,7 +65,7 @@ def song_sync(song: Song) -> SongSync:
 
 
 def _judged(song: Song, charts: Sequence[Chart]) -> SongSync:
-    """The sync of charts with one timing and one music."""
+    """Return the sync of charts with the same timing and music."""
     try:
         music = music_file(song, charts[0])
     except FileError as error:
@@ -82,12 +83,12 @@ def _judged(song: Song, charts: Sequence[Chart]) -> SongSync:
     return SongSync(found.sync, found, heard=heard)
 
 
-# Music that was heard last, by its file as it is now.
+# The music that was decoded last, by path, size and time of its file.
 _heard: OrderedDict[tuple[Path, int, int], Heard] = OrderedDict()
 
 
 def hear(music: Path) -> Heard:
-    """Onsets, silence and clipping of a music file; FileError or EncoderError where it cannot be decoded."""
+    """Return onsets, silence and clipping of a music file; FileError or EncoderError if it cannot be decoded."""
     try:
         status = music.stat()
     except OSError as error:

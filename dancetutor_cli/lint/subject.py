@@ -1,4 +1,4 @@
-"""What a rule looks at: a file, or one chart with its play; charts that are looked at together."""
+"""The subjects that rules check: a file, or one chart with its play; charts that are checked together."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.song_sync import SongSync
 
 
-# Charts that are looked at together, so that what rules ask of one is answered for all of them at once.
+# Charts that are checked together, so that the facts for rules are found for all of them at once.
 
 
 def share_plays(subjects: Iterable[ChartSubject]) -> None:
-    """Let charts share their work: what is asked of one is answered for those on the same pad at once."""
+    """Let charts for the same pad share their candidates, so that facts are found for all of them at once."""
     of_pads: dict[str, list[ChartSubject]] = defaultdict(list)
     for subject in subjects:
         if subject.play is not None and subject.pad is not None:
@@ -55,14 +55,14 @@ _LEFT, _RIGHT = int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT)
 
 @dataclass(frozen=True)
 class FileSubject:
-    """One readable chart file. sync : its music against its charts, None where nobody asked for it"""
+    """One readable chart file. sync : the sync of its music and charts, None if it was not judged"""
 
     song: Song
     sync: SongSync | None = None
 
     @cached_property
     def music(self) -> AudioHead | None:
-        """What the head of the song's music says; None where it is missing or damaged, which has rules of its own."""
+        """The head of the song's music; None if the music is missing or damaged, which other rules report."""
         from dancetutor_cli.chart.audio import read_head
 
         try:
@@ -72,31 +72,31 @@ class FileSubject:
 
     @cached_property
     def dance_charts(self) -> tuple[Chart, ...]:
-        """The charts that have notes and are no lights."""
+        """The charts that have notes, without lights."""
         return tuple(one for one in self.song.charts if len(one.notes) and not is_lights(one.steps_type))
 
     def warnings(self, codes: Collection[str]) -> Iterator[tuple[str, dict[str, Any]]]:
-        """Message and place of what the reader warned of about the song, if the warning has one of these codes."""
+        """Yield message and place of the reader's warnings about the song that have one of these codes."""
         for warning in self.song.warnings:
             if warning.code in codes:
                 yield warning.message, self.place(warning.line)
 
     def tag_place(self, name: str) -> dict[str, Any]:
-        """Where a tag of the song stands, if it is found as written."""
+        """Return the place of a tag of the song; the whole file if the tag is not found as written."""
         at = self.song.data.upper().find(f"#{name}:".encode())
         return self.place(None if at < 0 else self.song.data.count(b"\n", 0, at) + 1)
 
     def place(self, line: int | None = None) -> dict[str, Any]:
-        """Where a finding about the file stands, as keyword arguments of `Finding`."""
+        """Return the place of a finding about the file, as keyword arguments of `Finding`."""
         return {"line": line, "column": None if line is None else 1}
 
 
 @dataclass(frozen=True)
 class ChartSubject(PlacedChart):
-    """One chart; `play` and `pad` are None where the steps type has no pad.
+    """One chart; `play` and `pad` are None if the steps type has no pad.
 
-    overrides : feet that people laid down; ignores, problems : findings they do not want to see, and what is wrong in
-    what they said
+    overrides : feet that the author has set; ignores : findings that the author has silenced
+    problems : faults in these settings of the author
     """
 
     pad: Pad | None = None
@@ -106,30 +106,30 @@ class ChartSubject(PlacedChart):
 
     @cached_property
     def facts(self) -> PlayFacts | None:
-        """Facts about the play, where there is one; of this chart alone, unless `share_plays` has put them here."""
+        """Facts about the play, None without one; for this chart alone, unless `share_plays` has set them."""
         if self.play is None or self.pad is None:
             return None
         return PlayFacts(Candidates((self.play,), self.pad), 0, self.chart.timing)
 
     @cached_property
     def notes(self) -> NoteFacts:
-        """Facts about the notes."""
+        """Facts about the notes of the chart."""
         return NoteFacts(self.chart)
 
     @cached_property
     def counts(self) -> Mapping[str, int]:
-        """Name of the move -> rows of the play in which it happens."""
+        """Name of the move -> number of rows of the play in which it happens."""
         return {} if self.facts is None else self.facts.candidates.plays.counts[self.facts.number]
 
     def sized(self, rate: float = 1.0) -> MeteredChart | None:
-        """The chart's meters on every scale, for music that plays so fast; None without a play or a model."""
+        """Return the chart's meters on every scale, at a rate of the music; None without a play or a model."""
         if self.facts is None:
             return None
         ask = partial(self.facts.candidates.features, self.facts.number)
         return size(self.chart.steps_type, (self.chart.meter, self.chart.difficulty), ask, rate)
 
     def oddities(self) -> Oddities:
-        """What the chart is scored by; for charts with a play."""
+        """Return the oddities from which the score is estimated; only for charts with a play."""
         assert self.play is not None
         assert self.facts is not None
         timing = timing_oddities(self.chart.timing, self.play.rows.tick[self.step_rows])
@@ -137,11 +137,11 @@ class ChartSubject(PlacedChart):
 
     @property
     def row_count(self) -> int:
-        """Rows of the play; 0 without one."""
+        """The number of rows of the play; 0 without one."""
         return len(self.play.rows) if self.play else 0
 
     def warnings(self, codes: Collection[str]) -> Iterator[tuple[str, dict[str, Any]]]:
-        """Message and place of what the reader warned of about the chart, if the warning has one of these codes."""
+        """Yield message and place of the reader's warnings about the chart that have one of these codes."""
         for warning in self.chart.warnings:
             if warning.code in codes:
                 yield warning.message, self.at_line(warning.line)
@@ -151,7 +151,7 @@ class ChartSubject(PlacedChart):
         return self.facts is not None and self.facts.candidates.plays.has_move(move)[self.facts.number]
 
     def rows_with(self, move: str) -> list[int]:
-        """Rows with a move of this name or of a kind of it: "crossover" finds "crossover-half" too."""
+        """Return the rows with a move of this name or of a kind of it: "crossover" also finds "crossover-half"."""
         if self.facts is None or not self.has(move):
             return []
         plays = self.facts.candidates.plays
@@ -160,7 +160,7 @@ class ChartSubject(PlacedChart):
 
     @cached_property
     def too_quick(self) -> tuple[tuple[int, int, DropReason], ...]:
-        """Row, column and reason of each note whose limb cannot be there in time: the dancer lets it go."""
+        """Row, column and reason of each note that the dancer does not play, because the limb cannot come in time."""
         if self.play is None or self.pad is None or self.facts is None:
             return ()
         if self.facts.candidates.least_foot_seconds[self.facts.number] > LEAP + SAME_TIME and not self.has("hand"):
@@ -169,12 +169,12 @@ class ChartSubject(PlacedChart):
 
     @cached_property
     def step_rows(self) -> NDArray[np.int64]:
-        """Rows of the play with at least one step."""
+        """The rows of the play with at least one step."""
         return np.zeros(0, dtype=np.int64) if self.facts is None else self.facts.stepped
 
     @cached_property
     def angles(self) -> list[list[float]]:
-        """Degrees that the body is turned with the left foot on one panel and the right foot on another."""
+        """Degrees that the body is turned, by the panel of the left foot, then the panel of the right foot."""
         assert self.pad is not None
         x, y = np.moveaxis(self.pad.panels[None] - self.pad.panels[:, None], -1, 0)
         angles: list[list[float]] = np.degrees(np.arctan2(y, x)).tolist()
@@ -182,13 +182,13 @@ class ChartSubject(PlacedChart):
 
     @cached_property
     def beginnings(self) -> Beginnings:
-        """Where the dancer may begin again; for charts with a play."""
+        """The steps at which the dancer may begin again; only for charts with a play."""
         assert self.play is not None
         assert self.facts is not None
         return Beginnings(self.play, self.step_rows, self.facts.pauses[self.step_rows])
 
     def pause(self, row: int) -> float:
-        """Seconds since the row with a step before this one; endless for the first."""
+        """Return the seconds since the row with a step before this row; inf for the first."""
         return self._pauses[row]
 
     @cached_property
@@ -208,7 +208,7 @@ class ChartSubject(PlacedChart):
         return self.play is not None and "bracket" in self.play.moves[row]
 
     def tempos(self) -> list[float]:
-        """Every BPM of the chart's timing between its first and its last note."""
+        """Return every BPM of the chart's timing between its first and its last note."""
         ticks = self.chart.notes.tick
         if not len(ticks):
             return []
@@ -217,7 +217,10 @@ class ChartSubject(PlacedChart):
         return [self.chart.timing.bpm_at(first), *within]
 
     def confidence(self, beat: float) -> tuple[int | None, float | None]:
-        """Margin and confidence of the feet in a row and in that with a step before it, the lesser; None: not known."""
+        """Return margin and confidence of the feet on a beat; None if not known.
+
+        Of the row on the beat and the row with a step before it, the lesser value counts.
+        """
         play = self.play
         if play is None or play.margin is None:
             return None, None
@@ -229,13 +232,16 @@ class ChartSubject(PlacedChart):
         return min(margins, default=None), min((one for one in sure if one == one), default=None)
 
     def most_confident(self, rows: list[int]) -> int:
-        """Place in some rows of the one whose feet are surest, of several the first."""
+        """Return the index of the first of the rows whose feet have the highest confidence."""
         known = [self.confidence(self.beat(row))[1] for row in rows]
         sure = [1.0 if one is None else one for one in known]
         return sure.index(max(sure))
 
     def ties(self) -> Iterator[tuple[int, bool]]:
-        """First row of every run of rows that cost the same with other limbs; whether the rows after it do not care."""
+        """Yield the first row of every run of rows that cost the same with other limbs, and whether it is resolved.
+
+        If it is resolved, the feet of the rows after the run do not depend on the choice.
+        """
         if self.play is None or self.facts is None:
             return
         known = self.play.ambiguity
@@ -243,38 +249,38 @@ class ChartSubject(PlacedChart):
             yield first, known is not None and int(known[first]) == Ambiguity.RESOLVED
 
     def seconds_played(self) -> float:
-        """Time from the first to the last row with a step."""
+        """Return the seconds from the first to the last row with a step."""
         rows = self.step_rows
         if self.play is None or not len(rows):
             return 0.0
         return abs(float(self.play.rows.second[rows[-1]] - self.play.rows.second[rows[0]]))
 
     def foot_name(self, row: int) -> str:
-        """ "left" or "right": the foot that presses the first panel of a row which only one foot steps."""
+        """Return "left" if the left foot steps in a row, else "right"; for rows that one foot steps."""
         assert self.play is not None
         limbs = self.play.limb[row][self.play.rows.steps[row] != StepKind.ROLL_TAP]
         return "left" if (limbs == Limb.LEFT_FOOT).any() else "right"
 
     def unplayed(self, row: int) -> int:
-        """How many steps of a row no limb is left for."""
+        """Return the number of steps of a row for which no limb is free."""
         assert self.play is not None
         return int((self.play.limb[row] == Limb.UNPLAYED).sum())
 
 
-# Charts with their feet as the rules look at them.
+# Solved charts as subjects for rules.
 
 
 def subject_of(solved: Solved) -> ChartSubject:
-    """What rules look at of a solved chart."""
+    """Return the subject of a solved chart."""
     one = solved
     return ChartSubject(one.song, one.chart, one.play, one.pad, one.overrides, one.ignores, one.problems)
 
 
 def solved_chart(song: Song, chart: Chart, preset: Preset) -> ChartSubject:
-    """One chart, see `solved_charts`."""
+    """Return the subject of one chart, see `solved_charts`."""
     return next(solved_charts(song, [chart], lambda _: preset))
 
 
 def solved_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart], Preset]) -> Iterator[ChartSubject]:
-    """Charts of a song, solved as `feet.solved.solve_song` does."""
+    """Yield the subjects of charts of a song, solved by `feet.solved.solve_song`."""
     return map(subject_of, solve_song(song, charts, preset_of))

@@ -1,4 +1,4 @@
-"""Small edits that would remove a finding and keep a chart's shape, proven by solving the edited chart."""
+"""Small edits that would remove a finding and keep a chart's shape, checked by solving the edited chart."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from dancetutor_cli.lint.rule import all_rules
 from dancetutor_cli.lint.rule_settings import Layer, Settings
 from dancetutor_cli.lint.subject import ChartSubject
 
-_FAMILIES = ("DT2", "DT3")  # the edit must bring no new finding of these
-_AROUND = 4  # rows to either side of the finding's in which a note may be moved
-_PHRASE = 12  # notes of a phrase that may be turned, left for right
-_MOST_SOLVED = 24  # edits of a finding that are solved whole
-# Move -> what counts as one.
+_FAMILIES = ("DT2", "DT3")  # the edit must cause no new finding of these families
+_AROUND = 4  # rows to either side of the finding's row in which a note may be moved
+_PHRASE = 12  # most rows of a phrase that may be mirrored left to right
+_MOST_SOLVED = 24  # most edits for a finding with which the whole chart is solved
+# Move -> the hard move that it counts as.
 _HARD = {
     "doublestep": "doublestep", "crossover-half": "crossover", "crossover-full": "crossover", "spin": "spin",
     "footswitch-up": "switch", "footswitch-down": "switch", "footswitch": "switch", "sideswitch-left": "switch",
@@ -41,7 +41,7 @@ _Place = tuple[str, float | None]  # rule and beat of a finding
 
 
 class MovedNote(NamedTuple):
-    """A tap that goes to another panel. tick : its row, 1/48 beats; column, to : from 0"""
+    """A tap that moves to another panel. tick : tick of its row, 1/48 beats; column, to : from 0"""
 
     tick: int
     column: int
@@ -50,7 +50,7 @@ class MovedNote(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Suggestion:
-    """Taps that go to other panels, all at once, and the same for people."""
+    """Taps that move to other panels together. words : the edit in words"""
 
     notes: tuple[MovedNote, ...]
     words: str
@@ -59,7 +59,7 @@ class Suggestion:
 def with_suggestions(
     findings: Sequence[Finding], subject: ChartSubject, settings: Settings, preset: Preset
 ) -> tuple[Finding, ...]:
-    """The findings, those that a good edit would remove with it in words. The chart is not changed."""
+    """Return the findings; a finding that a good edit would remove has the edit in words. The chart is not changed."""
     if subject.play is None or subject.pad is None:
         return tuple(findings)
     trial = _Trial(subject, _of_families(settings), preset, _places(findings))
@@ -73,7 +73,10 @@ def with_suggestions(
 def move_edits(
     finding: Finding, findings: Sequence[Finding], subject: ChartSubject, settings: Settings, preset: Preset
 ) -> Iterator[Suggestion]:
-    """The edits that would remove one finding, the one that is heard least first. findings : all of the chart"""
+    """Yield the edits that would remove one finding, those that players notice least first.
+
+    findings : all findings of the chart
+    """
     if subject.play is None or subject.pad is None or not all_rules()[finding.rule].fixed_by_moves:
         return
     ticks = subject.play.rows.tick
@@ -84,7 +87,7 @@ def move_edits(
 
 
 def _of_families(settings: Settings) -> Settings:
-    """The settings without the rules that no edit is asked about."""
+    """Return the settings without the rules that do not matter for edits."""
     rules = all_rules().items()
     others = frozenset(code for code, rule in rules if rule.only_worst or not code.startswith(_FAMILIES))
     return settings.with_layer(Layer(ignore=others))
@@ -92,7 +95,10 @@ def _of_families(settings: Settings) -> Settings:
 
 @dataclass
 class _Trial:
-    """Tries edits of a chart, each once: findings beside each other ask for the same ones. before : what was found"""
+    """Tries edits of a chart, each once, because findings beside each other need the same edits.
+
+    before : places of the chart's findings before any edit
+    """
 
     subject: ChartSubject
     settings: Settings
@@ -102,9 +108,10 @@ class _Trial:
     _edited: dict[Edit, _Edited] = field(default_factory=dict)
 
     def good(self, finding: Finding) -> Iterator[Edit]:
-        """The edits with plays cheaper than now that lack the finding and bring no other, the least heard first.
+        """Yield the edits with a cheaper play that remove the finding and cause no other, the least noticed first.
 
-        The cost of single notes comes first, which is quickly found; others, and the rules, are asked of few.
+        For a single note, the new cost is checked first, because it is found quickly. Only a few edits are solved and
+        checked by the rules.
         """
         assert self.subject.play is not None
         place, solved = (finding.rule, finding.beat), 0
@@ -123,7 +130,7 @@ class _Trial:
                 yield edit
 
     def _candidates(self, finding: Finding) -> Iterator[Edit]:
-        """Edits that keep the chart's shape: notes near the finding's row, then phrases left for right."""
+        """Yield edits that keep the chart's shape: notes near the finding's row, then mirrored phrases."""
         play = self.subject.play
         if play is None or finding.beat is None:
             return
@@ -140,7 +147,7 @@ class _Trial:
         return Shape(self.subject.play, self.subject.pad, self.subject.chart)
 
     def _after_move(self, move: PanelMove) -> tuple[int, NDArray[np.int64]]:
-        """What the cheapest way costs after a move, and what happens in each row; see `Engine.cost_and_events`."""
+        """Return the cost of the cheapest way after a move and the events of each row; see `Engine.cost_and_events`."""
         if move not in self._solved_moves:
             play, pad = self.subject.play, self.subject.pad
             assert play is not None and pad is not None
@@ -167,7 +174,7 @@ class _Trial:
 
 
 class _Edited:
-    """An edited chart, of which the rules are asked one by one, until one says what was not found before."""
+    """An edited chart. The rules check it one by one, until one of them has a new finding."""
 
     def __init__(self, subject: ChartSubject, settings: Settings, before: set[_Place]) -> None:
         self._subject, self._settings, self._before = subject, settings, before
@@ -176,10 +183,10 @@ class _Edited:
         self._found: set[_Place] = set()
 
     def is_easier(self, before: ChartSubject, move: str) -> bool:
-        """Whether the play costs less than that of the chart as it was, and nothing hard happens more often in it.
+        """Whether the play costs less than before the edit, and no hard move happens more often.
 
-        Rules are silent about much that an author does not put in the place of something else.
-        move : that has to happen less often, so that it has not only gone to another row; or ""
+        The rules alone are not enough, because they do not report every hard move.
+        move : a move that must happen less often, so that it has not only moved to another row; or ""
         """
         play, old = self._subject.play, before.play
         assert play is not None and old is not None
@@ -187,7 +194,7 @@ class _Edited:
         return play.total < old.total and not now - was and (not move or now[move] < was[move])
 
     def lacks(self, place: _Place) -> bool:
-        """Whether nothing is found at a place any more, nor anything at places where nothing was found before."""
+        """Whether the finding at a place is gone and no new finding has appeared."""
         self._to_ask.sort(key=lambda code: code != place[0])
         while self._to_ask and place not in self._found and self._found <= self._before:
             self._found |= _places(check_rule(self._to_ask.pop(0), self._rules, self._subject, self._settings))
@@ -195,7 +202,7 @@ class _Edited:
 
 
 def _hard_moves(play: Play) -> Counter[str]:
-    """How many rows have each of the moves that nobody puts in the place of another; two kinds of crossing are one."""
+    """Return how many rows have each hard move. Kinds of a move, such as half and full crossovers, count as one."""
     return Counter(kind for moves in play.moves for kind in {_HARD.get(move) for move in moves} if kind is not None)
 
 
@@ -205,7 +212,7 @@ def _places(findings: Sequence[Finding]) -> set[_Place]:
 
 
 def _taps(beat: float, play: Play, chart: Chart) -> Iterator[PanelMove]:
-    """Every tap in rows around a beat's, nearest first, to every panel that is free there."""
+    """Yield the moves of every tap in the rows around a beat to every free panel of its row, nearest rows first."""
     rows = play.rows
     at = int(np.searchsorted(rows.tick, round(beat * TICKS_PER_BEAT)))
     for row in sorted(range(max(at - _AROUND, 0), min(at + _AROUND + 1, len(rows))), key=lambda row: abs(row - at)):

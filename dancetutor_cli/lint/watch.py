@@ -1,4 +1,4 @@
-"""Wait for files to be saved, on every system alike: by looking at their times."""
+"""Wait until files are saved, in the same way on every system, by checking their times and sizes."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from pathlib import Path
 
 Stamp = tuple[int, int]
-INTERVAL = 0.3  # seconds between two looks
-_SETTLED = 0.15  # an editor may still be writing; a file counts as saved when it did not change for so long
+INTERVAL = 0.3  # seconds between two checks
+_SETTLED = 0.15  # seconds; a file counts as saved if it has not changed for so long, because editors write in parts
 
 
 def changes(
@@ -16,12 +16,12 @@ def changes(
     needs: Callable[[Path], Iterable[Path]] = lambda _: (),
     wait: Callable[[float], None] = time.sleep,
 ) -> Iterator[tuple[list[Path], list[Path]]]:
-    """Yield (all files, those that are new or saved) at once, then after every change; ends with KeyboardInterrupt.
+    """Yield (all files, new or saved files) at once, then after every change; ends with KeyboardInterrupt.
 
-    files : finds the files again, so that charts that are added later are seen
-    needs : what else the result for a file depends on, whether it is there or not: a change of these counts as one of
-        the file
-    wait : how to sleep
+    files : function that finds the files again, so that new charts are found
+    needs : function that returns the other files on which a file's result depends, existing or not; a change of these
+        counts as a change of the file
+    wait : function that sleeps for some seconds
     """
     known: dict[Path, Stamp] = {}
     before: list[Path] | None = None
@@ -42,7 +42,7 @@ def changes(
 
 
 def _differ(paths: Collection[Path], known: Mapping[Path, Stamp], seen: Mapping[Path, Stamp]) -> bool:
-    """Whether one of the paths has another stamp than before; one that was not watched before has not changed."""
+    """Whether one of the paths has another stamp than before. A path that was not watched before does not count."""
     return any(path in known and known[path] != seen[path] for path in paths)
 
 

@@ -1,4 +1,4 @@
-"""The estimated meter of a chart with its terms, on the scale that its song is numbered on; and its level of DDR."""
+"""The estimated meter of a chart with its terms, on the scale of its song's labels; and the chart's level of DDR."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dancetutor_cli.lint.findings import AUTO, Estimate
 from dancetutor_cli.lint.meter.model import Feature, MeterModel, Scale, model_for
 from dancetutor_cli.lint.meter.score import Level
 
-_WORTH = 0.1  # meters that a term has to add to have a term of its own; less goes into its "rest"
+_WORTH = 0.1  # meters; a term that adds less is part of "rest"
 Ask = Callable[[Sequence[Feature], float], Sequence[float]]  # the features of a play, at a rate
 
 
@@ -17,8 +17,8 @@ Ask = Callable[[Sequence[Feature], float], Sequence[float]]  # the features of a
 class MeteredChart:
     """A chart before its scale is known.
 
-    label : the meter it has in the file; on : scale -> its meter there at rate 1
-    terms, played : for each scale the meters that terms add, at rate 1 and at the rate asked for
+    label : the chart's meter in the file; on : scale -> estimated meter on it at rate 1
+    terms, played : for each scale, the meters that terms add, at rate 1 and at `rate`
     """
 
     model: MeterModel
@@ -31,9 +31,9 @@ class MeteredChart:
 
 
 def size(steps_type: str, label: tuple[int, str], ask: Ask, rate: float = 1.0) -> MeteredChart | None:
-    """A chart's meters on every scale; None for a pad without a model.
+    """Return a chart's meters on every scale; None for a pad without a model.
 
-    label : its meter and difficulty; ask : what gives features of its play, at a rate
+    label : the chart's meter and difficulty; ask : function that gives the features of the play at a rate
     """
     model = model_for(steps_type)
     if model is None:
@@ -45,35 +45,35 @@ def size(steps_type: str, label: tuple[int, str], ask: Ask, rate: float = 1.0) -
 
 
 def sized(model: MeterModel, values: Sequence[float], label: tuple[int, str]) -> MeteredChart:
-    """The same by the features of `model.wanted`."""
+    """Return a chart's meters on every scale at rate 1. values : those of `model.features`"""
     terms = model.terms(values)
     on = {scale.name: scale.meter(of) for scale, of in zip(model.scales, terms, strict=True)}
     return MeteredChart(model, *label, on, terms, terms)
 
 
-# The scale that the charts of a song are numbered on.
+# The scale of the labels of a song.
 
-# What the tag #METERTYPE says -> the scale. "DDR" stands for the old one of 1 to 10, and for others: it says nothing.
+# Value of the tag #METERTYPE -> the scale. "DDR" may be the old scale of 1 to 10 or another one, so it is not listed.
 _TAGS = {"ITG": "itg", "DDR X": "ddr"}
-TAGGED = 3.0  # meters that all labels together have to be nearer to another scale than the tag's: some tags are wrong
-_CLEAR = 1.0  # meters by which one scale has to fit them better than any other; else it is a guess
-_MOST = 3.0  # meters that a label is missed by; more counts as this, for it may be a joke
-_FEWEST = 2  # other charts of a song that give its scale surely
-_GUEST = 1 / 3  # what the label of another chart says of the scale of an Edit, which may be a guest's
+TAGGED = 3.0  # meters by which all labels together must fit another scale better, because some tags are wrong
+_CLEAR = 1.0  # meters by which one scale must fit the labels better than any other; else it is a guess
+_MOST = 3.0  # the most meters that a label counts as missed by, because some labels are jokes
+_FEWEST = 2  # other charts of a song that are enough to know its scale
+_GUEST = 1 / 3  # weight of the other charts' labels for the scale of an Edit, which may be by another author
 
 
 def tagged_scale(tag: str) -> str | None:
-    """The scale that a value of #METERTYPE names."""
+    """Return the scale that a value of #METERTYPE names, or None."""
     return _TAGS.get(tag.strip().upper())
 
 
 def scales_of(charts: Sequence[MeteredChart], tag: str = "", scale: str = AUTO) -> list[tuple[str, bool]]:
-    """The scale of each of a song's charts for one pad, and whether it is known.
+    """Return the scale of each of a song's charts for one pad, and whether it is known.
 
-    The user's scale; otherwise the scale on which the labels of the other charts have clearly the least error, for
-    which at least two are needed, unless a tag names another one. A chart's own label does not count, because the
-    estimate is compared with it. It counts if the scale is a guess: if there are too few labels, and for an Edit, which
-    may be numbered unlike its song.
+    The user's scale counts first. Otherwise it is the scale on which the labels of the other charts have clearly the
+    least error. At least two other charts or a tag must set it, and a tag makes the other scales fit worse. A chart's
+    own label does not count, because the estimate is compared with it. It counts only if the scale is a guess: if there
+    are too few labels, and for an Edit, whose label may be on another scale than its song.
     """
     if charts and len(charts[0].on) == 1:
         return [(next(iter(charts[0].on)), True)] * len(charts)
@@ -84,7 +84,7 @@ def scales_of(charts: Sequence[MeteredChart], tag: str = "", scale: str = AUTO) 
 
 
 def label_scales_of(charts: Sequence[MeteredChart], tag: str = "", scale: str = AUTO) -> list[str]:
-    """The scale that each chart's label is on: that of all labels of the song, its own among them; an Edit's own."""
+    """Return the scale of each chart's label: the scale that all labels of the song fit best; for an Edit its own."""
     if scale != AUTO or (charts and len(charts[0].on) == 1):
         return [name for name, _ in scales_of(charts, tag, scale)]
     main, edits = _votes(charts)
@@ -102,7 +102,7 @@ def _is_guests(one: MeteredChart) -> bool:
 
 
 def _votes(charts: Sequence[MeteredChart]) -> tuple[_Misses, _Misses]:
-    """Those of the charts, and those of Edits; a label of 0 is none."""
+    """Return the misses of the labels of ordinary charts, and those of Edits. A label of 0 does not count."""
     main, edits = _Misses(), _Misses()
     for one in charts:
         if one.label > 0:
@@ -111,7 +111,7 @@ def _votes(charts: Sequence[MeteredChart]) -> tuple[_Misses, _Misses]:
 
 
 def _scale_of(one: MeteredChart, main: _Misses, edits: _Misses, tagged: str | None) -> tuple[str, bool]:
-    """The scale of a chart that is among those that have voted, and whether it is known."""
+    """Return the scale of a chart, and whether it is known. The misses must include the chart's own label."""
     others = main if _is_guests(one) or not one.label else main.without(one)
     if not others.count:
         others = edits.without(one) if _is_guests(one) and one.label else edits
@@ -126,26 +126,29 @@ def _scale_of(one: MeteredChart, main: _Misses, edits: _Misses, tagged: str | No
 
 
 class _Misses:
-    """How far the labels of some charts are from the estimates on each scale, in meters."""
+    """The sum of the distances between the labels and the estimates of some charts on each scale, in meters."""
 
     def __init__(self, count: int = 0, by: Mapping[str, float] | None = None) -> None:
         self.count = count
         self._by = dict(by or {})
 
     def add(self, one: MeteredChart, times: int = 1) -> None:
-        """Count a chart in, or with -1 out."""
+        """Add a chart's misses, or remove them with `times` -1."""
         self.count += times
         for name, meter in one.on.items():
             self._by[name] = self._by.get(name, 0.0) + times * min(abs(meter - one.label), _MOST)
 
     def without(self, one: MeteredChart) -> _Misses:
-        """The same without a chart that is in it."""
+        """Return these misses without those of a chart that was added."""
         out = _Misses(self.count, self._by)
         out.add(one, -1)
         return out
 
     def by_scale(self, one: MeteredChart, tagged: str | None) -> dict[str, float]:
-        """Each scale of a chart's pad, the usual one first; those that a tag does not name fit so much worse."""
+        """Return the misses on each scale of a chart's pad, the usual scale first, in meters.
+
+        If a tag names one of the scales, the misses of the others are `TAGGED` larger.
+        """
         worse = TAGGED if tagged in one.on else 0.0
         return {name: self._by.get(name, 0.0) + (worse if name != tagged else 0.0) for name in one.on}
 
@@ -157,7 +160,7 @@ def _interval(scale: Scale, meter: float) -> tuple[float, float]:
 
 
 def on_scale(one: MeteredChart, name: str, known: bool, *, faster: bool = True) -> Estimate:
-    """The estimate on a scale (its usual one if the pad lacks it), at the rate asked for unless not `faster`."""
+    """Return the estimate on a scale, or on the pad's usual scale if the pad lacks it; at rate 1 if not `faster`."""
     model = one.model
     number = next((n for n, scale in enumerate(model.scales) if scale.name == name), 0)
     scale, terms = model.scales[number], (one.played if faster else one.terms)[number]
@@ -170,16 +173,16 @@ def on_scale(one: MeteredChart, name: str, known: bool, *, faster: bool = True) 
     return Estimate(meter, low, high, scale.name, known, (*billed, ("rest", rest)), one.rate if faster else 1.0)
 
 
-# The level of DDR that a chart has, by its label: what its score is estimated from.
+# A chart's level of DDR by its label. The score is estimated from it.
 
 _LEVELS = "ddr"
-_BELIEVED = 3.0  # meters between a label and the estimate; of a label that is further off only so much is heard
+_BELIEVED = 3.0  # the most meters between a label and the estimate that count
 
 
 def level_of(one: MeteredChart, scale: str) -> Level:
-    """The level, from the label and its scale; for a label of 0, which is no label, from the estimate alone.
+    """Return the level of a chart by its label and the label's scale; by the estimate alone if the label is 0 (none).
 
-    one : of a pad that has the scale ddr
+    one : a chart for a pad that has the scale ddr
     """
     on = one.on
     off = min(max(one.label - on[scale], -_BELIEVED), _BELIEVED) if one.label > 0 else 0.0

@@ -1,4 +1,4 @@
-"""The model of meters: named terms, each a few curves that only rise; read from configs/meter/."""
+"""The meter model: named terms, each a few curves that only rise; read from configs/meter/."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ from dancetutor_cli.run.schema import (
 )
 from dancetutor_cli.run.yaml_files import read
 
-# What the feet have to do in how little time: numbers of a play that never fall when it is played faster.
+# Features: numbers of a play for the work of the feet. They never fall if the music plays faster.
 
 _SWITCHES = ("footswitch-up", "footswitch-down", "footswitch", "sideswitch-left", "sideswitch-right", "jump-footswitch")
-# What is counted -> the moves of a row that it is.
+# Name of the thing that is counted -> the names of moves that count as it.
 _NAMED = {
     "crossovers": ("crossover-half", "crossover-full"),
     "footswitches": _SWITCHES,
@@ -45,23 +45,24 @@ _NAMED = {
     "jumps": ("jump",),
 }
 THINGS = ("steps", *_NAMED, "turns", "held")
-_COUNTED = (*_NAMED, "held")  # what a row is or is not
+_COUNTED = (*_NAMED, "held")  # things that a row has or lacks
 _BITS = np.array([sum(1 << EVENTS.index(name) for name in _NAMED.get(thing, ())) for thing in _COUNTED])
 _PLACES, _TURNS = [THINGS.index(thing) for thing in _COUNTED], THINGS.index("turns")
-HOWS = ("mean", "peak", "count")  # the last two of steps alone
+HOWS = ("mean", "peak", "count")  # the last two exist only for steps
 _PLACE = {thing: n for n, thing in enumerate(THINGS)}
 _PEAK = 0.98  # the share of rows that are easier than a peak
 _QUARTER = 90.0  # degrees
-_PLAY = 40  # bits of a tick: everything in a later play comes after every tick of the one before
+_PLAY = 40  # bits of a tick: the ticks of a later play come after all ticks of an earlier play
 
 
 class Feature(NamedTuple):
     """One number of a chart: how often `thing` happens in a second.
 
     thing : one of `THINGS`. "turns": quarter turns of the body; "held": steps while the other foot holds; "crossovers"
-        counts the step that crosses, not those that stay crossed
-    seconds : how far back each row looks; kind : "mean" of all rows with a step, and of steps alone "peak": what 98 in
-        100 rows do not exceed, "count": of the whole chart, whatever its time
+        counts the step that crosses, not the steps that stay crossed
+    seconds : length of the window that ends at each row
+    kind : one of `HOWS`. "mean": over all rows with a step; only for steps: "peak": the value that 98 of 100 rows do
+        not exceed, "count": the number in the whole chart
     """
 
     thing: str
@@ -70,21 +71,21 @@ class Feature(NamedTuple):
 
 
 def features(play: Play, wanted: Sequence[Feature], rate: float = 1.0) -> list[float]:
-    """These numbers of a play, see `features_of`."""
+    """Return the wanted features of one play, see `features_of`."""
     return features_of([play], wanted, rate)[0]
 
 
 def features_of(plays: Sequence[Play], wanted: Sequence[Feature], rate: float = 1.0) -> list[list[float]]:
-    """These numbers of each play, 0 or more; none of them is less at a higher rate: a window then holds no fewer rows.
+    """Return the wanted features of each play, 0 or more. No feature falls at a higher rate.
 
-    plays : all of one pad; rate : how fast the music plays, above 0. The feet are those of rate 1
+    plays : plays on one pad; rate : the speed of the music, above 0. The feet are those of rate 1
     """
     steps = _steps_of(plays)
     return [_of_one(steps, first, after, wanted, rate) for first, after in pairwise(steps.first)]
 
 
 def _of_one(steps: _Steps, first: int, after: int, wanted: Sequence[Feature], rate: float) -> list[float]:
-    """The numbers of the play that has these steps."""
+    """Return the features of the play whose steps are at `first` to `after`."""
     out, count = [0.0] * len(wanted), after - first
     if not count:
         return out
@@ -98,14 +99,14 @@ def _of_one(steps: _Steps, first: int, after: int, wanted: Sequence[Feature], ra
             out[place] = _peak(order - firsts[seconds]) / seconds
         else:
             if seconds not in means:
-                windows = np.bincount(firsts[seconds], minlength=count).cumsum() - order  # that each row is in
+                windows = np.bincount(firsts[seconds], minlength=count).cumsum() - order  # number for each row
                 means[seconds] = (_sums(steps, first, after, windows.astype(float)) / (count * seconds)).tolist()
             out[place] = means[seconds][_PLACE[thing]]
     return out
 
 
 def _peak(before: NDArray[np.int64]) -> float:
-    """The number of rows that 98 of 100 windows do not exceed. before : rows in each, but for its last one"""
+    """Return the number of rows that 98 of 100 windows do not exceed. before : rows of each window except the last"""
     at = int(_PEAK * (len(before) - 1))
     before.partition(at)
     return float(before[at]) + 1.0
@@ -113,15 +114,15 @@ def _peak(before: NDArray[np.int64]) -> float:
 
 @cache
 def _spans(wanted: tuple[Feature, ...]) -> tuple[float, ...]:
-    """The different seconds of some features."""
+    """Return the different window lengths of some features, in seconds."""
     return tuple(dict.fromkeys(feature.seconds for feature in wanted if feature.seconds))
 
 
 class _Steps(NamedTuple):
-    """The rows with a step of some plays, n, one play after the other; taps of rolls, too: somebody has to tap them.
+    """The n rows with a step of some plays, one play after the other; with the taps of rolls.
 
-    first : where the rows of each play begin; and n; order : 0 to n - 1
-    second : never less than in the row before; turned : degrees from the row before, of no meaning in a first one
+    first : the index at which the rows of each play begin, then n; order : 0 to n - 1
+    second : never less than in the row before; turned : degrees from the row before, without meaning in a first row
     happens : (t, n) 1.0 where one of `_COUNTED` happens, else 0.0
     """
 
@@ -135,7 +136,7 @@ class _Steps(NamedTuple):
 def _steps_of(plays: Sequence[Play]) -> _Steps:
     bounds = np.array([0, *accumulate(len(play.rows) for play in plays)])
     columns = np.concatenate([play.rows.steps for play in plays]).T
-    rows = np.flatnonzero(np.logical_or.reduce(list(columns)))  # few columns, and rows by the thousand
+    rows = np.flatnonzero(np.logical_or.reduce(list(columns)))  # quicker than `any` for few columns
     first = rows.searchsorted(bounds).tolist()
     later = np.ones(len(rows), dtype=bool)
     later[[one for one in first if one < len(rows)]] = False  # the first row of a play has none before it
@@ -146,7 +147,7 @@ def _steps_of(plays: Sequence[Play]) -> _Steps:
     happens = np.concatenate([_marks(play) for play in plays], axis=1)[:, rows]
     crossed = happens[_COUNTED.index("crossovers")]
     crossed[1:][(crossed[1:] > 0) & (crossed[:-1] > 0) & later[1:]] = 0.0
-    # the last of all holds so far; those of later plays end after everything in those before
+    # the latest end of all holds so far; holds of later plays end after all ticks of earlier plays
     play_of = np.arange(len(plays)).repeat(np.diff(bounds)) << _PLAY
     until = np.maximum.reduce([*np.concatenate([play.rows.hold_end for play in plays]).T]) + play_of
     ticks = (np.concatenate([play.rows.tick for play in plays]) + play_of)[rows]
@@ -159,7 +160,7 @@ def _steps_of(plays: Sequence[Play]) -> _Steps:
 
 
 def _marks(play: Play) -> NDArray[np.float64]:
-    """(`_COUNTED`, n) which of them each row of a play is, as far as the names of its moves say."""
+    """Return (`_COUNTED`, n) 1.0 where a row of a play has the thing by the names of its moves, else 0.0."""
     if play.events is None:
         marks = np.array([_marked(names) for names in play.moves], dtype=float).reshape(-1, len(_COUNTED)).T
     else:
@@ -168,7 +169,10 @@ def _marks(play: Play) -> NDArray[np.float64]:
 
 
 def _sums(steps: _Steps, first: int, after: int, windows: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(`THINGS`,): how often each happens in all windows of a play together. windows : that each of its rows is in"""
+    """Return (`THINGS`,) how often each happens in all windows of a play together.
+
+    windows : number of windows that hold each row of the play
+    """
     out = np.empty(len(THINGS))
     out[0] = windows.sum()
     out[_PLACES] = steps.happens[:, first:after] @ windows
@@ -178,11 +182,11 @@ def _sums(steps: _Steps, first: int, after: int, windows: NDArray[np.float64]) -
 
 @cache
 def _marked(names: tuple[str, ...]) -> tuple[float, ...]:
-    """Which of `_COUNTED` a row with these moves is."""
+    """Return for each of `_COUNTED` 1.0 if a row with these moves has it, else 0.0."""
     return tuple(float(any(name in names for name in _NAMED.get(thing, ()))) for thing in _COUNTED)
 
 
-# Steps type -> file of configs/meter/. Two players' charts and other pads have no model: nobody's meters to learn from.
+# Steps type -> file of configs/meter/. Charts for two players and other pads have no model, for lack of labels to fit.
 _PADS = {
     "dance-single": "dance-single",
     "dance-double": "dance-double",
@@ -193,7 +197,7 @@ _PADS = {
 
 
 def rising(numbers: Any) -> Any:
-    """A list as it is; ValueError unless each of its numbers is above the one before."""
+    """Return a list unchanged; ValueError unless each of its numbers is above the number before."""
     pairs = pairwise(numbers if isinstance(numbers, list) else ())
     if any(isinstance(a, int | float) and isinstance(b, int | float) and b <= a for a, b in pairs):
         raise ValueError
@@ -205,9 +209,9 @@ Rising = Annotated[tuple[float, ...], Entries(2), Parsed(rising, "a list of numb
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """Meters that a feature adds: straight between the points (`at`, `meters`), both rising; on as at the end.
+    """The meters that a feature adds: a line through the points (`at`, `meters`) that continues after the last point.
 
-    of, seconds, how : the feature, see `Feature`
+    of, seconds, how : the feature, see `Feature`; at, meters : both rise
     """
 
     of: Annotated[str, Names(THINGS)]
@@ -223,9 +227,9 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """80 of 100 labels lie from `below` under the estimate to `above` over it, by bands.
+    """The bounds that hold 80 of 100 labels: `below` under the estimate to `above` over it, for each band of estimates.
 
-    up_to : estimate at which each band ends, one less than there are bands
+    up_to : estimate at which each band ends; the last band has no end
     """
 
     up_to: tuple[float, ...]
@@ -235,10 +239,10 @@ class Interval:
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """How a community numbers its charts.
+    """The scale of meters of one community.
 
-    start : meter of a chart that asks for nothing; terms : name -> its curves, whose meters are added
-    most : the highest meter that its charts have: where a scale ends, so do estimates; endless where it does not
+    start : meter of a chart to which no term adds anything; terms : name -> its curves, whose meters are added
+    most : the highest meter of the scale, which also limits the estimates; inf if the scale has no end
     """
 
     about: Text
@@ -250,23 +254,24 @@ class Scale:
     name: Annotated[str, NOT_IN_FILES] = ""
 
     def meter(self, terms: Mapping[str, float]) -> float:
-        """The estimate of a chart of which the terms add so much."""
+        """Return the estimate of a chart from the meters that its terms add."""
         return min(self.start + sum(terms.values()), self.most)
 
 
 @dataclass(frozen=True, slots=True)
 class _ModelFile:
-    """What a file of configs/meter/ holds."""
+    """The contents of a file of configs/meter/."""
 
     scales: Annotated[dict[Text, Scale], Entries(1)]
     alone: tuple[float, float]
 
 
 class _Pieces(NamedTuple):
-    """All straight pieces of all curves of all scales, side by side: what is worked out at once.
+    """All straight pieces of all curves of all scales, in arrays, so that all terms are found at once.
 
-    feature : its place in `MeterModel.features`; low, width : where it begins, and how long it is (the last: endless)
-    slope : meters for each unit; starts : the piece that each term of each scale begins with
+    feature : index of the piece's feature in `MeterModel.features`
+    low, width : where the piece begins, and its length (inf for the last piece of a curve)
+    slope : meters for each unit of the feature; starts : the first piece of each term of each scale
     """
 
     feature: NDArray[np.int64]
@@ -278,9 +283,10 @@ class _Pieces(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class MeterModel:
-    """All scales of a pad, the usual one first. alone : the same as below and above where the scale is not known.
+    """All scales of a pad, the usual scale first.
 
-    features : every feature that a curve asks for, once
+    alone : the least `below` and `above` of the bounds if the scale is not known
+    features : every feature that a curve uses, once
     """
 
     scales: tuple[Scale, ...]
@@ -289,7 +295,7 @@ class MeterModel:
     _pieces: _Pieces
 
     def terms(self, values: Sequence[float]) -> list[dict[str, float]]:
-        """For each scale: name of the term -> the meters that it adds. values : those of `wanted`"""
+        """Return, for each scale, name of the term -> the meters that it adds. values : those of `features`"""
         pieces = self._pieces
         inside = np.asarray(values)[pieces.feature] - pieces.low
         np.minimum(np.maximum(inside, 0.0, out=inside), pieces.width, out=inside)
@@ -300,13 +306,13 @@ class MeterModel:
 
 @cache
 def model_for(steps_type: str) -> MeterModel | None:
-    """The model of a steps type; None where nobody has fitted one. FileError says what is wrong with its file."""
+    """Return the model of a steps type; None if it has none. FileError says what is wrong with the model's file."""
     pad = _PADS.get(steps_type)
     return None if pad is None else load_model(config_path(f"meter/{pad}.yaml"))
 
 
 def load_model(path: Path) -> MeterModel:
-    """Read a model; FileError names the line of what cannot be."""
+    """Read a model; FileError names the line of a wrong value."""
     source = read(path)
     file = convert(source, _ModelFile)
     for name, scale in file.scales.items():
@@ -317,7 +323,7 @@ def load_model(path: Path) -> MeterModel:
 
 
 def _check(source: MarkedYaml, keys: Keys, scale: Scale) -> None:
-    """What the numbers of a scale must be beside each other."""
+    """Check that the numbers of a scale agree with each other; an error of the source if they do not."""
     for side in ("below", "above"):
         if len(getattr(scale.interval, side)) != (bands := len(scale.interval.up_to) + 1):
             raise source.error((*keys, "interval", side), f"'{side}' must have {bands} numbers, one more than 'up_to'")
@@ -328,7 +334,7 @@ def _check(source: MarkedYaml, keys: Keys, scale: Scale) -> None:
 
 
 def _fault(curve: Curve) -> str:
-    """What is wrong with a curve; "" if nothing."""
+    """Return what is wrong with a curve; "" if nothing is."""
     if len(curve.meters) != len(curve.at):
         return f"'meters' must have {len(curve.at)} numbers, as many as 'at'"
     if any(b < a for a, b in pairwise(curve.meters)):
@@ -341,7 +347,7 @@ def _fault(curve: Curve) -> str:
 
 
 def model_of(scales: tuple[Scale, ...], alone: tuple[float, float], wanted: tuple[Feature, ...]) -> MeterModel:
-    """A model for features in this order."""
+    """Return a model for features in this order."""
     rows: list[tuple[int, float, float, float]] = []
     starts = []
     for scale in scales:

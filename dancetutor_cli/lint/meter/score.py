@@ -1,4 +1,4 @@
-"""How hard a chart is to score on: its level, and what other charts of its level do not have; configs/score.yaml."""
+"""How hard a chart is to score on, from its level and its oddities; the model is read from configs/score.yaml."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.schema import Entries, Names, Text, convert
 from dancetutor_cli.run.yaml_files import read
 
-# What makes a chart hard to score on beside how fast it is: its rhythm, its bursts, its feet, and its timing.
+# Oddities make a chart hard to score on in addition to its speed: its rhythm, its bursts, its feet, and its timing.
 
-# Of the notes and the feet: numbers of many plays at once, which know of the timing only the seconds of the rows.
+# Oddities of the notes and the feet, for many plays at once. Of the timing they use only the seconds of the rows.
 
 PLAYED = (
     "odd waits", "triplets", "fine rows", "quick", "half-quick", "crossed jumps", "forced doublesteps", "ways", "speed",
@@ -33,27 +33,27 @@ PLAYED = (
 TIMED = ("changes", "tempos")
 ODDITIES = (*PLAYED, *TIMED)
 # "odd waits": the share of rows whose wait is not 1/4, 1/2, 1, 2, 4... times the wait before, in beats
-# "triplets", "fine rows": root of the share of rows on thirds of a beat; on what is neither that nor a 16th
+# "triplets", "fine rows": root of the share of rows on thirds of a beat, and of rows on neither a third nor a 16th
 # "quick", "half-quick": root of the share of waits below 0.14 and 0.3 s
-# "crossed jumps", "forced doublesteps": root of the share of rows; "ways": panel widths that the feet go, by row
-# "speed", "length": natural logarithm of rows a second and of rows
+# "crossed jumps", "forced doublesteps": root of the share of rows; "ways": panel widths that the feet travel, per row
+# "speed", "length": natural logarithm of the rows per second, and of the number of rows
 # "changes": ln(1 + stops + changes of tempo); "tempos": how evenly the rows are spread over different tempos, in nats
 _QUICK, _HALF_QUICK = 0.14, 0.3  # s
 _LONGEST = 4 * TICKS_PER_BEAT  # a longer wait counts as this one
-_ROUND = 0.05  # octaves between a wait and the nearest power of two of the wait before that nobody counts
+_ROUND = 0.05  # octaves by which a wait may differ from the nearest power of two times the wait before
 _LEAST_SECONDS = 1.0  # so that a chart of one row has a speed
 _THIRDS = (TICKS_PER_BEAT // 3, 2 * TICKS_PER_BEAT // 3)
 _SIXTEENTH = TICKS_PER_BEAT // 4
 
 
 def played_oddities(plays: Plays) -> NDArray[np.float64]:
-    """(k, `PLAYED`) of each of k plays; taps of rolls are no rows. 0 of a play with fewer than two rows."""
+    """Return (k, `PLAYED`) for k plays, 0 for a play with fewer than two rows. Taps of rolls do not count as rows."""
     rows, k = np.flatnonzero(plays.real.any(axis=0)), len(plays.plays)
     number = plays.number[rows]
     count = np.maximum(np.bincount(number, minlength=k), 1)
 
     def of_row(which: NDArray[np.int64], amount: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
-        """How much of something (or how often it happens) for each row of a play, by the plays that have it."""
+        """Return, for each play, the sum of `amount` (or the number of entries in `which`) per row of the play."""
         return np.asarray(np.bincount(which, weights=amount, minlength=k) / count)
 
     tick, second = plays.joined(play.rows.tick for play in plays.plays)[rows], plays.second[rows]
@@ -86,11 +86,11 @@ def played_oddities(plays: Plays) -> NDArray[np.float64]:
     return found
 
 
-# The timing: what a player has to know by heart, or to read in time.
+# Oddities of the timing: stops and changes of tempo, which players must know by heart or read in time.
 
-_CHANGE = 0.05  # octaves between the tempos of two rows that are felt: 3.5 %
+_CHANGE = 0.05  # octaves; the least change of tempo between two rows that counts: 3.5 %
 _SAME_TEMPO = 0.1  # octaves; tempos that are nearer count as one
-_STOP = 0.03  # s; a shorter one corrects the sync
+_STOP = 0.03  # s; a shorter stop is a correction of the sync
 
 
 class TimingOddities(NamedTuple):
@@ -102,22 +102,22 @@ class TimingOddities(NamedTuple):
 
     @property
     def numbers(self) -> tuple[float, float]:
-        """Those of `TIMED`."""
+        """The values of the oddities in `TIMED`."""
         return math.log1p(self.stops + self.changes), self.tempos
 
 
 class Oddities(NamedTuple):
-    """What a chart is scored by: its numbers by `ODDITIES`, and what those of `TIMED` are made of."""
+    """The oddities of a chart: `numbers` in the order of `ODDITIES`, and `timing`, from which those of `TIMED` come."""
 
     numbers: tuple[float, ...]
     timing: TimingOddities
 
 
 def timing_oddities(timing: Timing, tick: NDArray[np.int64]) -> TimingOddities:
-    """Of a chart with this timing. tick : (n,) of its rows with steps, ascending
+    """Return the oddities of a timing. tick : (n,) ticks of the chart's rows with steps, ascending
 
-    A change counts where a row is played at another tempo than the row before. Rows are sorted by octaves from the
-    middle row's tempo; of the shares p of what is found there, `tempos` is the entropy -sum p ln p (Shannon 1948).
+    A change counts where a row is played at another tempo than the row before. Rows are grouped by their tempo, in
+    octaves from the median tempo. `tempos` is the entropy -sum p ln p of the groups' shares p (Shannon 1948).
     """
     if len(tick) < 2:
         return TimingOddities()
@@ -130,7 +130,7 @@ def timing_oddities(timing: Timing, tick: NDArray[np.int64]) -> TimingOddities:
         return TimingOddities(stops)
     octaves = np.log2(bpms)[np.maximum(np.array(starts).searchsorted(tick, side="right") - 1, 0)]
     near = np.rint((octaves - np.median(octaves)) / _SAME_TEMPO).astype(np.int64)
-    if near.min() == near.max():  # most files with several BPMs: the tempo of a recording
+    if near.min() == near.max():  # most files with several BPMs: the small changes of a recording's tempo
         tempos = 0.0
     else:
         shares = np.unique(near, return_counts=True)[1] / len(tick)
@@ -139,11 +139,11 @@ def timing_oddities(timing: Timing, tick: NDArray[np.int64]) -> TimingOddities:
 
 
 _CHANGES = "timing changes"  # the term that stops and changes of tempo share
-_WORTH = 0.02  # levels that a term has to add to have a term of its own; less goes into its "rest"
+_WORTH = 0.02  # levels; a term that adds less is part of "rest"
 
 
 class Level(NamedTuple):
-    """A level of DDR. below, above : how far under and over it the true one may lie, 0 where the label says it"""
+    """A level of DDR. below, above : how far under and over it the true level may lie; 0 if the label gives it"""
 
     meter: float
     below: float = 0.0
@@ -152,7 +152,7 @@ class Level(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Weight:
-    """Levels that one of `ODDITIES` adds: `weight` for each unit above `from_`, up to `to`."""
+    """The levels that one of `ODDITIES` adds: `weight` for each unit, within `from_` and `to`."""
 
     of: Annotated[str, Names(ODDITIES)]
     weight: float
@@ -162,7 +162,7 @@ class Weight:
 
 @dataclass(frozen=True, slots=True)
 class _PadEntry:
-    """What the file says of a steps type, see `ScoreModel`."""
+    """The entry of a steps type in the file, see `ScoreModel`."""
 
     start: float
     usual: dict[Annotated[str, Names(ODDITIES)], tuple[float, ...]]
@@ -170,7 +170,7 @@ class _PadEntry:
 
 @dataclass(frozen=True, slots=True)
 class _ModelFile:
-    """What configs/score.yaml holds, see `ScoreModel`. interval : its `below` and `above`"""
+    """The contents of configs/score.yaml, see `ScoreModel`. interval : the model's `below` and `above`"""
 
     levels: Rising
     interval: tuple[float, float]
@@ -182,13 +182,14 @@ class _ModelFile:
 class ScoreModel:
     """How hard charts are to score on, in levels.
 
-        tier = level + start + sum_j weight_j (x_j - usual_j(level)) ,   x_j : an oddity within what the fit has seen
+        tier = level + start + sum_j weight_j (x_j - usual_j(level)) ,   x_j : an oddity, limited to the fit's range
 
-    usual is what charts of that level have, and 0 for oddities of the timing; weights are those of a ridge, see
-    `research.score_fit.ridge`.
+    usual is the usual oddity of charts of that level, and 0 for oddities of the timing. The weights are those of a
+    ridge, see `research.score_fit.ridge`.
 
-    levels : at which `usual` is written down, straight between; terms : name -> its weights
-    start, usual : of each pad, the second by name of the oddity; below, above : 80 of 100 tiers lie between
+    levels : the levels for which `usual` is given, linear between them; terms : name -> its weights
+    start, usual : for each steps type, `usual` also by name of the oddity
+    below, above : the distances under and over the estimate that hold 80 of 100 tiers
     """
 
     levels: tuple[float, ...]
@@ -199,7 +200,7 @@ class ScoreModel:
     above: float
 
     def added(self, steps_type: str, level: float, oddities: Oddities) -> dict[str, float]:
-        """Levels that each term adds. Stops and changes of tempo share theirs by how many there are of each."""
+        """Return the levels that each term adds. Stops and changes of tempo share their levels by their numbers."""
         found: dict[str, float] = {}
         usual, (before, after, part) = self.usual[steps_type], self._place(level)
         for term, weights in self.terms.items():
@@ -217,13 +218,16 @@ class ScoreModel:
         return found
 
     def _place(self, level: float) -> tuple[int, int, float]:
-        """The two of `levels` that a level lies between, and how far along: `np.interp` takes longer for so few."""
+        """Return the indices of the two `levels` around a level, and its share of the way between them, 0 to 1.
+
+        For so few values, `np.interp` takes longer.
+        """
         after = min(max(bisect(self.levels, level), 1), len(self.levels) - 1)
         low, high = self.levels[after - 1], self.levels[after]
         return after - 1, after, min(max((level - low) / (high - low), 0.0), 1.0)
 
     def estimate(self, steps_type: str, level: Level, oddities: Oddities) -> ScoreEstimate:
-        """The number with its terms. steps_type : one of those in `start`"""
+        """Return the estimate with its terms. steps_type : one of the keys of `start`"""
         added = self.added(steps_type, level.meter, oddities)
         base = level.meter + self.start[steps_type]
         meter = base + sum(added.values())
@@ -239,14 +243,14 @@ _PLACE = {name: n for n, name in enumerate(ODDITIES)}
 
 
 def score_model_for(steps_type: str) -> ScoreModel | None:
-    """The model of a steps type; None where nobody has rated charts. FileError says what is wrong with its file."""
+    """Return the model of a steps type; None if nobody has rated its charts. FileError names a fault of the file."""
     model = load_score_model(config_path("score.yaml"))
     return model if steps_type in model.start else None
 
 
 @cache
 def load_score_model(path: Path) -> ScoreModel:
-    """Read a model; FileError names the line of what cannot be."""
+    """Read a model; FileError names the line of a wrong value."""
     source = read(path)
     file = convert(source, _ModelFile)
     for term, weights in file.terms.items():

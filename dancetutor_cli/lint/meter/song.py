@@ -1,4 +1,4 @@
-"""How hard the charts of a song play, and are to score on, all together: each needs the others to know its scale."""
+"""How hard the charts of a song are, all together, because the scale of each chart depends on the others."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from dancetutor_cli.lint.subject import ChartSubject
 
 @dataclass(frozen=True, slots=True)
 class MeterReport:
-    """What is reported of one chart: its estimates, and findings of the rules about a song's meters."""
+    """The report on one chart: its estimates, and the findings of rules about the meters of a song."""
 
     estimate: Estimate
     score: ScoreEstimate | None
     findings: tuple[Finding, ...]
 
     def with_findings(self, others: tuple[Finding, ...]) -> tuple[Finding, ...]:
-        """These findings and others of the chart in the order of lines."""
+        """Return these findings and others of the chart, in order of lines."""
         if not self.findings:
             return others
         return tuple(sorted((*self.findings, *others), key=lambda f: (f.line or 0, f.beat or 0.0, f.rule)))
@@ -33,7 +33,7 @@ class MeterReport:
 
 @dataclass(frozen=True, slots=True)
 class _SongChart:
-    """A chart that waits for the others of its song. oddities : None on a pad where nobody has rated charts"""
+    """A chart that waits for the others of its song. oddities : None on a pad without a score model"""
 
     index: int
     sized: MeteredChart
@@ -41,16 +41,16 @@ class _SongChart:
 
 
 class Meters:
-    """Takes the charts of a song as they are solved; then reports all."""
+    """Collects the charts of a song as they are solved, then reports on all of them."""
 
     def __init__(self, song: Song, settings: Settings) -> None:
         self._song, self._settings = song, settings
         self._sized: dict[str, list[_SongChart]] = defaultdict(list)
 
     def add(self, subject: ChartSubject, rate: float = 1.0) -> None:
-        """Take note of a chart, if its pad has a model of meters and it has steps."""
+        """Add a chart, if its pad has a meter model and the chart has steps."""
         chart = subject.chart
-        if subject.play is None or not len(subject.step_rows) or chart.player:  # a meter is for both players
+        if subject.play is None or not len(subject.step_rows) or chart.player:  # a meter is for both players together
             return
         found = subject.sized(rate)
         if found is not None:
@@ -58,13 +58,13 @@ class Meters:
             self._sized[chart.steps_type].append(_SongChart(chart.index, found, oddities))
 
     def ask_for_others(self, scale: str = AUTO) -> frozenset[str]:
-        """Steps types of which the song's other charts have to give the scale, for nothing else does."""
+        """Return the steps types whose scale only the song's other charts can set."""
         if scale != AUTO:
             return frozenset()
         return frozenset(kind for kind, of_pad in self._sized.items() if len(of_pad[0].sized.on) > 1)
 
     def reports(self, scale: str = AUTO) -> dict[int, MeterReport]:
-        """Index of the chart -> what is reported of it."""
+        """Return index of the chart -> its report."""
         out: dict[int, MeterReport] = {}
         tag = self._song.tags.get("METERTYPE", "")
         for steps_type, of_pad in self._sized.items():
@@ -74,7 +74,7 @@ class Meters:
                 on_scale(one, name, known, faster=False) for one, (name, known) in zip(one_pad, scales, strict=True)
             ]
             here = [self._played(one.index, estimate) for one, estimate in zip(of_pad, usual, strict=True)]
-            sure = [one for one in here if one.estimate.is_scale_known]  # nothing is said where the scale is a guess
+            sure = [one for one in here if one.estimate.is_scale_known]  # no findings if the scale is a guess
             labels = label_scales_of(one_pad, tag, scale)
             for one, played, label_scale in zip(of_pad, here, labels, strict=True):
                 at_1 = played.estimate
@@ -84,7 +84,7 @@ class Meters:
         return out
 
     def _played(self, index: int, estimate: Estimate) -> RatedChart:
-        """A chart as the rules see it."""
+        """Return a chart as the rules receive it."""
         chart = self._song.charts[index]
         place = {"line": chart.line, "column": 1, "chart": index}
         return RatedChart(chart.steps_type, chart.difficulty, chart.meter, chart.label, estimate, place)
@@ -99,7 +99,7 @@ class Meters:
 
 
 def _score(steps_type: str, one: _SongChart, label_scale: str) -> ScoreEstimate | None:
-    """How hard it is to score on, by the scale that its label is on."""
+    """Return how hard a chart is to score on, by the scale of its label; None without a score model."""
     model = score_model_for(steps_type)
     if model is None or one.oddities is None:
         return None
