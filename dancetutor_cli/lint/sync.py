@@ -1,4 +1,4 @@
-"""Beats against the audio: by how much the music's attacks come after a chart's beats, and how sure that is."""
+"""The sync of beats and audio: how much later the music's attacks are than a chart's beats, and how sure that is."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.lint.findings import Sync, sync_of
 
-# What is known of the method, and measured figures: docs/sync.md. All times are seconds unless said otherwise.
+# docs/sync.md explains the method and has measured figures. All times are in seconds if no unit is given.
 
 BLOCKS = 32  # parts of the song, of equal time
-_LAG = 0.001  # between two biases that are tried
-_MARGIN = 0.1  # beyond half a beat on either side, so that half a beat off is seen whole
-_NEAR = 0.02  # a peak so far from another one is a rival of it
-_WITHIN = 0.025  # of the peak, those of parts of the song are looked for
-_USUAL = 0.07  # authors hardly ever miss by more: what is further off has to be better by
-_UNUSUAL = 0.2  # of the best
-_ODD = 0.7  # the most confidence in a bias that is neither usual nor such with half a beat: other music of that tempo
+_LAG = 0.001  # step between two biases that are tried
+_MARGIN = 0.1  # biases beyond half a beat on either side, so that the peak of a chart half a beat off is complete
+_NEAR = 0.02  # a peak at least so far from the best one is its rival
+_WITHIN = 0.025  # the peaks of the song's parts are searched so near to the best bias
+_USUAL = 0.07  # authors hardly ever miss by more, so a larger bias must be better
+_UNUSUAL = 0.2  # by this share of the best
+_ODD = 0.7  # the most confidence in a bias that is neither usual nor usual with half a beat: maybe other music
 _SLOPES = np.arange(-90, 91, 3) / 1000  # drifts over the whole song that are tried
-_BETTER = 1.03  # a drift has to be better than none by this
-_SHORTEST, _LONGEST = 0.3, 1.2  # of the beat, or of several, or of a part of one, in which biases are tried
+_BETTER = 1.03  # factor by which a drift must be better than none
+_SHORTEST, _LONGEST = 0.3, 1.2  # limits of the cycle (a beat, several beats, a part of one) in which biases are tried
 _LEAST_ROWS, _LEAST_SECONDS = 24, 8.0
 _MOST_ROWS = 12_000  # of rows and sixteenths together
 _FASTEST = 1000  # BPM
 _PARTS = 8
-_NEIGHBOURS = 64  # rows whose mean is what loudness and density of notes are measured by
-_SMOOTH = 0.002  # standard deviation of the bell that profiles are smoothed by
-# What counts nothing and what counts all for the confidence; the least of these decides.
+_NEIGHBOURS = 64  # rows in the running mean of loudness and of the density of notes
+_SMOOTH = 0.002  # standard deviation of the bell that smooths profiles
+# The values that give confidence 0 and 1; the least confidence decides.
 _RAMPS = {"margin": (0.0, 0.3), "height": (3.0, 7.0), "spread": (-0.006, -0.0015), "peak": (0.05, 0.25),
           "parts": (0.0, 0.4)}  # fmt: skip
 
@@ -42,10 +42,10 @@ Seconds = NDArray[np.float64]
 
 
 class Judgement(NamedTuple):
-    """A sync with what can be drawn of it.
+    """A sync with the curves for a plot.
 
     lags : float64 (l,), biases that were tried; profile : float32 (BLOCKS, l), how well each part of the song fits them
-    first, last : second of the music of the first and the last note; biases : float64 (BLOCKS,), nan where nothing is
+    first, last : second of the first and of the last row; biases : float64 (BLOCKS,), nan for a part without a peak
     """
 
     sync: Sync
@@ -57,10 +57,11 @@ class Judgement(NamedTuple):
 
 
 class _Rows(NamedTuple):
-    """Rows that are looked at: all with notes, and all sixteenths between the first and the last of them.
+    """The r rows that are judged: all rows with notes, and all sixteenths between the first and the last of them.
 
-    second : float64 (r,), of each; weight : float32 (r,), how many charts have a note there, jumps for one and a half
-    beat, longest : seconds of the usual beat, and of those that nine of ten do not exceed
+    second : float64 (r,), second of each row; weight : float32 (r,), number of charts with a note there; a jump counts
+        1.5
+    beat, longest : seconds of the median beat, and the seconds that nine of ten beats do not exceed
     """
 
     second: Seconds
@@ -70,11 +71,12 @@ class _Rows(NamedTuple):
 
 
 def judge(timing: Timing, charts: Sequence[Chart], onsets: Onsets) -> Judgement | Sync:
-    """The sync of charts with one timing against their music; a `Sync` alone where it cannot be judged.
+    """Return the judgement of charts with the same timing against their music; a `Sync` alone if they cannot be judged.
 
     The strength of onsets is cut around every row with notes and every sixteenth, and each cut is divided by the
-    loudness around it. Cuts at notes count for the bias that they show, those without against it (C); together with
-    the plain mean at the notes (N) that separates rhythm from off-beats. A drift over the song is a slope, by phase.
+    loudness around it. Cuts at rows with notes count for the bias that they show, cuts without notes against it (C).
+    Together with the plain mean at the notes (N), this separates the rhythm from off-beats. A drift is a slope of the
+    bias over the song, found by phase.
     """
     reason = _reason(timing, charts)
     if reason is None:
@@ -90,7 +92,7 @@ def judge(timing: Timing, charts: Sequence[Chart], onsets: Onsets) -> Judgement 
 
 
 def _reason(timing: Timing, charts: Sequence[Chart]) -> str | None:
-    """Why charts with this timing cannot be judged."""
+    """Return why charts with this timing cannot be judged, or None."""
     if timing.warps:
         return "it has warps or negative stops"
     ticks = [int(chart.notes.tick[n]) for chart in charts for n in (0, -1) if len(chart.notes)]
@@ -131,7 +133,7 @@ def _reason_of_rows(rows: _Rows, onsets: Onsets) -> str | None:
 
 
 def _cycle(beat: float) -> float:
-    """As many beats, or such a part of one, as last long enough to tell biases apart."""
+    """Return the seconds of a beat, doubled or halved until it is long enough to distinguish biases, but not longer."""
     while beat < _SHORTEST:
         beat *= 2
     while beat > _LONGEST:
@@ -140,7 +142,7 @@ def _cycle(beat: float) -> float:
 
 
 def _profiles(rows: _Rows, onsets: Onsets, lags: Seconds) -> tuple[Curve, Curve]:
-    """C and N of each block of the song; float32 (BLOCKS, lags)."""
+    """Return C and N (see `judge`) of each block of the song; float32 (BLOCKS, lags)."""
     cuts = np.empty((len(rows.second), len(lags)), np.float32)
     for first in range(0, len(cuts), 1024):
         cuts[first : first + 1024] = onsets.at(rows.second[first : first + 1024, None] + lags)
@@ -156,7 +158,7 @@ def _profiles(rows: _Rows, onsets: Onsets, lags: Seconds) -> tuple[Curve, Curve]
 
 
 def _around(values: Curve) -> Curve:
-    """The mean of each value's neighbours."""
+    """Return the mean of the neighbours around each value."""
     half = _NEIGHBOURS // 2
     padded = np.pad(values, half, mode="edge").astype(np.float64).cumsum()
     out: Curve = ((padded[2 * half :] - np.append(0.0, padded)[: len(values)]) / (2 * half + 1)).astype(np.float32)
@@ -173,7 +175,7 @@ def _smooth(profiles: Curve) -> Curve:
 
 
 def _judgement(rows: _Rows, lags: Seconds, cycle: float, contrast: Curve, mean: Curve) -> Judgement:
-    """The best bias and drift, its best rival, and how well the parts of the song agree."""
+    """Return the best bias and drift, with a confidence from the best rival and the agreement of the song's parts."""
     mean = mean - mean.mean(axis=1, keepdims=True)
     allowed = np.abs(lags) <= cycle / 2 + 0.03
     slope = _best_slope(contrast + 0.5 * mean, allowed)
@@ -187,7 +189,7 @@ def _judgement(rows: _Rows, lags: Seconds, cycle: float, contrast: Curve, mean: 
     fine = mean + 2 * contrast
     thirds = np.arange(BLOCKS) * 3 // BLOCKS
     first, last = (_peak(lags, fine[thirds == third].sum(axis=0), near) for third in (0, 2))
-    # Middles of the first and the last third lie so far apart that they show this part of the slope.
+    # The middles of the first and the last third are 2/3 of the song apart.
     drift = last - first + slope * 2 / 3
     confidence = _confidence(_Choice(lags, whole, worth, best, near, rows.beat), contrast + 0.5 * mean, fine)
     if is_odd:
@@ -200,12 +202,12 @@ def _judgement(rows: _Rows, lags: Seconds, cycle: float, contrast: Curve, mean: 
 
 
 def _middles() -> Seconds:
-    """Where the blocks' middles lie in the song, from -0.5 to 0.5."""
+    """Return the places of the blocks' middles in the song, from -0.5 to 0.5."""
     return (np.arange(BLOCKS) + 0.5) / BLOCKS - 0.5
 
 
 def _best_slope(profiles: Curve, allowed: NDArray[np.bool_]) -> float:
-    """The drift with which the parts of the song fit each other best; 0 where it is hardly better than none."""
+    """Return the drift with which the parts of the song fit each other best; 0 if it is hardly better than none."""
     count = profiles.shape[1]
     spectrum, turns = np.fft.rfft(profiles, axis=1), np.fft.rfftfreq(count, _LAG)
     sums = [(spectrum * np.exp(2j * np.pi * np.outer(slope * _middles(), turns))).sum(axis=0) for slope in _SLOPES]
@@ -215,7 +217,7 @@ def _best_slope(profiles: Curve, allowed: NDArray[np.bool_]) -> float:
 
 
 def _straightened(profiles: Curve, slope: float) -> Curve:
-    """Profiles of blocks moved back by a drift of so many seconds over the song."""
+    """Return profiles of blocks, moved back by a drift of `slope` seconds over the song."""
     if slope == 0.0:
         return profiles
     count = profiles.shape[1]
@@ -225,7 +227,7 @@ def _straightened(profiles: Curve, slope: float) -> Curve:
 
 
 def _peak(lags: Seconds, values: Curve, near: NDArray[np.int64]) -> float:
-    """Where values are highest of some lags, by the parabola through the highest and its neighbours."""
+    """Return the lag of the highest value among those at `near`, by a parabola through the value and its neighbours."""
     at = int(near[values[near].argmax()])
     if not 0 < at < len(values) - 1:
         return float(lags[at])
@@ -235,10 +237,10 @@ def _peak(lags: Seconds, values: Curve, near: NDArray[np.int64]) -> float:
 
 
 class _Choice(NamedTuple):
-    """A bias out of `lags`. whole : float64 (l,), how well each fits the song, -inf where it may not be
+    """The best bias among `lags`. whole : float64 (l,), how well each bias fits the song, -inf if it is not allowed
 
-    worth : the same, less what speaks against unusual ones; best : index of the chosen one; near : of those around it
-    beat : the usual one, seconds
+    worth : `whole` less a penalty for unusual biases; best : index of the chosen bias; near : indices around it
+    beat : seconds of the median beat
     """
 
     lags: Seconds
@@ -249,7 +251,10 @@ class _Choice(NamedTuple):
     beat: float
 
     def is_same(self, lags: Seconds, near: float) -> NDArray[np.bool_]:
-        """Which biases say what the best one says: half a beat too late is half a beat too early, a beat further on."""
+        """Return which biases mean the same as the best one, within `near` seconds.
+
+        If the best bias is more than a quarter beat, a bias one beat away from it also means the same.
+        """
         away = np.abs(lags - self.lags[self.best])
         if abs(float(self.lags[self.best])) > self.beat / 4:
             away = np.minimum(away, np.abs(away - self.beat))
@@ -258,8 +263,11 @@ class _Choice(NamedTuple):
 
 
 def _confidence(choice: _Choice, rhythm: Curve, fine: Curve) -> float:
-    """The least of five: what is left to the best rival, how far the peak stands out, its height, how far parts of the
-    song spread, and how many of them have it for their own best."""
+    """Return the confidence, 0 to 1: the least of five measures, each on its ramp in `_RAMPS`.
+
+    They are the lead over the best rival, the peak's height over the usual value, how far the parts of the song spread,
+    the peak's absolute height, and the share of parts with the same best bias.
+    """
     lags, whole, worth, best, near, _ = choice
     far = ~choice.is_same(lags, _NEAR)
     inside = whole[np.isfinite(whole)]
@@ -277,27 +285,30 @@ def _confidence(choice: _Choice, rhythm: Curve, fine: Curve) -> float:
     return min(float(np.clip((measured[name] - low) / (high - low), 0, 1)) for name, (low, high) in _RAMPS.items())
 
 
-# Where the attacks of the music are: the strength of onsets over time, and the same at given moments.
+# The attacks of the music: the strength of onsets over time, and at given moments.
 
 _WINDOW, _HOP = 256, 64  # samples: 11.6 and 2.9 ms at 22.05 kHz
 _BANDS = 16
 _LOWEST, _HIGHEST = 60.0, 10_000.0  # Hz
 _RISE = 2  # hops over which power rises
-_FLOOR = 0.01  # of a band's mean power: below it nothing rises
+_FLOOR = 0.01  # of a band's mean power; rises far below it do not count
 _CHUNK = 8192  # windows that are transformed at once
-# Rises are seen early, for the first of a window's samples to be loud is enough: measured with clicks in noise.
+# A rise appears this much too early, as soon as a window contains a loud sample: measured with clicks in noise.
 _EARLY = 0.0025  # seconds
 
 
 class Onsets(NamedTuple):
-    """Strength of onsets: float32 (f,), one for each `step` seconds from `start` on."""
+    """The strength of onsets: float32 (f,), a value every `step` seconds from second `start` on."""
 
     strength: Curve
     start: float
     step: float
 
     def at(self, seconds: NDArray[np.float64]) -> Curve:
-        """The strength at some moments, linear between its values, 0 outside; of the shape of `seconds`."""
+        """Return the strength at some moments, linear between the values, in the shape of `seconds`.
+
+        Before the curve, it is the first value; after the curve, about the last value, which is 0.
+        """
         place = np.clip((seconds - self.start) / self.step, 0, len(self.strength) - 1.001)
         left = place.astype(np.int32)
         share = (place - left).astype(np.float32)
@@ -307,14 +318,14 @@ class Onsets(NamedTuple):
 
     @property
     def seconds(self) -> float:
-        """How much of the music was looked at."""
+        """The length of the curve in seconds."""
         return len(self.strength) * self.step
 
 
 def onsets(sound: Sound) -> Onsets:
-    """The half-wave rectified rise of log power over two hops, summed over 16 bands.
+    """Return the half-wave rectified rise of log power over two hops, summed over 16 bands.
 
-    A band's power P counts as log10(P + 0.01 mean P), so that what is far below the band's mean makes no onset.
+    A band's power P counts as log10(P + 0.01 mean P), so that power far below the band's mean makes no onset.
     """
     power = _band_power(sound)
     level = np.log10(power + _FLOOR * power.mean(axis=0) + 1e-12)
@@ -324,7 +335,7 @@ def onsets(sound: Sound) -> Onsets:
 
 
 def _band_power(sound: Sound) -> Curve:
-    """Power in each band of each window; float32 (windows, bands)."""
+    """Return the power in each band of each window; float32 (windows, bands)."""
     padded = np.concatenate([sound.samples, np.zeros(_WINDOW, np.float32)])
     windows = np.lib.stride_tricks.sliding_window_view(padded, _WINDOW)[::_HOP]
     shape = np.hanning(_WINDOW + 1)[:-1].astype(np.float32)
@@ -337,7 +348,7 @@ def _band_power(sound: Sound) -> Curve:
 
 
 def _band_matrix(rate: int) -> Curve:
-    """Which bin counts to which band: bands of equal width on a scale of logarithms, of one bin at least."""
+    """Return (bins, bands) with 1 where a bin is in a band. Bands have equal logarithmic width and at least one bin."""
     frequency = np.fft.rfftfreq(_WINDOW, 1 / rate)
     edges = np.geomspace(_LOWEST, _HIGHEST, _BANDS + 1)
     matrix = np.zeros((len(frequency), _BANDS), np.float32)

@@ -1,4 +1,4 @@
-"""Our technique counts beside those that ITGmania wrote: its song cache, or tables in CSV with its names."""
+"""Our technique counts beside the counts of ITGmania, from its song cache or from CSV tables with its names."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.run.foreign_text import text_of
 from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
 
-# A file of the cache (`Cache/Songs` in the game's folder) is an .ssc without a suffix and without notes, whose charts
-# say how often the game counts what (`#TECHCOUNTS`: with six decimals, for each of two players, who get the same) and,
-# last, where they are from (`#STEPFILENAME:/Songs/Pack/Song/song.ssc`). A player has ten numbers since ITGmania parts
-# half and full crossovers, six before, and five before it counted doublesteps. The game finds feet for dance-
-# single and dance-double only; what it writes for other steps types are zeros that say nothing.
+# A file of the cache (`Cache/Songs` in the game's folder) is an .ssc without a suffix and without notes. Each chart has
+# the game's counts (`#TECHCOUNTS`: with six decimals, the same numbers for each of two players) and, last, the path of
+# its file (`#STEPFILENAME:/Songs/Pack/Song/song.ssc`). A player has ten numbers since ITGmania counts half and full
+# crossovers apart. Before, a player had six numbers, and five before the game counted doublesteps. The game finds feet
+# only for dance-single and dance-double; for other steps types it writes zeros without meaning.
 #
-# A cache has numbers, no rows: both mean the same at most as often as the lesser number. A CSV that says the beat of
-# each time says which rows are the same.
+# A cache has numbers but no rows, so the number of shared occurrences is at most the lesser number. A CSV with the beat
+# of each occurrence shows which rows are the same.
 
 TEN = (
     "Crossovers", "HalfCrossovers", "FullCrossovers", "Footswitches", "UpFootswitches", "DownFootswitches",
@@ -34,15 +34,15 @@ TEN = (
 SIX = ("Crossovers", "Footswitches", "Sideswitches", "Jacks", "Brackets", "Doublesteps")
 FIVE = SIX[:5]
 COMPARED_STEPS_TYPES = ("dance-single", "dance-double")  # steps types that the game has a pad for
-# Technique -> how often, or the tick of each time, ascending.
+# Technique -> number of occurrences, or the tick of each occurrence, ascending.
 Theirs = Mapping[str, int] | Mapping[str, Sequence[int]]
-_PLAYERS = 2  # of the game: it writes the numbers of both, whatever the chart
-_MOST = 1_000_000  # times that anything happens in a chart
+_PLAYERS = 2  # the game writes the numbers of two players for every chart
+_MOST = 1_000_000  # most occurrences in a chart
 
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """Which chart: its song's folder and file, both in lower case; steps type, difficulty and description."""
+    """The key of a chart: its song's folder and file, both in lower case; steps type, difficulty and description."""
 
     song: tuple[str, ...]
     steps_type: str
@@ -52,7 +52,7 @@ class Key:
 
 @dataclass(frozen=True, slots=True)
 class ComparedChart:
-    """One chart that both know. ours : technique -> tick of each time, ascending; theirs : as `Theirs`"""
+    """A chart that both programs know. ours : technique -> tick of each occurrence, ascending; theirs : see `Theirs`"""
 
     file: str
     label: str
@@ -60,21 +60,21 @@ class ComparedChart:
     theirs: Theirs
 
     def shared(self, name: str) -> int:
-        """How often both mean the same: times in the same row, or at most so where only numbers are known."""
+        """Return the number of occurrences in the same row; if only numbers are known, the most that this can be."""
         ours, theirs = self.ours[name], self.theirs[name]
         if isinstance(theirs, int):
             return min(len(ours), theirs)
         return (Counter(ours) & Counter(theirs)).total()
 
     def differs(self, name: str) -> bool:
-        """Whether the numbers differ or, where rows are known, any row does."""
+        """Whether the numbers differ or, if rows are known, any row differs."""
         theirs = self.theirs[name]
         return len(self.ours[name]) != theirs if isinstance(theirs, int) else [*self.ours[name]] != [*theirs]
 
 
 @dataclass
 class TechniqueComparison:
-    """All charts that both know, and how many only one of them has."""
+    """All charts that both programs know, and how many charts only one of them has."""
 
     charts: list[ComparedChart] = field(default_factory=list)
     only_ours: int = 0
@@ -82,7 +82,10 @@ class TechniqueComparison:
 
 
 def read_theirs(path: Path) -> Mapping[Key, Theirs]:
-    """What the game wrote: a CSV file, a file of its cache, or a folder of such. UsageError if nothing is in it."""
+    """Return the game's counts from a CSV file, a file of its cache, or a folder of cache files.
+
+    UsageError if there are no counts.
+    """
     found: Mapping[Key, Theirs]
     if path.is_file() and path.suffix.lower() == ".csv":
         rows = list(_table_rows(path))
@@ -111,7 +114,7 @@ def _cached(path: Path) -> Iterator[tuple[Key, dict[str, int]]]:
             continue
         counts = _counts(values.get("TECHCOUNTS", ""))
         if counts is not None and values.get("STEPSTYPE", "").lower() in COMPARED_STEPS_TYPES:
-            # A cached chart names its file; any other .ssc that says TECHCOUNTS is its own.
+            # A chart in the cache names its file. Another .ssc with TECHCOUNTS has the counts of its own charts.
             name = values.get("STEPFILENAME") or path.as_posix()
             description = values.get("DESCRIPTION", "")
             yield _key(name, values.get("STEPSTYPE", ""), values.get("DIFFICULTY", ""), description), counts
@@ -123,7 +126,7 @@ def _text(data: bytes, tag: Tag) -> str:
 
 
 def _counts(text: str) -> dict[str, int] | None:
-    """The first player's numbers by name; None if it is no such list: another length, or -1, for not counted."""
+    """Return the first player's numbers by name; None for a list of another length, or with -1 (not counted)."""
     try:
         numbers = [round(float(part)) for part in text.split(",")]
     except (ValueError, OverflowError):
@@ -135,14 +138,17 @@ def _counts(text: str) -> dict[str, int] | None:
 
 
 def _table_rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
-    """Line and cells of each row of a CSV file."""
+    """Yield line number and cells of each row of a CSV file."""
     text = io.StringIO(read_bytes(path, CHART_LIMIT).decode("utf-8-sig", "replace"), newline="")
     for number, row in enumerate(csv.DictReader(text), 2):
         yield number, {name: text_of(value or "") for name, value in row.items() if name}
 
 
 def _table(path: Path, rows: Iterable[tuple[int, dict[str, str]]]) -> Iterator[tuple[Key, dict[str, int]]]:
-    """A chart a row: the columns file, steps_type, difficulty, description and names of techniques."""
+    """Yield the counts of a table with a chart in each row.
+
+    Its columns are file, steps_type, difficulty, description and names of techniques.
+    """
     for number, row in rows:
         try:
             counts = {name: round(float(row[name])) for name in TEN if row.get(name)}
@@ -153,7 +159,10 @@ def _table(path: Path, rows: Iterable[tuple[int, dict[str, str]]]) -> Iterator[t
 
 
 def _technique_times(path: Path, rows: Sequence[tuple[int, dict[str, str]]]) -> dict[Key, dict[str, list[int]]]:
-    """A time a row: the columns that name a chart, technique and beat; rows without a technique only name a chart."""
+    """Return the ticks of a table with an occurrence in each row.
+
+    Its columns name the chart, the technique and the beat. A row without a technique only names a chart.
+    """
     names = [name for name in TEN if any(row["technique"] == name for _, row in rows)]
     found: dict[Key, dict[str, list[int]]] = {}
     for number, row in rows:
@@ -179,7 +188,7 @@ def _key(file: str, steps_type: str, difficulty: str, description: str) -> Key:
 
 
 def compare_techniques(tasks: Iterable[AnalyzeTask], theirs: Mapping[Key, Theirs]) -> TechniqueComparison:
-    """Our counts of every chart that the game knows; charts of files that neither of us can read are left out."""
+    """Return our counts beside the game's for every chart that the game knows; unreadable files are left out."""
     found, seen = TechniqueComparison(), set[Key]()
     by_chart: dict[tuple[object, ...], list[Key]] = defaultdict(list)
     for key in theirs:

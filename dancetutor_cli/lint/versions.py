@@ -1,4 +1,4 @@
-"""What changed between two versions of a pack, by file, chart and row: the notes, their times, the meters."""
+"""The changes between two versions of a pack, by file, chart and row: the notes, their times, the meters."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from dancetutor_cli.run.errors import FileError, plural
 _SIGNS = {
     Kind.TAP: "1", Kind.HOLD: "2", Kind.ROLL: "4", Kind.MINE: "M", Kind.LIFT: "L", Kind.FAKE: "F", Kind.KEYSOUND: "K",
 }  # fmt: skip
-_SHIFT = 0.0005  # seconds that two times may be apart and still be the same
+_SHIFT = 0.0005  # seconds; times that differ by no more are the same
 Row = tuple[tuple[int, int, int], ...]  # (column, kind, tick of the end or -1) of each note, by column
 
 
 @dataclass(frozen=True, slots=True)
 class RowChange:
-    """A row that is other than it was. before, now : as in the file, "" where there was or is none; note : of holds"""
+    """A row that has changed. before, now : the row as in the file, "" if there is none; note : changed hold ends"""
 
     tick: int
     before: str
@@ -39,7 +39,7 @@ class RowChange:
 
 @dataclass(frozen=True, slots=True)
 class ChartChange:
-    """What is other in a file or in one of its charts. chart : its label, "" for the file; messages : a line each"""
+    """The changes of a file or of one of its charts. chart : label of the chart, "" for the file; messages : lines"""
 
     file: str
     chart: str
@@ -48,7 +48,7 @@ class ChartChange:
 
 
 def compare(before: Snapshot, now: Snapshot) -> Iterator[ChartChange]:
-    """Everything that changed from one version to another."""
+    """Yield all changes from one version to another."""
     for name in sorted({*before.files, *now.files}):
         if name not in before.files:
             yield ChartChange(name, "", (before.new,))
@@ -65,7 +65,7 @@ def _file(name: str, before: StoredFile, now: StoredFile) -> Iterator[ChartChang
         yield ChartChange(name, "", (f"can no longer be read: {error.message}",))
         return
     try:
-        if before.is_same(data):  # a file that is no chart is as it was, too
+        if before.is_same(data):  # also for a file that cannot be parsed
             return
         old = parse(before.read(), Path(name))
     except FileError as error:
@@ -89,7 +89,7 @@ def _file(name: str, before: StoredFile, now: StoredFile) -> Iterator[ChartChang
 
 
 def _head(old: Song, new: Song) -> Iterator[str]:
-    """What a player sees and hears of the song itself."""
+    """Yield the changes of title, artist and music."""
     for what, a, b in (
         ("title", old.title, new.title),
         ("artist", old.artist, new.artist),
@@ -100,7 +100,7 @@ def _head(old: Song, new: Song) -> Iterator[str]:
 
 
 def _by_key(song: Song) -> dict[tuple[str, str, int], Chart]:
-    """Charts by type, difficulty and place among those that share both."""
+    """Return the charts by steps type, difficulty, and number among the charts that share both."""
     found: dict[tuple[str, str, int], Chart] = {}
     for chart in song.charts:
         place = 0
@@ -134,7 +134,7 @@ def _chart(name: str, old: Chart, new: Chart) -> ChartChange | None:
 
 
 def _rows(chart: Chart) -> Mapping[int, Row]:
-    """Tick -> the notes of a row."""
+    """Return tick -> the notes of a row."""
     notes, found = chart.notes, dict[int, list[tuple[int, int, int]]]()
     columns = (notes.tick.tolist(), notes.column.tolist(), notes.kind.tolist(), notes.end.tolist())
     for tick, column, kind, end in zip(*columns, strict=True):
@@ -143,7 +143,7 @@ def _rows(chart: Chart) -> Mapping[int, Row]:
 
 
 def _distance(before: Mapping[int, Row], now: Mapping[int, Row]) -> int:
-    """The ticks by which all rows moved, with the ends of their holds; 0 where they moved otherwise or not at all."""
+    """Return the ticks by which all rows and the ends of holds moved; 0 if they did not all move by the same."""
     if not before or len(before) != len(now):
         return 0
     moved = min(now) - min(before)
@@ -179,9 +179,9 @@ def _signs(row: Row, columns: int) -> str:
 
 
 def _times(old: Chart, new: Chart, ticks: Sequence[int], moved: int = 0) -> Iterator[str]:
-    """How the times of the rows that both have differ: all alike (the sync), or from some beat on (the tempo).
+    """Yield how the times of shared rows differ: all rows by the same (the sync), or from some beat on (the tempo).
 
-    ticks : of the rows in the old chart; moved : ticks by which they come later in the new one
+    ticks : ticks of the rows in the old chart; moved : ticks by which they are later in the new chart
     """
     if not ticks:
         return
@@ -200,7 +200,10 @@ def _times(old: Chart, new: Chart, ticks: Sequence[int], moved: int = 0) -> Iter
 
 
 def change_lines(changes: Sequence[ChartChange], most_rows: int | None) -> Iterator[str]:
-    """The changes for people: a line for a file or chart, below it its rows. most_rows : of a chart, None: all"""
+    """Yield the changes for people: a line for each file or chart, then its rows.
+
+    most_rows : most rows of a chart that are shown, None: all
+    """
     for change in _folded(changes):
         yield f"{change.file}{f' [{change.chart}]' if change.chart else ''}: {'; '.join(change.messages)}"
         shown = change.rows if most_rows is None else change.rows[:most_rows]
@@ -210,7 +213,7 @@ def change_lines(changes: Sequence[ChartChange], most_rows: int | None) -> Itera
 
 
 def _folded(changes: Sequence[ChartChange]) -> Iterator[ChartChange]:
-    """What is said alike of several charts of a file, without rows, said once."""
+    """Yield the changes; charts of a file with the same messages and without rows are one change."""
     alike: dict[tuple[str, tuple[str, ...]], list[ChartChange]] = {}
     for n, change in enumerate(changes):
         own = (str(n),) if change.rows or not change.chart else ()

@@ -1,4 +1,4 @@
-"""Feet that cross, that stay crossed, or that cross a foot that holds."""
+"""Rules about feet that cross, that stay crossed, or that cross a foot on a hold."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
     from dancetutor_cli.lint.subject import ChartSubject
 
-_LEAD = 0.25  # seconds: with twice the time of the next step, and a novice begins again
-_SLOW = 0.3  # seconds in which a beginner steps again with either foot
-_WALKED = 4  # panels
-_CAME = 2  # steps from the other pad
+_LEAD = 0.25  # seconds, about twice the next pause, after which a novice begins again with either foot
+_SLOW = 0.3  # seconds after which a beginner may repeat a foot or switch feet
+_WALKED = 4  # the least number of panels of a walk to one side
+_CAME = 2  # most steps since the dancer was on the other pad
 _WIDE = 2.5  # panel widths: more than from one side of a pad to the other
 
 
@@ -66,7 +66,7 @@ class Crossover(TimedRule):
     slowest = 0.4
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
-        """Each step after which the feet are newly crossed."""
+        """Yield each step after which the feet are newly crossed."""
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, goes_on_the_other_foot
 
         slow = Freedom(self.longest(subject), switch=_SLOW, slip=_SLOW, lead=_LEAD)
@@ -80,12 +80,12 @@ class Crossover(TimedRule):
             yield Occurrence(first, subject.pause(first), message)
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
-        """Whether a single step crosses on the way from one of two pads to the other."""
+        """Whether only single steps cross, each on the way from one of two pads to the other."""
         return all(_in_passing(subject, row) for row in rows)
 
 
 def _walks_over(subject: ChartSubject, row: int) -> bool:
-    """Whether the steps around a row go on and on to one side, panel by panel, farther than a pad is wide."""
+    """Whether the steps around a row walk to one side, panel by panel, farther than a pad is wide."""
     play, pad = subject.play, subject.pad
     if play is None or pad is None or pad.width <= _WIDE:
         return False
@@ -107,7 +107,7 @@ def _walks_over(subject: ChartSubject, row: int) -> bool:
 
 
 def _in_passing(subject: ChartSubject, row: int) -> bool:
-    """Whether only this step is crossed, and the few steps to it come from the other of two pads."""
+    """Whether the step after a row is uncrossed, and the few steps up to the row are on both of two pads."""
     feet, pad = subject.facts, subject.pad
     if feet is None or pad is None or pad.width <= _WIDE:
         return False
@@ -120,7 +120,7 @@ def _in_passing(subject: ChartSubject, row: int) -> bool:
 
 
 def _onwards(before: list[int], after: list[int], x: NDArray[np.float64]) -> bool:
-    """Whether of two single steps the later one is not farther back."""
+    """Whether two rows are single steps, and the later one is not farther back in the direction of `x`."""
     return len(before) == len(after) == 1 and bool(x[after[0]] >= x[before[0]] - EPSILON)
 
 
@@ -201,7 +201,7 @@ class HeldCrossover(TimedRule):
     passage_beats = 16
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
-        """Each single step after which the feet are newly crossed, while the other foot holds."""
+        """Yield each single step after which the feet are newly crossed, while the other foot holds."""
         if subject.play is None or subject.facts is None:
             return
         limbs = subject.play.limb

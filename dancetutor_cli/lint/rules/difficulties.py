@@ -1,4 +1,4 @@
-"""The charts of a song beside each other: difficulties, meters, lengths, and charts that a pack must have."""
+"""Rules that compare the charts of a song: difficulties, meters, lengths, and charts that a pack must have."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class SameNotes(FileRule):
     name = "same-notes"
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
-        """One finding for each chart that has the notes of one before it."""
+        """One finding for each chart that has the notes of a chart before it."""
         first: dict[tuple[object, ...], str] = {}
         for chart in subject.dance_charts:
             notes = chart.notes
@@ -62,7 +62,7 @@ class MeterOrder(FileRule):
     _ORDER = ("Beginner", "Easy", "Medium", "Hard", "Challenge")
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
-        """One finding for each chart whose meter is not above the one before it."""
+        """One finding for each chart whose meter is not above the meter of the chart before it."""
         song = subject.song
         for steps_type in dict.fromkeys(chart.steps_type for chart in song.charts):
             charts = [c for c in song.charts if c.steps_type == steps_type and c.difficulty in self._ORDER]
@@ -111,7 +111,7 @@ class MeterOff(SongRule):
     name = "meter-off"
 
     def check(self, chart: RatedChart, charts: Sequence[RatedChart]) -> Iterable[Finding]:
-        """One finding if the meter is off."""
+        """One finding if the meter is too high or too low."""
         estimate = chart.estimate
         off = estimate.meter - chart.meter
         if chart.meter > 0 and abs(off) >= self.options["by"] and not estimate.low <= chart.meter <= estimate.high:
@@ -160,7 +160,7 @@ class Slots(FileRule):
     about_tags = True
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
-        """One finding that names all that is missing."""
+        """One finding that names all missing charts."""
         there = {f"{chart.steps_type} {chart.difficulty}".lower() for chart in subject.dance_charts}
         missing = [str(slot) for slot in self.options["charts"] if str(slot).lower() not in there]
         if missing:

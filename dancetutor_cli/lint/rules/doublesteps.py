@@ -1,4 +1,4 @@
-"""One foot steps twice or three times in a row on different panels."""
+"""Rules about one foot that steps twice or three times in a row on different panels."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from dancetutor_cli.lint.rule import EPSILON, MoveRule, Occurrence, TimedRule
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
-_BEFORE, _AFTER = 3, 1  # steps
-_CROSSED_RATHER = 0.15  # seconds: a 16th at 100 BPM; so quickly a short crossover is nearer than a doublestep
+_BEFORE, _AFTER = 3, 1  # steps before and after a row that are near
+_CROSSED_RATHER = 0.15  # seconds: a 16th at 100 BPM; at this speed, players prefer a short crossover to a doublestep
 ONE_PAD = 2.0  # panel widths from the leftmost to the rightmost panel
-_SHORT = 2  # crossed rows of such a crossover
+_SHORT = 2  # most crossed rows of a short crossover
 _LONG, _LONGER = 0.25, 1.45  # seconds, times the step beside it: a dotted note and longer, after which one begins again
 _LED = 3  # the same, between two pads
 
@@ -73,7 +73,7 @@ class Doublestep(MoveRule):
     slowest = 0.32
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
-        """Doublesteps from one panel to another, no mine between them."""
+        """Return the quick doublesteps for which there is no other way to dance that players prefer."""
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, in_groups
 
         longest = self.longest(subject)
@@ -85,7 +85,7 @@ class Doublestep(MoveRule):
         ]  # fmt: skip
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
-        """Whether players expect it: a Pump centre, one crossover to a jump, a way between two pads after a jack."""
+        """Whether players expect it: a Pump centre, one crossover to a jump, or a way between two pads after a jack."""
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, led_by_a_jack
 
         if all(
@@ -98,12 +98,12 @@ class Doublestep(MoveRule):
         return all(led_by_a_jack(subject, row) and fewest_crossed(subject, row, changing) <= _LED for row in rows)
 
     def message(self, subject: ChartSubject, row: int) -> str:
-        """Which foot."""
+        """Return the message, which names the foot."""
         return f"the {subject.foot_name(row)} foot steps twice although the other foot is free"
 
 
 def _at_a_pause(subject: ChartSubject, row: int) -> bool:
-    """Whether a quicker group begins with this step, or the next comes so late that the repeat can wait for it."""
+    """Whether a quicker group begins with this step, or the next step comes so late that the repeat can be there."""
     from dancetutor_cli.lint.other_foot import exchanged_is_uncrossed, standing
 
     rows = subject.step_rows
@@ -118,7 +118,7 @@ def _at_a_pause(subject: ChartSubject, row: int) -> bool:
 
 
 def _round_the_centre(subject: ChartSubject, row: int) -> bool:
-    """Whether on a Pump pad one of both panels is the centre, and there is time to twist."""
+    """Whether one of both panels is the centre of a Pump pad, and there is time to twist."""
     rows = subject.step_rows
     if not subject.chart.steps_type.startswith("pump") or subject.pause(row) < _LONG - EPSILON:
         return False
@@ -127,7 +127,7 @@ def _round_the_centre(subject: ChartSubject, row: int) -> bool:
 
 
 def _crosses_to_jump(subject: ChartSubject, row: int, quick: float) -> bool:
-    """Whether in turn the steps cross once, not all round, and then two panels at once set both feet right."""
+    """Whether alternating feet cross only once, by less than 180 degrees, before two panels at once uncross them."""
     from dancetutor_cli.lint.other_foot import exchanged_facings, segment, standing
 
     assert subject.facts is not None
@@ -144,7 +144,7 @@ def _crosses_to_jump(subject: ChartSubject, row: int, quick: float) -> bool:
 
 
 def any_foot_near(subject: ChartSubject, row: int) -> bool:
-    """Whether two panels that can be jumped, a wall of mines or a hold that changes feet is near."""
+    """Whether a bracket that can be jumped, a wall of mines or a holdswitch is near."""
     assert subject.play is not None
     rows = subject.step_rows
     at = int(rows.searchsorted(row))
@@ -158,7 +158,7 @@ def any_foot_near(subject: ChartSubject, row: int) -> bool:
 
 
 def _has_better_start(subject: ChartSubject, row: int, quick: float) -> bool:
-    """Whether people rather begin on the other foot before or after it, where there is time, or cross for a moment."""
+    """Whether players prefer another way: the other foot first before or after the step, or a short crossover."""
     from dancetutor_cli.lint.other_foot import exchanged_facings, exchanged_is_uncrossed, segment, standing
 
     assert subject.play is not None and subject.facts is not None
@@ -188,7 +188,7 @@ def _has_better_start(subject: ChartSubject, row: int, quick: float) -> bool:
 
 
 def _own_side(subject: ChartSubject, row: int, *, exchanged: bool = False) -> bool:
-    """Whether a row is one step on the side of its pad that is the foot's own; exchanged : the other foot's."""
+    """Whether a row is a single step on the foot's own side of its pad; exchanged : on the other foot's side."""
     assert subject.play is not None and subject.pad is not None
     limbs = subject.play.limb[row]
     if (limbs >= 0).sum() != 1 or limbs.max() > 1:
@@ -240,7 +240,7 @@ class TripleStep(TimedRule):
     slowest = Doublestep.slowest
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
-        """Each third step that is quick enough: where a run begins depends on that."""
+        """Yield each third step that is quick enough. Slow steps do not count, so they decide where a run begins."""
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, led_by_a_jack
 
         spans = self.options["min_seconds"], self.longest(subject)

@@ -1,4 +1,4 @@
-"""DT305: a step too far for its time."""
+"""The rule DT305: a step that is too far for its time."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from dancetutor_cli.lint.rule import EPSILON, ChartRule, passages
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
-_FEET_STEP = 0.045  # seconds between two rows: 16ths at 333 BPM
+_FEET_STEP = 0.045  # seconds; quicker rows are too quick for feet: 16ths at 333 BPM
 _PASSAGE = 8  # beats
 _SIXTEENTH = 0.13  # seconds: 16ths at 115 BPM
-_HEEL_AND_TOE = 14  # meter of Pump charts from which one foot takes two neighbours with heel and toe
-_GRACE = 0.06  # seconds: two rows closer together are no 16ths
-_AS_ONE = 0.03  # seconds between two rows that look meant as one
-_NEIGHBOUR_TAP_METER = 13  # meter from which a foot that holds a panel taps a neighbour of it
-_QUICK = 20  # meter of charts that nobody plays to the last note
-_NEIGHBOUR = 1.5  # panel widths
-_FEW = 2  # far steps of a passage that are reported one by one
+_HEEL_AND_TOE = 14  # meter of Pump charts from which one foot takes two neighbouring panels with heel and toe
+_GRACE = 0.06  # seconds; two rows closer together are not 16ths
+_AS_ONE = 0.03  # seconds; two rows closer together are probably meant as one
+_NEIGHBOUR_TAP_METER = 13  # meter from which a foot that holds a panel also taps a neighbouring panel
+_QUICK = 20  # meter from which players do not play every note
+_NEIGHBOUR = 1.5  # panel widths between neighbouring panels, at most
+_FEW = 2  # most far steps of a passage that are reported one by one
 _NUMBERS = {3: "three", 4: "four"}
-_RESTED = 0.2  # seconds since its last step, and a foot is as good as the other
+_RESTED = 0.2  # seconds since a foot's last step after which it is as good as the other foot
 
 
 class FastStep(ChartRule):
@@ -65,7 +65,7 @@ class FastStep(ChartRule):
     about_feet = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each step that is too fast; one for a passage in which the rows are."""
+        """One finding for each step that is too fast, or for each passage of rows that are too quick."""
         feet, bursts = subject.facts, []
         moves: dict[tuple[str, str], list[tuple[int, int, str]]] = {}  # by foot and severity
         reported: set[tuple[int, str]] = set()
@@ -104,7 +104,7 @@ class FastStep(ChartRule):
     def _moves(
         self, subject: ChartSubject, found: list[tuple[int, int, str]], least: dict[str, str]
     ) -> Iterable[Finding]:
-        """A finding for each far step of a foot, or one for many in a passage, at the row whose feet are surest."""
+        """Yield a finding for each far step of a foot, or one for a passage of many, where the feet are surest."""
         for passage in passages(found, lambda one: subject.beat(one[0]), _PASSAGE):
             rows = [row for row, _, _ in passage]
             if len(rows) <= _FEW:
@@ -117,8 +117,8 @@ class FastStep(ChartRule):
             yield self.finding(message, subject.at_row(row, column), **least)
 
     def _leaps(self, subject: ChartSubject, reported: set[int]) -> Iterable[Finding]:
-        """One finding for each passage of steps that are not played and not reported yet."""
-        from dancetutor_cli.feet.play import StepKind  # numpy comes with it, which a kept result does not need
+        """Yield one finding for each passage of steps that are not played and not reported yet."""
+        from dancetutor_cli.feet.play import StepKind  # imports numpy, which a kept result does not need
 
         end = -math.inf
         known = [subject.beat(row) for row in sorted(reported)]
@@ -137,7 +137,7 @@ class FastStep(ChartRule):
 
 
 def burst(subject: ChartSubject, row: int) -> list[int]:
-    """The rows around one that come quicker than feet step, if they are three or more."""
+    """Return the rows around a row that are too quick for feet, if there are at least three; else none."""
     rows = subject.step_rows
     first = last = int(rows.searchsorted(row))
     while first and subject.pause(int(rows[first])) < _FEET_STEP:
@@ -148,12 +148,15 @@ def burst(subject: ChartSubject, row: int) -> list[int]:
 
 
 def _heel_and_toe(subject: ChartSubject, row: int) -> bool:
-    """Whether the panels lie as on a Pump pad, and players of this chart take two of them with heel and toe."""
+    """Whether this is a Pump chart whose players take two panels with heel and toe."""
     return subject.chart.steps_type.startswith("pump") and subject.chart.meter >= _HEEL_AND_TOE
 
 
 def _dense(subject: ChartSubject, row: int) -> tuple[int, str]:
-    """Where and what is quick, if not the feet but three panels at once, or two before and after one step."""
+    """Return row and message if three panels at once, or two panels before and after one step, are the fault.
+
+    Otherwise, the message is "".
+    """
     rows = subject.step_rows
     at = int(rows.searchsorted(row))
     for place in range(max(at - 2, 0), at + 1):
@@ -178,7 +181,7 @@ def _dense(subject: ChartSubject, row: int) -> tuple[int, str]:
 
 
 def _let_go(subject: ChartSubject, before: int, row: int) -> bool:
-    """Whether a hold of the other foot ends between two single steps, and that foot can take the second uncrossed."""
+    """Whether the other foot's hold ends between two single steps, and it can take the second step uncrossed."""
     from dancetutor_cli.lint.other_foot import standing
 
     play, pad = subject.play, subject.pad
@@ -195,7 +198,7 @@ def _let_go(subject: ChartSubject, before: int, row: int) -> bool:
 
 
 def _can_tap_neighbour(subject: ChartSubject, before: int, row: int) -> bool:
-    """Whether the other foot holds a panel and can tap one of two single steps that is beside it, uncrossed."""
+    """Whether the other foot holds a panel and can also tap one of two single steps beside this panel, uncrossed."""
     import numpy as np
 
     from dancetutor_cli.lint.other_foot import standing
@@ -219,7 +222,7 @@ def _can_tap_neighbour(subject: ChartSubject, before: int, row: int) -> bool:
 
 
 def _free_foot_takes_it(subject: ChartSubject, row: int, max_speed: float) -> bool:
-    """Whether two single steps are a flam for two feet: the other foot has had time to come and takes the first."""
+    """Whether two single steps are a flam for two feet, in which the other foot has time to take the first step."""
     import numpy as np
 
     from dancetutor_cli.lint.other_foot import standing

@@ -1,4 +1,4 @@
-"""How a file is written: what cannot be read, or is read differently by games and tools."""
+"""Rules about files that cannot be read, or that games and tools read differently."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Unreadable(FileRule):
     name = "unreadable"
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
-        """Nothing: a file that can be read is not unreadable; the finding is made where reading fails."""
+        """Return nothing, because the subject could be read; `lint.analysis` makes the finding if reading fails."""
         return ()
 
 
@@ -129,7 +129,7 @@ class Attacks(FileRule):
 
 
 def _is_script(subject: FileSubject, name: str) -> bool:
-    """Whether a change of the background is Lua: a file of it, or a folder in the song's with a default.lua."""
+    """Whether a background change names a Lua file, or a folder below the song's folder with a default.lua."""
     from dancetutor_cli.chart.music import named_file
     from dancetutor_cli.run.reading import is_outside, is_regular
 
@@ -168,7 +168,7 @@ class OddTag(ReaderRule):
     usual = frozenset({"hash-in-unused-value"})
 
 
-_LISTED = 5  # lines
+_LISTED = 5  # most other lines that a message lists
 
 
 class OddNotes(ReaderRule):
@@ -211,7 +211,7 @@ class OddNotes(ReaderRule):
     usual = frozenset({"several-players", "stepf2-note", "stepmaniax-note"})
 
     def check(self, subject: FileSubject | ChartSubject) -> Iterable[Finding]:
-        """One finding for each that is odd, with its lines; of charts without line breaks one in the file's first."""
+        """One finding for each odd thing, with its lines; for charts without line breaks, one in the first of them."""
         from dancetutor_cli.lint.subject import ChartSubject
 
         found = list(super().check(subject))
@@ -230,7 +230,7 @@ class OddNotes(ReaderRule):
 
 
 def _with_lines(same: list[Finding]) -> Finding:
-    """The first of findings that say the same, with the lines of the others."""
+    """Return the first of several findings with the same message, with the lines of the others."""
     lines = [str(one.line) for one in same]
     if len(lines) == 1:
         return same[0]
@@ -239,7 +239,7 @@ def _with_lines(same: list[Finding]) -> Finding:
 
 
 def _flattened(song: Song, chart: Chart) -> bool:
-    """Whether a chart of several measures stands on one line, a measure a row."""
+    """Whether all measures of a chart are on one line, so that each is read as one row."""
     start, end = chart.notes_span
     text = song.data[start:end].strip()
     return b"\n" not in text and b"\r" not in text and text.count(b",") > 0

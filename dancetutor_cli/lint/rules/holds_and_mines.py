@@ -1,4 +1,4 @@
-"""Holds without an end or a way out of them, and mines where a foot is."""
+"""Rules about holds without an end or without time to release them, and about mines where a foot is."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class BrokenHold(ReaderRule):
     codes = frozenset({"unmatched-head", "unmatched-tail"})
 
     def check(self, subject: FileSubject | ChartSubject) -> Iterable[Finding]:
-        """One finding for each line, but those within two measures of a misread row."""
+        """One finding for each line, except lines within two measures of a misread row."""
         from dancetutor_cli.lint.subject import ChartSubject
 
         found = list(super().check(subject))
@@ -83,7 +83,7 @@ class MineUnderHold(TimedRule):
     times = "mine-under-hold"
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
-        """Each row with such a mine, with the time since the foot's step; none where it cannot leave at all."""
+        """Yield each row with such a mine, with the time since the foot's step."""
         reported: set[int] = set()
         for row, column, foot, seconds in subject.facts.mines_under_pinned_feet() if subject.facts else ():
             message = f"the {('left', 'right')[foot]} foot cannot step aside from the mine because of a hold"

@@ -1,4 +1,4 @@
-"""More panels at once than two feet take: brackets, hands, and what no limbs can do."""
+"""Rules about more panels at once than two feet press: brackets, hands, and steps without a free limb."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class LowBracket(TimedRule):
     passage_beats = math.inf
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
-        """Each bracket in a chart of so low a meter."""
+        """Yield each bracket that is too quick for a jump, in a chart of a low meter."""
         meter, feet = subject.chart.meter, subject.facts
         if meter >= self.options["least_meter"] or not subject.has("bracket") or self._quick_throughout(subject):
             return
@@ -58,14 +58,14 @@ class LowBracket(TimedRule):
                 yield Occurrence(row, pause, f"{message} in a chart of meter {meter}")
 
     def _quick_throughout(self, subject: ChartSubject) -> bool:
-        """Whether so many steps are as quick that the players of this chart are no beginners."""
+        """Whether so many steps are this quick that the players of this chart are not beginners."""
         longest = self.longest(subject) + EPSILON
         quick = [subject.pause(row) <= longest for row in subject.step_rows.tolist()]
         return bool(100 * sum(quick) > self.options["most_quick"] * len(quick))
 
 
 def _jumped(subject: ChartSubject, row: int) -> bool:
-    """Whether the step before is on one of the panels, or that before or after on two, too, and near."""
+    """Whether the step before is on one of the panels, or a near row before or after also presses two panels."""
     rows = subject.step_rows
     at = int(rows.searchsorted(row))
     near = [one for one in (at - 1, at + 1) if 0 <= one < len(rows) and subject.pause(int(rows[max(one, at)])) <= _NEAR]
@@ -73,8 +73,8 @@ def _jumped(subject: ChartSubject, row: int) -> bool:
     return pairs or bool(at and {*subject.pressed(row)} & {*subject.pressed(int(rows[at - 1]))})
 
 
-_GIMMICK = 99  # the meter
-_SLIP = 0.02  # seconds between two rows that are meant as one
+_GIMMICK = 99  # the meter of gimmick charts
+_SLIP = 0.02  # seconds; two rows closer together are meant as one
 
 
 class Unplayable(MoveRule):
@@ -106,32 +106,32 @@ class Unplayable(MoveRule):
     passage_beats = 8
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
-        """Rows with such a step."""
+        """Return the rows with a step for which no limb is free, or for which a hand comes too late."""
         return sorted({*subject.rows_with(self.move), *_hands(subject)})
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
-        """A gimmick says so by its meter or its rows, and where only a hand is in a hurry a foot may bracket."""
+        """Whether the chart is a gimmick by its meter or rows, or only a hand comes too late, so a foot may bracket."""
         gimmick = subject.chart.meter == _GIMMICK or any(subject.pause(row) < _SLIP for row in rows)
         return gimmick or not any(subject.unplayed(row) for row in rows)
 
     def representative(self, subject: ChartSubject, rows: list[int]) -> int:
-        """The first with a step that no limb is free for: a hand in a hurry beside it is the lesser fault."""
+        """Return the first row with a step for which no limb is free; a hand that comes too late is a lesser fault."""
         return next((place for place, row in enumerate(rows) if subject.unplayed(row)), 0)
 
     def message(self, subject: ChartSubject, row: int) -> str:
-        """How many steps are left over."""
+        """Return the message, with the number of steps for which no limb is free."""
         if count := subject.unplayed(row):
             return f"no limb is free for {count} step{'s' if count > 1 else ''} of this row"
         return f"a hand would have to come down again within {HAND:g} s"
 
 
 def _hands(subject: ChartSubject) -> set[int]:
-    """Rows in which a hand would have to be down again at once."""
+    """Return the rows in which a hand would have to come down again too soon."""
     return {row for row, _, why in subject.too_quick if why == DropReason.HAND}
 
 
-_STUB = 2  # rows
-_SCALE = "itg"  # of meters, on which `least_meter` is measured
+_STUB = 2  # a chart with fewer rows is not checked
+_SCALE = "itg"  # scale of meters on which `least_meter` is measured
 
 
 class Hand(MoveRule):
@@ -164,11 +164,11 @@ class Hand(MoveRule):
     code = "DT302"
     name = "hand"
     move = "hand"
-    about_feet = False  # it is the number of panels that asks for it
+    about_feet = False  # the number of panels decides, not the feet
     passage_beats = 8
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
-        """Rows with a step in which a third panel is down, and those in which the solver uses a hand."""
+        """Return the rows with a step in which three panels are down or the solver uses a hand."""
         if subject.facts is None or len(subject.step_rows) < _STUB:
             return []
         from dancetutor_cli.lint.figures import hand_rows
@@ -177,7 +177,7 @@ class Hand(MoveRule):
         return found if found and not self._expected(subject) else []
 
     def _expected(self, subject: ChartSubject) -> bool:
-        """Whether the players of this chart know hands; a label of 1 may stand for nothing."""
+        """Whether the players of this chart know hands; for a label of 0 or 1, the estimated meter also counts."""
         chart, least = subject.chart, self.options["least_meter"]
         if chart.meter >= least:
             return True
@@ -187,6 +187,6 @@ class Hand(MoveRule):
         return sized is not None and sized.on.get(_SCALE, 0.0) >= least
 
     def message(self, subject: ChartSubject, row: int) -> str:
-        """Whether a bracket would do."""
+        """Return the message, which says whether a bracket is possible."""
         bracketed = self.move not in (subject.play.moves[row] if subject.play else ())
         return "three panels at once, " + ("for a bracket or a hand" if bracketed else "and a hand has to press one")

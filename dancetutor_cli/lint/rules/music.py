@@ -1,4 +1,4 @@
-"""The music as a file: missing, refused, too short, silent or cut off."""
+"""Rules about the file of the music: missing, refused, too short, silent or cut off."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class MissingMusic(FileRule):
 
     code = "DT107"
     name = "missing-music"
-    codes = frozenset({"unsafe-music"})  # the music itself is looked for, which says the same and more
+    codes = frozenset({"unsafe-music"})  # `check` looks for the music itself and reports the same and more
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """At most one finding."""
@@ -118,7 +118,7 @@ class MusicFormat(FileRule):
 
         try:
             path = music_file(subject.song)
-        except FileError:  # DT107 says so
+        except FileError:  # DT107 reports it
             return
         try:
             head = read_head(path)

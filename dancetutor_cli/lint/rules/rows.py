@@ -1,4 +1,4 @@
-"""Rows and tempi that the games do not play as they are written, and notes that are not allowed."""
+"""Rules about rows and tempos that the games do not play as written, and about notes that are not allowed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class OddTiming(ReaderRule):
     usual = frozenset({"negative-timing"})
 
     def check(self, subject: FileSubject | ChartSubject) -> Iterable[Finding]:
-        """One finding for each line; gimmicks only where the file has its first."""
+        """One finding for each line; gimmicks only in the song or in the first chart that has them."""
         first = self._first(subject)
         return [one for one in super().check(subject) if first or one.severity != "info"]
 
@@ -68,7 +68,7 @@ class OffGrid(ChartRule):
 
     @classmethod
     def fault(cls, option: str, value: Any) -> str | None:
-        """A list of quantisations a measure of 192 ticks can be cut into."""
+        """Return what is wrong with a list of quantisations: each must divide a measure of 192 ticks."""
         fits = option != "grid" or (
             value and all(isinstance(name, int) and name > 0 and 192 % name == 0 for name in value)
         )
@@ -105,7 +105,7 @@ class HiddenNote(ChartRule):
             yield self.finding(f"{what} a warp or a fake segment, where nothing counts", subject.at_tick(tick, line))
 
 
-# Kinds of the file, and what several notes at once make.
+# The kinds of notes in a file, and the rows with several notes at once.
 KINDS = ("mine", "roll", "hold", "lift", "fake", "keysound", "jump", "hand")
 
 
@@ -134,12 +134,12 @@ class ForbiddenNotes(ChartRule):
 
     @classmethod
     def fault(cls, option: str, value: Any) -> str | None:
-        """What is wrong with an unknown kind."""
+        """Return the message for an unknown kind, or None."""
         unknown = [kind for kind in value if kind not in KINDS] if option == "kinds" else []
         return f"there is no kind '{unknown[0]}'; choose {', '.join(KINDS)}" if unknown else None
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each kind, at its first note, with their number."""
+        """One finding for each kind, at its first note, with the number of its notes."""
         for kind in self.options["kinds"]:
             ticks_lines = subject.notes.of_kind(kind)
             if ticks_lines:

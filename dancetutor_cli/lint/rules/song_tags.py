@@ -1,4 +1,4 @@
-"""What the tags of a song say: title and artist, credit, pictures, tempo and folder."""
+"""Rules about the tags of a song: title and artist, credit, pictures, tempo and folder."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject
 
-# What rules about pictures share: whether the one that a song names is there and has a usual size or proportion.
+# The base of rules about pictures: whether the named picture exists and has a usual size or proportion.
 
 _FILMS = (".avi", ".mpg", ".mpeg", ".mp4", ".m4v", ".mkv", ".webm", ".ogv", ".mov", ".wmv", ".flv")
-_ALIKE = 0.02  # by so much of it a proportion may differ
+_ALIKE = 0.02  # share by which a proportion may differ
 
 
 class PictureRule(FileRule):
-    """A rule about the picture that a tag of the song names. `tag` : its name
+    """A rule about the picture that a tag of the song names. `tag` : name of the tag
 
-    Options: `sizes` and `proportions`, as "418x164", of which it has one; `required`
+    Options: `sizes` and `proportions`, such as "418x164", of which the picture must have one; `required`
     """
 
     tag: ClassVar[str]
@@ -32,7 +32,7 @@ class PictureRule(FileRule):
 
     @classmethod
     def fault(cls, option: str, value: Any) -> str | None:
-        """Sizes that are none."""
+        """Return what is wrong with a list of sizes or proportions, or None."""
         return sizes_fault(value) if option in ("sizes", "proportions") else None
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
@@ -41,7 +41,7 @@ class PictureRule(FileRule):
             yield self.finding(fault, subject.tag_place(self.tag))
 
     def _picture_fault(self, song: Song) -> str | None:
-        """What is wrong with the picture, or None."""
+        """Return what is wrong with the picture, or None."""
         from dancetutor_cli.chart.music import named_file
 
         name = song.tags.get(self.tag, "").strip()
@@ -74,20 +74,20 @@ class PictureRule(FileRule):
 
 
 def sizes_fault(sizes: Sequence[object]) -> str | None:
-    """What is wrong with a list of sizes, or None."""
+    """Return what is wrong with a list of sizes, or None."""
     wrong = [size for size in sizes if not re.fullmatch(r"[1-9]\d*x[1-9]\d*", str(size))]
     return f"'{wrong[0]}' is not a size; write it as 418x164" if wrong else None
 
 
 def picture_size(path: Path) -> tuple[int, int] | None:
-    """Width and height by the head of a picture, which is all that is read of it; None for what is none."""
+    """Return width and height of a picture, reading only its head; None if the file is not a picture."""
     import warnings
 
     from PIL import Image
 
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of sizes that nobody decodes here
+            warnings.simplefilter("ignore")  # PIL warns of large sizes, but nothing is decoded here
             with Image.open(path) as picture:
                 return picture.size if min(picture.size) > 0 else None
     except (OSError, ValueError, SyntaxError, MemoryError, Image.DecompressionBombError):
@@ -159,7 +159,7 @@ class BpmRange(ChartRule):
     name = "bpm-range"
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """At most one finding: the first tempo outside."""
+        """At most one finding, for the first tempo outside the limits."""
         for bpm in subject.tempos():
             if not self.options["min_bpm"] <= bpm <= self.options["max_bpm"]:
                 low, high = self.options["min_bpm"], self.options["max_bpm"]
@@ -183,7 +183,7 @@ class CdTitle(PictureRule):
 
 
 _SCRIPTS = ("CJK", "HIRAGANA", "KATAKANA", "HANGUL", "CYRILLIC", "ARABIC", "HEBREW", "THAI", "DEVANAGARI", "GREEK")
-_LEAST = {"GREEK": 3}  # letters of a word: single ones stand for something else
+_LEAST = {"GREEK": 3}  # the least letters of a word, because single letters are symbols
 
 
 class Translit(FileRule):
@@ -267,7 +267,7 @@ class Credit(FileRule):
     about_tags = True
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
-        """At most one finding, of all charts without an author."""
+        """At most one finding, for all charts without an author."""
         if subject.song.tags.get("CREDIT", "").strip():
             return
         charts = [chart for chart in subject.song.charts if not is_lights(chart.steps_type)]
@@ -280,7 +280,7 @@ class Credit(FileRule):
         yield self.finding(f"{message}, and #CREDIT is empty; write the name there", place)
 
 
-_MOST_LABELS = 3  # charts that are named
+_MOST_LABELS = 3  # most charts that a message names
 
 
 def _labels(charts: list[Chart]) -> str:

@@ -1,4 +1,4 @@
-"""Feet that change on a panel: footswitches, sideswitches, holdswitches and quick ones."""
+"""Rules about feet that change on a panel: footswitches, sideswitches, holdswitches and quick switches."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from dancetutor_cli.lint.rule import EPSILON, MoveRule, Occurrence, TimedRule
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject
 
-_RUN = 8  # steps that are a run
-_LONGER = 1.4  # times the pace of the run: a pause before it, in which a foot is chosen
+_RUN = 8  # the least number of steps in a run
+_LONGER = 1.4  # times the pace of the run; after such a pause, players choose a foot
 
 
 class Footswitch(MoveRule):
@@ -50,12 +50,12 @@ class Footswitch(MoveRule):
     description = "a foot takes over the panel of the other foot"
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
-        """Footswitches on one panel; those with a bracket belong to DT210."""
+        """Return the footswitches on one panel; DT210 reports those with a bracket."""
         found = self.quick(subject, subject.rows_with(self.move))
         return [row for row in found if not subject.brackets(row) and self._is_switched(subject, row)]
 
     def _is_switched(self, subject: ChartSubject, row: int) -> bool:
-        """Whether players know that they have to switch, or run into what follows with the wrong foot."""
+        """Whether players know that they have to switch, or else begin the next steps with the wrong foot."""
         from dancetutor_cli.lint.other_foot import goes_on_the_other_foot, has_mine_since_step
 
         if has_mine_since_step(subject, row):
@@ -67,13 +67,13 @@ class Footswitch(MoveRule):
 
 
 def _is_laid_down(subject: ChartSubject, row: int) -> bool:
-    """Whether the author has set the foot."""
+    """Whether the author has set the feet of a row."""
     assert subject.play is not None
     return subject.overrides is not None and bool((subject.overrides.ticks == subject.play.rows.tick[row]).any())
 
 
 def _leads_a_run(subject: ChartSubject, row: int, quick: float) -> bool:
-    """Whether enough single steps, each quick and on another panel than the one before, follow without a rest."""
+    """Whether enough single steps follow without a rest, each quick and on another panel than the step before."""
     at = int(subject.step_rows.searchsorted(row))
     rows = subject.step_rows[at : at + _RUN + 1].tolist()
     pressed = [subject.pressed(one) for one in rows]
@@ -121,7 +121,7 @@ class Sideswitch(MoveRule):
     description = "a foot takes over a side panel from the other foot"
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
-        """Quick ones that nobody plays as a jack."""
+        """Return the quick sideswitches that players do not play as a jack."""
         from dancetutor_cli.lint.other_foot import goes_on_the_other_foot, has_mine_since_step, led_by_a_jack
 
         quick = self.longest(subject)
@@ -222,10 +222,10 @@ class SwitchJack(TimedRule):
     foot_reach = 2
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
-        """Each run, at the first step for which the feet change, with the slowest pause in it."""
+        """Yield each run, at the first step on which the feet change, with the longest pause in the run."""
         least = max(self.options["min_rows"], 2)
         for rows, limbs in subject.facts.switching_runs(least, self.longest(subject)) if subject.facts else ():
-            if limbs[0] != limbs[-1]:  # otherwise who jacks them all comes out on the right foot
+            if limbs[0] != limbs[-1]:  # else a dancer who jacks all of them ends on the right foot
                 change = next(at for at in range(1, len(rows)) if limbs[at] != limbs[at - 1])
                 message = f"the feet change in {len(rows)} quick steps on one panel, which look like a jack"
                 yield Occurrence(rows[change], max(map(subject.pause, rows[1:])), message)

@@ -1,4 +1,4 @@
-"""Whether the music is on the beats: by a bias, half a beat off, drifting, or mixed in a pack."""
+"""Rules about music that is not on the beats: with a bias, half a beat off, drifting, or mixed in a pack."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class SyncDrift(SyncRule):
     tag = "BPMS"
 
     def message(self, sync: Sync, subject: FileSubject) -> str | None:
-        """How much, and by how much a steady tempo would be off."""
+        """Return the message with the drift, and with the right tempo for a song of one tempo; None if it is small."""
         drift = sync.drift_ms
         if drift is None or abs(drift) <= self.options["most"]:
             return None
@@ -57,7 +57,7 @@ class BeatOff(SyncRule):
     name = "beat-off"
 
     def message(self, sync: Sync, subject: FileSubject) -> str | None:
-        """By how much."""
+        """Return the message with the bias, or None."""
         if sync.bias_ms is None or not sync.beat_off:
             return None
         side = "after" if sync.bias_ms > 0 else "before"
@@ -81,7 +81,7 @@ class MixedSync(PackRule):
     name = "mixed-sync"
 
     def check_pack(self, songs: Sequence[PackSong], ini: PackIni | None) -> str | None:
-        """The songs of the rarer kind."""
+        """Return the message, which names the songs of the rarer kind, or None."""
         kinds = {kind: [one.folder for one in songs if one.sync.kind == kind] for kind in _KINDS}
         rarer, usual = sorted(kinds, key=lambda kind: len(kinds[kind]))
         if len(kinds[rarer]) < self.options["least"]:
@@ -96,7 +96,7 @@ def _count(count: int, kind: str) -> str:
     return f"{count} song{' uses' if count == 1 else 's use'} {kind}"
 
 
-_SHARE = 0.6  # of the songs that are null or ITG
+_SHARE = 0.6  # the least share of other songs among the songs that are null or ITG
 _KINDS_OF_INI = {"NULL": "null", "ITG": "itg"}
 
 
@@ -114,7 +114,7 @@ class PackSync(PackRule):
     name = "pack-sync"
 
     def check_pack(self, songs: Sequence[PackSong], ini: PackIni | None) -> str | None:
-        """What it says and what the songs are."""
+        """Return the message with the setting and the kind of most songs, or None."""
         word = "" if ini is None else ini.sync.upper()
         decided = [one for one in songs if one.sync.kind in _KINDS_OF_INI.values()]
         others = [one for one in decided if one.sync.kind != _KINDS_OF_INI.get(word)]
@@ -138,13 +138,13 @@ class SyncBias(SyncRule):
     about_tags = True
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
-        """Those of its syncs, and one for a file without #OFFSET."""
+        """Yield a finding for a file without #OFFSET, and the findings for its syncs."""
         if subject.sync is not None and "OFFSET" not in subject.song.tags:
             yield self.finding("there is no #OFFSET; the games use 0 s", subject.place())
         yield from super().check(subject)
 
     def message(self, sync: Sync, subject: FileSubject) -> str | None:
-        """What to change, to the one and to the other."""
+        """Return the message with the changes of #OFFSET for null sync and for ITG sync, or None."""
         bias = sync.bias_ms
         if bias is None or sync.beat_off or min(abs(bias - NULL), abs(bias - ITG)) <= self.options["tolerance"]:
             return None

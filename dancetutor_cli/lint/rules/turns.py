@@ -1,4 +1,4 @@
-"""The body turns far: spins, turns within a jump, half turns at once."""
+"""Rules about far turns of the body: spins, turns within a jump, half turns at once."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 UNCROSSED = 90.0  # degrees that the body may be turned without the feet being crossed
 SIDEWAYS = 140.0  # degrees: one foot is across the other, more beside it than before it
-_REST = 0.25  # seconds
-_MANY = 4  # spins that are the idea of a chart: one finding
-_TWISTS = 20  # meter of Pump charts whose players expect to turn
-_ONE_RING = 4  # panels of a pad on which who turns all the way can only go round the same four
-_UNROUND = 1.3  # how much further one of four panels may be from their middle than another, to be gone round
+_REST = 0.25  # seconds of a breath, see `Freedom.rest`
+_MANY = 4  # more spins than this are the idea of a chart and make one finding
+_TWISTS = 20  # meter of Pump charts from which players expect to turn
+_ONE_RING = 4  # panels of a pad on which a full turn can only go round the same four panels
+_UNROUND = 1.3  # how many times farther one of four panels in a ring may be from their middle than another
 ONE_PAD = 2.0  # panel widths from the leftmost to the rightmost panel
 
 
@@ -69,11 +69,11 @@ class Spin(MoveRule):
     times = "spin"
 
     def rows(self, subject: ChartSubject) -> Iterable[int]:
-        """Spins; DT203 reports those in a jump."""
+        """Return the spins that are not in a jump; DT203 reports spins in a jump."""
         return [row for row in subject.rows_with(self.move) if not subject.is_jump(row)]
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
-        """Each spin, with the longest time between steps since the feet were not crossed: with time players uncross."""
+        """Yield each spin, with the longest pause since the feet were uncrossed: given time, players uncross them."""
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed
 
         play, longest = subject.play, self.longest(subject)
@@ -98,7 +98,7 @@ class Spin(MoveRule):
             yield Occurrence(row, slowest, self.description)
 
     def _has_uncrossed_start(self, subject: ChartSubject, row: int) -> bool:
-        """Whether the steps around the spin, or those up to the rest before it, go uncrossed on the other foot."""
+        """Whether the steps around the spin, or the steps up to the rest before it, are uncrossed on the other foot."""
         from dancetutor_cli.lint.other_foot import exchanged_is_uncrossed, goes_on_the_other_foot, segment
 
         quick, rows = self.longest(subject), subject.step_rows
@@ -113,7 +113,7 @@ class Spin(MoveRule):
         )
 
     def _after_pair(self, subject: ChartSubject, row: int) -> int:
-        """How many steps may be crossed in place of a spin: one, where the phrase begins after two panels at once."""
+        """Return how many steps may be crossed instead of a spin: one after two panels at once, else none."""
         from dancetutor_cli.lint.other_foot import segment
 
         rows = subject.step_rows
@@ -121,7 +121,7 @@ class Spin(MoveRule):
         return int(first > 0 and len(subject.pressed(int(rows[first - 1]))) > 1)
 
     def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
-        """Whether the author means it: a Pump chart made of twists, steps that go round no panels or between mines."""
+        """Whether the author means the spins: a Pump chart of twists, steps not in a ring, or steps between mines."""
         pump, meter = subject.chart.steps_type.startswith("pump"), subject.chart.meter
         if pump and meter >= _TWISTS:
             return True
@@ -129,11 +129,11 @@ class Spin(MoveRule):
         return all((twisted and not _goes_round(subject, row)) or _between_mines(subject, row) for row in rows)
 
     def passages(self, found: list[Occurrence], subject: ChartSubject) -> Iterable[list[Occurrence]]:
-        """Each spin, or all of a chart that is made of them."""
+        """Return each spin alone, or all spins together in a chart with many."""
         return [found] if len(found) > _MANY else [[one] for one in found]
 
     def _walks(self, subject: ChartSubject, row: int) -> bool:
-        """Whether the dancer only walks along two pads: a foot has passed the other, side by side."""
+        """Whether the dancer only walks along two pads, where one foot passes beside the other."""
         play, pad = subject.play, subject.pad
         if play is None or pad is None or row == 0:
             return False
@@ -142,7 +142,7 @@ class Spin(MoveRule):
 
 
 def _goes_round(subject: ChartSubject, row: int) -> bool:
-    """Whether four steps, that of the row among them, go round four panels in their order."""
+    """Whether four single steps, with the step of the row, go round four panels of a ring in order."""
     import numpy as np
 
     rows, pad = subject.step_rows, subject.pad
@@ -163,7 +163,7 @@ def _goes_round(subject: ChartSubject, row: int) -> bool:
 
 
 def _between_mines(subject: ChartSubject, row: int) -> bool:
-    """Whether mines leave the dancer no panel but the one: every step is meant."""
+    """Whether a row has a wall of mines, so that the author means every step."""
     from dancetutor_cli.lint.play_facts import WALL
 
     return subject.play is not None and int(subject.play.rows.mines[row].sum()) >= WALL
@@ -241,8 +241,10 @@ class HalfTurn(ChartRule):
 
 
 def _landing(subject: ChartSubject, row: int) -> str:
-    """Which foot turns the body, and where it lands: ": the left foot lands behind the right one"; "" of a jump
-    or where there is neither in front nor behind."""
+    """Return which foot turns the body, and where it lands: ": the left foot lands behind the right one".
+
+    "" for a jump, or if the feet are side by side.
+    """
     play = subject.play
     if play is None or subject.pad is None or (play.feet[row] < 0).any() or subject.is_jump(row):
         return ""

@@ -1,4 +1,4 @@
-"""Feet that are not known, not sure, or not as the author set them."""
+"""Rules about feet that are not known, not sure, or not as the author has set them."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class EitherFoot(ChartRule):
     fixed_by_moves = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each run of rows on which both feet cost the same, at its first."""
+        """One finding for each run of rows in which both feet cost the same, at its first row."""
         for row, resolved in subject.ties():
             begins = row == subject.step_rows[0]
             if (begins or not resolved) and not subject.is_jump(row):
@@ -110,7 +110,7 @@ class UnsureFeet(ChartRule):
 
     @classmethod
     def fault(cls, option: str, value: Any) -> str | None:
-        """Per cents, and at least one passage."""
+        """Return what is wrong with `below` (a percentage) or `most` (at least one passage), or None."""
         if option == "below" and not 0 < value <= 100:
             return "must be a number of per cent, more than 0 and at most 100"
         if option == "most" and (value != int(value) or value < 1):
