@@ -194,8 +194,8 @@ class ScoreEstimate:
     """How hard a chart is to score on, in levels of DDR: 14.0 is the easiest 14, 14.95 the hardest.
 
     low, high : the bounds that hold 80 of 100 tiers
-    terms : ("level", the level of the label plus about half a level), then (name, levels) of each term, the largest
-    first and negative terms last, then "rest"; their sum is `meter`
+    terms : ("level", the level of the label plus about half a level); then (name, levels) of each term, the largest
+    first and negative terms last; then "rest". Their sum is `meter`
     """
 
     meter: float

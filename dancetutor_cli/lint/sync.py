@@ -265,8 +265,8 @@ class _Choice(NamedTuple):
 def _confidence(choice: _Choice, rhythm: Curve, fine: Curve) -> float:
     """Return the confidence, 0 to 1: the least of five measures, each on its ramp in `_RAMPS`.
 
-    They are the lead over the best rival, the peak's height over the usual value, how far the parts of the song spread,
-    the peak's absolute height, and the share of parts with the same best bias.
+    margin : the lead over the best rival; height : of the peak over the median; spread : of the song's parts
+    peak : the absolute height of the peak; parts : the share of the song's parts with the same best bias
     """
     lags, whole, worth, best, near, _ = choice
     far = ~choice.is_same(lags, _NEAR)

@@ -45,7 +45,7 @@ def size(steps_type: str, label: tuple[int, str], ask: Ask, rate: float = 1.0) -
 
 
 def sized(model: MeterModel, values: Sequence[float], label: tuple[int, str]) -> MeteredChart:
-    """Return a chart's meters on every scale at rate 1. values : those of `model.features`"""
+    """Return a chart's meters on every scale at rate 1. values : the values of `model.features`"""
     terms = model.terms(values)
     on = {scale.name: scale.meter(of) for scale, of in zip(model.scales, terms, strict=True)}
     return MeteredChart(model, *label, on, terms, terms)
@@ -102,7 +102,7 @@ def _is_guests(one: MeteredChart) -> bool:
 
 
 def _votes(charts: Sequence[MeteredChart]) -> tuple[_Misses, _Misses]:
-    """Return the misses of the labels of ordinary charts, and those of Edits. A label of 0 does not count."""
+    """Return the misses of ordinary charts, and the misses of Edits. A label of 0 does not count."""
     main, edits = _Misses(), _Misses()
     for one in charts:
         if one.label > 0:

@@ -295,7 +295,7 @@ class MeterModel:
     _pieces: _Pieces
 
     def terms(self, values: Sequence[float]) -> list[dict[str, float]]:
-        """Return, for each scale, name of the term -> the meters that it adds. values : those of `features`"""
+        """Return, for each scale, name of the term -> the meters that it adds. values : the values of `features`"""
         pieces = self._pieces
         inside = np.asarray(values)[pieces.feature] - pieces.low
         np.minimum(np.maximum(inside, 0.0, out=inside), pieces.width, out=inside)

@@ -83,7 +83,7 @@ class MineUnderHold(TimedRule):
     times = "mine-under-hold"
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
-        """Yield each row with such a mine, with the time since the foot's step."""
+        """Yield each row with a mine under a foot that cannot step aside, with the time since the foot's step."""
         reported: set[int] = set()
         for row, column, foot, seconds in subject.facts.mines_under_pinned_feet() if subject.facts else ():
             message = f"the {('left', 'right')[foot]} foot cannot step aside from the mine because of a hold"
@@ -119,7 +119,7 @@ class StuckHold(ChartRule):
     about_feet = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each such mine, and for each step that comes too early."""
+        """One finding for each mine that comes too soon after a hold, and for each step that comes too soon."""
         feet = subject.facts
         for row, column, seconds in feet.mines_after_holds(self.options["mine_seconds"]) if feet else ():
             message = f"a mine is on this panel {seconds * 1000:.0f} ms after the end of its hold"
@@ -156,7 +156,7 @@ class MineInTheWay(ChartRule):
     about_feet = True
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each row with such a step."""
+        """One finding for each row with a step too soon after a mine on its panel."""
         limit = self.options["max_seconds"]
         reported: set[int] = set()
         for row, column, seconds in sorted(subject.facts.mines_before_steps(limit)) if subject.facts else ():

@@ -75,7 +75,7 @@ class OffGrid(ChartRule):
         return None if fits else f"a list of divisors of 192, for example [4, 8, 16], not {value}"
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each run of such rows, at its first."""
+        """One finding for each run of rows off the grid, at its first row."""
         for tick, line, count in subject.notes.off_grid([int(name) for name in self.options["grid"]]):
             notes = "this note is" if count == 1 else f"this note and {count - 1} more after it are"
             yield self.finding(f"{notes} not on a {self._names()}", subject.at_tick(tick, line))
@@ -99,7 +99,7 @@ class HiddenNote(ChartRule):
     name = "hidden-note"
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
-        """One finding for each run of such notes, at its first."""
+        """One finding for each run of notes in a warp or a fake segment, at its first note."""
         for tick, line, count in subject.notes.unjudged():
             what = "this note is inside" if count == 1 else f"{count} notes are inside"
             yield self.finding(f"{what} a warp or a fake segment, where nothing counts", subject.at_tick(tick, line))
