@@ -62,3 +62,11 @@ def plain_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
 def own_trees(monkeypatch: pytest.MonkeyPatch) -> None:
     """What a command of one test has read is nothing to the next."""
     monkeypatch.setenv(TREES, "[]")
+
+
+@pytest.fixture
+def own_records(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder of the test's own for kept results and records of films, and not that of whoever runs the tests."""
+    folder = tmp_path_factory.mktemp("cache")
+    monkeypatch.setenv("DANCETUTOR_CACHE", str(folder))
+    return folder

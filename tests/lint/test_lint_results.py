@@ -19,6 +19,8 @@ from dancetutor_cli.run.errors import UnavailableError
 from dancetutor_cli.run.pool import FinishedWork, SerialWorkers
 from dancetutor_cli.run.reading import charts_path
 
+pytestmark = pytest.mark.usefixtures("own_records")
+
 NOTES = "#TITLE:{};\n#ARTIST:A;\n#CREDIT:C;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n1000\n0100\n0010\n0001\n;\n"
 
 

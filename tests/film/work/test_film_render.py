@@ -15,6 +15,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from film_plans import film_plan
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -32,9 +33,6 @@ from dancetutor_cli.film.work.planning import PreparedFilm
 from dancetutor_cli.film.work.records import FilmRecords
 from dancetutor_cli.run import ffmpeg
 from dancetutor_cli.run.errors import DancetutorError
-
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "film"))
-from film_plans import film_plan
 
 RATE = 48000
 NOTES = np.array([0.5130, 1.2371, 2.0, 2.7419, 3.3333, 4.1, 4.8765, 5.5511])

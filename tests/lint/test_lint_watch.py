@@ -14,6 +14,8 @@ from dancetutor_cli.commands.analyze import command
 from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.lint.watch import changes
 
+pytestmark = pytest.mark.usefixtures("own_records")
+
 
 class Sleeper:
     """Stands for time.sleep: runs one planned step each time somebody sleeps."""

@@ -18,6 +18,8 @@ from dancetutor_cli.commands.analyze import command as analyze
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.solver import solve as solver
 
+pytestmark = pytest.mark.usefixtures("own_records")
+
 ROWS = "1000\n0100\n0M00\n0010\n0001\n1000\n0100\n0010\n"
 SONG = f"#TITLE:T;\n#ARTIST:A;\n#CREDIT:C;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n{ROWS};\n"
 SURE = np.array([0.5, 0.99999, np.nan, 0.6234, 1.0, 0.7, 0.699, 0.0])

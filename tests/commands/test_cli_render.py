@@ -17,6 +17,8 @@ from dancetutor_cli.__main__ import main
 from dancetutor_cli.film.work.records import WORK
 from dancetutor_cli.run.reading import charts_path
 
+pytestmark = pytest.mark.usefixtures("own_records")
+
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
 SONG = "#TITLE:T;\n#ARTIST:A;\n#MUSIC:;\n#OFFSET:0;\n#BPMS:0=120;\n"
 SONG += "#NOTES:\n dance-single:\n x:\n Hard:\n 9:\n 0,0,0,0,0:\n"

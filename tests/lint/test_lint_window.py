@@ -17,6 +17,8 @@ from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.run.errors import FileError
 
+pytestmark = pytest.mark.usefixtures("own_records")
+
 KINDS = {"dance-single": 4, "dance-double": 8, "pump-single": 5}
 DEMO = Path(__file__).resolve().parents[2] / "charts" / "two_left_feet" / "two_left_feet.ssc"
 

@@ -15,6 +15,8 @@ from dancetutor_cli.film.overlay import text
 from dancetutor_cli.film.scene.gl import available as gl_available
 from dancetutor_cli.run.errors import UnavailableError
 
+pytestmark = pytest.mark.usefixtures("own_records")
+
 
 def by_name() -> dict[str, Check]:
     return {check.name: check for check in examine()}

@@ -13,6 +13,8 @@ from dancetutor_cli.lint.snapshots import of_path
 from dancetutor_cli.lint.versions import ChartChange, change_lines, compare
 from dancetutor_cli.run.errors import UsageError
 
+pytestmark = pytest.mark.usefixtures("own_records")
+
 SONG = (
     "#TITLE:T;\n#OFFSET:0;\n#BPMS:0=120;\n#NOTES:dance-single:C:Easy:3::\n1000\n0000\n0001\n0000\n;\n"
     "#NOTES:dance-single:C:Hard:9::\n1000\n0200\n0001\n0300\n,\n0110\n00M0\n0000\n0001\n;\n"

@@ -19,6 +19,8 @@ from dancetutor_cli.dance.quality.figures import body_of
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig.limbs import Capsule, depth
 
+pytestmark = pytest.mark.usefixtures("own_records")
+
 Array = np.ndarray
 HEAD = "#TITLE:T;\n#OFFSET:0;\n#BPMS:0=120;\n"
 EMPTY = "00000000\n,\n" * 2

@@ -17,6 +17,8 @@ import pytest
 from dancetutor_cli.run.errors import FileError, UnavailableError, UsageError
 from dancetutor_cli.run.pool import FinishedWork, Report, Task, WorkFailedError, open_workers
 
+pytestmark = pytest.mark.usefixtures("own_records")
+
 COMMON = "dancetutor_cli.film.choices"
 
 

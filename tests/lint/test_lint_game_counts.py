@@ -17,6 +17,8 @@ from dancetutor_cli.lint.techniques import TEN, read_theirs
 from dancetutor_cli.run.errors import FileError, UsageError
 from dancetutor_cli.run.reading import charts_path
 
+pytestmark = pytest.mark.usefixtures("own_records")
+
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
 # Left, down, right: the left foot crosses over; in 8ths at 180 BPM, then a jack.
 SONG = """\
