@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.pipeline import RagdollResult
@@ -15,9 +14,9 @@ from dancetutor_cli.dance.quality.contact import stands
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.smoothing import low_pass
+from dancetutor_cli.dance.units import Array
 
 WOBBLE = 4.0  # hertz: what of a distance changes faster wobbles
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from thesis_figures import (
     Figure,
     Taken,
@@ -44,6 +43,7 @@ from dancetutor_cli.dance.motion import Motion, sample
 from dancetutor_cli.dance.physics.blend import Blend
 from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, Wishes, through_ragdoll
 from dancetutor_cli.dance.physics.style import PARTS, Spring, Style, load_style
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.formats.captured import read_source
 from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.files import write_atomic
@@ -57,7 +57,6 @@ LOOSE = (
 )
 LINE = 140  # letters of a line of the page
 DRAWN = 60  # values of a curve that are kept
-Array = NDArray[np.float64]
 NEUTRAL = load_style("neutral")
 
 

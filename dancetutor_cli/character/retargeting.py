@@ -42,8 +42,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.physics.pipeline import RagdollResult, Wishes
     from dancetutor_cli.dance.quality.figures import MotionReport
     from dancetutor_cli.dance.rig.skeleton import Skeleton
-
-    Array = NDArray[np.float64]
+    from dancetutor_cli.dance.units import Array
 
 SCHEMA = b"1"  # of what a body's tuning depends on besides body and neutral style
 

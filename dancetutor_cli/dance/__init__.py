@@ -12,7 +12,7 @@ In this package "she" is the dancer, whatever character the user draws.
       |   ik.targets.ik_targets       computes where pelvis, shoulders, hands and feet must be
     ik.full_body.Targets
       |   ik.full_body.solve          solves all joints at once
-    ik.full_body.Poses              local rotations and root
+    units.Poses                     local rotations and root
       |   layers                      adds gaze, glances, breath, blinks, wrists, hands
     motion.Motion                   the input of files, films and the quality report
 

@@ -14,7 +14,7 @@ from dancetutor_cli.dance.face import add_face, mood_at, peeks_at, with_peeks
 from dancetutor_cli.dance.foot_path import Feet, both_feet
 from dancetutor_cli.dance.footwork.planner import plan_footwork
 from dancetutor_cli.dance.ik.ankles import ease_ankles, rolled_soles
-from dancetutor_cli.dance.ik.full_body import Poses, solve
+from dancetutor_cli.dance.ik.full_body import solve
 from dancetutor_cli.dance.ik.targets import free_hands, translated
 from dancetutor_cli.dance.layers import Activity, add_fingers, add_layers, curls, glances_at, hand_use, look
 from dancetutor_cli.dance.motion import Motion
@@ -35,12 +35,13 @@ from dancetutor_cli.dance.pieces import (
     refined,
 )
 from dancetutor_cli.dance.plan import Plan
+from dancetutor_cli.dance.rig.body import mass_of
 from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, default_settings, state_weights
 from dancetutor_cli.dance.settings_feet import WalkSettings
-from dancetutor_cli.dance.settle import heels_may_rise, mass_of, settle, targets_at
+from dancetutor_cli.dance.settle import heels_may_rise, settle, targets_at
 from dancetutor_cli.dance.smoothing import sample_path
 from dancetutor_cli.dance.trajectory.posture import Trajectory, stepping
-from dancetutor_cli.dance.units import Array
+from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.dance.waits import waiting_at
 from dancetutor_cli.feet.play import DroppedNote, without_unplayable
 from dancetutor_cli.run.errors import DancetutorError

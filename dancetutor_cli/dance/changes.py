@@ -13,14 +13,13 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from dancetutor_cli.dance.foot_path import Feet, FootPath
-from dancetutor_cli.dance.ik.full_body import Poses
 from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.settings import WHOLE, Span, state_weights
 from dancetutor_cli.dance.trajectory.height import Height
 from dancetutor_cli.dance.trajectory.posture import Trajectory
-from dancetutor_cli.dance.units import Array
+from dancetutor_cli.dance.units import Array, Poses
 
 _PATHS = {field.name for field in fields(Trajectory)} - {
     "times",
@@ -61,7 +60,7 @@ def mean_of_states(skeleton: Skeleton, poses: Sequence[Poses], weights: Array) -
     feet = [feet_of(skeleton, p.rotations, p.root) for p in poses]
     places = np.einsum("fk,kfsx->fsx", weights, np.array([f.places for f in feet]))
     turns = quat.mean([f.turns for f in feet], weights)
-    mean = Poses(*repinned(skeleton, (rotations, root), AnkleTracks(places, turns)))
+    mean = repinned(skeleton, Poses(rotations, root), AnkleTracks(places, turns))
     whole = weights.max(axis=1) >= WHOLE  # nothing is mixed in these frames
     for k, pose in enumerate(poses):
         own = whole & (weights[:, k] >= WHOLE)

@@ -20,7 +20,7 @@ from dancetutor_cli.dance.pieces import MARGIN, OVERLAP, Keys, Piece, RagdollSty
 from dancetutor_cli.dance.plan import FootTrack, Plan
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.smoothing import smooth
-from dancetutor_cli.dance.units import Array, Flags
+from dancetutor_cli.dance.units import Array, Flags, Poses
 
 CROSSING = 1.0  # seconds of the blend between an end and the dance
 OWN_FEET = 0.8  # below this share of the dance, the feet are the feet of the end
@@ -153,7 +153,7 @@ def _crossing(dance: Motion, which: Flags, other: Motion, share: Array) -> Keys:
     return times, rotations, root
 
 
-def _mixed(dance: Motion, poses: Sequence[Array], others: Sequence[Array], share: Array) -> tuple[Array, Array]:
+def _mixed(dance: Motion, poses: Sequence[Array], others: Sequence[Array], share: Array) -> Poses:
     """Mix poses of the dance, by its share, with other poses. The feet are the feet of the other poses. The two motions
     differ only where a foot is on its way to a step that is left out; such a foot turns back.
     """
@@ -169,4 +169,4 @@ def _mixed(dance: Motion, poses: Sequence[Array], others: Sequence[Array], share
     rotations = quat.slerp(others[0], poses[0], share[:, None])
     toes = [skeleton.index(f"{side}_metatarsal") for side in "lr"]
     rotations[:, toes] = quat.slerp(others[0][:, toes], poses[0][:, toes], own)
-    return repinned(skeleton, (rotations, others[1] + share[:, None] * (poses[1] - others[1])), feet)
+    return repinned(skeleton, Poses(rotations, others[1] + share[:, None] * (poses[1] - others[1])), feet)

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context
-from dancetutor_cli.dance.ik.full_body import Poses
 from dancetutor_cli.dance.ik.targets import lately
 from dancetutor_cli.dance.layers import Glances
 from dancetutor_cli.dance.plan import Plan, Step, Swing, chance_of
@@ -26,7 +25,7 @@ from dancetutor_cli.dance.settings_body import FaceSettings, LayerSettings
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.trajectory.height import tempo_factor
 from dancetutor_cli.dance.trajectory.posture import Trajectory
-from dancetutor_cli.dance.units import Array
+from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.dance.waits import Song, slowly, song_of
 
 ACROSS = np.array([1.0, 0.0, 0.0])

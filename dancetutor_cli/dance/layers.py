@@ -8,7 +8,6 @@ from itertools import pairwise
 import numpy as np
 
 from dancetutor_cli.dance.context import Context, hold_share
-from dancetutor_cli.dance.ik.full_body import Poses
 from dancetutor_cli.dance.ik.targets import lately
 from dancetutor_cli.dance.plan import Plan, Swing, Walk, chance_of
 from dancetutor_cli.dance.rig import quaternion as quat
@@ -21,7 +20,7 @@ from dancetutor_cli.dance.smoothing import sample_path, smooth
 from dancetutor_cli.dance.trajectory.facing import screen_yaw
 from dancetutor_cli.dance.trajectory.height import tempo_factor
 from dancetutor_cli.dance.trajectory.posture import Trajectory
-from dancetutor_cli.dance.units import Array
+from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.dance.waits import WaitMotion
 
 # Head and eyes: after all other movements they turn to the screen, as far as a neck can (thesis 5.7).

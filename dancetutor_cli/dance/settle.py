@@ -15,7 +15,7 @@ import numpy as np
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.foot_path import Feet, both_feet
 from dancetutor_cli.dance.ik.ankles import giving_knees
-from dancetutor_cli.dance.ik.full_body import Poses, Targets, solve
+from dancetutor_cli.dance.ik.full_body import Targets, solve
 from dancetutor_cli.dance.ik.targets import ik_targets
 from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.rig import quaternion as quat
@@ -25,7 +25,7 @@ from dancetutor_cli.dance.smoothing import cubic, sample_path, smooth, smooth_pa
 from dancetutor_cli.dance.trajectory.balance import rotation_zmp_offset
 from dancetutor_cli.dance.trajectory.legs import push_off, raised
 from dancetutor_cli.dance.trajectory.posture import RoughBake, Trajectory, body_trajectory
-from dancetutor_cli.dance.units import Array
+from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.dance.waits import waiting_at
 from dancetutor_cli.feet.limbs import Limb, Part
 
@@ -103,11 +103,6 @@ def targets_at(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], contex
     at, feet = sampled
     up = sample_path(body.heels, body.times, at) + waiting_at(plan, at, context).heels
     return ik_targets(plan, body, raised(feet, up), at, context)
-
-
-def mass_of(skeleton: Skeleton, poses: Poses) -> Array:
-    """Return the centre of mass (f, 3) of solved frames."""
-    return centre_of_mass(skeleton, *world_transforms(skeleton, poses.rotations, poses.root))
 
 
 def hips_of(skeleton: Skeleton, poses: Poses) -> Array:

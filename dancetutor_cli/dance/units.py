@@ -1,11 +1,11 @@
-"""Types of the dance: arrays of numbers, and the units of the motion's settings as types of their fields.
+"""Types of the dance: arrays of numbers, poses, and the units of the motion's settings as types of their fields.
 
 A number of a file outside its bounds is refused: bounds catch slips ("90" seconds for "0.90"), not styles.
 """
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,6 @@ from dancetutor_cli.run.schema import Bounds
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-Poses = tuple[Array, Array]  # local rotations (f, j, 4) and root (f, 3)
 PANEL = 0.28  # metres, width of one panel
 
 Metres = Annotated[float, Bounds(0, 20, "metres")]
@@ -28,3 +27,10 @@ DegreesPerSecond = Annotated[float, Bounds(0, 1000, "degrees per second")]
 DegreesPerMetre = Annotated[float, Bounds(0, 1000, "degrees per metre")]
 Ratio = Annotated[float, Bounds(0, 1000)]  # a part of something, a factor, a weight: without a unit
 Count = Annotated[float, Bounds(0, 1000)]  # of things
+
+
+class Poses(NamedTuple):
+    """A skeleton in f frames: local rotations (f, j, 4), unit quaternions, and the root's place (f, 3), metres."""
+
+    rotations: Array
+    root: Array

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.smoothing import low_pass, sample_path
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.scene.scene import PANEL, Scene
 from dancetutor_cli.film.work.motion_film import ALONG, FAR, FOCAL, LOOK, floor_under
 from dancetutor_cli.page.content import pack_body, pack_motion, pack_stage
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.dance.motion import Motion
 
-Array = NDArray[np.float64]
 RATE = 60.0  # keys a second of points and skeleton
 STEP = 1e-3  # step of the rounded coordinates of points and skeleton, metres
 

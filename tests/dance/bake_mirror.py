@@ -12,7 +12,6 @@ from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play
 
-Array = NDArray[np.float64]
 OTHER = np.array([Limb.RIGHT_FOOT, Limb.LEFT_FOOT, Limb.RIGHT_HAND, Limb.LEFT_HAND], dtype=np.int8)
 PARTS = {
     "root": ("HumanoidRoot",),

@@ -6,15 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import local_rotations, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.formats.bvh import write_bvh
 
-Array = NDArray[np.float64]
 TRUNK = ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4", "skullbase")
 ARM, LEG = ("sternoclavicular", "shoulder", "elbow", "radiocarpal"), ("hip", "knee", "talocrural", "metatarsal")
 

@@ -8,9 +8,9 @@ from scipy.spatial.transform import Rotation
 
 from dancetutor_cli.dance.foot_path import FootPath
 from dancetutor_cli.dance.ik.ankles import ease_ankles
-from dancetutor_cli.dance.ik.full_body import Poses
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import beyond, dancer_skeleton, excess, within
+from dancetutor_cli.dance.units import Poses
 
 SKELETON = dancer_skeleton()
 

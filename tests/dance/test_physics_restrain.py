@@ -5,6 +5,7 @@ import numpy as np
 from dancetutor_cli.dance.physics.repin import feet_of, repinned, restrained
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import LIMITS, beyond, dancer_skeleton
+from dancetutor_cli.dance.units import Poses
 
 SKELETON = dancer_skeleton()
 TIMES = np.arange(241) / 60
@@ -42,7 +43,7 @@ def test_a_leg_that_a_rising_hip_stretches_does_not_snap_straight() -> None:
     low = np.tile(skeleton.rest[0], (frames, 1))
     feet = feet_of(skeleton, still, low - [0.0, 0.05, 0.0])  # of a body 5 cm lower: their legs are straight
     rises = low - [0.0, 0.10, 0.0] + np.linspace(0.0, 0.12, frames)[:, None] * [0.0, 1.0, 0.0]
-    rotations, root = repinned(skeleton, (still, rises), feet)
+    rotations, root = repinned(skeleton, Poses(still, rises), feet)
     ankles = feet_of(skeleton, rotations, root).places
     np.testing.assert_allclose(ankles, feet.places, atol=1e-4)
     knee = np.degrees(quat.angle_between(rotations[:, skeleton.index("l_knee")], quat.IDENTITY))

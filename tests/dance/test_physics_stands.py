@@ -19,6 +19,7 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.limbs import arm_in_torso
 from dancetutor_cli.dance.rig.skeleton import beyond, dancer_skeleton, excess
+from dancetutor_cli.dance.units import Poses
 from dancetutor_cli.formats.captured import read_source
 
 SKELETON = dancer_skeleton()
@@ -84,7 +85,7 @@ def test_a_leg_swivels_over_a_foot_that_is_turned_too_far() -> None:
     motion = phrase(1.0)
     feet = feet_of(SKELETON, motion.rotations, motion.root)
     turned = AnkleTracks(feet.places, quat.multiply(quat.from_axis_angle(Y, np.radians(52.0)), feet.turns))
-    poses = repinned(SKELETON, (motion.rotations, motion.root), turned)
+    poses = repinned(SKELETON, Poses(motion.rotations, motion.root), turned)
     names = [f"{side}_talocrural" for side in "lr"]
     assert max(beyond(SKELETON, n, poses[0][:, SKELETON.index(n)]).max() for n in names) > 4
     flat = np.ones((len(motion.times), 2), dtype=bool)
@@ -105,7 +106,7 @@ def test_arms_come_out_of_the_trunk_and_no_further() -> None:
         joints = world_transforms(SKELETON, turns, motion.root)[0]
         return np.maximum(*(arm_in_torso(SKELETON, joints, side) for side in "lr"))
 
-    made = push_arms_out(SKELETON, (rotations, motion.root), motion.times)
+    made = push_arms_out(SKELETON, Poses(rotations, motion.root), motion.times)
     assert depths(rotations).max() > 0.03 and depths(made).max() < 0.005
     free = depths(rotations) < -0.06
     assert free.any() and np.abs(made[free] - rotations[free]).max() < 0.05, "arms that are away from it stay"

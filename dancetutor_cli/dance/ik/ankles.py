@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import HALF_PANEL
 from dancetutor_cli.dance.foot_path import Feet, FootPath
-from dancetutor_cli.dance.ik.full_body import Poses, Targets
+from dancetutor_cli.dance.ik.full_body import Targets
 from dancetutor_cli.dance.plan import Pivot, Plan, Swing
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import points_in_world, sole_points, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond, within
 from dancetutor_cli.dance.smoothing import smooth
-from dancetutor_cli.dance.units import Array
+from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.feet.limbs import Part
 from dancetutor_cli.feet.play import runs
 

@@ -28,7 +28,7 @@ from dancetutor_cli.dance.rig.limbs import (
     unit,
 )
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.dance.units import Array
+from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
 # The kernels of the full-body inverse kinematics, on plain arrays, grouped by subject.
@@ -334,13 +334,6 @@ class Targets:
     toes: Array
     knees: Array
     pull: Array | None = None
-
-
-class Poses(NamedTuple):
-    """The f solved frames: local rotations (f, j, 4), unit quaternions, and the root's place (f, 3), metres."""
-
-    rotations: Array
-    root: Array
 
 
 def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.4) -> Poses:

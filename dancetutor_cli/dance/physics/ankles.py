@@ -35,12 +35,12 @@ def eased_ankles(
     """
     for _ in range(ROUNDS):
         poses = _swivelled(skeleton, poses, feet, times)
-        feet, turned = _turned(skeleton, poses[0], feet, plants, held)
+        feet, turned = _turned(skeleton, poses.rotations, feet, plants, held)
         if not turned:
             break
         poses = repinned(skeleton, poses, feet)
     for _ in range(ROUNDS):
-        feet, leans = _leaning(skeleton, poses[0], feet, held, times)
+        feet, leans = _leaning(skeleton, poses.rotations, feet, held, times)
         if not leans:
             break
         poses = repinned(skeleton, poses, feet)
@@ -51,7 +51,7 @@ def eased_ankles(
 
 def _swivelled(skeleton: Skeleton, poses: Poses, feet: AnkleTracks, times: Array) -> Poses:
     """Return poses whose legs have turned by the excess of their ankles, as far as the hips allow."""
-    rotations = poses[0].copy()
+    rotations = poses.rotations.copy()
     places, world = world_transforms(skeleton, *poses)
     for side in "lr":
         hip, ankle = (skeleton.index(f"{side}_{name}") for name in ("hip", "talocrural"))
@@ -68,7 +68,7 @@ def _swivelled(skeleton: Skeleton, poses: Poses, feet: AnkleTracks, times: Array
             past = np.radians(np.maximum(beyond(skeleton, f"{side}_hip", rotations[:, hip]), 0.0))
             less = np.minimum(upper_envelope(times, past, SWIVELS), np.abs(by))
             by = by - np.sign(by) * less
-    return repinned(skeleton, (rotations, poses[1]), feet)
+    return repinned(skeleton, Poses(rotations, poses.root), feet)
 
 
 def _twisted(turns: Array) -> Array:

@@ -29,10 +29,10 @@ def clear_arms(skeleton: Skeleton, given: Array, poses: Poses, feet: AnkleTracks
 
     given : local rotations (f, j, 4) of the input; feet : the ends of the legs; times : (f,) seconds
     """
-    rotations = poses[0]
-    before = _depths(skeleton, (given, poses[1]), feet)
+    rotations = poses.rotations
+    before = _depths(skeleton, Poses(given, poses.root), feet)
     for _ in range(APART_ROUNDS):
-        deep = _depths(skeleton, (rotations, poses[1]), feet)
+        deep = _depths(skeleton, Poses(rotations, poses.root), feet)
         past = (deep > ALLOWED) & (deep > before + DEEPER)
         if not past.any():
             break
@@ -51,9 +51,9 @@ def push_arms_out(skeleton: Skeleton, poses: Poses, times: Array) -> Array:
     |g|^2, in the direction in which its arm comes out soonest: d is the depth, g its derivative by the turn. The turn
     comes and goes smoothly.
     """
-    rotations = poses[0].copy()
+    rotations = poses.rotations.copy()
     for _ in range(OUT_ROUNDS):
-        places, world = world_transforms(skeleton, rotations, poses[1])
+        places, world = world_transforms(skeleton, rotations, poses.root)
         past = np.maximum(_arm_depths(skeleton, places) - ALLOWED / 2, 0.0)
         if past.max(initial=0.0) <= ALLOWED / 2:
             break

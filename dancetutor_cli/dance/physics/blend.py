@@ -216,7 +216,7 @@ def mean_poses(poses: Sequence[Poses], shares: Array) -> Poses:
     if len(poses) == 1:
         return poses[0]
     root = sum(shares[:, k, None] * one for k, (_, one) in enumerate(poses))
-    return quat.mean([rotations for rotations, _ in poses], shares), np.asarray(root)
+    return Poses(quat.mean([rotations for rotations, _ in poses], shares), np.asarray(root))
 
 
 def mean_distances(runs: Sequence[Distances], times: Array, shares: Array) -> Distances:

@@ -31,7 +31,7 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import local_rotations, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import smooth
-from dancetutor_cli.dance.units import Array
+from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.feet.play import runs
 from dancetutor_cli.run.errors import FileError
 
@@ -101,9 +101,9 @@ def on_body(captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton)
     hips = [quat.rotate(world[:, 0], body.offsets[body.index(f"{s}_hip")]) for s in "lr"]
     middle = (given.place("l_hip") + given.place("r_hip")) / 2 + feet.lift[:, None] * _UP
     root = middle - (hips[0] + hips[1]) / 2
-    rotations, root = repinned(body, (rotations, root), feet.feet)
+    rotations, root = repinned(body, Poses(rotations, root), feet.feet)
     start = captured.times - captured.times[0]
-    _check(given, body, (rotations, root))
+    _check(given, body, Poses(rotations, root))
     return Motion(body, captured.fps, start, quat.continuous(rotations), root, (), notes=captured.notes)
 
 
@@ -127,7 +127,7 @@ def upright(captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton)
     return given.scale * quat.rotate(given.turn, captured.places)
 
 
-def _check(given: _Upright, body: Skeleton, poses: tuple[Array, Array]) -> None:
+def _check(given: _Upright, body: Skeleton, poses: Poses) -> None:
     """Raise FileError if the segments of the body do not point in the directions of the captured ones."""
     places, _ = world_transforms(body, *poses)
     paths = _paths(given.captured, given.joints)

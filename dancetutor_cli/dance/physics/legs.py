@@ -7,7 +7,7 @@ import numpy as np
 from dancetutor_cli.dance.physics.plants import Plants
 from dancetutor_cli.dance.physics.repin import AnkleTracks, Leg, repinned
 from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.dance.rig.body import centre_of_mass, world_transforms
+from dancetutor_cli.dance.rig.body import mass_of
 from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond
 from dancetutor_cli.dance.smoothing import cubic, low_pass, upper_envelope
 from dancetutor_cli.dance.units import Array, Poses
@@ -24,14 +24,14 @@ RISES, RISE = 12, 0.0008  # rounds of rising; metres in each round for each degr
 
 
 def soft_legs(
-    skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks, held: Array, times: Array
+    skeleton: Skeleton, poses: Poses, feet: AnkleTracks, held: Array, times: Array
 ) -> tuple[Array, AnkleTracks]:
     """Return root (f, 3) and feet with which no knee pops.
 
     poses : local rotations (f, j, 4), of which only the pelvis is used, and root (f, 3); held : (f, 2) how far feet
     stand
     """
-    pelvis, root = poses[0][:, 0], poses[1].copy()
+    pelvis, root = poses.rotations[:, 0], poses.root.copy()
     legs = [Leg(skeleton, s) for s in "lr"]
     hips = [quat.rotate(pelvis, skeleton.offsets[leg.hip]) for leg in legs]
     sink, reach = np.zeros(len(root)), []
@@ -55,7 +55,7 @@ def soft_legs(
     return root, AnkleTracks(places, feet.turns)
 
 
-def risen(skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks, plants: Plants, times: Array) -> Array:
+def risen(skeleton: Skeleton, poses: Poses, feet: AnkleTracks, plants: Plants, times: Array) -> Array:
     """The root (f, 3), so high that ankles of feet with held heels are within their limits, as far as legs reach.
 
     On a body with long thighs and short shanks, a captured squat would bend the ankles too far.
@@ -72,7 +72,7 @@ def risen(skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks, pla
         root = root + up[:, None] * quat.UP
         need = np.minimum(too_high(skeleton, (rotations[:, 0], root), feet, BENT), up)
         root -= need[:, None] * quat.UP
-        rotations, root = repinned(skeleton, (rotations, root), feet)
+        rotations, root = repinned(skeleton, Poses(rotations, root), feet)
     return root
 
 
@@ -118,11 +118,6 @@ SINKS = 1.5  # seconds over which she stands lower than the style's motion
 RATE = 120.0  # per second, at which height is filtered
 
 
-def mass_of(skeleton: Skeleton, poses: Poses) -> Array:
-    """Return the centre of mass (f, 3)."""
-    return centre_of_mass(skeleton, *world_transforms(skeleton, *poses))
-
-
 def restore_mass_path(
     skeleton: Skeleton, poses: Poses, feet: AnkleTracks, path: tuple[Array, Array], share: Array, free: Array
 ) -> Poses:
@@ -135,17 +130,17 @@ def restore_mass_path(
     rotations, root = poses
     stands: Array | None = None
     for _ in range(ROUNDS):
-        poses = repinned(skeleton, (rotations, root), feet)
+        poses = repinned(skeleton, Poses(rotations, root), feet)
         off = mass_of(skeleton, poses) - wanted
         if stands is None:
             stands = free * _slowly(times, off[:, 1])
-            raised = poses[1] - share[:, None] * (off - stands[:, None] * quat.UP)
+            raised = poses.root - share[:, None] * (off - stands[:, None] * quat.UP)
             need = too_high(skeleton, (rotations[:, 0], raised), feet, BENT)
             higher = np.maximum(stands, 0.0)
             stands -= np.minimum(upper_envelope(times, np.minimum(need, higher), SINKS), higher)
         off[:, 1] -= stands
-        root = poses[1] - share[:, None] * off
-    return repinned(skeleton, (rotations, root), feet)
+        root = poses.root - share[:, None] * off
+    return repinned(skeleton, Poses(rotations, root), feet)
 
 
 def _slowly(times: Array, values: Array) -> Array:

@@ -13,7 +13,7 @@ from dancetutor_cli.dance.motion import Distances, Motion
 from dancetutor_cli.dance.physics.ankles import eased_ankles
 from dancetutor_cli.dance.physics.arms import clear_arms, push_arms_out
 from dancetutor_cli.dance.physics.blend import Blend, mean_distances, mean_poses
-from dancetutor_cli.dance.physics.legs import mass_of, restore_mass_path, risen, soft_legs
+from dancetutor_cli.dance.physics.legs import restore_mass_path, risen, soft_legs
 from dancetutor_cli.dance.physics.plants import Plants, flatten_toes, let_go, planted, tidied
 from dancetutor_cli.dance.physics.pushes import (
     Actor,
@@ -34,7 +34,7 @@ from dancetutor_cli.dance.physics.simulation import Ragdoll, follow_all, simulat
 from dancetutor_cli.dance.physics.stands import keep_feet_still
 from dancetutor_cli.dance.physics.style import Style
 from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.dance.rig.body import mass_of, world_transforms
 from dancetutor_cli.dance.rig.skeleton import beyond
 from dancetutor_cli.dance.smoothing import cubic, smooth, upper_envelope
 from dancetutor_cli.dance.units import Array, Poses
@@ -121,19 +121,19 @@ def through_ragdoll(motion: Motion, blend: Blend, wishes: Wishes = Wishes()) -> 
     if limits:
         rotations = restrained(given.skeleton, rotations, given.times, free * calm)
     if wishes.own_legs and not (wishes.pushes or wishes.trips or "feet" in wishes.corrections):
-        return RagdollResult(_with_poses(given, (rotations, root)), distances)
+        return RagdollResult(_with_poses(given, Poses(rotations, root)), distances)
     feet = feet_of(given.skeleton, given.rotations, given.root)
     goal, feet, missed = recovered(given, feet, root, wishes.pushes)
     if wishes.corrections:
-        poses, plants = _corrected(goal, (rotations, root), feet, runs[0], wishes.corrections, limits)
+        poses, plants = _corrected(goal, Poses(rotations, root), feet, runs[0], wishes.corrections, limits)
     else:
-        poses, plants = _put_back(goal, (rotations, root), feet, calm, free), None
+        poses, plants = _put_back(goal, Poses(rotations, root), feet, calm, free), None
     noted = with_push_notes(_with_poses(goal, poses), goal.root, wishes.pushes, missed)
     return RagdollResult(noted, distances, plants)
 
 
 def _with_poses(motion: Motion, poses: Poses) -> Motion:
-    return replace(motion, rotations=quat.continuous(poses[0]), root=poses[1])
+    return replace(motion, rotations=quat.continuous(poses.rotations), root=poses.root)
 
 
 def _put_back(goal: Motion, poses: Poses, feet: AnkleTracks, calm: Array, free: Array) -> Poses:
@@ -144,8 +144,8 @@ def _put_back(goal: Motion, poses: Poses, feet: AnkleTracks, calm: Array, free: 
     """
     skeleton = goal.skeleton
     rotations = clear_arms(skeleton, goal.rotations, poses, feet, goal.times)
-    path = (goal.times, mass_of(skeleton, (goal.rotations, goal.root)))
-    poses = restore_mass_path(skeleton, (rotations, poses[1]), feet, path, calm, free)
+    path = (goal.times, mass_of(skeleton, Poses(goal.rotations, goal.root)))
+    poses = restore_mass_path(skeleton, Poses(rotations, poses.root), feet, path, calm, free)
     if goal.grips:  # arms that move to the bar have mass
         poses = restore_mass_path(skeleton, pin_hands(goal, poses, feet), feet, path, calm, free)
     return pin_hands(goal, _possible(goal, poses, feet), feet)
@@ -171,24 +171,24 @@ def _corrected(
         feet = flatten_toes(skeleton, rotations, feet, plants, held)
     sunk = root
     if "knees" in corrections:
-        sunk, feet = soft_legs(skeleton, (rotations, root), feet, held, times)
-    poses = repinned(skeleton, (rotations, sunk), feet)
+        sunk, feet = soft_legs(skeleton, Poses(rotations, root), feet, held, times)
+    poses = repinned(skeleton, Poses(rotations, sunk), feet)
     if plants is not None:
-        up = risen(skeleton, poses, feet, plants, times) - poses[1]
-        poses = repinned(skeleton, (rotations, poses[1] + up), feet)
+        up = risen(skeleton, poses, feet, plants, times) - poses.root
+        poses = repinned(skeleton, Poses(rotations, poses.root + up), feet)
         poses, feet, plants = eased_ankles(skeleton, poses, feet, plants, held, times)
         if "knees" in corrections:  # turned feet need other lengths of their legs
-            sunk, feet = soft_legs(skeleton, (poses[0], root + up), feet, held, times)
-            poses = repinned(skeleton, (poses[0], sunk), feet)
+            sunk, feet = soft_legs(skeleton, Poses(poses.rotations, root + up), feet, held, times)
+            poses = repinned(skeleton, Poses(poses.rotations, sunk), feet)
             poses, feet, plants = eased_ankles(skeleton, poses, feet, plants, held, times)
     turned, place = pin_hands(goal, poses, feet)
     if "limits" in corrections:
-        turned = push_arms_out(skeleton, (turned, place), times)
+        turned = push_arms_out(skeleton, Poses(turned, place), times)
     if plants is not None:
         flatten_toes(skeleton, turned, feet, plants, held)
         if limits:
             turned = restrained(skeleton, turned, times)
-    return (turned, place), plants
+    return Poses(turned, place), plants
 
 
 def _undisturbed(motion: Motion, wishes: Wishes) -> Array:
@@ -205,12 +205,14 @@ def _possible(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
     for _ in range(GIVING_BACK):
         past = np.zeros(len(motion.times))
         for name in (f"{s}_{n}" for s in "lr" for n in ("hip", "talocrural")):
-            past = np.maximum(past, beyond(motion.skeleton, name, poses[0][:, motion.skeleton.index(name)]) > 0.5)
+            turns = poses.rotations[:, motion.skeleton.index(name)]
+            past = np.maximum(past, beyond(motion.skeleton, name, turns) > 0.5)
         if not past.any():
             break
         share = 0.3 * np.minimum(upper_envelope(motion.times, past, 0.2), 1.0)
-        rotations = quat.slerp(poses[0], motion.rotations, share[:, None])
-        poses = repinned(motion.skeleton, (rotations, poses[1] + share[:, None] * (motion.root - poses[1])), feet)
+        rotations = quat.slerp(poses.rotations, motion.rotations, share[:, None])
+        root = poses.root + share[:, None] * (motion.root - poses.root)
+        poses = repinned(motion.skeleton, Poses(rotations, root), feet)
     return poses
 
 
@@ -242,7 +244,7 @@ def _followed(motion: Motion, style: Style, wishes: Wishes, blows: Sequence[Blow
     shown = tuple(p for p in points if not p.extra)
     apart = place_points(skeleton, bones, shown, *given) - place_points(skeleton, bones, shown, *made)
     distances = Distances(tuple(p.name for p in shown), at[first:], 100.0 * np.linalg.norm(apart[first:], axis=2))
-    return _Run(made, distances, at, soles)
+    return _Run(Poses(*made), distances, at, soles)
 
 
 def _at_keys(plants: Plants, at: Array, times: Array) -> Plants:
@@ -252,11 +254,11 @@ def _at_keys(plants: Plants, at: Array, times: Array) -> Plants:
     return tidied(Plants(plants.heel[nearest], plants.ball[nearest]), rate)
 
 
-def _read(at: Array, rotations: Array, root: Array, times: Array) -> tuple[Array, Array]:
+def _read(at: Array, rotations: Array, root: Array, times: Array) -> Poses:
     """Return simulated frames at the keys' times: cubics, because straight lines between steps would jerk."""
     flat = quat.continuous(rotations).reshape(len(at), -1)
     values = cubic(at, np.concatenate((flat, root), axis=1), times)
-    return quat.normalize(values[:, :-3].reshape(len(times), -1, 4)), np.ascontiguousarray(values[:, -3:])
+    return Poses(quat.normalize(values[:, :-3].reshape(len(times), -1, 4)), np.ascontiguousarray(values[:, -3:]))
 
 
 def _resampled(motion: Motion, at: Array, sample_rate: float) -> tuple[Array, Array]:

@@ -15,7 +15,7 @@ from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import sole_points, world_transforms
 from dancetutor_cli.dance.smoothing import smooth
-from dancetutor_cli.dance.units import Array
+from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 
 if TYPE_CHECKING:
@@ -350,7 +350,7 @@ def disturbed(motion: Motion, pushes: Sequence[Push], trips: Sequence[Stumble]) 
         feet, force, at, side = catch_foot(motion, feet, trip)
         blows.append((at, force))
         missed = missed_by_trip(motion, at, side)
-        rotations, root = repinned(motion.skeleton, (motion.rotations, motion.root), feet)
+        rotations, root = repinned(motion.skeleton, Poses(motion.rotations, motion.root), feet)
         name = ("left", "right")[side]
         note = f"tripped at {at:.3f} s: the {name} foot is caught"
         motion = without(replace(motion, rotations=rotations, root=root), missed, note, at)

@@ -43,9 +43,9 @@ def feet_of(skeleton: Skeleton, rotations: Array, root: Array) -> AnkleTracks:
     return AnkleTracks(positions[:, ankles], world[:, ankles])
 
 
-def repinned(skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks) -> tuple[Array, Array]:
+def repinned(skeleton: Skeleton, poses: Poses, feet: AnkleTracks) -> Poses:
     """Return the poses, local rotations (f, j, 4) and root (f, 3), with legs that end in `feet`."""
-    rotations, root = poses[0].copy(), poses[1].copy()
+    rotations, root = poses.rotations.copy(), poses.root.copy()
     ankles = [skeleton.index(f"{s}_talocrural") for s in "lr"]
     legs = [Leg(skeleton, s) for s in "lr"]
     goals = [feet.places[:, k] for k in (0, 1)]
@@ -62,7 +62,7 @@ def repinned(skeleton: Skeleton, poses: tuple[Array, Array], feet: AnkleTracks) 
         rotations[:, leg.knee] = knee
         shank = quat.multiply(thigh, knee)
         rotations[:, ankle] = quat.multiply(quat.conjugate(shank), feet.turns[:, k])
-    return rotations, root
+    return Poses(rotations, root)
 
 
 class Leg:
@@ -194,11 +194,11 @@ def pin_hands(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
         if not short.any():
             break
         back = HOLD_STEP * np.minimum(upper_envelope(motion.times, short, HOLD_SPAN), 1.0)
-        rotations = poses[0].copy()
+        rotations = poses.rotations.copy()
         rotations[:, body] = quat.slerp(rotations[:, body], motion.rotations[:, body], back[:, None])
-        root = poses[1] + back[:, None] * (motion.root - poses[1])
-        poses = repinned(skeleton, (rotations, root), feet)
-    return closed, poses[1]
+        root = poses.root + back[:, None] * (motion.root - poses.root)
+        poses = repinned(skeleton, Poses(rotations, root), feet)
+    return Poses(closed, poses.root)
 
 
 def _closed(skeleton: Skeleton, poses: Poses, given: tuple[Array, Array], share: Array) -> tuple[Array, Array]:
@@ -206,7 +206,7 @@ def _closed(skeleton: Skeleton, poses: Poses, given: tuple[Array, Array], share:
 
     given : places and turns of all joints of the input; share : (f, 2) how far hands hold the bar
     """
-    rotations = poses[0].copy()
+    rotations = poses.rotations.copy()
     places, turned = world_transforms(skeleton, *poses)
     short = np.zeros(len(rotations))
     bones = {bone.name: bone for bone in bones_of(skeleton)}
@@ -237,7 +237,7 @@ def _closed(skeleton: Skeleton, poses: Poses, given: tuple[Array, Array], share:
             rotations[held, joint] = turns[held]
             short[held & (beyond(skeleton, skeleton.names[joint], turns) > 0.5)] = 1.0
         short[held & far] = 1.0
-    joints, _ = world_transforms(skeleton, rotations, poses[1])
+    joints, _ = world_transforms(skeleton, rotations, poses.root)
     for k, side in enumerate("lr"):
         short[(share[:, k] > 0.0) & (arm_in_torso(skeleton, joints, side) > DEEP)] = 1.0
     return rotations, short

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton, dancer_skeleton
-from dancetutor_cli.dance.units import Array
+from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.run.kernels.compiling import njit
 
 # Forward kinematics for all frames at once, from local joint rotations to places in the world.
@@ -129,6 +129,11 @@ def centre_of_mass(skeleton: Skeleton, positions: Array, world: Array) -> Array:
     joints, masses, offsets = mass_points(skeleton)
     places = positions[:, joints] + quat.rotate(world[:, joints], offsets)
     return np.asarray(np.einsum("m,fmx->fx", masses, places))
+
+
+def mass_of(skeleton: Skeleton, poses: Poses) -> Array:
+    """Return the centre of mass (f, 3) of poses."""
+    return centre_of_mass(skeleton, *world_transforms(skeleton, *poses))
 
 
 # The points of the body that touch the pad: the sole corners of each foot, and the palms.

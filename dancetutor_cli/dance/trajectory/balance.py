@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.foot_path import Feet, FootPath
 from dancetutor_cli.dance.plan import LEAST_FLIGHT
@@ -25,10 +24,10 @@ from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_body import BodySettings, LayerSettings
 from dancetutor_cli.dance.smoothing import low_pass, sample_path, steady_spline
 from dancetutor_cli.dance.trajectory.height import span
+from dancetutor_cli.dance.units import Array, Flags
 
 # The standing soles, as a hull that must contain the zero-moment point.
 
-Array = NDArray[np.float64]
 ONE, TWO = np.pi / 2 * np.arange(2), np.pi / 4 * np.array([0.0, 1.0, -1.0])  # hull angles: of one sole, of two
 
 
@@ -222,7 +221,7 @@ def balanced_path(
         middle = middle + _shifted(feet, settings.wait.onto, np.interp(nodes, times, shift), slowness, rate)
     middle_weight = np.where(stepping, body.middle_weight_fast, body.middle_weight)
     weight = np.where(both, middle_weight, body.foot_weight)
-    flight: NDArray[np.bool_] = np.asarray(~down.any(axis=0))
+    flight: Flags = np.asarray(~down.any(axis=0))
     alone = np.asarray(down.any(axis=0)) & ~both
     near = np.where(alone & ~_brief(alone, body.commit_time * rate), body.commit, NEAR)
     near[[0, -1]] = END
@@ -279,7 +278,7 @@ def _carrying(feet: Feet, rate: float) -> Feet:
     return replace(feet[0], down=firm[0]), replace(feet[1], down=firm[1])
 
 
-def _brief(flags: NDArray[np.bool_], most: float) -> NDArray[np.bool_]:
+def _brief(flags: Flags, most: float) -> Flags:
     """Return the flags of runs (n,) that are at most `most` long."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8))).reshape(-1, 2)
     out = np.zeros(len(flags), dtype=bool)
@@ -317,7 +316,7 @@ def _zero_moment(path: Array, slowness: Array, rate: float) -> Array:
     return out
 
 
-def _tightened(want: _PathGoals, given: Support, zmp: Array, flight: NDArray[np.bool_]) -> _PathGoals:
+def _tightened(want: _PathGoals, given: Support, zmp: Array, flight: Flags) -> _PathGoals:
     """Return goals whose limits are moved inward by as much as a zero-moment point (n, 2) is beyond the given limits.
 
     Trembling above 10 Hz is not visible, and the quality report does not measure it. But some of it is needed to arrive
@@ -338,9 +337,7 @@ def _tightened(want: _PathGoals, given: Support, zmp: Array, flight: NDArray[np.
     return replace(want, support=narrowed)
 
 
-def _solved(
-    want: _PathGoals, flight: NDArray[np.bool_], slowness: Array, rate: float, body: BodySettings, what: str
-) -> Solution:
+def _solved(want: _PathGoals, flight: Flags, slowness: Array, rate: float, body: BodySettings, what: str) -> Solution:
     """Solve the path (n, 2), flat; both coordinates are unknowns of one programme, alternating."""
     support = want.support
     n = len(support.middle)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.motion import Bar, Grip
 from dancetutor_cli.dance.plan import Plan, Press, Turn
@@ -11,10 +10,10 @@ from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_arms import AcrossSettings, BarSettings, HandSettings
 from dancetutor_cli.dance.smoothing import Controller, follow, no_faster, smooth, smooth_path, upper_envelope
 from dancetutor_cli.dance.trajectory.legs import Course
+from dancetutor_cli.dance.units import Array
 
 # The bends and turns of the body for palms that go down to panels.
 
-Array = NDArray[np.float64]
 Presses = tuple[Press, ...]
 
 

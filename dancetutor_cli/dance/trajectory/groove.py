@@ -6,17 +6,15 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.plan import Move, Plan, Sidestep, Step, Swing, chance_of
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_body import GrooveSettings, LayerSettings
 from dancetutor_cli.dance.smoothing import smooth, smooth_path
+from dancetutor_cli.dance.units import Array
 
 # The dancer hears the music: between slow steps and in waits, knees and chest give a little on every beat.
-
-Array = NDArray[np.float64]
 
 
 @lru_cache(maxsize=8)

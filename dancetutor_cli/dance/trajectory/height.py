@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.clearance import reduction
 from dancetutor_cli.dance.plan import Jump, Plan, Swing, Walk
@@ -17,10 +16,9 @@ from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_body import BodySettings
 from dancetutor_cli.dance.settings_feet import JumpSettings
 from dancetutor_cli.dance.smoothing import smooth, smooth_path
+from dancetutor_cli.dance.units import Array, Flags
 
 # How low the dancer stands: on bent knees in streams, lower before and after jumps, and the lean in a jump.
-
-Array = NDArray[np.float64]
 
 
 LOWEST = 0.42  # part of the time between two landings at which the dancer is lowest
@@ -266,7 +264,7 @@ def _separate_flights(flights: Array) -> Array:
     return np.asarray(flights[keep])
 
 
-def _nodes(start: float, end: float, flights: Array) -> tuple[Array, NDArray[np.bool_]]:
+def _nodes(start: float, end: float, flights: Array) -> tuple[Array, Flags]:
     """Return node times, and for each interval between nodes whether it is flight."""
     times, flying = [np.array([start])], []
     edges = [(a, b, fly) for pair in zip([start, *flights[:, 1]], [*flights[:, 0], end], strict=True) for a, b, fly in
@@ -295,7 +293,7 @@ def _third(t: Array) -> Array:
 
 
 def _objective(
-    nodes: Array, flying: NDArray[np.bool_], in_flight: NDArray[np.bool_], wish: HeightWish, body: BodySettings
+    nodes: Array, flying: Flags, in_flight: Flags, wish: HeightWish, body: BodySettings
 ) -> BandedLeastSquares:
     n = len(nodes)
     wanted, above, firm = (np.interp(nodes, wish.times, x) for x in (wish.target, wish.above, wish.firm))
@@ -316,7 +314,7 @@ def _objective(
     return problem
 
 
-def _slopes(t: Array, x: Array, flying: NDArray[np.bool_]) -> Array:
+def _slopes(t: Array, x: Array, flying: Flags) -> Array:
     """Return slopes at the nodes: of the parabola next to flight, otherwise of the parabola through three nodes."""
     h = np.diff(t)
     rise = np.diff(x) / h

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.foot_path import Feet, FootPath
@@ -15,10 +14,9 @@ from dancetutor_cli.dance.rig.body import centre_of_mass, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.trajectory.height import time_for_jumps
+from dancetutor_cli.dance.units import Array
 
 # The path and direction of the body over the ground; its height, chest and arms follow from them.
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.foot_path import Feet
 from dancetutor_cli.dance.quadratic import BandedLeastSquares, differences
@@ -25,8 +24,8 @@ from dancetutor_cli.dance.rig.body import CHEST_INERTIA, PELVIS_INERTIA, leg_mas
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.settings_arms import ArmSettings
 from dancetutor_cli.dance.trajectory.legs import Course, above_at_rest, ankle_of, upright_hips
+from dancetutor_cli.dance.units import Array
 
-Array = NDArray[np.float64]
 LEAN_INERTIA = 0.070  # m^2 per mass of the body: a trunk that leans on its hips while its legs give way
 SWING_LEVER = 0.6  # metres that each hand moves to turn the body as much as a radian of the chest does
 HELD = 30.0  # factor of the effort of a trunk that gaze or hands hold

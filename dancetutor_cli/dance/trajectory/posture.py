@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.foot_path import Feet
@@ -41,9 +40,9 @@ from dancetutor_cli.dance.trajectory.height import (
 )
 from dancetutor_cli.dance.trajectory.legs import Course, above_at_rest, leg_room, raised, upright_hips
 from dancetutor_cli.dance.trajectory.momentum import counter_motion
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.dance.waits import waiting_at
 
-Array = NDArray[np.float64]
 BALANCE, HEIGHT = "the balance", "the height of the body"  # what `softened` may name
 STANDING_HEIGHT = 0.93  # metres, of the centre of mass
 LEAST_FALL, LEAST_SEEN = 0.4, 0.3  # parts of g that the ground carries at least, as omega goes by it

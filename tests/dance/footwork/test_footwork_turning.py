@@ -14,7 +14,6 @@ from dancetutor_cli.dance.footwork.flights import Flight, flown
 from dancetutor_cli.dance.footwork.footing import FREE_WINDOW, Footing
 from dancetutor_cli.dance.footwork.turning import turn_start
 from dancetutor_cli.dance.ik.ankles import ease_ankles
-from dancetutor_cli.dance.ik.full_body import Poses
 from dancetutor_cli.dance.ik.knees import knee_poles
 from dancetutor_cli.dance.motion import Contact
 from dancetutor_cli.dance.plan import FootTrack, Jump, Pivot, Plan, Step
@@ -24,6 +23,7 @@ from dancetutor_cli.dance.rig.skeleton import beyond, dancer_skeleton
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.dance.settle import heels_may_rise
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.units import Poses
 from dancetutor_cli.feet.limbs import Part
 
 SETTINGS = default_settings()

@@ -7,11 +7,11 @@ import pytest
 
 from dancetutor_cli.dance.foot_path import FootPath
 from dancetutor_cli.dance.ik.ankles import ease_ankles, giving_knees
-from dancetutor_cli.dance.ik.full_body import Poses
 from dancetutor_cli.dance.ik.knees import Hung, Legs
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import points_in_world, sole_points, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond, dancer_skeleton
+from dancetutor_cli.dance.units import Poses
 
 ACROSS, AHEAD = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 SKELETON = dancer_skeleton()

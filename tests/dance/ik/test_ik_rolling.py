@@ -7,13 +7,14 @@ import pytest
 
 from dancetutor_cli.dance.foot_path import Feet, FootPath
 from dancetutor_cli.dance.ik.ankles import may_roll, rolled_soles
-from dancetutor_cli.dance.ik.full_body import Poses, Targets, solve
+from dancetutor_cli.dance.ik.full_body import Targets, solve
 from dancetutor_cli.dance.motion import Contact
 from dancetutor_cli.dance.plan import FootTrack, Pivot, Plan, Step
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import place, sole_points, world_transforms
 from dancetutor_cli.dance.rig.skeleton import beyond, dancer_skeleton
 from dancetutor_cli.dance.trajectory.legs import ankle_of
+from dancetutor_cli.dance.units import Poses
 from dancetutor_cli.feet.limbs import Part
 
 SKELETON = dancer_skeleton()

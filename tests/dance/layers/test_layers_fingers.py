@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.dance.bake import bake
-from dancetutor_cli.dance.ik.full_body import Poses
 from dancetutor_cli.dance.layers import HandUse, add_fingers, curls
 from dancetutor_cli.dance.rig.body import SIDES, palm_normal, world_transforms
 from dancetutor_cli.dance.rig.skeleton import FINGERS, KNUCKLES, dancer_skeleton
 from dancetutor_cli.dance.settings import default_settings
+from dancetutor_cli.dance.units import Poses
 from tests.dance.bake_plays import LH, Event, L, R, chart, pad, play, stream
 
 NUMBERS = default_settings().fingers

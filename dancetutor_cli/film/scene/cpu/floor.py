@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.scene.cpu.raster import kernel
 from dancetutor_cli.film.scene.cpu.standing import SEVERAL, TILE, quantise
 from dancetutor_cli.film.scene.renderer import (
@@ -28,7 +29,6 @@ from dancetutor_cli.film.scene.renderer import (
 )
 from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
-Array = NDArray[np.float64]
 # Half a ring's width in the air, its change for a standing foot; the ring's distance from the sole, its change; metres.
 RING = (0.0040, 0.0060, 0.0220, -0.0090)
 OUTSIDE = 0.030  # greatest distance of a ring from the sole, metres

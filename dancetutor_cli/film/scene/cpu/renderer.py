@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.choices import Quality
 from dancetutor_cli.film.scene.camera import NEAR, Camera
 from dancetutor_cli.film.scene.cpu.floor import Live, Shadow, blur, draw_ground, occupied
@@ -45,8 +46,6 @@ from dancetutor_cli.film.scene.renderer import (
     skin_matrices,
 )
 from dancetutor_cli.film.scene.scene import SOLE_RADIUS, FrameState, Scene, check_state
-
-Array = NDArray[np.float64]
 
 
 class CpuRenderer:

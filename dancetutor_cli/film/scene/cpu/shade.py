@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.scene.cpu.fragments import (
     BLOCK,
     BLUE,
@@ -31,9 +32,6 @@ from dancetutor_cli.film.scene.cpu.fragments import (
 )
 from dancetutor_cli.film.scene.cpu.raster import BAND, Canvas, inner_kernel, kernel
 from dancetutor_cli.run.kernels.compiling import float32, njit, uint64
-
-Array = NDArray[np.float64]
-
 
 _CLOSE = 0.006  # greatest difference of depth, as a share of the depth, of samples with one colour
 _ROW, _COLUMN = 16, 0xFFFF  # shift of the row and mask of the column in a pixel's number; pictures are smaller

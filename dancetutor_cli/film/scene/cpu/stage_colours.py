@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.scene.look import StageLook
 from dancetutor_cli.film.scene.scene import PANEL, Stage, SurfaceKind, pad_extent
 from dancetutor_cli.run.schema import RGB
@@ -18,7 +19,6 @@ COLOURS = (
     "floor", "floor_far", "floor_line", "wall", "wall_top", "strip", "pad", "pad_side", "panel", "panel_blank",
     "groove", "arrow",
 )  # fmt: skip
-Array = NDArray[np.float64]
 _NUMBERS = len(COLOURS)  # row of the palette with tile and pool; the next row has the pad's middle and half size
 
 

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.scene.camera import NEAR, Camera
 from dancetutor_cli.film.scene.cpu.stage_colours import Paints, Place, paints_of, surface
 from dancetutor_cli.film.scene.look import Look
@@ -18,7 +19,6 @@ F32 = NDArray[np.float32]
 TILE = 8
 BAND = 64  # rows that are drawn together, so that large pictures need no more memory than small ones
 SEVERAL = -2  # the panel of a tile with several panels
-Array = NDArray[np.float64]
 
 
 class GroundTiles(NamedTuple):
