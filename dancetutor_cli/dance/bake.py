@@ -108,11 +108,6 @@ def bake(
     return bake_plan(plan, context, fps, section)
 
 
-def plan_of(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> Plan:
-    """Return only the moves of a play, without a body: when and where each limb moves. Arguments as in `bake`."""
-    return planned(timing, play, pad, **manner)[0]
-
-
 def planned(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> tuple[Plan, Context]:
     """Return the plan of a play, and the context in which it is danced. Arguments as in `bake`."""
     given, bar = manner.get("settings") or default_settings(), manner.get("bar", False)

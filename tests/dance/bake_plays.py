@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from dancetutor_cli.dance.bake import planned
 from dancetutor_cli.dance.context import Context, context_of
+from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.pads import Pad, load_pad
@@ -88,3 +90,8 @@ MEDLEY: list[Event] = [
     *stream(8.0, 24, 0.125),
     (12.0, {0: L, 3: R, 2: RH}), (13.5, {0: L}), (14.0, {3: R}),  # a hand
 ]  # fmt: skip
+
+
+def plan_of(timing: Any, danced: Play, panels: Pad, **manner: Any) -> Plan:
+    """Only the moves of a play, without its context. Arguments as in `planned`."""
+    return planned(timing, danced, panels, **manner)[0]

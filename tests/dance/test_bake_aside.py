@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bake_plays import Event, L, R, chart, pad, play
+from bake_plays import Event, L, R, chart, pad, plan_of, play
 
-from dancetutor_cli.dance.bake import bake, plan_of
+from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.footwork.footfalls import stand_at
 from dancetutor_cli.dance.footwork.walks import footfalls
 from dancetutor_cli.dance.plan import Jump, Plan, Sidestep, Step, Swing

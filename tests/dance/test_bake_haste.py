@@ -7,9 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from bake_plays import Event, L, R, chart, pad, play, stream
+from bake_plays import Event, L, R, chart, pad, plan_of, play, stream
 
-from dancetutor_cli.dance.bake import bake, plan_of
+from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.plan import LEAST_FLIGHT, Gallop, Step
 from dancetutor_cli.dance.quality.contact import plant_slides
 from dancetutor_cli.dance.quality.dynamics import balance_figures

@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from bake_mirror import mirrored_play
-from bake_plays import Event, L, R, chart, pad, play
+from bake_plays import Event, L, R, chart, pad, plan_of, play
 
-from dancetutor_cli.dance.bake import bake, plan_of
+from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.footwork.footfalls import stand_at, standing
 from dancetutor_cli.dance.plan import Plan, Sidestep, Swing
 from dancetutor_cli.dance.quality.report import report

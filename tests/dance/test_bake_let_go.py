@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from bake_plays import plan_of
 
-from dancetutor_cli.dance.bake import bake, plan_of
+from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.feet.play import Play

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 from bake_mirror import apart, mirrored_motion, mirrored_play
-from bake_plays import MEDLEY, L, R, chart, pad, play, stream
+from bake_plays import MEDLEY, L, R, chart, pad, plan_of, play, stream
 from dance_requests import solved_one
 
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.chart.timing import Timing
-from dancetutor_cli.dance.bake import bake, plan_of
+from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.dance.trajectory.height import jump_lean
 from dancetutor_cli.feet.pads import Pad, load_pad

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bake_plays import MEDLEY, chart, pad, play, stream
+from bake_plays import MEDLEY, chart, pad, plan_of, play, stream
 
 from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.dance import pieces
-from dancetutor_cli.dance.bake import bake, bake_plan, plan_of, planned
+from dancetutor_cli.dance.bake import bake, bake_plan, planned
 from dancetutor_cli.dance.foot_path import foot_path, shoe_path
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.performance import _pooled

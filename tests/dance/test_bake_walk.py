@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from bake_plays import L, R, chart, context, pad, play, stream
+from bake_plays import L, R, chart, context, pad, plan_of, play, stream
 
 from dancetutor_cli.chart.reader import load
-from dancetutor_cli.dance.bake import bake, plan_of
+from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.footwork.walks import side_of
 from dancetutor_cli.dance.gait import blended, blended_pose, gait_pose, load_gait, walking
 from dancetutor_cli.dance.motion import Motion, sample

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bake_plays import RH, Event, L, R, chart, pad, play, stream
+from bake_plays import RH, Event, L, R, chart, pad, plan_of, play, stream
 from scipy.spatial import ConvexHull
 
-from dancetutor_cli.dance.bake import bake, plan_of
+from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.plan import Jump, Pivot, Step
 from dancetutor_cli.dance.quality.figures import GROUND, Body, body_of
 from dancetutor_cli.dance.quality.posture import jump_knees, knee_angles, trunk_lean

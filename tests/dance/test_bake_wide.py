@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from bake_plays import L, R, chart, pad, play
+from bake_plays import L, R, chart, pad, plan_of, play
 
-from dancetutor_cli.dance.bake import bake, plan_of
+from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.motion import Contact, Motion
 from dancetutor_cli.dance.quality.figures import body_of
 from dancetutor_cli.dance.quality.posture import in_fast_jumps, jerk

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bake_plays import plan_of
 
-from dancetutor_cli.dance.bake import plan_of
 from dancetutor_cli.dance.context import grip_phrases
 from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.settings import default_settings

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bake_plays import plan_of
 
 from dancetutor_cli.chart.reader import load
-from dancetutor_cli.dance.bake import bake, plan_of
+from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.performance import as_heard
 from dancetutor_cli.dance.plan import Press
 from dancetutor_cli.feet.pads import load_pad

@@ -7,9 +7,8 @@ from dataclasses import replace
 import bake_plays
 import numpy as np
 import pytest
-from bake_plays import Event, L, R, chart, play
+from bake_plays import Event, L, R, chart, plan_of, play
 
-from dancetutor_cli.dance.bake import plan_of
 from dancetutor_cli.dance.clearance import gaps_at
 from dancetutor_cli.dance.context import context_of
 from dancetutor_cli.dance.foot_path import foot_path

@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bake_plays import plan_of
 
-from dancetutor_cli.dance.bake import bake, plan_of
+from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.foot_path import foot_path
 from dancetutor_cli.dance.plan import Plan, Shake, Swing
 from dancetutor_cli.dance.quality.figures import body_of

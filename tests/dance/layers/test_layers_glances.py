@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from bake_mirror import mirrored_play
-from bake_plays import Event, L, R, chart, context, pad, play, stream
+from bake_plays import Event, L, R, chart, context, pad, plan_of, play, stream
 
-from dancetutor_cli.dance.bake import bake, plan_of
+from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.foot_path import both_feet
 from dancetutor_cli.dance.layers import Glances, glances_at
 from dancetutor_cli.dance.quality.report import report

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from bake_mirror import mirrored_play
-from bake_plays import Event, L, R, chart, context, pad, play
+from bake_plays import Event, L, R, chart, context, pad, plan_of, play
 
-from dancetutor_cli.dance.bake import bake_plan, plan_of
+from dancetutor_cli.dance.bake import bake_plan
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.quality.figures import Body, body_of
