@@ -160,7 +160,7 @@ def test_workers_and_their_server_hear_of_no_ctrl_c_from_their_start(tmp_path: P
     (tmp_path / "hit.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n", encoding="utf-8")
     program = (
         "import signal\n"
-        "from tests.jobs.test_film_pool import Task, hears, open_workers\n"
+        "from tests.run.test_run_pool import Task, hears, open_workers\n"
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         f"workers = open_workers(2, lambda key, n: None, {common!r})\n"
         "workers.submit(Task(1, hears))\n"
@@ -179,7 +179,7 @@ def test_no_module_of_the_folder_one_stands_in_is_run(tmp_path: Path, common: st
     for name in ("multiprocessing", "signal", "numpy", "dancetutor_cli"):
         (tmp_path / f"{name}.py").write_text("open('run', 'w').close()\n")
     program = (
-        "from tests.jobs.test_film_pool import double, open_workers, Task\n"
+        "from tests.run.test_run_pool import double, open_workers, Task\n"
         f"workers = open_workers(2, print, {common!r})\n"
         "workers.submit(Task(1, double, (1,)))\n"
         "assert [done.result for done in workers.results()] == [2]\n"
@@ -199,7 +199,7 @@ def test_a_shared_module_that_raises_leaves_no_traceback(tmp_path: Path) -> None
     """Work that needs it says what is wrong, in one line; other work is done."""
     (tmp_path / "broken.py").write_text("raise RuntimeError('x.yaml: no such colour')\n", encoding="utf-8")
     program = (
-        "from tests.jobs.test_film_pool import Task, double, fetch, open_workers\n"
+        "from tests.run.test_run_pool import Task, double, fetch, open_workers\n"
         "workers = open_workers(2, lambda key, n: None, 'broken')\n"
         "workers.submit(Task(1, double, (1,)))\n"
         "workers.submit(Task(2, fetch, ('broken',)))\n"
