@@ -11,7 +11,6 @@ PACKAGE = Path(__file__).resolve().parent.parent / "dancetutor_cli"
 BANNED = {"told", "asked", "known", "found", "danced", "how", "doing", "freely", "beside", "counted_in", "door"}
 BANNED |= {"said", "dressed", "engaged"}
 WRITTEN_BY_USERS = {  # fields named after an option or a key of a settings file
-    "page/work.py: PageRequest.beside",
     "dance/settings_feet.py: WalkSettings.beside",
     "lint/meter/model.py: Curve.how",
 }

@@ -254,7 +254,7 @@ def pack_content(content: Content) -> tuple[dict[str, Any], Blob]:
         "body": pack_body(blob, content.character, bar, -scene.look.stage.pad_height, content.pair),
         "pair": content.pair,
         "motions": [pack_motion(blob, motion, f"motion{k}") for k, motion in enumerate(content.motions)],
-        "beside": {"name": content.second_name, "rows": list(content.second_rows)},
+        "second": {"name": content.second_name, "rows": list(content.second_rows)},
         "beats": [round(second, 6) for second in content.beats],
         "findings": [_finding(one) for one in content.findings],
         "passages": [dict(one) for one in content.passages],

@@ -56,7 +56,7 @@ class PageRequest:
 
     dance : the chart and the way of dancing it; character : the character who dances
     music : whether the song's file goes into the page
-    beside : the play of a second dancer: NEXT for the next best play, the name or file of a preset, or a play as JSON;
+    second : the play of a second dancer: NEXT for the next best play, the name or file of a preset, or a play as JSON;
         or the .npz file of her motion
     jobs : number of processes for the pieces of a long song
     language : the language in which the page begins, "" for the browser's
@@ -65,7 +65,7 @@ class PageRequest:
     dance: DanceRequest
     character: str = "dancer"
     music: bool = False
-    beside: str | None = None
+    second: str | None = None
     jobs: int = 1
     language: str = ""
 
@@ -137,7 +137,7 @@ def look_up_page(request: PageRequest) -> PageSubject:
     character = with_foot_colours(load_character(name_in_gait(request.character, request.dance.gait)))
     check_request(request.dance)
     choice = read_chart(request.dance)
-    if len(choice.parts) > 1 and request.beside is not None:
+    if len(choice.parts) > 1 and request.second is not None:
         raise UsageError(
             f"{request.dance.path}: --second is for one dancer, and the chart is for two: choose with --player"
         )
@@ -152,12 +152,12 @@ def pack_page(page: PageSubject) -> Page:
 
     request, solved = page.request, page.solved
     music, warnings = _music(page.song, page.chart) if request.music else (None, ())
-    beside = _second_play(page)
-    motions = [motion for some in (solved, beside) if some for motion in _motions(request, some)]
+    second = _second_play(page)
+    motions = [motion for some in (solved, second) if some for motion in _motions(request, some)]
     motions += [] if page.second is None else [page.second]
     warnings = (*page.warnings, *warnings, *(note for motion in motions for note in motion.notes))
     fitted = [onto(motion, page.character.skeleton) for motion in motions]
-    doc, blob = pack_content(_content(page, beside, fitted, music))
+    doc, blob = pack_content(_content(page, second, fitted, music))
     html = document(doc, blob, music[1] if music else None)
     return Page(html, page.title, page.label, warnings, blob, len(music[1]) if music else 0)
 
@@ -172,7 +172,7 @@ def _motions(request: PageRequest, solved: tuple[Solved, ...]) -> list[Motion]:
 
 def _second_play(page: PageSubject) -> tuple[Solved, ...]:
     """Return the play of a second dancer: the next best, another preset's, or a file's; empty without this dancer."""
-    wanted, path, one = page.request.beside, page.request.dance.path, page.solved[0]
+    wanted, path, one = page.request.second, page.request.dance.path, page.solved[0]
     if wanted is None or wanted.lower().endswith(MOTION):
         return ()
     assert one.play is not None and one.pad is not None
@@ -191,17 +191,17 @@ def _second_motion(request: PageRequest) -> Motion | None:
     """Return the motion of a second dancer from a file of `animate` or `retarget`, None if there is no such file."""
     from dancetutor_cli.formats.npz import read_npz
 
-    if request.beside is None or not request.beside.lower().endswith(MOTION):
+    if request.second is None or not request.second.lower().endswith(MOTION):
         return None
-    motion = read_npz(Path(request.beside))
+    motion = read_npz(Path(request.second))
     if missing := set(dancer_skeleton().names) - set(motion.skeleton.names):
         what = f"its skeleton has no {min(missing)}"
-        raise FileError(Path(request.beside), f"{what}; `dancetutor retarget` brings a capture onto the dancer's")
+        raise FileError(Path(request.second), f"{what}; `dancetutor retarget` brings a capture onto the dancer's")
     return motion
 
 
 def _content(
-    page: PageSubject, beside: tuple[Solved, ...], motions: list[Motion], music: tuple[str, bytes] | None
+    page: PageSubject, second: tuple[Solved, ...], motions: list[Motion], music: tuple[str, bytes] | None
 ) -> Content:
     from dancetutor_cli.film.notes import note_track
     from dancetutor_cli.page.content import Content
@@ -225,9 +225,9 @@ def _content(
         character=page.character,
         motions=motions,
         directions=pad.directions,
-        second_name=Path(page.request.beside or "").stem,
-        second_rows=[row for one in beside for row in _differing(one.play, play)]
-        if beside or len(solved) > 1
+        second_name=Path(page.request.second or "").stem,
+        second_rows=[row for one in second for row in _differing(one.play, play)]
+        if second or len(solved) > 1
         else _otherwise(motions[1:], play),
         passages=_passages(solved),
         flips=flips_of(play, pad, first.preset, overrides)

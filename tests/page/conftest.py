@@ -18,7 +18,7 @@ from dancetutor_cli.page.work import Page, PageRequest, make_page
 def page(tmp_path_factory: pytest.TempPathFactory) -> Page:
     """The page of the hostile song, with the next best play beside."""
     path = write_song(tmp_path_factory.mktemp("song"))
-    return make_page(PageRequest(DanceRequest(path, Selection(), "thesis", fps=30.0), beside="next"))
+    return make_page(PageRequest(DanceRequest(path, Selection(), "thesis", fps=30.0), second="next"))
 
 
 @pytest.fixture(scope="session")

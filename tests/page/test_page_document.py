@@ -129,17 +129,17 @@ def test_a_second_dancer_has_the_motion_of_a_file(page: Page, tmp_path: Path) ->
     other = replace(own.motion.contacts[0], limb=1 - own.motion.contacts[0].limb)
     later = replace(own.motion, times=own.motion.times + 1.0, contacts=(other, *own.motion.contacts[1:]))
     write_npz(tmp_path / "captured.npz", later)
-    made = unpacked(make_page(PageRequest(request, beside=str(tmp_path / "captured.npz"))).html)
+    made = unpacked(make_page(PageRequest(request, second=str(tmp_path / "captured.npz"))).html)
     assert [round(one["start"] - own.motion.times[0], 3) for one in made["motions"]] == [0.0, 1.0]
-    assert made["beside"] == {"name": "captured", "rows": [other.row]}
+    assert made["second"] == {"name": "captured", "rows": [other.row]}
     skeleton = replace(own.motion.skeleton, names=tuple(f"other_{name}" for name in own.motion.skeleton.names))
     write_npz(tmp_path / "foreign.npz", replace(own.motion, skeleton=skeleton))
     with pytest.raises(FileError, match=r"foreign\.npz: its skeleton has no .*; `dancetutor retarget`"):
-        make_page(PageRequest(request, beside=str(tmp_path / "foreign.npz")))
+        make_page(PageRequest(request, second=str(tmp_path / "foreign.npz")))
 
 
 def test_a_second_dancer_plays_other_feet(page: Page) -> None:
     doc = unpacked(page.html)
-    assert len(doc["motions"]) == 2 and doc["beside"]["name"] == "next"
-    assert doc["beside"]["rows"], "the next best play steps some row otherwise"
+    assert len(doc["motions"]) == 2 and doc["second"]["name"] == "next"
+    assert doc["second"]["rows"], "the next best play steps some row otherwise"
     assert page.sizes["motion1"] > 1000

@@ -38,8 +38,8 @@ def test_feet_of_a_file_are_named_without_its_folder(tmp_path: Path) -> None:
     said = CliRunner().invoke(cli, ["analyze", "--format", "json", "--exit-zero", str(song)])
     feet.write_text(said.stdout)
     for dance in (DanceRequest(song, Selection(), fps=10.0, play=feet), DanceRequest(song, Selection(), fps=10.0)):
-        beside = None if dance.play else str(feet)
-        data = everything(make_page(PageRequest(dance, beside=beside, character="mannequin")).html)
+        second = None if dance.play else str(feet)
+        data = everything(make_page(PageRequest(dance, second=second, character="mannequin")).html)
         assert b"feet" in data and b"privatefolder" not in data
 
 

@@ -53,7 +53,7 @@ def test_of_one_player_there_is_one_dancer(tmp_path: Path) -> None:
 def test_what_is_for_one_dancer_says_so(tmp_path: Path) -> None:
     request = request_for(tmp_path)
     with pytest.raises(UsageError, match="--player"):
-        make_page(PageRequest(request.dance, beside="next"))
+        make_page(PageRequest(request.dance, second="next"))
 
 
 def test_both_are_drawn_and_notes_have_their_colours(pair: Page, browser: Browser, tmp_path: Path) -> None:

@@ -209,7 +209,7 @@ export type MotionDoc = {
 };
 
 /** The second dancer, if there is one. */
-export type Beside = {
+export type SecondDancer = {
   name: string;
   /** Rows that she steps with other limbs. */
   rows: number[];
@@ -288,7 +288,7 @@ export type PageDoc = {
   /** Two players of one chart. */
   pair: boolean;
   motions: MotionDoc[];
-  beside: Beside;
+  second: SecondDancer;
   /** Second of each beat from 0. */
   beats: number[];
   findings: Finding[];

@@ -9,7 +9,7 @@ import { findingsPanel, passagesPanel, settingsPanel } from "./panels.js";
 import { resultsPanel } from "./results.js";
 import { CAMERAS, FIRST_VIEW } from "./settings.js";
 import { resultCard, slimStanding, standing } from "./scores.js";
-import { besideCaption, besideText, countOf, musicText, passedOf, quiet, saidOf } from "./said.js";
+import { secondCaption, secondText, countOf, musicText, passedOf, quiet, saidOf } from "./said.js";
 
 /**
  * @typedef {object} Canvases what is drawn on; it stays when the words change
@@ -55,7 +55,7 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   const pick = el("button", { type: "button", class: "pick", onclick: () => document.getElementById("music-file")?.click() },
     "♪ ", el("span", {}, t("pickMusic", { name: words.music || t("pickFile") })));
   pick.setAttribute("aria-label", pick.textContent ?? "");
-  const captions = [[t("theseFeet"), ""], besideCaption(app)].map(([who, rows], k) =>
+  const captions = [[t("theseFeet"), ""], secondCaption(app)].map(([who, rows], k) =>
     el("p", { class: `caption ${k ? "right" : "left"}` }, who, el("span", {}, rows && ` (${rows})`)));
   const count = el("p", { class: "count", "aria-hidden": "true" }); // it is heard too
   const passed = el("p", { class: "passed unseen", role: "status" }); // it is drawn above the receptors
@@ -198,7 +198,7 @@ function cameraButtons(app) {
     },
   }, t(`camera-${name}`)));
   const both = app.motions.length > 1 && !app.doc.pair
-    ? el("button", { type: "button", class: "toggle", title: besideText(app), onclick: () => { app.both = !app.both; app.tell("settings"); } }, t("both")) : null;
+    ? el("button", { type: "button", class: "toggle", title: secondText(app), onclick: () => { app.both = !app.both; app.tell("settings"); } }, t("both")) : null;
   const row = el("div", { class: "cameras", role: "group", "aria-label": t("camera") }, ...buttons, both);
   const show = () => {
     buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(CAMERAS[k] === settings.camera)));

@@ -89,17 +89,17 @@ export function passedOf(app) {
 }
 
 /** Who dances beside her, and where her feet differ, for her caption. @param {import("./app.js").App} app */
-export function besideCaption(app) {
-  const { name, rows } = app.doc.beside;
+export function secondCaption(app) {
+  const { name, rows } = app.doc.second;
   const found = rows.slice(0, 3).flatMap((row) => app.redance.rows.get(row) ?? []);
   const where = found.map((row) => placeOf(app.t, row.beat)).join("; ");
   const what = name === "next" ? app.t("nextBest") : name;
-  return [what, !rows.length ? "" : app.t("besideRows", { rows: rows.length, where: rows.length > 3 ? `${where} …` : where })];
+  return [what, !rows.length ? "" : app.t("secondRows", { rows: rows.length, where: rows.length > 3 ? `${where} …` : where })];
 }
 
 /** The same for both. @param {import("./app.js").App} app */
-export function besideText(app) {
-  return app.t("bothLong", { left: app.t("theseFeet"), right: besideCaption(app).filter(Boolean).join(": ") });
+export function secondText(app) {
+  return app.t("bothLong", { left: app.t("theseFeet"), right: secondCaption(app).filter(Boolean).join(": ") });
 }
 
 /** Beats that are still counted in, as they are said: 4, 3, 2, 1; "" while none are. @param {import("./app.js").App} app */
