@@ -18,7 +18,7 @@ from dancetutor_cli.film.clock import Moment, Pass
 from dancetutor_cli.film.layout import WIDE_PAD, Layout, PixelBox, lowered, overlap
 from dancetutor_cli.film.notes import Callout, Presses
 from dancetutor_cli.film.overlay.announce import Calls, Runs
-from dancetutor_cli.film.overlay.captions import Legend
+from dancetutor_cli.film.overlay.captions import Legend, LegendWords
 from dancetutor_cli.film.overlay.header import Header, WordsRoom
 from dancetutor_cli.film.overlay.marks import visible_limbs
 from dancetutor_cli.film.words import LIMBS
@@ -135,14 +135,12 @@ def _legend(
     if feet is not None and overlap(feet, box):
         under = lowered(box, feet[3] + LEGEND_OFF * boxes.scale)
         box = under if under[3] <= boxes.size[1] else box  # a user's own layout may leave no room there
-    return Legend(
+    explained = LegendWords(
         {limb: style.language.limbs[LIMBS[limb]] for limb in shown},
-        box,
-        scale,
-        style.face,
         words["facing"] if turned and not boxes.layout.highway else "",
         [(words["player"].replace("{number}", str(n)), colour) for n, colour in enumerate(players, 1)],
     )
+    return Legend(explained, box, scale, style.face)
 
 
 def _runs(plan: FilmPlan, boxes: PartBoxes, style: WordStyle, header: Header | None) -> Runs:

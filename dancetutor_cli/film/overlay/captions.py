@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,25 +49,26 @@ def lozenge(height: int, width: int, radius: float, colour: tuple[int, int, int]
     return painter.sprite()
 
 
+class LegendWords(NamedTuple):
+    """The words of a legend. limbs : number of a limb -> its name, for the limbs in the picture
+
+    note : words below the last limb or player; players : name and note colour of each of two players
+    """
+
+    limbs: Mapping[int, str]
+    note: str = ""
+    players: Sequence[tuple[str, RGB]] = ()
+
+
 class Legend:
     """The legend, which explains the markers, one below the other, at the bottom of its box.
 
     A dark plate keeps the words readable over a panel of the pad. Lines for which the box has no room stand below it,
     because the song's words are above it.
-
-    limbs : number of a limb -> its name, for the limbs in the picture; note : words below the last limb or player
-    players : name and note colour of each of two players
     """
 
-    def __init__(
-        self,
-        limbs: Mapping[int, str],
-        box: PixelBox,
-        scale: float,
-        face: Typeface,
-        note: str = "",
-        players: Sequence[tuple[str, RGB]] = (),
-    ) -> None:
+    def __init__(self, words: LegendWords, box: PixelBox, scale: float, face: Typeface) -> None:
+        limbs, note, players = words
         size = max(8, round(24 * scale))
         shown = [(sprites.marker(size, limb, face), limbs[limb]) for limb in sorted(limbs)]
         shown += [(sprites.arrow(size, 0.0, colour), name) for name, colour in players]

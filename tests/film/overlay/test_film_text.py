@@ -15,7 +15,7 @@ from dancetutor_cli.film.clock import Pass
 from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import WIDE_PAD, FilmLook, load_layout
 from dancetutor_cli.film.overlay import text
-from dancetutor_cli.film.overlay.captions import Legend
+from dancetutor_cli.film.overlay.captions import Legend, LegendWords
 from dancetutor_cli.film.overlay.header import Header, Words, WordsRoom
 from dancetutor_cli.film.overlay.sprites import WordStyle, highway_style
 from dancetutor_cli.film.overlay.text import Typeface, clean, fitted, in_lines, parts_of, system_fonts, wrapped
@@ -237,7 +237,7 @@ def test_a_legend_of_five_lines_leaves_the_songs_words_alone(name: str, columns:
     assert part is not None
     box = layout.box("legend", layout.size, columns)
     names = {0: "left foot", 1: "right foot", 2: "left hand", 3: "right hand"}
-    legend = Legend(names, box, part.text, face, "she faces you")
+    legend = Legend(LegendWords(names, "she faces you"), box, part.text, face)
     assert min(y for _, _, y in legend.lines) >= box[1] - 10 * part.text
 
 
