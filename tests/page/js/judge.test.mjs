@@ -191,7 +191,7 @@ test("where what explains a move has no room, its name stands alone", () => {
 
 test("one other row is singular", () => {
   const said = (file, label, rows) => fillIn(wordsOf(file)[label], { rows, where: "x", word: "x", extra: 1 });
-  assert.equal(said("en", "besideRows", 1), "other feet in 1 row: x");
+  assert.equal(said("en", "secondRows", 1), "other feet in 1 row: x");
   assert.match(said("en", "costRows", 1), /feet of 1 other row\.$/);
   assert.match(said("en", "givenRows", 2), /and 2 other rows get other feet\.$/);
   assert.match(said("de", "costRows", 1), /1 weitere Reihe bekommt andere Füße\.$/);
