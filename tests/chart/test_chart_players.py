@@ -127,7 +127,7 @@ def test_a_fact_about_the_whole_chart_is_reported_once(both: Path) -> None:
     both.write_text(both.read_text().replace("#CREDIT:C;", "#CREDIT:;"))
     result = analyze_file(LintRun(LintRequest()).task(both))
     credit = [(finding.message, chart) for finding, chart in result.all_findings() if finding.rule == "DT502"]
-    assert credit == [("the charts name no author: #CREDIT is empty; write the name there", None)]
+    assert credit == [("the charts name no author, and #CREDIT is empty; write the name there", None)]
 
 
 def test_markers_of_both_stand_in_the_file_and_go_again(both: Path) -> None:
