@@ -85,14 +85,13 @@ def _part(plan: Plan, at: Array, context: Context) -> BarTrunk:
 class Arm:
     """One arm, and where on the rail its hand can be at which of the n times.
 
-    apart : (n,) metres beside the pelvis, outward, of its preferred place; across : it crosses over before her
+    apart : (n,) metres beside the pelvis, outward, of the hand's preferred place; None: the arm crosses over before her
     """
 
-    def __init__(
-        self, side: int, trunk: BarTrunk, busy: Flags, apart: Array, context: Context, across: bool = False
-    ) -> None:
+    def __init__(self, side: int, trunk: BarTrunk, busy: Flags, context: Context, apart: Array | None = None) -> None:
         assert context.bar is not None
-        self.across = across
+        self.across = apart is None
+        apart = np.full(len(busy), -context.settings.across.ahead) if apart is None else apart
         self.side, self.bar, self.trunk, self.busy = side, context.bar, trunk, busy
         self.skeleton, self.settings = context.skeleton, context.settings
         self.place = on_rail(trunk.pelvis[:, 0] + (1.0, -1.0)[side] * apart, self.bar, self.settings.bar.from_end)
@@ -193,8 +192,7 @@ def crossings(wanted: tuple[Grip, ...], times: Array, trunk: BarTrunk, busy: Fla
     the rail. A hand has gone before the next one comes. Grips are in order of time.
     """
     numbers, reach = context.settings.across, context.settings.bar.reach_time
-    apart = np.full(len(times), -numbers.ahead)
-    arms = [Arm(side, trunk, busy, apart, context, across=True) for side in (0, 1)]
+    arms = [Arm(side, trunk, busy, context) for side in (0, 1)]
     free = -np.inf
     for grip in wanted:
         a, b = np.searchsorted(times, (max(grip.start, free), grip.end)).tolist()
@@ -285,7 +283,7 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
             wanted = tuple(found)
     places = around_crossings(plan, times, wanted, places, context)
     for side in (0, 1):
-        arm = Arm(side, trunk, busy | ~places[0][:, side], places[1][:, side], context)
+        arm = Arm(side, trunk, busy | ~places[0][:, side], context, places[1][:, side])
         found += list(_pieces(times, arm, context.settings.bar))
     return replace(plan, grips=tuple(sorted(found, key=lambda g: (g.start, g.side))))
 

@@ -88,10 +88,11 @@ class Film:
             words = (*callout_words(self.language).values(), *standing_tags(self.language))
             texts = beside.callout_texts(plan.callouts, words)
             lane = lane_width_for_words(beside.room_for(texts, letters, self.face), lane, box, self.columns)
-        geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned, tags, letters)
+        facing = self.language.film["facing-notes"]
+        geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned, tags, letters, facing)
         scroll = plan.look.scroll or parse_scroll(part.scroll)
         score = Score(plan.notes, plan.presses, plan.lines, plan.callouts)
-        return Highway(score, geometry, scroll, plan.scroll_bpm, self.face, self.language.film["facing-notes"])
+        return Highway(score, geometry, scroll, plan.scroll_bpm, self.face)
 
     @cached_property
     def turned(self) -> bool:

@@ -54,16 +54,8 @@ class Highway:
     """The highway of one chart. It has no state that changes between frames: any frame may be drawn at any time."""
 
     def __init__(
-        self,
-        score: Score,
-        geometry: HighwayGeometry,
-        scroll: Scroll,
-        scroll_bpm: float,
-        face: Typeface,
-        facing: str = "",
+        self, score: Score, geometry: HighwayGeometry, scroll: Scroll, scroll_bpm: float, face: Typeface
     ) -> None:
-        """facing : words above the lanes if the dancer faces the viewer and all arrows are turned with her"""
-        self._facing = facing
         self.notes, self.presses, self.lines, self.callouts = score
         self.geometry, self.face = geometry, face
         self._tags = marks.row_tags(self.callouts)
@@ -218,7 +210,7 @@ class Highway:
         geometry = self.geometry
         gap = min(abs(geometry.receptor - edge) for edge in geometry.box[1::2]) - 0.5 * self.size
         size = max(FLAG_LEAST, min(0.4 * gap, 0.33 * geometry.lane))
-        (line,), size = fitted(self._facing, size, geometry.lane * len(geometry.directions) - 5, self.face, most=1)
+        (line,), size = fitted(geometry.facing, size, geometry.lane * len(geometry.directions) - 5, self.face, most=1)
         return self.face.sprite(line, size, self.style.callout["move"], weight=0.012 * size)
 
     def _draw_receptors(self, frame: Frame, second: float, beat: float) -> None:

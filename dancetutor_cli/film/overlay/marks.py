@@ -37,7 +37,7 @@ class HighwayGeometry:
 
     directions : for each column, degrees clockwise from up, None for a middle panel; down : notes fall instead of rise
     turned : the dancer faces the viewer; the order of the lanes is reversed, and `directions` are as the viewer sees
-        them
+        them; facing : the words above the lanes that say so
     tags : words stand beside the notes; letters : size of their letters for which there is room, pixels
     """
 
@@ -49,6 +49,7 @@ class HighwayGeometry:
     turned: bool = False
     tags: bool = True
     letters: float = 10.0
+    facing: str = ""
 
     def lane_of(self, column: int) -> int:
         """Return the lane of a column, counted from the left."""

@@ -17,7 +17,7 @@ from dancetutor_cli.film.clock import Moment
 from dancetutor_cli.film.picture import FootFromAbove, Frame
 from dancetutor_cli.film.scene import renderer
 from dancetutor_cli.film.scene.camera import WHOLE, Camera, Region, with_pan_range
-from dancetutor_cli.film.scene.follow import Follow, farther, is_wide
+from dancetutor_cli.film.scene.follow import Follow, RootTrack, farther, is_wide
 from dancetutor_cli.film.scene.look import default_look
 from dancetutor_cli.film.scene.props import GlassBar, bar_matrix, stands_before, with_bar
 from dancetutor_cli.film.scene.scene import PANEL, TOE_AHEAD, FootMark, FrameState, Scene, foot_marks
@@ -129,7 +129,7 @@ class Dancer:
         for back in (*np.arange(1.0, look.follow.back - 0.01, 0.04), look.follow.back):
             box = farther(usual, float(back)) if back > 1 else region
             found = {
-                rate: Follow(self.scene, camera, size, some[0].times, self._roots(rate), box)
+                rate: Follow(self.scene, camera, size, RootTrack(some[0].times, self._roots(rate)), box)
                 for rate, some in self.motions.items()
             }
             if max(follow.cut for follow in found.values()) * size[0] < 1:

@@ -8,6 +8,7 @@ lag, because the whole song is known.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,25 +29,29 @@ def is_wide(scene: Scene) -> bool:
     return bool(high[0] - low[0] > 3.5 * PANEL)
 
 
+class RootTrack(NamedTuple):
+    """Where the root of one dancer, or of two, is at the seconds of a film.
+
+    seconds : float64 (f,), increasing; places : float64 (f, 3), metres, or (2, f, 3) for two dancers
+    """
+
+    seconds: Array
+    places: Array
+
+
 class Follow:
     """The camera at every second of a song.
 
     scene : the scene with its pad; name : a preset camera; size : (width, height) of the picture
-    region : the part of the picture that she fills
-    seconds : float64 (f,), increasing; roots : float64 (f, 3), the places of the dancer's root, metres; or (2, f, 3)
-        for two dancers, whom the camera does not follow, but shows as they walk on and off
+    track : the places of the dancer's root; two dancers are not followed, but shown as they walk on and off
+    region : the part of the picture that the dancer fills
     cut : the width of the pad that is outside of the picture at the worst moment, picture widths
     """
 
     def __init__(
-        self,
-        scene: Scene,
-        name: str,
-        size: tuple[int, int],
-        seconds: Array,
-        roots: Array,
-        region: Region = WHOLE,
+        self, scene: Scene, name: str, size: tuple[int, int], track: RootTrack, region: Region = WHOLE
     ) -> None:
+        seconds, roots = track
         self._start = float(seconds[0])
         count = max(2, int(np.ceil((float(seconds[-1]) - self._start) / _STEP)) + 1)
         regular = self._start + _STEP * np.arange(count)

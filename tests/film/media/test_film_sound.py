@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import wave
 from pathlib import Path
 
 import numpy as np
 import pytest
+from click_track import write_clicks
 from numpy.typing import NDArray
 
 from dancetutor_cli.film.clock import Clock, Pass
@@ -15,21 +15,6 @@ from dancetutor_cli.run import ffmpeg
 from dancetutor_cli.run.errors import DancetutorError
 
 CLICKS = np.arange(1, 16) * 0.5 + 0.0137
-WAV_RATE = 44100
-
-
-def write_clicks(path: Path, seconds: float = 9.0) -> None:
-    """A mono WAV with a click at each of CLICKS, made without the code under test."""
-    track = np.zeros(int(seconds * WAV_RATE))
-    t = np.arange(int(0.02 * WAV_RATE)) / WAV_RATE
-    for second in CLICKS:
-        at = int(np.ceil(second * WAV_RATE))
-        track[at : at + len(t)] += 0.8 * np.sin(2 * np.pi * 1500 * t + 1) * np.exp(-t * 200)
-    with wave.open(str(path), "wb") as out:
-        out.setnchannels(1)
-        out.setsampwidth(2)
-        out.setframerate(WAV_RATE)
-        out.writeframes((track * 32767).astype("<i2").tobytes())
 
 
 def onsets(samples: NDArray[np.float32], threshold: float = 0.4) -> NDArray[np.float64]:
@@ -42,7 +27,7 @@ def onsets(samples: NDArray[np.float32], threshold: float = 0.4) -> NDArray[np.f
 @pytest.fixture(scope="module")
 def clicks(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("sound") / "clicks.wav"
-    write_clicks(path)
+    write_clicks(path, CLICKS, 9.0, 44100, 1)
     return path
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import renderers_scene as rs
 
-from dancetutor_cli.film.scene.follow import Follow, is_wide
+from dancetutor_cli.film.scene.follow import Follow, RootTrack, is_wide
 from dancetutor_cli.film.scene.renderer import create
 
 SIZE = (640, 360)
@@ -23,7 +23,7 @@ def _walk(seconds):
 @pytest.fixture(scope="module")
 def follow():
     seconds = np.linspace(3.0, 60.0, 2000)
-    return Follow(rs.scene("dance-double"), "back", SIZE, seconds, _walk(seconds))
+    return Follow(rs.scene("dance-double"), "back", SIZE, RootTrack(seconds, _walk(seconds)))
 
 
 def test_only_wide_pads_are_followed():
@@ -65,7 +65,7 @@ def test_a_dancer_who_walks_on_is_in_the_picture_from_the_first_frame(name, side
     seconds = np.linspace(0.0, 20.0, 400)
     x = side * np.interp(seconds, (0.0, 2.0, 16.0, 18.0), (1.2, 0.0, 0.0, 1.2))
     roots = np.column_stack([x, np.full_like(x, 0.9), np.zeros_like(x)])
-    camera = Follow(rs.scene("dance-single"), name, size, seconds, roots)
+    camera = Follow(rs.scene("dance-single"), name, size, RootTrack(seconds, roots))
     for second in np.arange(0.0, 20.0, 0.1):
         at = side * np.interp(second, (0.0, 2.0, 16.0, 18.0), (1.2, 0.0, 0.0, 1.2))
         hands = np.array([[at + aside, 0.9, 0.0] for aside in (-0.4, 0.4)])
@@ -80,7 +80,7 @@ def test_of_two_both_are_shown_as_they_walk_on():
     seconds, size = np.linspace(0.0, 20.0, 400), (666, 672)
     places = [np.interp(seconds, (0.0, 3.0), (x, x - 1.4)) for x in (1.0, 1.9)]
     roots = np.array([np.column_stack([x, np.full_like(x, 0.9), np.zeros_like(x)]) for x in places])
-    camera = Follow(rs.scene("dance-double"), "back", size, seconds, roots)
+    camera = Follow(rs.scene("dance-double"), "back", size, RootTrack(seconds, roots))
     for second in (0.0, 0.4, 1.0, 3.0):
         for x in places:
             hands = np.array([[np.interp(second, seconds, x) + aside, 0.9, 0.0] for aside in (-0.4, 0.4)])
@@ -92,7 +92,7 @@ def test_of_two_both_are_shown_as_they_walk_on():
 def test_it_is_nearer_than_the_camera_that_shows_the_whole_pad(follow):
     tall = (360, 640)
     scene = rs.scene("dance-double")
-    near = Follow(scene, "back", tall, np.array([0.0, 1.0]), np.zeros((2, 3))).camera
+    near = Follow(scene, "back", tall, RootTrack(np.array([0.0, 1.0]), np.zeros((2, 3)))).camera
     whole = scene.camera("back", tall)
     assert np.linalg.norm(near.position) < 0.9 * np.linalg.norm(whole.position)
 

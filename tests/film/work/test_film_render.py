@@ -7,7 +7,6 @@ import importlib.util
 import stat
 import subprocess
 import sys
-import wave
 from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
@@ -15,6 +14,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from click_track import write_clicks
 from film_plans import film_plan
 from numpy.typing import NDArray
 from PIL import Image
@@ -76,20 +76,6 @@ def make_film(monkeypatch: pytest.MonkeyPatch) -> MakeFilm:
     return make
 
 
-def write_clicks(path: Path) -> None:
-    """A stereo WAV with a click at each note."""
-    track = np.zeros(7 * RATE)
-    t = np.arange(int(0.02 * RATE)) / RATE
-    for second in NOTES:
-        at = int(np.ceil(second * RATE))
-        track[at : at + len(t)] += 0.8 * np.sin(2 * np.pi * 1800 * t + 1) * np.exp(-t * 220)
-    with wave.open(str(path), "wb") as out:
-        out.setnchannels(2)
-        out.setsampwidth(2)
-        out.setframerate(RATE)
-        out.writeframes(np.repeat((track * 32767).astype("<i2"), 2).tobytes())
-
-
 def decode_sound(film: Path) -> NDArray[np.float32]:
     """What a player hears, from the film's time 0 on."""
     command = [ffmpeg.executable(), "-v", "error", "-i", str(film), "-map", "0:a", "-ac", "1", "-ar", str(RATE)]
@@ -114,7 +100,7 @@ def test_the_receptor_lights_in_the_frame_of_the_click(
     tmp_path: Path, fps: int, quality: Quality, make_film: MakeFilm
 ) -> None:
     size = (240, 240)
-    write_clicks(tmp_path / "song.wav")
+    write_clicks(tmp_path / "song.wav", NOTES, 7.0, RATE, 2)
     clock = Clock((Pass(-0.25, 6.2),), fps)
     columns = np.full(len(NOTES), 2)
     plan = film_plan(NOTES, clock, size, columns)
@@ -151,7 +137,7 @@ def digest(path: Path) -> str:
 
 def test_any_number_of_workers_makes_the_same_film(tmp_path: Path, make_film: MakeFilm) -> None:
     plan = film_plan(np.arange(0.5, 9.0, 0.25), size=(96, 96))
-    write_clicks(tmp_path / "song.wav")
+    write_clicks(tmp_path / "song.wav", NOTES, 7.0, RATE, 2)
     prepared = PreparedFilm(plan, SoundPlan(tmp_path / "song.wav"), ())
     films = []
     for jobs in (1, 2):
