@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import math
 import os
 import sys
 from collections.abc import Iterable, Iterator, Sequence
@@ -49,42 +48,41 @@ class GivenPath(click.Path):
 class _Range:
     """What number types have in common: the words for a range, and one line for a value outside it."""
 
-    def __init__(self, low: float | None = None, high: float | None = None, *, what: str = "") -> None:
-        """low, high : smallest and largest value, in the option's unit; what : the words for a value"""
-        super().__init__(low, high)  # type: ignore[call-arg]
-        self._what, self._low, self._high = what, low, high
+    min: Any  # float or None, of click
+    max: Any
+    what = "a number"
 
     def _describe_range(self) -> str:
-        if self._low is None or self._high is None:
-            return f"{self._low:g} or more" if self._low is not None else ""
-        return f"{self._low:g} to {self._high:g}"
+        if self.min is None:
+            return ""
+        return f"{self.min:g} or more" if self.max is None else f"{self.min:g} to {self.max:g}"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the number. Raises UsageError if it is none, is not a number (nan) or is outside of the range."""
         try:
             converted = super().convert(value, param, ctx)  # type: ignore[misc]
+            if converted == converted:  # nan is within every range
+                return converted
         except click.BadParameter:
-            converted = math.nan
-        if converted == converted:  # not nan, which every range lets in
-            return converted
+            pass
         name = max(param.opts, key=len) if param is not None else "number"
-        limits = self._describe_range()
-        raise UsageError(f"{name} {value}: write {self._what}" + (f", {limits}" if limits else ""))
+        raise UsageError(f"{name} {value}: write {', '.join(filter(None, (self.what, self._describe_range())))}")
 
 
 class WholeNumber(_Range, click.IntRange):
-    """A whole number within limits, both included."""
+    """A whole number within limits, both included, in the option's unit; a limit that is None does not count."""
 
-    def __init__(self, low: int | None = None, high: int | None = None) -> None:
-        """low, high : smallest and largest value, in the option's unit"""
-        super().__init__(low, high, what="a whole number")
+    what = "a whole number"
 
 
 class Number(_Range, click.FloatRange):
-    """A number within limits, both included."""
+    """A number within limits, both included, in the option's unit; a limit that is None does not count."""
 
-    def __init__(self, low: float | None = None, high: float | None = None, *, what: str = "a number") -> None:
-        """low, high : smallest and largest value, in the option's unit; what : the words for a value"""
-        super().__init__(low, high, what=what)
+
+class Second(Number):
+    """A second of the song, any number."""
+
+    what = "seconds, such as 12.5"
 
 
 def within_folders(paths: Sequence[Path], files: Sequence[Path]) -> list[Path]:

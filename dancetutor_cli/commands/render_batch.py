@@ -155,6 +155,6 @@ def _sum_up(outcomes: list[FilmOutcome], unreadable: list[UnreadableFile], witho
 
 def _filters(selection: Selection, options: RenderOptions) -> str:
     """The options that choose among the charts of a folder, as the user typed them, and what to do."""
-    typed = [selection.options, f"--meter {options.meter}" if options.meter else "", "--shard" if options.shard else ""]
+    typed = [selection.options, *(f"--{n} {getattr(options, n)}" for n in ("meter", "shard") if getattr(options, n))]
     words = ", ".join(one for one in typed if one)
     return f" {words}; change or leave out one of these options" if words else ", so there is nothing to render"

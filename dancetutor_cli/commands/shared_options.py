@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from dancetutor_cli.commands.arguments import GivenPath, Number, WholeNumber
+from dancetutor_cli.commands.arguments import GivenPath, Second, WholeNumber
 from dancetutor_cli.commands.tab_names import characters, difficulties, folder, named, steps_types
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.reading import config_names
@@ -176,7 +176,7 @@ ragdoll_options = combined(
     ),
     click.option(
         "--trip",
-        type=Number(what="seconds, such as 12.5"),
+        type=Second(),
         multiple=True,
         metavar="TIME",
         help="Make the dancer stumble: something catches the foot that is in the air at this second of the song.",

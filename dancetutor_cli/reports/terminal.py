@@ -268,5 +268,5 @@ def cut(line: str, width: int) -> str:
     if plain > width:
         line = line[: width - 1 + len(line) - plain]
         words, _, rest = line.rpartition(" ")
-        line = f"{words} …" if words.strip() and len(rest) < _LONGEST_WORD else f"{line}…"
+        line = f"{words.rstrip(';,:')} …" if words.strip() and len(rest) < _LONGEST_WORD else f"{line}…"
     return line.replace(FIXED_BLANK, " ")
