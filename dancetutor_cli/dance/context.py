@@ -169,7 +169,8 @@ def holding(settings: MotionSettings) -> MotionSettings:
     body = replace(body, stream_crouch=bar.stream_crouch, height_calm=bar.calm)
     jump = replace(jump, crouch=jump.crouch / 2, follow=jump.follow / 2)
     look, groove = replace(look, torso_weight=bar.square), replace(settings.groove, hands=bar.free_hand)
-    arms = replace(settings.arms, carried_ahead=settings.arms.carried_ahead / 3)  # not far from the rail
+    carried = settings.arms.carried_bent / 3, settings.arms.carried_upper / 3  # not far from the rail
+    arms = replace(settings.arms, carried_bent=carried[0], carried_upper=carried[1])
     return replace(settings, body=body, jump=jump, look=look, groove=groove, arms=arms)
 
 

@@ -165,7 +165,7 @@ SEED = 20011109
 JUMP = 0.08  # seconds; what is shorter is a quick step
 CROSSING_SHARE = 0.8  # part of the way of a hand that crosses over in which the other hand has left that place
 # metres to each side; a place there may be better because a hand can stay longer
-FARTHER_AHEAD = (0.0, -0.03, 0.03, -0.06)
+FARTHER_AHEAD = (0.0, -0.02, 0.02, -0.04, 0.04, -0.06)
 
 
 def turns(plan: Plan, times: Array, trunk: BarTrunk, busy: Flags, context: Context) -> tuple[Grip, ...]:

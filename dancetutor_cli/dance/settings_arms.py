@@ -34,23 +34,23 @@ class ArmSettings:
 
     swing: Ratio
     out: Metres
-    forward: Metres
+    upper_back: Degrees
+    bent: Degrees
     down: Metres
-    stream_up: Metres
-    stream_ahead: Metres
+    stream_bent: Degrees
+    stream_back: Degrees
+    forearm_most: Degrees
     stream_out: Metres
     stream_wander: Metres
     stream_pump: Metres
     unlike: Ratio
     longest: Metres
-    loose: Metres
-    loose_time: Seconds
     jump: Metres
     jump_up: Metres
     wander: Metres
-    carried_up: Metres
+    carried_bent: Degrees
+    carried_upper: Degrees
     carried_out: Metres
-    carried_ahead: Metres
     raised: Ratio
     raised_most: Metres
     cancel: Ratio
@@ -92,7 +92,10 @@ class ArmSettings:
     wander_quick_behind: Ratio
     askew: Metres
     swing_most: Metres
-    swing_up: Ratio
+    swing_upper: Degrees
+    swing_bent: Degrees
+    bent_least: Degrees
+    bent_most: Degrees
     elbow_out: Ratio
     bend_elbow_out: Ratio
     elbow_down: Ratio

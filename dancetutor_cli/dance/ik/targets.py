@@ -25,10 +25,8 @@ from dancetutor_cli.dance.ik.knees import (
     Legs,
     TrunkPose,
     knee_poles,
-    middle_joint,
     part_knees,
     shoulders_over,
-    square_to,
     torso_rotations,
 )
 from dancetutor_cli.dance.plan import Plan, Press
@@ -50,15 +48,13 @@ FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))  # directions of fingers to
 POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest
 EASE, EASY = 15.0, 40.0  # degrees within its limits at which a joint is at ease; how much turned fingers count
 WAVES = 1.3  # about the size of the sum of both waves
-LEVEL = np.array([0.6, 0.5, 1.0])  # hands wander less up and down, for their height shows effort, and less aside
-PUMP_UP = 0.4  # a hand that is pumped ahead rises by this part of it
+LEVEL = np.array([0.6, 0.5, 0.0])  # hands wander less up and down, for their height shows effort, and less aside
 ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # one hand is a little lower and farther back
 HELD_BACK = 0.25  # share of a stretch in which a hand is too quick, from which on it is held back all through
 ASIDE_SOFT = 0.02  # metres over which a hand comes to its least distance outward in a lean
 UP_SOFT = 0.06  # metres over which a hand begins to rise as it swings ahead or is raised aside
 BENT_SOFT = 0.006  # metres over which an arm comes to its greatest length
-LOOSE_SOFT = 0.015  # metres over which a forearm that is held up comes to sink
-SUNK = 1.8  # a hand sinks so much farther, because its elbow comes down with it
+LEVEL_SOFT = 4.0  # degrees over which a forearm comes to its highest
 ELBOWS_IN = 0.62  # part of the way by which elbows turn to the body for another dancer; all of it is too much
 GIVEN_WAY = 0.145  # metres that a hand gives way to another dancer with which its elbow turns to the body
 SIDEWAYS = np.array([[1.0, 1.0], [-1.0, 1.0]])  # outward and up, of both hands
@@ -156,30 +152,22 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
         wander, askew = (ways[..., ::-1, :] * [-1.0, 1.0, 1.0] for ways in (wander, askew))
     # the two hands are never equally high and never swing equally far
     unlike = 1.0 + arms.unlike * (wander + askew)[..., 1] / ASKEWED
-    swing = unlike * _swing(plan, body, settings)
-    hang = np.empty((len(swing), 2, 3))
-    hang[..., 0] = np.array([1.0, -1.0]) * (arms.out + arms.stream_out * effort)
-    hang[..., 1] = -arms.down + arms.swing_up * _upward(swing) + arms.stream_up * effort * unlike
-    hang[..., 2] = arms.forward + swing + arms.stream_ahead * effort
-    carried = body.arms[:, 3:]  # ahead and up in one phrase of the music, beside the hips in another
-    way = np.zeros_like(hang)
-    way[..., :2] = _upward(carried)[..., None] * [arms.carried_out, arms.carried_up] * SIDEWAYS
-    way[..., 2] = arms.carried_ahead * carried
-    hang += way
+    sway = context.settings.groove.hands * body.sway[:, None]
+    pump = arms.stream_pump * effort * body.arms[:, 2:3]  # in streams arms pump in turn
+    swing = unlike * _swing(plan, body, settings) + (sway + pump) * [-1.0, 1.0]  # with the shoulder that turns forward
+    swing += (arms.wander + arms.stream_wander * effort) * wander[..., 2] + arms.askew * askew[..., 2]
+    carried = body.arms[:, 3:]  # forearms are up in one phrase of the music, and hang in another
+    out = np.array([1.0, -1.0]) * (arms.out + arms.stream_out * effort + arms.carried_out * _upward(carried))
+    eased = (effort, unlike), (swing, out)
+    hang = _hanging(carried, *eased, context)
+    way = hang - _hanging(np.zeros_like(carried), *eased, context)
     raised = _upward(np.outer(body.arms[:, 1], (1.0, -1.0)))
     hang[..., 0] += raised * [1.0, -1.0]
     hang[..., 1] += 0.5 * raised
-    hang[..., 1] -= _hung(hang, rate, context)
     jump = (jump_swing(plan, body.times, settings.jump) * (1.0 - body.reaching.max(axis=1)))[:, None]
     hang[..., 1] += 0.5 * arms.jump_up * (jump + jump**2)
     hang[..., 2] += arms.jump * jump
-    pumped = context.settings.groove.hands * body.sway[:, None]
-    hang[..., 1] += 0.2 * np.abs(pumped)
-    hang[..., 2] += [-1.0, 1.0] * pumped  # with the shoulder that turns forward
-    pumped = arms.stream_pump * effort * body.arms[:, 2:3] * [-1.0, 1.0]  # in streams arms pump by turns
-    hang[..., 1] += PUMP_UP * pumped
-    hang[..., 2] += pumped
-    hang += (arms.wander + arms.stream_wander * effort)[..., None] * wander * LEVEL + arms.askew * askew
+    hang += ((arms.wander + arms.stream_wander * effort)[..., None] * wander + arms.askew * askew) * LEVEL
     hang += waiting_at(plan, body.times, context).hands
     share = crossing_share(plan.grips, body.times, settings.across)
     for side, sign in ((0, 1.0), (1, -1.0)):  # the near hand is behind her, out of the other one's way
@@ -208,17 +196,40 @@ def _upward(x: Array) -> Array:
     return np.asarray((x + np.sqrt(x**2 + UP_SOFT**2) - UP_SOFT) / 2.0)
 
 
-def _hung(hang: Array, rate: float, context: Context) -> Array:
-    """How far hands (n, 2, 3) sink, (n, 2): a raised forearm hangs from its elbow, and is level only as it swings
-    through.
+def _hanging(carried: Array, effort: tuple[Array, Array], swing: tuple[Array, Array], context: Context) -> Array:
+    """Return where hands are from their shoulders, (n, 2, 3); a forearm that is carried up stays below level.
+
+    carried : (n, 2), -1 to 1; effort : of streams, 0 to 1, and how unlike both hands are; swing : see `bent_arms`
+    """
+    arms, (lately, unlike) = context.settings.arms, effort
+    bent = (arms.bent + arms.stream_bent * lately) * unlike + arms.carried_bent * carried
+    upper = arms.carried_upper * carried - arms.upper_back - arms.stream_back * lately
+    bent = bent - LEVEL_SOFT * np.logaddexp(0.0, (bent + upper - arms.forearm_most) / LEVEL_SOFT)
+    return bent_arms(swing[0], np.radians(bent), np.radians(upper), swing[1], context)
+
+
+def bent_arms(swing: Array, bent: Array, upper: Array | float, out: Array, context: Context) -> Array:
+    """Return where hands are from their shoulders, (n, 2, 3): an elbow bends as its arm swings forward, and opens as
+    the arm goes back, so that no elbow is far behind the trunk.
+
+    swing : (n, 2) metres ahead; bent, upper : the elbow's flexion, and the upper arm's angle ahead of hanging down, of
+    an arm that does not swing, radians; out : (n, 2) metres to the left
     """
     arms, skeleton = context.settings.arms, context.skeleton
-    lengths = tuple(float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("elbow", "radiocarpal"))
-    poles = np.array([[s * arms.elbow_out, -arms.elbow_down, -arms.elbow_back] for s in (1.0, -1.0)])
-    poles = np.broadcast_to(poles, hang.shape)
-    over = hang[..., 1] - middle_joint(hang, square_to(hang, poles), (lengths[0], lengths[1]))[..., 1]
-    slowly = smooth_path(over, np.ones(len(over)), rate, arms.loose_time)
-    return np.asarray(SUNK * LOOSE_SOFT * np.logaddexp(0.0, (slowly + arms.loose) / LOOSE_SOFT))
+    u, f = (float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("elbow", "radiocarpal"))
+    least, most = np.radians((arms.bent_least, arms.bent_most))
+    flexed = _within(bent + np.radians(arms.swing_bent) * swing, least, most)
+    raised = upper + np.radians(arms.swing_upper) * swing
+    ahead, down = (u * part(raised) + f * part(raised + flexed) for part in (np.sin, np.cos))
+    far2 = ahead**2 + down**2
+    in_plane = np.sqrt(np.maximum(1.0 - out**2 / far2, 0.04))  # the rest of the arm's length is aside
+    return np.stack((out, -down * in_plane, ahead * in_plane), axis=2)
+
+
+def _within(x: Array, least: float, most: float) -> Array:
+    """Return x kept between both, softly, and unchanged in the middle."""
+    middle, half = (most + least) / 2.0, (most - least) / 2.0
+    return np.asarray(middle + half * np.tanh((x - middle) / half))
 
 
 def _at_most(way: Array, most: float) -> Array:

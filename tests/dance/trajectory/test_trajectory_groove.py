@@ -130,8 +130,8 @@ def test_arms_are_carried_differently_from_phrase_to_phrase_and_slowly() -> None
     arms, carried = context().settings.arms, groove(events).carried
     inside = (TIMES > 3.0) & (TIMES < 10.0)
     assert np.ptp(carried[inside], axis=0).min() > 1.0
-    ways = carried * np.linalg.norm([arms.carried_out, arms.carried_up, arms.carried_ahead])
-    assert np.abs(np.gradient(ways, TIMES, axis=0)).max() < 0.55  # 0.51 as measured
+    bends = carried * arms.carried_bent
+    assert np.abs(np.gradient(bends, TIMES, axis=0)).max() < 110.0, "degrees a second of an elbow"
     assert np.abs(carried[:, 0] - carried[:, 1])[inside].max() > 0.2, "each in its own way"
 
 
