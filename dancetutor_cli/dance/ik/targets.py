@@ -14,6 +14,7 @@ from dancetutor_cli.dance.ik.hands import (
     HandTargets,
     Hips,
     Torso,
+    bent_arms,
     hip_clearance,
     hold,
     leg_clearance,
@@ -206,30 +207,6 @@ def _hanging(carried: Array, effort: tuple[Array, Array], swing: tuple[Array, Ar
     upper = arms.carried_upper * carried - arms.upper_back - arms.stream_back * lately
     bent = bent - LEVEL_SOFT * np.logaddexp(0.0, (bent + upper - arms.forearm_most) / LEVEL_SOFT)
     return bent_arms(swing[0], np.radians(bent), np.radians(upper), swing[1], context)
-
-
-def bent_arms(swing: Array, bent: Array, upper: Array | float, out: Array, context: Context) -> Array:
-    """Return where hands are from their shoulders, (n, 2, 3): an elbow bends as its arm swings forward, and opens as
-    the arm goes back, so that no elbow is far behind the trunk.
-
-    swing : (n, 2) metres ahead; bent, upper : the elbow's flexion, and the upper arm's angle ahead of hanging down, of
-    an arm that does not swing, radians; out : (n, 2) metres to the left
-    """
-    arms, skeleton = context.settings.arms, context.skeleton
-    u, f = (float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("elbow", "radiocarpal"))
-    least, most = np.radians((arms.bent_least, arms.bent_most))
-    flexed = _within(bent + np.radians(arms.swing_bent) * swing, least, most)
-    raised = upper + np.radians(arms.swing_upper) * swing
-    ahead, down = (u * part(raised) + f * part(raised + flexed) for part in (np.sin, np.cos))
-    far2 = ahead**2 + down**2
-    in_plane = np.sqrt(np.maximum(1.0 - out**2 / far2, 0.04))  # the rest of the arm's length is aside
-    return np.stack((out, -down * in_plane, ahead * in_plane), axis=2)
-
-
-def _within(x: Array, least: float, most: float) -> Array:
-    """Return x kept between both, softly, and unchanged in the middle."""
-    middle, half = (most + least) / 2.0, (most - least) / 2.0
-    return np.asarray(middle + half * np.tanh((x - middle) / half))
 
 
 def _at_most(way: Array, most: float) -> Array:
