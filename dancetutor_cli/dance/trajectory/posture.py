@@ -164,7 +164,7 @@ def body_trajectory(
     return Trajectory(
         times, course.mass, mass_height, course.ground, height, course.yaw, chest, head, tilt, reached,
         np.zeros((len(times), 2)), np.zeros((len(times), 2)), groove.beat, groove.sway,
-        (1.0 - 0.5 * held) * upright * _pelvic_list(feet, tempo, course.rate, settings.body), arms,
+        upright * _pelvic_list(feet, tempo, course.rate, settings.body), arms,
         (*softened, *((HEIGHT,) if mass_height.softened else ())),
     )  # fmt: skip
 
