@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from dancetutor_cli.chart.hash import COMMENT, hash_input
 from dancetutor_cli.chart.model import Chart, NoteTable, RowTable, Song
 from dancetutor_cli.chart.msd import decode, encoding_of
 from dancetutor_cli.chart.reader import parse
@@ -98,7 +99,6 @@ def _display_line(line: bytes | None, encoding: str) -> str:
     return decode((line or b"").removesuffix(b"\r"), encoding).replace("\r", " ")
 
 
-_COMMENT = re.compile(rb"//[^\n]*")
 _BPMS = re.compile(rb"#BPMS:([^;]*)", re.IGNORECASE)
 
 
@@ -149,7 +149,7 @@ def _differences(before: Song, after: Song, ours: Callable[[Chart], bool], free:
                 yield f"the {name.replace('_', ' ')} of {a.label}"
         if not _same_notes(a.notes, b.notes) or not _same_rows(a.rows, b.rows):
             yield f"the note data of {a.label}"
-        if hash_input(before.data, a) != hash_input(after.data, b):
+        if hash_input(before, a) != hash_input(after, b):
             yield f"the score hash of {a.label}"
     if _bpms(before.data) != _bpms(after.data)[: len(_bpms(before.data))]:
         yield "the BPMs"
@@ -164,16 +164,5 @@ def _same_rows(a: RowTable, b: RowTable) -> bool:
     return np.array_equal(a.tick, b.tick) and np.array_equal(a.measure, b.measure)
 
 
-def hash_input(data: bytes, chart: Chart) -> bytes:
-    """Return the part of a chart's note data that the Simply Love theme hashes, before it shortens the measures.
-
-    The theme splits the text at every `:` and `;`, even in comments, and only then drops comments and blanks. So a `:`
-    in a comment ends the notes here, as it does in the theme.
-    """
-    start, end = chart.notes_span
-    text = re.split(rb"[:;]", data[start:end], maxsplit=1)[0].replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    return re.sub(rb"[\r\t\f\v ]+", b"", _COMMENT.sub(b"", text))
-
-
 def _bpms(data: bytes) -> list[bytes]:
-    return [re.sub(rb"\s+", b"", _COMMENT.sub(b"", text)) for text in _BPMS.findall(data)]
+    return [re.sub(rb"\s+", b"", COMMENT.sub(b"", text)) for text in _BPMS.findall(data)]

@@ -7,7 +7,7 @@ offset, stops, comments, blanks and line breaks do not change it.
 
 Source: chart hash version 3, as themes for StepMania 5 and ITGmania compute it from the text of a file. Newer releases
 of ITGmania compute it in the engine from the parsed notes and BPMs; whether the hash is then the same for every file is
-not known.
+not known. No comment ends the notes here, as in the engine; in those themes, one with a `;` does: see `hash_input`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.run.errors import DancetutorError
 
 DIGITS = 16  # number of hexadecimal digits of the hash
-_COMMENT = re.compile(rb"//[^\n]*")
+COMMENT = re.compile(rb"//[^\n]*")
 _BLANKS = b" \t\r\f\v"
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
@@ -50,6 +50,16 @@ def hash_of(note_data: bytes, columns: int, bpms: str) -> str:
     return hashlib.sha1(text, usedforsecurity=False).hexdigest()[:DIGITS]
 
 
+def hash_input(song: Song, chart: Chart) -> bytes:
+    """Return the text that themes without the engine's hash take for a chart's notes, before they shorten the measures.
+
+    They look for its end before they drop comments: at a `;`, and in .sm also at a `:`, even in a comment. The engine
+    hashes all notes, and so does `chart_hash`; no edit may change what either of them sees.
+    """
+    end = rb"[:;]" if song.format == "sm" else b";"
+    return _without_comments(re.split(end, song.data[slice(*chart.notes_span)], maxsplit=1)[0])
+
+
 def minimised(note_data: bytes, columns: int) -> bytes:
     """Return each measure in the fewest rows that hold its notes, one row per line, with a line `,` between measures.
 
@@ -70,11 +80,8 @@ def _measures(note_data: bytes, columns: int) -> Iterator[list[bytes]]:
 
     A line that begins with `,` ends a measure; a line that begins with `;` ends the chart.
     """
-    text = note_data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    if b"//" in text:
-        text = _COMMENT.sub(b"", text)
     measure: list[bytes] = []
-    for line in text.translate(None, _BLANKS).split(b"\n"):
+    for line in _without_comments(note_data).split(b"\n"):
         if line.startswith(b","):
             yield measure
             measure = []
@@ -83,6 +90,12 @@ def _measures(note_data: bytes, columns: int) -> Iterator[list[bytes]]:
         elif len(line) >= columns and not line.startswith(b"/"):
             measure.append(line[:columns])
     yield measure
+
+
+def _without_comments(note_data: bytes) -> bytes:
+    """Drop comments and blanks; each line end becomes LF."""
+    text = note_data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    return (COMMENT.sub(b"", text) if b"//" in text else text).translate(None, _BLANKS)
 
 
 def _fewest(rows: list[bytes], empty: bytes) -> list[bytes]:

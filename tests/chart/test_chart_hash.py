@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dancetutor_cli.chart.hash import HashError, chart_hash, hash_of, minimised, normalised_bpms
+from dancetutor_cli.chart.hash import HashError, chart_hash, hash_input, hash_of, minimised, normalised_bpms
 from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.run.errors import ChartError
@@ -88,6 +88,20 @@ def test_both_formats_and_each_line_end_have_the_same() -> None:
     lone = SM.replace(b",\n4=60.5", b"")
     assert hashed(lone) == hashed(SSC, "a.ssc")
     assert hashed(SM.replace(b"\n", b"\r\n")) == hashed(SM)
+
+
+@pytest.mark.parametrize(
+    ("data", "name", "mark", "cut"),
+    [(SM, "a.sm", b":", True), (SM, "a.sm", b";", True), (SSC, "a.ssc", b":", False), (SSC, "a.ssc", b";", True)],
+)
+def test_the_end_of_a_value_in_a_comment_ends_the_notes_of_themes_only(
+    data: bytes, name: str, mark: bytes, cut: bool
+) -> None:
+    marked = data.replace(b"1000\n", b"1000 // a" + mark + b"b\n")
+    before, after = (parse(text, Path(name)) for text in (data, marked))
+    themes = hash_input(after, after.charts[0])
+    assert themes.split() == ([b"1000"] if cut else hash_input(before, before.charts[0]).split())
+    assert hashed(marked, name) == hashed(data, name)
 
 
 @pytest.mark.parametrize(

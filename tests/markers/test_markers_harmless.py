@@ -12,7 +12,8 @@ import pytest
 from markers_readers import READERS
 from markers_songs import annotated, chart_files, readable, sm, song_of, stripped
 
-from dancetutor_cli.chart.edits import HarmError, hash_input, unchanged
+from dancetutor_cli.chart.edits import HarmError, unchanged
+from dancetutor_cli.chart.hash import hash_input
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.annotations import step_rows
@@ -31,7 +32,7 @@ def assert_same_song(before: Song, after: Song) -> None:
         for name in ("tick", "column", "kind", "end", "judged"):
             assert np.array_equal(getattr(a.notes, name), getattr(b.notes, name)), name
         assert np.array_equal(a.rows.tick, b.rows.tick)
-        assert hash_input(before.data, a) == hash_input(after.data, b)
+        assert hash_input(before, a) == hash_input(after, b)
 
 
 def check_files(paths: list[Path]) -> Counter[str]:
