@@ -21,7 +21,7 @@ from pathlib import Path
 import click
 
 import dancetutor_cli
-from dancetutor_cli.run.errors import did_you_mean
+from dancetutor_cli.run.errors import choice
 
 # name -> (module, short help); the short help stands here so that `--help` imports no subcommand.
 COMMANDS = {
@@ -88,7 +88,7 @@ class _LazyGroup(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         name = args[0]
         if name not in COMMANDS and not name.startswith("-"):
-            ctx.fail(f"there is no command '{name}'{did_you_mean(name, COMMANDS)}; choose {', '.join(COMMANDS)}")
+            ctx.fail(f"there is no command '{name}'{choice(name, COMMANDS)}")
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -24,7 +24,7 @@ from dancetutor_cli.commands.shared_options import (
 )
 from dancetutor_cli.markers.styles import STRIPPED, STYLES
 from dancetutor_cli.reports.terminal import JoinedWarnings, coloured, safe
-from dancetutor_cli.run.errors import UsageError, did_you_mean
+from dancetutor_cli.run.errors import UsageError, choice
 from dancetutor_cli.run.files import check_folder
 
 if TYPE_CHECKING:
@@ -39,9 +39,7 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
     names = [name.strip() for name in value.split(",") if name.strip()]
     for name in names:
         if name not in STRIPPED:
-            raise UsageError(
-                f"there is no kind of markers '{name}'{did_you_mean(name, STYLES)}; choose {', '.join(STYLES)}"
-            )
+            raise UsageError(f"there is no kind of markers '{name}'{choice(name, STYLES)}")
     if not names:
         raise UsageError(f"--markers: name one or more of {', '.join(STYLES)}")
     return tuple(name for name in STRIPPED if name in names)

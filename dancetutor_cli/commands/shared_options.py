@@ -12,7 +12,7 @@ import click
 
 from dancetutor_cli.commands.arguments import GivenPath, Second, WholeNumber
 from dancetutor_cli.commands.tab_names import characters, difficulties, folder, named, steps_types
-from dancetutor_cli.run.errors import UsageError, did_you_mean
+from dancetutor_cli.run.errors import UsageError, choice
 from dancetutor_cli.run.reading import config_names
 
 if TYPE_CHECKING:
@@ -239,4 +239,4 @@ def _language(context: click.Context, option: click.Parameter, value: str | None
     names = config_names("languages")
     if value is None or value in names:
         return value
-    raise UsageError(f"there is no language '{value}'{did_you_mean(value, names)}; choose {', '.join(names)}")
+    raise UsageError(f"there is no language '{value}'{choice(value, names)}")

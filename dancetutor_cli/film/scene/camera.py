@@ -15,7 +15,7 @@ import numpy as np
 
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.scene.look import CameraLook, Look
-from dancetutor_cli.run.errors import UsageError, did_you_mean
+from dancetutor_cli.run.errors import UsageError, choice
 
 Region = tuple[float, float, float, float]
 WHOLE: Region = (0.0, 0.0, 1.0, 1.0)
@@ -189,8 +189,7 @@ def _is_name(text: str) -> bool:
 def _named(name: str, look: Look) -> CameraLook:
     if name in look.cameras:
         return look.cameras[name]
-    meant, names = did_you_mean(name, look.cameras), ", ".join(look.cameras)
-    raise UsageError(f"there is no camera '{name}'{meant}; choose {names}, or POSITION/TARGET as x,y,z/x,y,z")
+    raise UsageError(f"there is no camera '{name}'{choice(name, look.cameras, 'POSITION/TARGET as x,y,z/x,y,z')}")
 
 
 def _points(text: str) -> list[list[float]]:
