@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import Kind, ReadWarning
+from dancetutor_cli.chart.model import STEP_KINDS, Kind, ReadWarning
 
 # Additions of StepF2, a game for Pump charts, to the notation of the other games.
 #
@@ -170,7 +170,6 @@ def report(warnings: list[ReadWarning], code: str, text: str, lines: NDArray[np.
 
 # The parts of players whose notes are in the same rows and are marked by letters.
 
-_STEPS = [Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT]
 _PLAIN = 4  # the colour of plain notes in a chart with three letters
 _LEAST = 0.5  # the share of the rarest letter's notes from which on plain notes are a fourth player's
 
@@ -192,7 +191,7 @@ def notes_by_player(cells: Cells, marks: Mapping[tuple[int, int], int], columns:
     if len(letters) == 2:
         whose = np.where((owner == 1) | (owner == 2), owner, 1 + right)
         return [cells[(whose == player) | mine] for player in (1, 2)]
-    step, plain = np.isin(cells.kind, _STEPS), owner == 0
+    step, plain = np.isin(cells.kind, STEP_KINDS), owner == 0
     colour = np.where(plain, _PLAIN, owner)
     whose = 2 * colour + right * np.isin(colour, _of_two(colour[step], cells.tick[step], right[step]))
     counts = np.bincount(owner[step & ~plain], minlength=1)

@@ -8,7 +8,7 @@ from itertools import groupby
 
 import numpy as np
 
-from dancetutor_cli.chart.model import Chart, Kind, Song
+from dancetutor_cli.chart.model import STEP_KINDS, Chart, Song
 from dancetutor_cli.chart.names import TICKS_PER_MEASURE
 
 MOST_SHOWN = 9999  # beats per minute; faster tempos are not shown to users
@@ -16,7 +16,7 @@ MOST_SHOWN = 9999  # beats per minute; faster tempos are not shown to users
 
 def bpm_shares(chart: Chart) -> list[tuple[float, float]]:
     """Return the BPM and the length in seconds of every stretch of the chart, up to its last note."""
-    last = max(int(chart.notes.tick.max(initial=0)), int(chart.notes.end.max(initial=0)), 1)
+    last = max(chart.notes.last_tick, 1)
     ticks = [tick for tick, _ in chart.timing.bpms if tick < last]
     seconds = chart.timing.seconds(np.array([*ticks, last], dtype=np.int64))
     values = (float(value) for _, value in chart.timing.bpms)
@@ -55,7 +55,7 @@ def _displayed(text: str) -> list[float]:
 
 _SHORTEST = 0.12  # seconds; a measure that warps or gimmicks make shorter than this has no meaningful speed
 _IS_STEP = np.zeros(256, dtype=bool)
-_IS_STEP[[Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT]] = True
+_IS_STEP[list(STEP_KINDS)] = True
 
 
 @dataclass(frozen=True, slots=True)

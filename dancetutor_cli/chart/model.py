@@ -31,6 +31,9 @@ class Kind(IntEnum):
     KEYSOUND = 7
 
 
+STEP_KINDS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)  # the kinds that a foot or hand steps on
+
+
 @dataclass(frozen=True, slots=True)
 class NoteTable:
     """All notes of a chart as arrays of one length n, sorted by (tick, column); tails are in `end`.
@@ -52,6 +55,11 @@ class NoteTable:
 
     def __len__(self) -> int:
         return len(self.tick)
+
+    @property
+    def last_tick(self) -> int:
+        """Tick of the last note or tail; 0 without notes."""
+        return max(int(self.tick.max(initial=0)), int(self.end.max(initial=0)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.cells import PLAYERS
-from dancetutor_cli.chart.model import Chart, Kind, Song
+from dancetutor_cli.chart.model import STEP_KINDS, Chart, Song
 from dancetutor_cli.feet.limbs import MARKER, MEANING, Limb, NotationError, Part, Token, parse
 from dancetutor_cli.feet.overrides import CellOverride, FeetProblem
 from dancetutor_cli.run.errors import plural
@@ -21,7 +21,6 @@ _SPECIAL = np.zeros(256, dtype=bool)
 _SPECIAL[list(b"[\\{D" + PLAYERS)] = True
 # cells that are not one letter for each column (StepF2, StepManiaX), or that name a player
 _FOREIGN = re.compile(rb"[{%b]|D[LM]" % PLAYERS)
-_STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
 _KEYSOUND = re.compile(rb"\[[^\]]*\]?")
 
 
@@ -69,7 +68,7 @@ def _columns_at(chart: Chart, tick: int) -> NDArray[np.int16]:
     """The columns of the steps at a tick, taken from the notes of the chart."""
     notes = chart.notes
     first, last = np.searchsorted(notes.tick, [tick, tick + 1])
-    return notes.column[first:last][np.isin(notes.kind[first:last], _STEPS)]
+    return notes.column[first:last][np.isin(notes.kind[first:last], STEP_KINDS)]
 
 
 @dataclass(frozen=True, slots=True)

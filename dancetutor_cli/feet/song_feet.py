@@ -8,7 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any
 
-from dancetutor_cli.chart.model import Chart, Kind, Song
+from dancetutor_cli.chart.model import STEP_KINDS, Chart, Song
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.note_data import shares_rows
 from dancetutor_cli.chart.pack_files import SETTINGS_FILE, check_not_a_link_out, find_settings_file
@@ -28,7 +28,6 @@ from dancetutor_cli.run.yaml_files import read
 #     steps: {16: L, 16.5: R, 17: LR}            # beat: a letter for each note, left to right, as in {dt1 ...}
 #     ignore: {24: doublestep, 25.5: [DT202]}    # beat: rules whose findings are not wanted there
 
-_STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
 _TOES = {Limb.LEFT_FOOT: "l", Limb.RIGHT_FOOT: "r"}
 
 
@@ -105,7 +104,7 @@ def entries_of(source: MarkedYaml) -> tuple[FeetEntry, ...]:
 
 def _parse_letters(chart: Chart, tick: int, letters: str) -> Iterator[CellOverride | FeetProblem]:
     """Yield an override for each note of a row, or one problem if the number of letters does not fit."""
-    here = [n for n in (chart.notes.tick == tick).nonzero()[0].tolist() if chart.notes.kind[n] in _STEPS]
+    here = [n for n in (chart.notes.tick == tick).nonzero()[0].tolist() if chart.notes.kind[n] in STEP_KINDS]
     beat = f"{SETTINGS_FILE} gives beat {tick / TICKS_PER_BEAT:g}"
     if len(here) != len(letters):
         what = f"{len(letters)} letter{'s' if len(letters) > 1 else ''}"

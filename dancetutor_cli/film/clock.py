@@ -222,7 +222,7 @@ def whole_song(chart: Chart) -> tuple[float, float]:
     notes = chart.notes
     if len(notes) == 0:
         raise DancetutorError(f"{chart.label}: the chart has no notes, so there is nothing to render")
-    ticks = np.array([notes.tick.min(), max(notes.tick.max(), notes.end.max())])
+    ticks = np.array([notes.tick.min(), notes.last_tick])
     first, last = chart.timing.seconds(ticks)
     return min(0.0, float(first) - LEAD_IN), float(last) + LEAD_OUT
 

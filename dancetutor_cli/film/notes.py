@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import Chart, Kind
+from dancetutor_cli.chart.model import STEP_KINDS, Chart, Kind
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind
@@ -215,15 +215,14 @@ def presses_of(track: NoteTrack) -> Presses:
 
     A hold or roll lasts from its head to its tail, or to the moment from which on nobody plays it.
     """
-    step = track.judged & np.isin(track.kind, (Kind.TAP, Kind.LIFT, Kind.HOLD, Kind.ROLL))
+    step = track.judged & np.isin(track.kind, STEP_KINDS)
     end = np.maximum(np.minimum(track.end_second, track.gone_second), track.second)
     return Presses(track.second[step], end[step], track.column[step], track.limb[step])
 
 
 def beat_lines(chart: Chart, scrolls: ScrollSegments, end: float) -> BeatLines:
     """Return one line for each beat, from beat 0 to a minute after the end of the film."""
-    last = max(int(chart.notes.tick.max(initial=0)), int(chart.notes.end.max(initial=0)))
-    beats = np.arange(min(last // TICKS_PER_BEAT + 64, 2_000_000), dtype=np.int64)
+    beats = np.arange(min(chart.notes.last_tick // TICKS_PER_BEAT + 64, 2_000_000), dtype=np.int64)
     second = chart.timing.seconds(beats * TICKS_PER_BEAT)
     keep = second <= end + 60
     return BeatLines(second[keep], scrolls.drawn_beats(beats.astype(np.float64))[keep])

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import Chart, Kind, Song
+from dancetutor_cli.chart.model import STEP_KINDS, Chart, Kind, Song
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE, is_lights
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import twin
@@ -20,9 +20,8 @@ from dancetutor_cli.run.errors import FileError
 
 _KINDS = {"mine": Kind.MINE, "roll": Kind.ROLL, "hold": Kind.HOLD, "lift": Kind.LIFT, "fake": Kind.FAKE,
           "keysound": Kind.KEYSOUND}  # fmt: skip
-_STEPS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
 _IS_STEP, _IS_JUDGED = np.zeros(256, dtype=bool), np.zeros(256, dtype=bool)  # by kind; whether the games judge it
-_IS_STEP[list(_STEPS)] = _IS_JUDGED[[*_STEPS, Kind.MINE]] = True
+_IS_STEP[list(STEP_KINDS)] = _IS_JUDGED[[*STEP_KINDS, Kind.MINE]] = True
 
 
 class NoteFacts:

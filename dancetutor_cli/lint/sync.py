@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.audio import Sound
-from dancetutor_cli.chart.model import Chart, Kind
+from dancetutor_cli.chart.model import STEP_KINDS, Chart
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.timing import Timing
 from dancetutor_cli.lint.findings import Sync, sync_of
@@ -107,7 +107,7 @@ def _rows(timing: Timing, charts: Sequence[Chart]) -> _Rows:
     weights: dict[int, float] = {}
     for chart in charts:
         notes = chart.notes
-        steps = notes.judged & np.isin(notes.kind, (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT))
+        steps = notes.judged & np.isin(notes.kind, STEP_KINDS)
         for tick, many in zip(*np.unique(notes.tick[steps], return_counts=True), strict=True):
             weights[int(tick)] = weights.get(int(tick), 0.0) + (1.5 if many > 1 else 1.0)
     noted = np.array(sorted(weights), dtype=np.int64)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.edits import Splice
-from dancetutor_cli.chart.model import Chart, Kind, Song
+from dancetutor_cli.chart.model import STEP_KINDS, Chart, Song
 from dancetutor_cli.chart.note_writer import write_notes
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.limbs import Limb
@@ -63,7 +63,7 @@ def _limbs(chart: Chart, play: Play) -> dict[tuple[int, int], int]:
     ticks = play.rows.tick[row].tolist()
     every = dict(zip(zip(ticks, column.tolist(), strict=True), play.limb[row, column].tolist(), strict=True))
     notes = chart.notes
-    steps = notes.judged & np.isin(notes.kind, (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT))
+    steps = notes.judged & np.isin(notes.kind, STEP_KINDS)
     written = zip(notes.tick[steps].tolist(), notes.column[steps].tolist(), strict=True)
     return {place: every[place] for place in written if place in every}
 

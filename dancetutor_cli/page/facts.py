@@ -62,7 +62,7 @@ def ticks_of(chart: Chart) -> list[int]:
 
 def beats_of(chart: Chart) -> list[float]:
     """Return the second of each beat from 0 to `BEATS_AFTER` beats after the last note."""
-    last = max(int(chart.notes.tick.max(initial=0)), int(chart.notes.end.max(initial=0))) // TICKS_PER_BEAT
+    last = chart.notes.last_tick // TICKS_PER_BEAT
     ticks = np.arange(last + BEATS_AFTER, dtype=np.int64) * TICKS_PER_BEAT
     return [float(second) for second in chart.timing.seconds(ticks)]
 

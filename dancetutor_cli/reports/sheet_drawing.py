@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dancetutor_cli.chart.model import Kind
+from dancetutor_cli.chart.model import STEP_KINDS, Kind
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.feet.limbs import Part
 from dancetutor_cli.lint.findings import Finding
@@ -21,7 +21,6 @@ from dancetutor_cli.run.languages import ENGLISH, Language, load_language
 
 HOLD_OPACITY = 0.55
 _BAND_OPACITY = 0.2
-_HEADS = (Kind.TAP, Kind.HOLD, Kind.ROLL, Kind.LIFT)
 _FEET_SPACING = 27.0  # diagrams of feet nearer than this would overlap
 
 
@@ -133,9 +132,9 @@ def _notes(sheet: Sheet, ticks: range) -> Iterator[str]:
         x, y = sheet.layout.x(tick, lane), sheet.layout.y(tick)
         if kind == Kind.MINE:
             yield _mine(sheet.style, x, y)
-        elif kind == Kind.FAKE or (kind in _HEADS and not notes.judged[n]):
+        elif kind == Kind.FAKE or (kind in STEP_KINDS and not notes.judged[n]):
             yield _arrow(sheet, lane, (x, y), sheet.style.colours["fake"], 0.45)
-        elif kind in _HEADS:
+        elif kind in STEP_KINDS:
             yield _arrow(sheet, lane, (x, y), sheet.style.note_colour(tick), 0.4 if kind == Kind.LIFT else 1.0)
             if (tick, lane) in sheet.limbs:
                 marks.append(mark(sheet.style, x, y, *sheet.limbs[tick, lane]))

@@ -54,7 +54,7 @@ class MusicEnd(FileRule):
         if music is None or music.seconds is None:
             return
         ends = [
-            (float(one.timing.seconds(np.array([max(one.notes.tick.max(), one.notes.end.max())]))[0]), one)
+            (float(one.timing.seconds(np.array([one.notes.last_tick]))[0]), one)
             for one in subject.dance_charts
             if not one.tags.get("MUSIC")
         ]
