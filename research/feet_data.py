@@ -23,7 +23,7 @@ from dancetutor_cli.feet.pads import Pad, load_pad
 from dancetutor_cli.feet.play import Play, Rows, prepare
 from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.solver.solve import solve_rows
-from dancetutor_cli.feet.song_feet import overrides_for
+from dancetutor_cli.feet.song_feet import SongFeet
 
 sys.path.append(str(Path(__file__).resolve().parent.parent / "tools"))
 from unpacking import unpack
@@ -92,7 +92,7 @@ def load_pins(paths: list[Path]) -> list[Labelled]:
     for path in paths:
         song = load(path)
         for number, chart in enumerate(song.charts):
-            pad, overrides = load_pad(chart.steps_type), overrides_for(song, chart)[0]
+            pad, overrides = load_pad(chart.steps_type), SongFeet(song).author_feet(chart)[0]
             feet = (overrides.limbs == 0) | (overrides.limbs == 1)
             if pad is None or not feet.any():
                 continue

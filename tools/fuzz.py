@@ -119,7 +119,7 @@ def _editor(path: Path) -> object:
     """data.sme beside a song: read for its feet, and merged with ours."""
     from dancetutor_cli.chart.reader import load
     from dancetutor_cli.chart.selection import Selection
-    from dancetutor_cli.feet.song_feet import overrides_for
+    from dancetutor_cli.feet.song_feet import SongFeet
     from dancetutor_cli.markers.annotate import AnnotateRequest, Item, annotate_song
 
     folder = path.with_suffix(".d")
@@ -128,7 +128,7 @@ def _editor(path: Path) -> object:
     song = folder / "x.sm"
     song.write_bytes(b"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single:C:Hard:9::\n1000\n0100\n0010\n0001\n;\n")
     read = load(song)
-    overrides_for(read, read.charts[0])
+    SongFeet(read).author_feet(read.charts[0])
     return annotate_song([Item(song, song)], AnnotateRequest(("smeditor",), None, Selection()))
 
 

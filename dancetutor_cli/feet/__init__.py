@@ -1,6 +1,6 @@
 """Which limb steps which note: pads, limbs, feet that people have set, cost presets, and the solver -> `Play`.
 
-solved.solve_song             solves a song's charts; `markers` solves chart by chart, by solver.solve
+solved.solve_song             solves a song's charts
   |   pads, preset              where panels are; what each undesired thing costs; which preset a chart gets
   |   song_feet                 feet that people have set: annotations in the file, sme (SMEditor), dancetutor.yaml
   |   overrides                 the same for one chart, and the contradictions

@@ -123,11 +123,6 @@ def _parse_letters(chart: Chart, tick: int, letters: str) -> Iterator[CellOverri
 AuthorFeet = tuple[Overrides, Ignores, tuple[FeetProblem, ...]]
 
 
-def overrides_for(song: Song, chart: Chart) -> AuthorFeet:
-    """Return the feet that people have set for a chart, see `SongFeet.author_feet`."""
-    return SongFeet(song).author_feet(chart)
-
-
 class SongFeet:
     """The feet that people have set for the charts of a song; the files that may hold them are searched once."""
 

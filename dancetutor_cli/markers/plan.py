@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 
 import numpy as np
 
@@ -13,8 +14,7 @@ from dancetutor_cli.chart.note_data import player_charts, written_parts
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.annotations import step_rows
 from dancetutor_cli.feet.preset import Preset, mismatch
-from dancetutor_cli.feet.solver.solve import solve_chart
-from dancetutor_cli.feet.song_feet import overrides_for
+from dancetutor_cli.feet.solved import solve_song
 from dancetutor_cli.markers import edit
 from dancetutor_cli.markers.model import ChartFeet, Lack, NoteChange, row_letters
 from dancetutor_cli.markers.styles import note_styles
@@ -33,17 +33,17 @@ def solve_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart
     """Return the feet of each chart that has a pad."""
     found = SolvedSong()
     padless = set()
-    for chart in charts:
+    parts = [player_charts(chart) for chart in charts]
+    solved = solve_song(song, [*chain.from_iterable(parts)], preset_of)
+    for chart, players in zip(charts, parts, strict=True):
         feet = []
-        for part in player_charts(chart):
-            overrides, _, wrong = overrides_for(song, part)
-            found.problems += (Lack(problem.message, problem.line, problem.column) for problem in wrong)
-            play = solve_chart(part, preset_of(part), overrides)
-            if play is None:
+        for part, one in zip(players, solved, strict=False):  # the next players of the song
+            found.problems += (Lack(problem.message, problem.line, problem.column) for problem in one.problems)
+            if one.play is None:
                 padless.add(part.steps_type)
                 continue
             rows = step_rows(song.data, part)
-            feet.append(ChartFeet(part, rows, tuple(row_letters(part, rows, play)), play))
+            feet.append(ChartFeet(part, rows, tuple(row_letters(part, rows, one.play)), one.play))
         separate = written_parts(chart) != (chart,) or not chart.players
         found.charts += feet if separate else [_in_shared_rows(song, chart, feet)]
     padless = {name for name in padless if not name.startswith("lights")}

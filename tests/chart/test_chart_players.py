@@ -18,7 +18,7 @@ from dancetutor_cli.commands import cli
 from dancetutor_cli.feet.annotations import step_rows
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.preset import load_preset
-from dancetutor_cli.feet.song_feet import overrides_for
+from dancetutor_cli.feet.song_feet import SongFeet
 from dancetutor_cli.lint.analysis import analyze_file
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.fix_edits import move_notes
@@ -161,7 +161,7 @@ def test_pins_of_each_player_are_kept(both: Path) -> None:
     song = parse(both.read_bytes(), both)
     for chart in song.charts:
         for part in player_charts(chart):
-            overrides, _, problems = overrides_for(song, part)
+            overrides, _, problems = SongFeet(song).author_feet(part)
             assert len(overrides) and problems == ()
             play = solved_chart(song, part, load_preset("itg")).play
             assert play is not None
@@ -199,7 +199,7 @@ def test_letters_of_marked_notes_stand_from_left_to_right_whosever_they_are(mark
     text = marked.read_text().replace(f"{{dt1 {sides[0]}}}", "{dt1! (LL)(LR)(RR)(L)}")
     marked.write_text(text)
     song = parse(text.encode(), marked)
-    said = [overrides_for(song, part)[0].cells() for part in player_charts(song.charts[0])]
+    said = [SongFeet(song).author_feet(part)[0].cells() for part in player_charts(song.charts[0])]
     left, right = (int(Limb.LEFT_FOOT), int(Limb.RIGHT_FOOT))
     feet = [{column: int(limb) for (_, column), (limb, _) in sorted(cells.items())} for cells in said]
     assert feet == [{0: left, 5: right, 2: right, 4: left}, {9: left, 3: left, 7: right}]

@@ -16,7 +16,7 @@ from dancetutor_cli.feet.limbs import parse as parse_tokens
 from dancetutor_cli.feet.overrides import FeetProblem, Overrides, contradictions
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.solve import solve_chart
-from dancetutor_cli.feet.song_feet import overrides_for
+from dancetutor_cli.feet.song_feet import SongFeet
 
 LEFT, RIGHT, LEFT_HAND, RIGHT_HAND = Limb.LEFT_FOOT, Limb.RIGHT_FOOT, Limb.LEFT_HAND, Limb.RIGHT_HAND
 HEAD = (
@@ -117,7 +117,7 @@ def test_the_solver_keeps_pinned_feet() -> None:
     pinned = song_of(b"//{dt1! RLRL}\n1000\n0001\n1000\n0001\n;\n")
     limbs = []
     for song in (plain, pinned):
-        overrides, _, problems = overrides_for(song, song.charts[0])
+        overrides, _, problems = SongFeet(song).author_feet(song.charts[0])
         assert problems == ()
         play = solve_chart(song.charts[0], load_preset("thesis"), overrides)
         assert play is not None

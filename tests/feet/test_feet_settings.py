@@ -12,7 +12,7 @@ from dancetutor_cli.chart.reader import load
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.solve import solve_chart
-from dancetutor_cli.feet.song_feet import overrides_for
+from dancetutor_cli.feet.song_feet import SongFeet
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
 from dancetutor_cli.lint.results import ResultCache
 from dancetutor_cli.lint.run import LintRequest, LintRun
@@ -38,7 +38,7 @@ def configure(song: Song, text: str) -> Path:
 
 
 def cells(song: Song, chart: int = 0) -> dict[tuple[int, int], tuple[int, int]]:
-    return overrides_for(song, song.charts[chart])[0].cells()
+    return SongFeet(song).author_feet(song.charts[chart])[0].cells()
 
 
 def test_feet_are_laid_down_by_beat(song: Song) -> None:
@@ -46,7 +46,7 @@ def test_feet_are_laid_down_by_beat(song: Song) -> None:
     expected = {(0, 0): (RIGHT, 0), (48, 1): (LEFT, 0), (144, 0): (LEFT, 0), (144, 1): (RIGHT, 0)}
     assert cells(song) == expected
     assert cells(song, 1) == {}  # another difficulty
-    play = solve_chart(song.charts[0], load_preset("itg"), overrides_for(song, song.charts[0])[0])
+    play = solve_chart(song.charts[0], load_preset("itg"), SongFeet(song).author_feet(song.charts[0])[0])
     assert play is not None and play.limb[0, 0] == RIGHT
 
 
@@ -63,7 +63,7 @@ def test_what_stands_nearer_to_the_note_counts(song: Song) -> None:
 
 def test_letters_that_do_not_fit_are_a_finding(song: Song) -> None:
     configure(song, "feet:\n- when: {path: x.sm, difficulty: Hard}\n  steps: {0: LR, 5: L, 1: R}\n")
-    overrides, _, problems = overrides_for(song, song.charts[0])
+    overrides, _, problems = SongFeet(song).author_feet(song.charts[0])
     assert list(overrides.cells()) == [(48, 1)]
     assert [p.message.partition(",")[0] for p in problems] == [
         "dancetutor.yaml gives beat 0 2 letters", "dancetutor.yaml gives beat 5 1 letter",
@@ -86,7 +86,10 @@ def test_letters_that_do_not_fit_are_a_finding(song: Song) -> None:
 )
 def test_what_is_wrong_is_reported_with_its_line(song: Song, text: str, line: int, words: tuple[str, ...]) -> None:
     path = configure(song, text)
-    for read in (lambda: overrides_for(song, song.charts[0]), lambda: LintRun(LintRequest()).configuration(song.path)):
+    for read in (
+        lambda: SongFeet(song).author_feet(song.charts[0]),
+        lambda: LintRun(LintRequest()).configuration(song.path),
+    ):
         with pytest.raises(FileError) as caught:
             read()
         assert str(caught.value).startswith(f"{path}:{line}")
