@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.cells import PLAYERS
 from dancetutor_cli.chart.model import STEP_KINDS, Chart, Song
-from dancetutor_cli.feet.limbs import MARKER, MEANING, Limb, NotationError, Part, Token, parse
+from dancetutor_cli.feet.limbs import MARKER, MEANING, NotationError, Token, limb_and_part, parse
 from dancetutor_cli.feet.overrides import CellOverride, FeetProblem
 from dancetutor_cli.run.errors import plural
 
@@ -181,10 +181,5 @@ def _parse_token(tick: int, token: Token, columns: list[int], line: int, start: 
     """Yield the overrides of one token. start : column at which the marker's text begins in its line"""
     for letter, place, column in zip(token.letters, token.places, columns, strict=True):
         if letter in MEANING:
-            limb, part = MEANING[letter]
-            if part is Part.WHOLE and limb in _TOE and _TOE[limb] in token.letters:
-                part = Part.HEEL
+            limb, part = limb_and_part(letter, token.letters)
             yield CellOverride(tick, column, limb, part, "pinned", line, start + place)
-
-
-_TOE = {Limb.LEFT_FOOT: "l", Limb.RIGHT_FOOT: "r"}

@@ -92,6 +92,12 @@ def letter(limb: int, part: int) -> str:
     return _LETTERS.get((limb, part), UNKNOWN)
 
 
+def limb_and_part(letter: str, letters: str) -> tuple[Limb, Part]:
+    """Return what a letter of `MEANING` means among the `letters` of its row: beside the foot's toe, a heel."""
+    limb, part = MEANING[letter]
+    return limb, Part.HEEL if letter.isupper() and letter.lower() in letters else part
+
+
 def marker(tokens: Iterable[str]) -> bytes:
     """Return the marker of a measure; `tokens` holds the letters of each row with a step."""
     text = "".join(letters if len(letters) == 1 else f"({letters})" for letters in tokens)

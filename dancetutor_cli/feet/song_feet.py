@@ -14,7 +14,7 @@ from dancetutor_cli.chart.note_data import shares_rows
 from dancetutor_cli.chart.pack_files import SETTINGS_FILE, check_not_a_link_out, find_settings_file
 from dancetutor_cli.feet.annotations import has_pins, pinned
 from dancetutor_cli.feet.conditions import Condition, When, condition_of
-from dancetutor_cli.feet.limbs import LETTERS, MEANING, UNKNOWN, Limb, Part
+from dancetutor_cli.feet.limbs import LETTERS, MEANING, UNKNOWN, limb_and_part
 from dancetutor_cli.feet.overrides import CellOverride, FeetProblem, Ignores, Overrides, contradictions
 from dancetutor_cli.feet.sme import ChartData, editor_file, read_sme
 from dancetutor_cli.run.reading import shown_key
@@ -27,8 +27,6 @@ from dancetutor_cli.run.yaml_files import read
 #   - when: {path: song.ssc, difficulty: Hard}   # as in `overrides`
 #     steps: {16: L, 16.5: R, 17: LR}            # beat: a letter for each note, left to right, as in {dt1 ...}
 #     ignore: {24: doublestep, 25.5: [DT202]}    # beat: rules whose findings are not wanted there
-
-_TOES = {Limb.LEFT_FOOT: "l", Limb.RIGHT_FOOT: "r"}
 
 
 def _tick(beat: Any) -> int:
@@ -112,9 +110,7 @@ def _parse_letters(chart: Chart, tick: int, letters: str) -> Iterator[CellOverri
         return
     for n, letter in zip(here, letters, strict=True):
         if letter in MEANING:
-            limb, part = MEANING[letter]
-            if part is Part.WHOLE and _TOES.get(limb, " ") in letters:
-                part = Part.HEEL
+            limb, part = limb_and_part(letter, letters)
             yield CellOverride(tick, int(chart.notes.column[n]), limb, part, SETTINGS_FILE, int(chart.notes.line[n]), 1)
 
 
