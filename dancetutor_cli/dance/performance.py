@@ -182,7 +182,8 @@ def play_of_all(solved: Sequence[Solved], plays: Sequence[Play]) -> Play:
     """Return the steps of all dancers as one play, on the pad under all of them. plays : the play of each dancer"""
     if len(solved) == 1:
         return plays[0]
-    return merge_plays(solved[0].song.charts[solved[0].chart.index], plays, pad_of(solved))
+    first = solved[0]
+    return merge_plays(first.song.charts[first.chart.index], plays, pad_of(solved), first.preset.roll_window)
 
 
 def playable(one: Solved, rates: Iterable[float]) -> Play:

@@ -106,9 +106,12 @@ def _on_the_right(parts: Sequence[Chart], whole: Pad, ends: slice) -> list[int]:
     return [int(2 * rank >= len(parts)) for rank in ranks]
 
 
-def merge_plays(chart: Chart, plays: Sequence[Play], whole: Pad) -> Play:
-    """Return the steps of both dancers as one play of the chart as it is written: limbs and moves, without costs."""
-    rows = prepare(chart, whole)
+def merge_plays(chart: Chart, plays: Sequence[Play], whole: Pad, roll_window: float) -> Play:
+    """Return the steps of both dancers as one play of the chart as it is written: limbs and moves, without costs.
+
+    roll_window : of the preset with which the plays were found
+    """
+    rows = prepare(chart, whole, roll_window)
     limb = np.full(rows.steps.shape, int(Limb.NONE), dtype=np.int8)
     part = np.zeros(rows.steps.shape, dtype=np.uint8)
     moves: list[set[str]] = [set() for _ in range(len(rows))]

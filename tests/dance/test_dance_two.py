@@ -14,7 +14,7 @@ from dancetutor_cli.character.mesh import partner_of
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.motion import Motion, shifted
-from dancetutor_cli.dance.performance import Performance, perform, solve
+from dancetutor_cli.dance.performance import Performance, perform, play_of_all, solve
 from dancetutor_cli.dance.quality.figures import body_of
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig.limbs import Capsule, depth
@@ -110,3 +110,17 @@ def test_both_files_of_animate_have_the_same_ways(couple: Performance, tmp_path:
     for file, one in zip(files, couple.dancers, strict=True):
         assert file.moves == (one.plan, one.context.bar) and file.place == one.place
     assert files[0].motion.times[0] == files[1].motion.times[0]
+
+
+def test_a_roll_is_shown_with_the_taps_of_the_preset(tmp_path: Path) -> None:
+    """Both players' plays as one have the same rows as the plays: a shorter roll window has more taps."""
+    preset, path = tmp_path / "often.yaml", tmp_path / "roll.sm"
+    preset.write_text("extends: itg\nroll-window: 0.15\n")
+    path.write_text(HEAD + "#NOTES:dance-couple::Hard:9::\n40000010\n00000000\n30000010\n00000001\n;\n")
+    solved = solve(DanceRequest(path, Selection(), preset=str(preset)))
+    plays = [one.play for one in solved if one.play is not None]
+    assert len(plays) == 2
+    assert plays[0].rows.tick.tolist() == [*range(0, 96, 12)]  # eight taps, an eighth of a second apart
+    shown = play_of_all(solved, plays)
+    assert shown.rows.tick.tolist() == sorted({*plays[0].rows.tick.tolist(), *plays[1].rows.tick.tolist()})
+    assert ((shown.limb >= 0) == (shown.rows.steps > 0)).all()
