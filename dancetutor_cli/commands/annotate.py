@@ -176,23 +176,10 @@ def _outcomes(
             yield from annotate_song(song, request)
         return
     from dancetutor_cli.markers.annotate import annotate_task
-    from dancetutor_cli.run.pool import Task, open_workers
+    from dancetutor_cli.run.pool import in_order
 
-    workers = open_workers(min(wanted, len(songs)), lambda key, n: None)
-    try:
-        for number, song in enumerate(songs):
-            workers.submit(Task(number, annotate_task, (song, request)))
-        waiting: dict[int, list[AnnotateOutcome]] = {}
-        turn = 0
-        for done in workers.results():
-            if done.error is not None:
-                raise done.error
-            waiting[done.key] = done.result
-            while turn in waiting:
-                yield from waiting.pop(turn)
-                turn += 1
-    finally:
-        workers.close()
+    for outcomes in in_order(wanted, annotate_task, [(song, request) for song in songs]):
+        yield from outcomes
 
 
 def _fitting_jobs(songs: int) -> int:

@@ -27,7 +27,7 @@ from dancetutor_cli.dance.two import merge_plays, pad_of_both, persons_of, place
 from dancetutor_cli.feet.play import without_unplayable
 from dancetutor_cli.feet.solved import Solved, solve_song
 from dancetutor_cli.run.errors import DancetutorError, UsageError
-from dancetutor_cli.run.pool import Task, open_workers
+from dancetutor_cli.run.pool import in_order
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
@@ -207,19 +207,7 @@ def _pooled(jobs: int, function: Callable[[Piece], BakedPiece], pieces: Sequence
     if len(pieces) == 1:
         yield function(pieces[0])
         return
-    workers = open_workers(min(jobs, len(pieces)), lambda key, n: None)
-    try:
-        for k, piece in enumerate(pieces):
-            workers.submit(Task(k, _work, (function, piece)))
-        results: dict[int, BakedPiece] = {}
-        for done in workers.results():
-            if done.error is not None:
-                raise done.error
-            results[done.key] = done.result
-    finally:
-        workers.close()
-    for k in range(len(pieces)):
-        yield results.pop(k)
+    yield from in_order(jobs, _work, [(function, piece) for piece in pieces])
 
 
 def _work(_: object, function: Callable[[Piece], BakedPiece], piece: Piece) -> BakedPiece:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -72,6 +72,27 @@ def open_workers(jobs: int, report: Callable[[Any, int], None], common: str = ""
     from dancetutor_cli.run.worker_processes import ProcessWorkers
 
     return ProcessWorkers(jobs, report, common)
+
+
+def in_order(jobs: int, function: Callable[..., Any], arguments: Sequence[tuple[Any, ...]]) -> Iterator[Any]:
+    """Yield `function(report, *one)` of each of the arguments, in their order, each as early as possible.
+
+    Raises the error of the task that fails first.
+    """
+    workers = open_workers(min(jobs, len(arguments)), lambda key, n: None)
+    try:
+        for number, one in enumerate(arguments):
+            workers.submit(Task(number, function, one))
+        results, waiting = workers.results(), {}
+        for number in range(len(arguments)):
+            while number not in waiting:
+                done = next(results)
+                if done.error is not None:
+                    raise done.error
+                waiting[done.key] = done.result
+            yield waiting.pop(number)
+    finally:
+        workers.close()
 
 
 def attempt(task: Task, report: Report) -> FinishedWork:

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from dancetutor_cli.run.errors import FileError, UnavailableError, UsageError
-from dancetutor_cli.run.pool import FinishedWork, Report, Task, WorkFailedError, open_workers
+from dancetutor_cli.run.pool import FinishedWork, Report, Task, WorkFailedError, in_order, open_workers
 
 pytestmark = pytest.mark.usefixtures("own_records")
 
@@ -88,6 +88,19 @@ def test_errors_come_back_as_they_are(jobs: int) -> None:
     assert isinstance(results["unknown"].error, WorkFailedError) and "ZeroDivisionError: oh" in str(
         results["unknown"].error
     )
+
+
+def late(report: Report, number: int) -> int:
+    time.sleep(0.3 * (number == 0))
+    return double(report, number)
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_in_order_though_the_first_is_done_last(jobs: int) -> None:
+    assert list(in_order(jobs, late, [(number,) for number in range(4)])) == [0, 2, 4, 6]
+    assert list(in_order(jobs, late, [])) == []
+    with pytest.raises(FileError, match="refused 0"):
+        list(in_order(jobs, refuse, [(0,)]))
 
 
 def test_more_work_may_come_while_results_do() -> None:
