@@ -28,6 +28,7 @@ from dancetutor_cli.commands.shared_options import (
     language_option,
     preset_option,
     quiet_option,
+    same_fields,
     selection_options,
 )
 from dancetutor_cli.commands.tab_names import fixes, folder, named, rules
@@ -197,19 +198,7 @@ def command(selection: Selection, options: AnalyzeOptions) -> int:
 
     request = LintRequest(
         selection=selection,
-        preset=options.preset,
-        config=options.config,
-        assignments=options.assignments,
-        select=options.select,
-        ignore=options.ignore,
-        fail_on=options.fail_on,
-        baseline=options.baseline,
-        update_baseline=options.update_baseline,
-        suggest=options.suggest,
-        alternatives=options.alternatives,
-        meter_scale=options.meter_scale,
-        rate=options.rate,
-        sync=options.sync,
+        **same_fields(options, LintRequest),
         want_rows=options.format_name == "json",
         want_figures=options.format_name == "csv" or options.report_html is not None,
         want_excerpts=options.format_name == "text",

@@ -212,17 +212,17 @@ def film_request(
         click.echo(f"note: {wanted[0]}x{wanted[1]} becomes {size[0]}x{size[1]}; H.264 needs even numbers", err=True)
     scroll = parse_scroll(options.scroll) if options.scroll else None
     look = FilmLook(
-        layout,
-        size,
-        options.quality,
-        options.renderer,
-        options.camera,
-        scroll,
-        options.down,
-        options.font,
-        parse_ahead(options.call_ahead) if options.call_ahead else None,
-        options.show_findings,
-        options.language,
+        layout=layout,
+        size=size,
+        quality=options.quality,
+        renderer=options.renderer,
+        camera=options.camera,
+        scroll=scroll,
+        down=options.down,
+        font=options.font,
+        ahead=parse_ahead(options.call_ahead) if options.call_ahead else None,
+        findings=options.show_findings,
+        language=options.language,
     )
     return FilmRequest(
         with_style(replace(dance.request(file, selection), rates=_rates(options, layout))),

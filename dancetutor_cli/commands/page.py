@@ -93,11 +93,11 @@ def command(path: Path, selection: Selection, dance: DanceOptions, options: Page
     file = one_song(path) if output is not None and output.suffix.lower() in SUFFIXES else path
     request = PageRequest(
         dance.request(file, selection),
-        options.character,
-        options.music,
-        options.second,
-        options.jobs,
-        options.language or "",
+        character=options.character,
+        music=options.music,
+        second=options.second,
+        jobs=options.jobs,
+        language=options.language or "",
     )
     announce_compiling(choice_for(file, request.dance.preset), quiet=options.quiet)
     if file.is_dir() and output is not None and output.suffix.lower() in SUFFIXES and not output.is_dir():

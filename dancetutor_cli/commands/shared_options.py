@@ -54,6 +54,12 @@ def into(name: str, kind: type) -> Callable[[Callable[..., Any]], Callable[..., 
     return decorate
 
 
+def same_fields(options: Any, kind: type) -> dict[str, Any]:
+    """Return the options that are called like fields of `kind`, for a request that is made of them."""
+    known = {field.name for field in fields(kind)}
+    return {field.name: getattr(options, field.name) for field in fields(options) if field.name in known}
+
+
 # Decorators: a command gets the value of each option by its name.
 
 selection_options = combined(
@@ -202,7 +208,7 @@ class DanceOptions:
         """The dance that they ask for, of one chart of a file."""
         from dancetutor_cli.dance.request import DanceRequest
 
-        return DanceRequest(path, selection, **{one.name: getattr(self, one.name) for one in fields(self)})
+        return DanceRequest(path, selection, **same_fields(self, DanceRequest))
 
 
 def jobs_option(words: str) -> Callable[[_Command], _Command]:
