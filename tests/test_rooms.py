@@ -36,7 +36,7 @@ MAPPED = (
         "reports",
     ),
     *(f"dance/{part}" for part in ("footwork", "ik", "physics", "quality", "rig", "trajectory")),
-    *("film/overlay", "film/scene", "film/work"),
+    *("film", "film/overlay", "film/scene", "film/work"),
 )
 
 

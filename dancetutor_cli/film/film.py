@@ -11,8 +11,7 @@ import numpy as np
 from dancetutor_cli.film.clock import JointBlocks
 from dancetutor_cli.film.layout import WIDE_PAD
 from dancetutor_cli.film.notes import PanelLights, lighting
-from dancetutor_cli.film.overlay import captions
-from dancetutor_cli.film.overlay import marks as beside
+from dancetutor_cli.film.overlay import captions, marks
 from dancetutor_cli.film.overlay.announce import Runs
 from dancetutor_cli.film.overlay.blit import Box
 from dancetutor_cli.film.overlay.diagram import FeetDiagram, Lettering, NextRows, PadMap, PadView, below, name_sprite
@@ -30,9 +29,7 @@ from dancetutor_cli.film.scroll import parse_scroll
 from dancetutor_cli.run.languages import load_language
 
 if TYPE_CHECKING:
-    from dancetutor_cli.film.overlay.announce import Runs
     from dancetutor_cli.film.overlay.captions import Legend
-    from dancetutor_cli.film.overlay.header import Lines
     from dancetutor_cli.film.scene.dancer import Dancer
 
     MakesWay = Lines | Legend | Runs | FeetDiagram
@@ -82,12 +79,12 @@ class Film:
         down = part.down or plan.look.down
         share = 1 - part.receptor if down else part.receptor
         receptor = box[1] + share * (box[3] - box[1])
-        tags = part.tags and beside.has_visible_callout(plan.callouts, plan.clock.passes)
-        letters = beside.letters(scale)
+        tags = part.tags and marks.has_visible_callout(plan.callouts, plan.clock.passes)
+        letters = marks.letters(scale)
         if tags:
             words = (*callout_words(self.language).values(), *standing_tags(self.language))
-            texts = beside.callout_texts(plan.callouts, words)
-            lane = lane_width_for_words(beside.room_for(texts, letters, self.face), lane, box, self.columns)
+            texts = marks.callout_texts(plan.callouts, words)
+            lane = lane_width_for_words(marks.room_for(texts, letters, self.face), lane, box, self.columns)
         facing = self.language.film["facing-notes"]
         geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned, tags, letters, facing)
         scroll = plan.look.scroll or parse_scroll(part.scroll)

@@ -1,10 +1,16 @@
 """The work of films: the request, its plan, the segments that other processes draw, batches of films.
 
-request, film_dance           the checked request; the play and the motions that the film shows
-planning                      the plan, with all parts on the film's clock
-segments, jobs                pieces of a film that any process draws and encodes; the work before and after them
+request.FilmRequest           what the user wants; a `jobs.FilmJob` adds the file to write
+  |   request.look_up           the chart, read and checked -> `FilmSubject`
+  |   planning.prepare          the plan, with all parts on the film's clock -> `PreparedFilm`
+  |   jobs.open_film            the work before the first frame, with these two -> `OpenedFilm`
+  |   segments                  pieces of a film that any process draws and encodes
+  |   jobs.close_film           the work after the last frame -> `ClosedFilm`
+jobs.FilmOutcome              what became of the job
+
+film_dance                    the play and the motions that the film shows
 extras                        the files besides a film: a picture for each row, a poster, subtitles
-batch, records                one film or the films of folders; the records of finished films
+batch, records                one film or the films of folders; `FilmRecord`, kept of each film for a later run
 motion_film                   a film of a motion without a chart
 worker_imports, worker_imports_gl   the common imports of the processes that draw
 """
