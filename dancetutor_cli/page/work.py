@@ -96,14 +96,14 @@ class PageSubject:
     """The subject of a page: a chart that is read and solved.
 
     solved : the parts of the players, one for most charts; warnings : lines for people about presets for other pads
-    second : the motion of a second dancer, from a file
+    second_motion : the motion of a second dancer, from a file
     """
 
     request: PageRequest
     character: Character
     solved: tuple[Solved, ...]
     warnings: tuple[str, ...]
-    second: Motion | None = None
+    second_motion: Motion | None = None
 
     @property
     def song(self) -> Song:
@@ -154,7 +154,7 @@ def pack_page(page: PageSubject) -> Page:
     music, warnings = _music(page.song, page.chart) if request.music else (None, ())
     second = _second_play(page)
     motions = [motion for some in (solved, second) if some for motion in _motions(request, some)]
-    motions += [] if page.second is None else [page.second]
+    motions += [] if page.second_motion is None else [page.second_motion]
     warnings = (*page.warnings, *warnings, *(note for motion in motions for note in motion.notes))
     fitted = [onto(motion, page.character.skeleton) for motion in motions]
     doc, blob = pack_content(_content(page, second, fitted, music))

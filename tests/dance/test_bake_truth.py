@@ -7,8 +7,9 @@ import pytest
 
 from dancetutor_cli.dance.motion import Contact, Motion
 from dancetutor_cli.dance.quality.dynamics import residuals
-from dancetutor_cli.dance.quality.figures import GRAVITY, body_of, penetration, physical_foot_contact, skating_ratio
+from dancetutor_cli.dance.quality.figures import body_of, penetration, physical_foot_contact, skating_ratio
 from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import GRAVITY
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 
 SKELETON = dancer_skeleton()

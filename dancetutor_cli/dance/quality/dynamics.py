@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.nonnegative import nonnegative_least_squares
-from dancetutor_cli.dance.quality.figures import GRAVITY, GROUND, Body, Figure
+from dancetutor_cli.dance.quality.figures import GROUND, Body, Figure
 from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.dance.rig.body import mass_points, world_transforms
+from dancetutor_cli.dance.rig.body import GRAVITY, mass_points, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import low_pass
 from dancetutor_cli.dance.units import Array

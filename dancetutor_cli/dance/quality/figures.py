@@ -69,7 +69,6 @@ class MotionReport:
 # A motion resampled evenly, with the data that several figures need, by forward kinematics.
 
 GROUND = 0.001  # a sole point at most this high stands on the ground, metres
-GRAVITY = 9.81
 PIECE = 4000  # frames in memory at once, so that a long song needs little memory
 
 
