@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.reports.analyze_formats import Output, Report
+from dancetutor_cli.reports.moments import measures_text
 from dancetutor_cli.reports.tally import Tally
 from dancetutor_cli.reports.terminal import FIXED_BLANK, cut, safe, safe_path, terminal_of
 from dancetutor_cli.reports.text_report import STYLES
@@ -20,7 +21,6 @@ from dancetutor_cli.run.errors import plural
 _SONG = 2  # files that are one song: its .sm and its .ssc
 _MOST_UNREADABLE = 8
 _PAGE = 60  # lines of a pack
-_PLACES = 6  # of a rule in a chart
 _LEAST = 28  # characters of a path that are shown
 _ALIKE = 3  # lines of one rule that become one
 
@@ -239,12 +239,8 @@ def _counts(chart: ChartResult, widest: int) -> str:
 
 def _where(entry: _Entry) -> str:
     """ "2 in dance-single Medium 5, measures 4 and 18" """
-    measures = [str(one) for one in dict.fromkeys(f.measure for f in entry.findings if f.measure is not None)]
-    *before, last = measures[:_PLACES] if measures else [""]
-    listed = f"{', '.join(before)}{' and ' if len(measures) <= _PLACES else ', '}{last}" if before else last
-    more = " ..." if len(measures) > _PLACES else ""
-    where = f", measure{'' if len(measures) == 1 else 's'} {listed}{more}" if measures else ""
-    return f"{len(entry.findings)} in {safe(entry.chart.label) if entry.chart else 'the file'}{where}"
+    where = safe(entry.chart.label) if entry.chart else "the file"
+    return f"{len(entry.findings)} in {where}{measures_text(entry.findings)}"
 
 
 def _sum(entries: Sequence[_Entry]) -> int:

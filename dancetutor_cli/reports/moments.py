@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from dancetutor_cli.lint.findings import Finding
+
+_MOST_MEASURES = 6  # that a line lists
 
 
 def moment(finding: Finding) -> str:
@@ -15,6 +19,17 @@ def moment(finding: Finding) -> str:
     if finding.second is not None:
         parts.append(clock(finding.second))
     return "".join(f" {part}" for part in parts)
+
+
+def measures_text(findings: Sequence[Finding]) -> str:
+    """ ", measures 4 and 18", or as many of them as a line lists; "" if none is known."""
+    measures = [str(one) for one in dict.fromkeys(f.measure for f in findings if f.measure is not None)]
+    if not measures:
+        return ""
+    if len(measures) > _MOST_MEASURES:
+        return f", measures {', '.join(measures[:_MOST_MEASURES])} ..."
+    *before, last = measures
+    return f", measures {', '.join(before)} and {last}" if before else f", measure {last}"
 
 
 def clock(second: float, *, milliseconds: bool = True) -> str:

@@ -11,6 +11,7 @@ from pathlib import Path
 from dancetutor_cli.chart.pack_files import pack_folder, read_pack_ini
 from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
+from dancetutor_cli.reports.moments import measures_text
 from dancetutor_cli.reports.terminal import cut, safe, safe_path
 from dancetutor_cli.run.errors import plural
 
@@ -31,7 +32,6 @@ _MOST_HAVE = 0.8  # a difficulty that so many of the songs have is missed in the
 _FEWEST_SONGS = 5
 _FEW = 2.0  # meters between label and estimate, from which on a chart stands out
 _LEAST_ROWS = 8  # with a technique that a chart stands out for
-_PLACES = 6  # of a rule in a file
 _NAMES = 3  # that a line lists
 _TIMES = 4.0  # how many times as much of a technique as the pack's charts of its meter have
 
@@ -76,13 +76,10 @@ class FileNeed:
 
 
 def _need(label: str, found: Sequence[Finding]) -> str:
-    measures = list(dict.fromkeys(str(one.measure) for one in found if one.measure is not None))
-    where = f", measure{'' if len(measures) == 1 else 's'} {' '.join(measures[:_PLACES])}" if measures else ""
-    where += " ..." if len(measures) > _PLACES else ""
     times = f" {len(found)} times" if len(found) > 1 else ""
     message = f": {safe(found[0].message)}" if len(found) == 1 else ""
     chart = f"{safe(label)}: " if label else ""
-    return f"{chart}{found[0].rule} {found[0].name}{times}{where}{message}"
+    return f"{chart}{found[0].rule} {found[0].name}{times}{measures_text(found)}{message}"
 
 
 class Pack:
