@@ -11,7 +11,7 @@ import click
 
 from dancetutor_cli.chart.selection import Selection, find_files, note_bytes
 from dancetutor_cli.commands.analyze_options import AnalyzeOptions
-from dancetutor_cli.commands.arguments import GivenPath, Source, WholeNumber, open_output, sources
+from dancetutor_cli.commands.arguments import GivenPath, Source, WholeNumber, note, open_output, report_error, sources
 from dancetutor_cli.commands.drawings import check_plot, check_sheet, write_plot, write_sheet
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
@@ -240,7 +240,7 @@ def _report_errors(work: Callable[[], object]) -> None:
     try:
         work()
     except DancetutorError as error:
-        click.echo(f"dancetutor: {error}", err=True)
+        report_error(error)
 
 
 def _run(run: LintRun, files: list[Source], options: AnalyzeOptions) -> int:
@@ -292,7 +292,7 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
     kept = None if options.no_cache else default_folder()
     cache = None if kept is None else ResultCache(kept)
     if not options.no_cache and not options.quiet and (fault := results_folder()[1]):
-        click.echo(f"note: {fault}: results are not stored", err=True)
+        note(f"{fault}: results are not stored")
     for raw in run.with_packs(analyze_all(tasks, options.jobs, cache, _before_work)):
         result = run.without_baseline(raw)
         tally.add(result)
@@ -322,7 +322,7 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
         has = f"; the file has {', '.join(tally.unselected[:20])}" if len(files) == 1 and tally.unselected else ""
         raise UsageError(f"no chart matches {selection.options}{has}")
     if (player := selection.player) is not None and not is_for_several and not options.quiet:
-        click.echo(f"note: --player {player} has no effect: every chart here is for one player", err=True)
+        note(f"--player {player} has no effect: every chart here is for one player")
     return tally.exit_status
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.chart.selection import Selection, find_files, note_bytes
-from dancetutor_cli.commands.arguments import GivenPath, WholeNumber, within_folders
+from dancetutor_cli.commands.arguments import GivenPath, WholeNumber, report_error, warn, within_folders
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import (
@@ -207,14 +207,14 @@ class _Talk:
         if "rows" in self.request.styles and not self.request.strip and not self.quiet:
             from dancetutor_cli.markers.rows import WARNING
 
-            click.echo(f"warning: {WARNING}", err=True)
+            warn([WARNING])
 
     def tell(self, outcome: AnnotateOutcome) -> None:
         for note in (*outcome.notes, *(() if self.check else outcome.problems)):
             self.warnings.add(outcome.source, note)
         if outcome.error is not None:
             self.files["failed"] += 1
-            click.echo(f"dancetutor: {safe(outcome.error)}", err=True)
+            report_error(outcome.error)
             return
         self.files["changed" if outcome.changed else "unchanged"] += 1
         if outcome.unselected:

@@ -152,6 +152,16 @@ def warn(warnings: Iterable[str]) -> None:
         click.echo(f"warning: {safe(warning)}", err=True)
 
 
+def note(text: str) -> None:
+    """A line of standard error about something that is no fault."""
+    click.echo(f"note: {safe(text)}", err=True)
+
+
+def report_error(error: Exception | str) -> None:
+    """An error after which the command goes on, as the line that errors at its end have."""
+    click.echo(f"dancetutor: {safe(str(error))}", err=True)
+
+
 # Asks before hours of work: films and dances longer than anybody means.
 
 LONG = 20 * 60.0  # seconds of film or motion; more than this is asked about first

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.commands.arguments import GivenPath, Number, WholeNumber
+from dancetutor_cli.commands.arguments import GivenPath, Number, WholeNumber, note
 from dancetutor_cli.commands.shared_options import (
     DanceOptions,
     character_option,
@@ -209,7 +209,7 @@ def film_request(
     wanted = options.size or _default_size(layout.size, film_format)
     size = even_size(wanted) if film_format.h264 else wanted
     if size != wanted:
-        click.echo(f"note: {wanted[0]}x{wanted[1]} becomes {size[0]}x{size[1]}; H.264 needs even numbers", err=True)
+        note(f"{wanted[0]}x{wanted[1]} becomes {size[0]}x{size[1]}; H.264 needs even numbers")
     scroll = parse_scroll(options.scroll) if options.scroll else None
     look = FilmLook(
         layout=layout,

@@ -33,13 +33,14 @@ def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = No
 
     That they cannot be kept in the usual place is said everywhere: each run may take 30 s longer for it.
     """
+    from dancetutor_cli.commands.arguments import note
     from dancetutor_cli.feet.solver.compiled import interpret, is_compiled
     from dancetutor_cli.run.kernels.store import VARIABLE, kernel_folder
 
     presets = list(choice.candidates())
     if size is not None and interpret(presets, size):
         if VARIABLE in os.environ and not quiet and (fault := kernel_folder().fault):
-            click.echo(f"note: {fault}", err=True)
+            note(fault)
         return
     folder, is_ready = kernel_folder(), all(is_compiled(preset) for preset in presets)
     if folder.fault and not quiet and (VARIABLE in os.environ or not is_ready):
@@ -48,7 +49,7 @@ def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = No
             if folder.is_writable
             else _NO_STORE_MESSAGE
         )
-        click.echo(f"note: {folder.fault}: {where}", err=True)
+        note(f"{folder.fault}: {where}")
     if quiet or not sys.stderr.isatty():
         return
     if not is_ready:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from dancetutor_cli.chart.selection import twin
-from dancetutor_cli.commands.arguments import within_folders
+from dancetutor_cli.commands.arguments import report_error, warn, within_folders
 from dancetutor_cli.lint.analysis import analyze_file
 from dancetutor_cli.lint.fix import FIXABLE, FixOutcome, FixTask, fix_file, pick
 from dancetutor_cli.lint.rule import rule_named
@@ -64,9 +64,7 @@ def fix_all(run: LintRun, tasks: Sequence[AnalyzeTask], options: AnalyzeOptions)
         talk.tell(task.path, outcome)
         other = twin(task.path)
         if outcome.fixed and other is not None and other.absolute() not in meant:
-            talk.warn(
-                f"{other}: the same song in another file, which was not named and is unchanged; correct it as well"
-            )
+            warn([f"{other}: the same song in another file, which was not named and is unchanged; correct it as well"])
     return talk.end()
 
 
@@ -121,7 +119,7 @@ class _Talk:
         self.files += 1
         if outcome.error is not None:
             self.failed += 1
-            click.echo(f"dancetutor: {safe(outcome.error)}", err=True)
+            report_error(outcome.error)
             return
         for line in coloured(outcome.diff) if self.diff else ():
             click.echo(line)
@@ -136,11 +134,7 @@ class _Talk:
             one = left.finding
             what = "gone" if left.is_gone else "left alone"
             self._say(f"{path}:{one.line}: {one.rule} {one.name} [{left.chart}] {what}: {left.reason}")
-        for note in outcome.notes:
-            self.warn(note)
-
-    def warn(self, text: str) -> None:
-        click.echo(f"warning: {safe(text)}", err=True)
+        warn(outcome.notes)
 
     def _say(self, text: str) -> None:
         """Under --diff the diff alone goes to standard output, so that `patch` can read it."""

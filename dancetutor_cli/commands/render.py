@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from dancetutor_cli.chart.selection import Selection, one_song
-from dancetutor_cli.commands.arguments import LONG, GivenPath, WholeNumber, confirm_long, default_name, warn
+from dancetutor_cli.commands.arguments import LONG, GivenPath, WholeNumber, confirm_long, default_name, note, warn
 from dancetutor_cli.commands.film_options import RenderOptions, film_options, film_request
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
@@ -236,7 +236,7 @@ def _make(request: FilmRequest, subject: FilmSubject, target: Path, kind: str, o
     encoding = Encoding(kind, request.look.size, request.fps, request.look.quality)
     if subject.clock.seconds > encoding.format.largest and not options.quiet:
         what = f"{subject.clock.seconds:.0f} s of .{kind} make a very large file"
-        click.echo(f"note: {what}; choose a part with --section, or write .mp4", err=True)
+        note(f"{what}; choose a part with --section, or write .mp4")
     if encoding.format.h264:
         encoding = replace(encoding, encoder=choose(options.encoder))
     poses = options.poses is not None

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import click
 
-from dancetutor_cli.commands.arguments import LONG
+from dancetutor_cli.commands.arguments import LONG, note
 from dancetutor_cli.commands.film_options import RenderOptions, film_request
 from dancetutor_cli.reports.terminal import FilmProgress, JoinedWarnings, failures_table, safe
 from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
@@ -48,7 +48,7 @@ def render_batch(path: Path, selection: Selection, dance: DanceOptions, options:
         make_folder(batch.folder)
     records, fault = find_records((path, batch.folder))
     if fault and not options.quiet:
-        click.echo(f"note: a second run will make all films again: {safe(fault)}", err=True)
+        note(f"a second run will make all films again: {fault}")
     outcomes: list[FilmOutcome] = []
     warnings = JoinedWarnings(every=options.verbose)
     jobs = options.jobs or default_jobs()
