@@ -26,20 +26,8 @@ _IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 def read_source(path: Path, animation: str | None = None) -> Motion | CapturedMotion:
-    """Read the motion in a file: as a Motion if it has the rig's joints (from `animate` or `retarget`), else as
-    captured.
-
-    Parameters and errors are those of `read_captured`.
-    """
-    if path.suffix.lower() != ".npz":
-        return read_captured(path, animation)
-    motion = read_npz(path)
-    captured = captured_from_motion(path, motion)  # raises FileError if the motion is wrong
-    return motion if set(dancer_skeleton().names) <= set(motion.skeleton.names) else captured
-
-
-def read_captured(path: Path, animation: str | None = None) -> CapturedMotion:
-    """Read the captured motion in a file, by its suffix.
+    """Read the motion in a file, by its suffix: as a Motion if it is an .npz with the rig's joints (from `animate` or
+    `retarget`), else as captured.
 
     Parameters
     ----------
@@ -54,7 +42,10 @@ def read_captured(path: Path, animation: str | None = None) -> CapturedMotion:
         raise FileError(path, f"the name of a motion must end in {one_of(SUFFIXES)}")
     if suffix in (".glb", ".vrm"):
         return _captured_from_container(read_container(path), animation)
-    return captured_from_motion(path, read_bvh(path, ends=True) if suffix == ".bvh" else read_npz(path))
+    motion = read_bvh(path, ends=True) if suffix == ".bvh" else read_npz(path)
+    captured = captured_from_motion(path, motion)  # raises FileError if the motion is wrong
+    is_on_rig = suffix == ".npz" and set(dancer_skeleton().names) <= set(motion.skeleton.names)
+    return motion if is_on_rig else captured
 
 
 def captured_from_motion(path: Path, motion: Motion) -> CapturedMotion:

@@ -25,12 +25,12 @@ from physics_phrase import phrase
 
 from dancetutor_cli.character.humanoid import humanoid_of
 from dancetutor_cli.dance.motion import Motion
-from dancetutor_cli.dance.physics.captured import on_body
+from dancetutor_cli.dance.physics.captured import CapturedMotion, on_body
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.formats.bvh import write_bvh
-from dancetutor_cli.formats.captured import read_captured
+from dancetutor_cli.formats.captured import read_source
 from dancetutor_cli.run.errors import FileError
 
 AXIS_X, AXIS_Y = np.eye(3)[:2]
@@ -53,7 +53,8 @@ def segments(motion: Motion) -> Array:
 
 
 def read_on_dancer(path: Path) -> Motion:
-    captured = read_captured(path)
+    captured = read_source(path)
+    assert isinstance(captured, CapturedMotion)
     joints = humanoid_of(path, captured.names, captured.parents).joints()
     return on_body(captured, {joint: node for node, joint in joints.items()}, dancer_skeleton())
 
