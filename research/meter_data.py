@@ -11,7 +11,7 @@ from pathlib import Path
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import find_files
-from dancetutor_cli.lint.analysis import solved
+from dancetutor_cli.lint.analysis import solve_selected
 from dancetutor_cli.lint.meter.model import Feature, features
 from dancetutor_cli.lint.meter.score import Oddities
 from dancetutor_cli.lint.run import LintRequest, LintRun
@@ -62,7 +62,7 @@ def labelled(folder: Path, wanted: Iterable[Feature]) -> list[Labelled]:
             continue
         if is_modded(song):
             continue
-        for subject in solved(song, song.charts, run.task(path)):
+        for subject in solve_selected(song, song.charts, run.task(path)):
             play, chart = subject.play, subject.chart
             if play is None or not subject.row_count or chart.player:  # a couple's meter is for both players
                 continue

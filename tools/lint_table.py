@@ -18,7 +18,7 @@ from typing import Any
 
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import find_files
-from dancetutor_cli.lint.analysis import solved
+from dancetutor_cli.lint.analysis import solve_selected
 from dancetutor_cli.lint.check import check_chart, check_file, merged_by_foot
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.run import LintRequest, LintRun
@@ -52,7 +52,7 @@ def linted(
             continue
         file = FileSubject(song)
         yield file, check_file(file, task.settings)
-        for subject in solved(song, song.charts, task):
+        for subject in solve_selected(song, song.charts, task):
             yield subject, merged_by_foot(check_chart(subject, task.settings), subject)
 
 

@@ -15,7 +15,7 @@ from typing import Any
 
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import find_files
-from dancetutor_cli.lint.analysis import solved
+from dancetutor_cli.lint.analysis import solve_selected
 from dancetutor_cli.lint.rule import TimedRule, all_rules
 from dancetutor_cli.lint.rule_settings import default_rules
 from dancetutor_cli.lint.run import LintRequest, LintRun
@@ -44,7 +44,7 @@ def subjects(folder: Path) -> Iterator[tuple[ChartSubject, Any]]:
         except DancetutorError:
             continue
         task = run.task(path)
-        for subject in solved(song, song.charts, task):
+        for subject in solve_selected(song, song.charts, task):
             play = subject.play
             if play is None or not subject.row_count:
                 continue

@@ -253,7 +253,7 @@ class _File:
 
     def solved(self) -> Iterator[ChartSubject]:
         """Return the selected charts, solved one by one."""
-        return iter(()) if self._failed else solved(self._song, self._selected, self._task)
+        return iter(()) if self._failed else solve_selected(self._song, self._selected, self._task)
 
     def add(self, subject: ChartSubject) -> None:
         """Keep the results for one of the selected charts."""
@@ -324,7 +324,7 @@ def load_song(task: AnalyzeTask) -> Song:
     return load(task.path) if task.data is None else parse(task.data, task.path)
 
 
-def solved(song: Song, charts: tuple[Chart, ...], task: AnalyzeTask) -> Iterator[ChartSubject]:
+def solve_selected(song: Song, charts: tuple[Chart, ...], task: AnalyzeTask) -> Iterator[ChartSubject]:
     """Yield each chart with its play; for a chart for two players, the part of each player."""
     from dancetutor_cli.lint.subject import solved_charts
 
@@ -345,7 +345,7 @@ def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:
             yield f"{result.label}: {result.mismatch}"
 
 
-def failed(task: AnalyzeTask, message: str) -> FileResult:
+def failure_result(task: AnalyzeTask, message: str) -> FileResult:
     """Return the result of a task that failed with this message."""
     return _unreadable(task, FileError(task.path, message))
 
@@ -373,7 +373,7 @@ def drawable_charts(task: AnalyzeTask) -> Iterator[Drawable]:
     from dancetutor_cli.chart.density import density
 
     song = load_song(task)
-    for subject in solved(song, task.selection.charts(song), task):
+    for subject in solve_selected(song, task.selection.charts(song), task):
         if len(subject.chart.notes):
             findings = merged_by_foot(check_chart(subject, task.settings), subject)
             moves = subject.play.moves if subject.play else ()

@@ -12,7 +12,7 @@ from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.pack_files import find_settings_file, places_of_feet
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.preset import PresetChoice, choice_of
-from dancetutor_cli.lint.analysis import AnalyzeTask, ResultOptions, analyze_files, failed
+from dancetutor_cli.lint.analysis import AnalyzeTask, ResultOptions, analyze_files, failure_result
 from dancetutor_cli.lint.baseline import Baseline, Key, load_baseline
 from dancetutor_cli.lint.configuration import (
     Configuration,
@@ -251,7 +251,7 @@ def _in_workers(tasks: Sequence[AnalyzeTask], jobs: int | None) -> _Fresh:
                 for place in done.key:
                     workers.submit(Work(range(place, place + 1), _analyze, ([tasks[place]],)))
             else:
-                yield done.key[0], failed(tasks[done.key[0]], str(done.error)), False
+                yield done.key[0], failure_result(tasks[done.key[0]], str(done.error)), False
     finally:
         workers.close()
 

@@ -12,7 +12,7 @@ from pathlib import Path, PurePosixPath
 from dancetutor_cli.chart.msd import Tag, plain, scan
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.names import difficulty as named
-from dancetutor_cli.lint.analysis import AnalyzeTask, load_song, solved
+from dancetutor_cli.lint.analysis import AnalyzeTask, load_song, solve_selected
 from dancetutor_cli.lint.figures import tech_rows
 from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.run.foreign_text import text_of
@@ -201,7 +201,7 @@ def compare_techniques(tasks: Iterable[AnalyzeTask], theirs: Mapping[Key, Theirs
             song = load_song(task)
         except DancetutorError:
             continue
-        for subject in solved(song, task.selection.charts(song), task):
+        for subject in solve_selected(song, task.selection.charts(song), task):
             chart, play = subject.chart, subject.play
             if play is None or chart.player:  # the game finds no feet in charts for two
                 continue

@@ -12,7 +12,7 @@ from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play
-from dancetutor_cli.lint.analysis import solved
+from dancetutor_cli.lint.analysis import solve_selected
 from dancetutor_cli.lint.run import LintRequest, LintRun
 
 CHART = "#TITLE:x;\n#BPMS:0=120;\n#NOTES:\n dance-single:\n :\n Hard:\n 8:\n :{}\n1000\n0001\n1000\n0001\n;\n"
@@ -38,7 +38,7 @@ def limbs(play: Play | None) -> list[int]:
 
 def test_analyze(song: Path) -> None:
     read = load(song)
-    (subject,) = solved(read, read.charts, LintRun(LintRequest()).task(song))
+    (subject,) = solve_selected(read, read.charts, LintRun(LintRequest()).task(song))
     assert limbs(subject.play) == MIRRORED
     assert subject.ignores.silenced(48, "DS") == (song.parent / "data.sme").exists()
 

@@ -25,7 +25,7 @@ from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.work.batch import BatchRequest, film_list
 from dancetutor_cli.film.work.request import look_up
 from dancetutor_cli.lint import figures, suggest
-from dancetutor_cli.lint.analysis import solved
+from dancetutor_cli.lint.analysis import solve_selected
 from dancetutor_cli.lint.results import ResultCache
 from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.markers.annotate import AnnotateRequest, Item, _configured, annotate_song
@@ -55,7 +55,9 @@ def song(tmp_path: Path) -> Path:
 
 def analyzed(song: Path, given: str | None = None) -> list[str]:
     read = load(song)
-    plays = [subject.play for subject in solved(read, read.charts, LintRun(LintRequest(preset=given)).task(song))]
+    plays = [
+        subject.play for subject in solve_selected(read, read.charts, LintRun(LintRequest(preset=given)).task(song))
+    ]
     return [play.preset for play in plays if play is not None]
 
 

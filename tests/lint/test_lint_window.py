@@ -79,14 +79,14 @@ def test_windows_of_any_size_say_the_same(tasks: list[AnalyzeTask], rows: int, m
 
 
 def test_analysed_files_are_reported_before_an_error(tasks: list[AnalyzeTask], monkeypatch: pytest.MonkeyPatch) -> None:
-    solved = analysis.solved
+    solve = analysis.solve_selected
 
     def fails(song: object, charts: object, task: AnalyzeTask) -> Iterator[object]:
-        yield from solved(song, charts, task)  # type: ignore[arg-type]
+        yield from solve(song, charts, task)  # type: ignore[arg-type]
         if task == tasks[2]:
             raise FileError(task.path, "is broken")
 
-    monkeypatch.setattr(analysis, "solved", fails)
+    monkeypatch.setattr(analysis, "solve_selected", fails)
     results = analyze_files([replace(task, want_rows=False) for task in tasks[:2]] + tasks[2:])
     assert [next(results).path for _ in range(2)] == [str(task.path) for task in tasks[:2]]
     with pytest.raises(FileError, match="is broken"):
