@@ -106,7 +106,7 @@ class HarmError(FileError):
     """An edit that would change what a game reads, and so is not written: a bug of the program, or a very odd file."""
 
 
-def unchanged(
+def check_edit(
     before: Song, after: bytes, ours: Callable[[Chart], bool] = lambda chart: False, free: Collection[str] = ()
 ) -> Song:
     """Read `after` and compare it with the song from which it was made.

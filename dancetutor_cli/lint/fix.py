@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from dancetutor_cli.chart.edits import apply, unchanged, unified
+from dancetutor_cli.chart.edits import apply, check_edit, unified
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.names import TICKS_PER_MEASURE, is_lights
 from dancetutor_cli.feet.preset import Preset, preset_for
@@ -232,7 +232,7 @@ class FixSession:
         splices = [splice for fix in fixes for splice in fix.splices]
         if len({splice.start for splice in splices}) < len(splices):
             return False
-        after = unchanged(self.song, apply(self.song.data, splices), lambda one: one.index == state.chart.index)
+        after = check_edit(self.song, apply(self.song.data, splices), lambda one: one.index == state.chart.index)
         chart = _part(after, state.chart.index, state.chart.player)
         if not _as_meant(state.chart, chart, fixes) or not _is_other_player_unchanged(state.chart, after, fixes):
             return False

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dancetutor_cli.chart.edits import Splice, apply, unchanged
+from dancetutor_cli.chart.edits import Splice, apply, check_edit
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.msd import Tag, blanked, scan
 from dancetutor_cli.chart.reader import load, parse
@@ -171,7 +171,7 @@ def _enter(film: Path, file: Path) -> list[str]:
     without = parse(apply(song.data, remove(song)), file)
     added = add(without, film.name)
     new = apply(without.data, added.splices)
-    after = unchanged(song, new, free=(TAG,))
+    after = check_edit(song, new, free=(TAG,))
     if parse(apply(new, remove(after)), file).data != without.data:
         raise FileError(file, "refused, nothing was written: the entry could not be removed again")
     if new != song.data:

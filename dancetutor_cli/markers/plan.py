@@ -8,7 +8,7 @@ from itertools import chain
 
 import numpy as np
 
-from dancetutor_cli.chart.edits import unchanged
+from dancetutor_cli.chart.edits import check_edit
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.note_data import player_charts, written_parts
 from dancetutor_cli.chart.reader import parse
@@ -116,4 +116,4 @@ def add_charts(song: Song, before: Song, data: bytes, feet: Sequence[ChartFeet])
 def check(song: Song, data: bytes) -> None:
     """Raise `chart.edits.HarmError` if the new bytes do not read like the original song."""
     if data != song.data:
-        unchanged(song, data, edit.is_ours)
+        check_edit(song, data, edit.is_ours)

@@ -12,7 +12,7 @@ import pytest
 from markers_readers import READERS
 from markers_songs import annotated, chart_files, readable, sm, song_of, stripped
 
-from dancetutor_cli.chart.edits import HarmError, unchanged
+from dancetutor_cli.chart.edits import HarmError, check_edit
 from dancetutor_cli.chart.hash import hash_input
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.reader import parse
@@ -43,7 +43,7 @@ def check_files(paths: list[Path]) -> Counter[str]:
         if song is None:
             continue
         data = annotated(song)
-        again = unchanged(song, data)
+        again = check_edit(song, data)
         assert_same_song(song, again)
         assert stripped(again) == song.data, path
         assert annotated(again) == data, path
@@ -118,8 +118,8 @@ def test_a_change_that_harms_is_refused() -> None:
         DATA + DATA[DATA.index(b"#NOTES") :],
     ):
         with pytest.raises(HarmError, match="nothing was written"):
-            unchanged(song, bad)
-    assert unchanged(song, annotated(song)).title == "Song"
+            check_edit(song, bad)
+    assert check_edit(song, annotated(song)).title == "Song"
 
 
 def seen_by_simfile(data: bytes, suffix: str) -> Any:
