@@ -20,7 +20,7 @@ from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.film.scene.geometry import ABOVE, PackedMeshes, pack
 from dancetutor_cli.film.scene.props import JOINT, bar_matrix, with_bar
 from dancetutor_cli.film.scene.renderer import RING_SHARE, SHADOW_FADE
-from dancetutor_cli.film.scene.scene import PANEL, SOLE_RADIUS, Scene
+from dancetutor_cli.film.scene.scene import PANEL, SOLE_RADIUS, TOE_AHEAD, Scene
 from dancetutor_cli.formats.key_times import joint_groups, reaches
 from dancetutor_cli.page.document import Blob
 from dancetutor_cli.run.languages import load_language
@@ -44,7 +44,6 @@ LEAST_W = 0.3  # smallest w of a rotation that is stored without w, which follow
 SHORTEST = 0.05  # smallest reach of a joint that is assumed, metres
 QUALITY = 86  # quality of the texture as WebP
 STILL = -2  # "parent" of the bar's joint, which no bone carries
-_HEEL, _TOE = (0.0, -0.022), (0.0, 0.022)  # (x, z) beyond ankle and ball, as in `film.scene.scene`
 
 
 def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float, pair: bool = False) -> dict[str, Any]:
@@ -118,7 +117,7 @@ def marks(skeleton: Skeleton) -> list[dict[str, Any] | None]:
             out.append(None)
             continue
         ankle, ball = skeleton.index(f"{side}_talocrural"), skeleton.index(f"{side}_metatarsal")
-        ends = [[dx, -float(rest[j, 1]), dz] for j, (dx, dz) in ((ankle, _HEEL), (ball, _TOE))]
+        ends = [[0.0, -float(rest[j, 1]), dz] for j, dz in ((ankle, -TOE_AHEAD), (ball, TOE_AHEAD))]
         out.append({"joints": [ankle, ball], "at": ends})
     needed = [f"{side}_{part}" for side in "lr" for part in ("shoulder", "elbow", "radiocarpal")]
     if not set(needed) <= set(skeleton.names):
