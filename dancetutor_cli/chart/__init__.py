@@ -1,14 +1,14 @@
-"""Bytes of a chart file -> Song and Chart; what a path means: packs, pairs of .sm and .ssc, selection, the music.
+"""Chart files: bytes to Song and Chart; also the charts that a path stands for, packs, and the song's music.
 
-reader.load                   the way in; a file is read in four steps
-  |   msd                       its tags, with the place of each value
+reader.load                   the entry point; a file is read in four steps
+  |   msd                       tags, with the byte span of each value
   |   timing_tags, timing       when a beat is
-  |   grid, cells, note_data    measures and rows; what stands in their cells; notes
-  |   ucs                       a UCS file of Pump, which has none of these
+  |   grid, cells, note_data    measures and rows; the contents of cells; notes
+  |   ucs                       UCS files of Pump, a different format without these steps
 model.Song, model.Chart       what every other package works with
 
-selection, pack_files         which charts a path means; settings files that lie beside them
+selection, pack_files         which charts a path stands for; settings files beside them
 music, audio                  which file is the song's music; its samples
-density, hash, names          streams and tempos; how leaderboards know a chart; words of the games
-edits, note_writer            the bytes of a file changed in places; notes as bytes
+density, hash, names          streams and tempos; the hash of leaderboards; names from the games
+edits, note_writer            edits of a file's bytes; notes as bytes
 """

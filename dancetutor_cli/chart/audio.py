@@ -110,8 +110,8 @@ def _wav(head: bytes, size: int) -> AudioHead | None:
 
 
 def _kind_of_wav(code: int, bits: int) -> str:
-    """ "wav" for the formats that StepMania and ITGmania play: integers of 1 to 4 bytes, floats of 4 bytes, 4-bit
-    ADPCM.
+    """Return "wav" for the formats that StepMania and ITGmania play: integers of 1 to 4 bytes, floats of 4 bytes,
+    4-bit ADPCM. For other formats, return a description.
     """
     if code == _EXTENSIBLE:
         return "WAV with an extensible head"

@@ -37,7 +37,7 @@ def fastest_bpm(chart: Chart) -> float:
 
 
 def bpm_text(song: Song, chart: Chart) -> str:
-    """ "128", or "90-180" where the song changes: as the author has it shown (#DISPLAYBPM), else as it is."""
+    """Return "128", or "90-180" if the tempo changes: from #DISPLAYBPM if the author has set it, else from the BPMs."""
     lasting = _displayed(chart.tags.get("DISPLAYBPM") or song.tags.get("DISPLAYBPM", ""))
     lasting = lasting or [bpm for bpm, length in bpm_shares(chart) if length > 0.5] or [fastest_bpm(chart)]
     low, high = f"{min(lasting):.0f}", f"{max(lasting):.0f}"

@@ -115,7 +115,7 @@ def check_edit(
     ----------
     before : the song as it was read
     after : the bytes that will replace the file
-    ours : whether a chart was added by the program, and so is not compared
+    ours : whether the program has added a chart, which is then not compared
     free : names of the song's tags that may differ
 
     Returns the song read from `after`. Raises `HarmError` with the first difference.

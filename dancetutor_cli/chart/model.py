@@ -118,11 +118,10 @@ class Chart:
     notes_span : byte span of the note data value in `Song.data`, after `:` up to before `;`
     tags : the chart's own tags, upper-case name -> decoded value (the first value only)
     players : the part of each player of a chart for several players, see `chart.note_data`; else empty
-    player : for a player's part, the number of the player, from 1, else 0; written : the chart of the part, without
-    `players`;
-        first_column : its first column there
-    marked : whether the letters of rows are not plain notation: they mark players (StepF2), or are the letters of a
-    .ucs file
+    player : for a player's part, the number of the player, from 1, else 0
+    written : for a player's part, the whole chart, without `players`, else None
+    first_column : for a player's part, the first column of the part in the whole chart
+    marked : whether the rows use other letters than the plain notation: those of players (StepF2) or of a .ucs file
     """
 
     index: int

@@ -13,14 +13,14 @@ COLUMNS = {
     "maniax-single": 4, "maniax-double": 8, "techno-single4": 4, "techno-single5": 5, "techno-single8": 8,
     "techno-double4": 8, "techno-double5": 10, "techno-double8": 16, "pnm-five": 5, "pnm-nine": 9, "lights-cabinet": 6,
     "kickbox-human": 4, "kickbox-quadarm": 4, "kickbox-insect": 6, "kickbox-arachnid": 8,
-    # of StepManiaX and SMEditor; other games do not know these types
+    # steps types of StepManiaX and SMEditor, which other games do not know
     "smx-beginner": 3, "smx-single": 5, "smx-double6": 6, "smx-double10": 10, "smx-team": 10,
     "dance-solodouble": 12, "dance-threedouble": 6,
 }  # fmt: skip
 
 _OTHER_NAMES = {
     "para": "para-single", "ez2-single-hard": "ez2-single",
-    "smx-dual": "smx-double6", "smx-full": "smx-double10",  # as editors call StepManiaX's modes
+    "smx-dual": "smx-double6", "smx-full": "smx-double10",  # editors' names of StepManiaX's modes
 }  # fmt: skip
 
 DIFFICULTIES = ("Beginner", "Easy", "Medium", "Hard", "Challenge", "Edit")

@@ -1,4 +1,4 @@
-"""Note data: bytes -> measures, rows and notes of all charts of a file at once; charts for several, parted."""
+"""Note data: bytes -> measures, rows and notes of all charts of a file at once; the parts of several players."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from dancetutor_cli.chart.names import is_routine
 from dancetutor_cli.chart.timing import Timing
 
 _PLAYERS = 2
-_AT_ONCE = 200  # charts; a file may hold thousands
-_PART = 40  # bits of a tick: a later part comes after every tick of the one before
+_AT_ONCE = 200  # charts that are read together; a file may hold thousands
+_PART = 40  # bits of a tick in a sort key: the number of the part stands above them
 _BLANKS = re.compile(rb"[\r\n\t ]*")
 _COUNTS = np.ones(256, dtype=bool)
 _COUNTS[[Kind.FAKE, Kind.KEYSOUND]] = False
@@ -30,7 +30,8 @@ _COUNTS[[Kind.FAKE, Kind.KEYSOUND]] = False
 class NoteData:
     """The contents of a note data value.
 
-    players : of a chart for several on one pad what each player has, else empty; marked : by letters in one row
+    players : the note data of each player of a chart for several players on one pad, else empty
+    marked : whether the players share rows, and letters mark their notes
     """
 
     notes: NoteTable
@@ -42,17 +43,17 @@ class NoteData:
 
 
 def width_of_first_row(data: bytes, span: tuple[int, int]) -> int:
-    """How many columns an unknown steps type has: the characters of its first row, at least 1."""
+    """Return the number of columns for an unknown steps type: the characters of the first row, 1 to 64."""
     value, _ = blanked(data[span[0] : span[1]])
     text = value.split(b",", 1)[0].strip(b"\r\n\t ")
     return min(max(len(text.split(b"\n", 1)[0].strip(b"\r\n\t ")), 1), 64)
 
 
 class NoteForm(NamedTuple):
-    """How note data are written.
+    """The notation of note data.
 
-    routine : `&` splits them between two players (elsewhere it is an unknown character)
-    trimmed : blank lines before a first `,` are no measure (as the games have it in .sm files)
+    routine : whether `&` splits the notes between two players (elsewhere it is an unknown character)
+    trimmed : whether blank lines before a first `,` are not a measure (as in the games for .sm files)
     """
 
     columns: int
@@ -61,7 +62,7 @@ class NoteForm(NamedTuple):
 
 
 class Value(NamedTuple):
-    """The note data of a chart: where it stands in the file, how it is written, and the timing of the chart."""
+    """The note data of a chart: its span in the file, its notation, and the timing of the chart."""
 
     span: tuple[int, int]
     form: NoteForm
@@ -89,17 +90,17 @@ def _read(text: NoteText, values: Sequence[Value]) -> Iterator[NoteData]:
 
 
 class _PartCells:
-    """What stands in some parts."""
+    """The notes, rows and measures of several parts."""
 
     def __init__(self, text: NoteText, parts: Sequence[NoteSpan]) -> None:
         self._text, self._parts, self._grid = text, parts, Grid(text, parts)
         cells = notes_of(self._grid.cells(), [part.warnings for part in parts])
-        self._cells = cells[np.argsort((cells.part << _PART) + cells.tick, kind="stable")]  # by column already
+        self._cells = cells[np.argsort((cells.part << _PART) + cells.tick, kind="stable")]  # sorted by column
         self._bounds = self._cells.part.searchsorted(np.arange(len(parts) + 1)).tolist()
         self._column, self._counts = self._cells.column.astype(np.int16), _COUNTS[self._cells.kind]
 
     def of_one(self, at: int, timing: Timing) -> NoteData:
-        """The note data of a part that is a chart."""
+        """Return the note data of a part that is a whole chart."""
         here, cells = slice(self._bounds[at], self._bounds[at + 1]), self._cells
         tick, judged = cells.tick[here], self._counts[here]
         if timing.warps or timing.fakes:
@@ -108,7 +109,7 @@ class _PartCells:
         return NoteData(notes, *self._tables(at), tuple(self._parts[at].warnings))
 
     def of_players(self, parts: range, value: Value) -> NoteData:
-        """That of a chart for several, whose players have a part each, or whose letters say whose a note is."""
+        """Return the note data of a chart for several players, who have a part each, or whose notes letters mark."""
         (start, end), form, timing = value
         players = [self._cells[self._bounds[at] : self._bounds[at + 1]] for at in parts]
         own = [
@@ -122,7 +123,7 @@ class _PartCells:
             own = [NoteData(_table([cells], timing), *self._tables(parts[0]), ()) for cells in shared]
             message = stepf2.for_several(len(own), letters)
             warnings.insert(0, ReadWarning("stepf2-note", message, self._text.lines(start)))
-        elif not form.routine:  # letters of fakes alone
+        elif not form.routine:  # only fakes have letters
             own = []
         tables = self._tables(parts[0])
         return NoteData(_table(players, timing), *tables, tuple(warnings), tuple(own), len(shared) > 1)
@@ -132,7 +133,7 @@ class _PartCells:
 
 
 def _note_spans(text: NoteText, value: Value) -> list[NoteSpan]:
-    """The note data of each player of a chart that has such; else one part."""
+    """Return the note data of each player of a routine chart; for another chart, return one part."""
     (start, end), (columns, routine, trimmed), _ = value
     begin = start
     if trimmed and (found := _BLANKS.match(text.value, start, end)):
@@ -150,7 +151,7 @@ def _note_spans(text: NoteText, value: Value) -> list[NoteSpan]:
 
 
 def _tell_players(parts: list[bytes], line: int, warnings: list[ReadWarning]) -> None:
-    """Of a routine: that it is for two, and whose notes are read if it has more parts."""
+    """Add a warning that a routine chart is for two players, or that only the notes of the first two are read."""
     written = 1 + max((n for n, part in enumerate(parts) if part.strip(BLANKS + b",0")), default=0)
     text = "the chart is for two players ('&' separates their notes); each has feet of their own"
     if written > _PLAYERS:
@@ -164,7 +165,7 @@ def _table(players: list[Cells], timing: Timing) -> NoteTable:
     if len(players) > 1:
         cells = Cells.joined(players)
         cells = cells[np.argsort(cells.column, kind="stable")]
-    cells = cells[np.argsort(cells.tick, kind="stable")]  # by column already
+    cells = cells[np.argsort(cells.tick, kind="stable")]  # sorted by column already
     if len(players) > 1 and len(cells.tick) > 1:
         same = (np.diff(cells.tick) == 0) & (np.diff(cells.column) == 0)
         cells = cells[np.append(~same, True)]
@@ -174,38 +175,36 @@ def _table(players: list[Cells], timing: Timing) -> NoteTable:
     )  # fmt: skip
 
 
-# Charts for several players: the steps of each, as a chart of the pad that this player stands on.
+# Charts for several players: the steps of each player, as a chart for the pad on which the player stands.
 #
-# In a couple chart each has a pad of one's own, and half of the columns. In a routine both dance on one double pad, and
-# `&` parts the notes of the first from those of the second. So they do where letters mark whose a note is (StepF2's co-
-# op, in pump-double, and in a pump-routine without `&`): there the notes of all, two or more, stand in the same rows.
+# In a couple chart, each player has a pad and half of the columns. In a routine, both players dance on one double pad,
+# and `&` separates their notes. Two or more players also share a double pad if letters mark the player of each note:
+# in StepF2's co-op, a pump-double, and in a pump-routine without `&`. Then the notes of all players share rows.
 
-# Steps type of a chart for two -> that of the pad on which each of them stands.
+# Steps type of a chart for several players -> steps type of the pad on which each player stands.
 OWN_PADS = {"dance-couple": "dance-single", "pump-couple": "pump-single"}
 ONE_PAD = {"dance-routine": "dance-double", "pump-routine": "pump-double", "smx-team": "smx-double10"}
 
 
 def player_charts(chart: Chart, player: int | None = None) -> tuple[Chart, ...]:
-    """The charts for which feet are found: the chart itself or, for several players, the part of each, or of one
-    player.
-    """
+    """Return the charts to find feet for: the chart itself or, for several players, the part of each or of one."""
     if not chart.players:
         return (chart,)
     return tuple(one for one in chart.players if player in (None, one.player))
 
 
 def written_parts(chart: Chart) -> tuple[Chart, ...]:
-    """The parts with rows of their own in the file: of a routine the part of each player, otherwise the chart."""
+    """Return the parts with their own rows in the file: the players' parts of a routine, otherwise the chart."""
     return chart.players if chart.steps_type in ONE_PAD and not chart.marked else (chart,)
 
 
 def shares_rows(part: Chart) -> bool:
-    """Whether another player's notes stand in the rows of a part: of a couple, or where letters mark whose they are."""
+    """Whether the rows of a part also hold another player's notes: in a couple chart, or if letters mark players."""
     return part.written is not None and (part.marked or part.written.steps_type not in ONE_PAD)
 
 
 def with_players(chart: Chart, read: NoteData, data: bytes) -> Chart:
-    """The chart with the parts of its players, if it is for several. read : its note data; data : bytes of its file"""
+    """Return a chart with its players' parts, if it is for several. read : its note data; data : bytes of the file"""
     if chart.steps_type in OWN_PADS:
         half = chart.columns // 2
         tables = [_columns(chart, data, first, half) for first in (0, half)]
@@ -238,7 +237,7 @@ def with_players(chart: Chart, read: NoteData, data: bytes) -> Chart:
 
 
 def _columns(chart: Chart, data: bytes, first: int, count: int) -> tuple[NoteTable, RowTable]:
-    """The notes in some columns, and the part of each row that they stand in."""
+    """Return the notes in some columns, and the span of these columns in each row."""
     notes, rows = chart.notes, chart.rows
     ours = (notes.column >= first) & (notes.column < first + count)
     table = NoteTable(
@@ -258,7 +257,7 @@ def _columns(chart: Chart, data: bytes, first: int, count: int) -> tuple[NoteTab
 
 
 def _places(row: bytes) -> list[int]:
-    """Offsets of the letters of a row; keysounds, `[...]`, stand between them."""
+    """Return the offsets of the letters of a row, without keysounds, `[...]`."""
     found, keysound = [], False
     for offset, letter in enumerate(row):
         if letter == ord("["):

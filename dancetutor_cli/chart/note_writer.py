@@ -15,13 +15,13 @@ _LETTER = {
     Kind.KEYSOUND: b"K",
 }  # fmt: skip
 _TAIL = b"3"
-_ROW_COUNTS = (4, 8, 12, 16, 24, 32, 48, 64, 96, 192)  # what the games' editors write
+_ROW_COUNTS = (4, 8, 12, 16, 24, 32, 48, 64, 96, 192)  # the row counts that the games' editors write
 
 
 def write_notes(notes: NoteTable, columns: NDArray[Any], width: int, eol: bytes) -> bytes:
-    """Rows and commas, each line with `eol`; no `;` at the end.
+    """Return rows and commas, each line with `eol`; no `;` at the end.
 
-    columns : where each note goes, (n,), from 0; width : letters of a row
+    columns : the column of each note, (n,), from 0; width : letters of a row
     """
     cells: dict[int, dict[int, bytes]] = {}
 
@@ -38,7 +38,7 @@ def write_notes(notes: NoteTable, columns: NDArray[Any], width: int, eol: bytes)
 
 
 def _measure(cells: dict[int, bytes], width: int, eol: bytes) -> bytes:
-    """The rows of one measure. cells : {tick in the measure * width + column: letter}"""
+    """Return the rows of one measure. cells : {tick in the measure * width + column: letter}"""
     count = _rows_needed(place // width for place in cells)
     grid = bytearray(b"0" * (count * width))
     for place, letter in cells.items():

@@ -1,4 +1,4 @@
-"""Files that lie with charts: dancetutor.yaml, a pack's Pack.ini, and the list of those that speak of feet."""
+"""Files beside charts: dancetutor.yaml, a pack's Pack.ini, and the list of all files that can set feet."""
 
 from __future__ import annotations
 
@@ -16,36 +16,38 @@ SETTINGS_FILE = "dancetutor.yaml"
 
 
 def find_settings_file(start: Path) -> Path | None:
-    """The nearest dancetutor.yaml in the folder of `start` or above it; the reader says so if it is no file."""
+    """Return the nearest dancetutor.yaml in the folder `start` or above it; it need not be a regular file."""
     return next((Path(place) for place in _places(start) if os.path.exists(place)), None)  # noqa: PTH110 (quicker)
 
 
 def check_not_a_link_out(path: Path) -> None:
-    """Raise FileError if a dancetutor.yaml that lies there is a link out of its folder: an error message
-    would describe a file that the chart's author may not read."""
+    """Raise FileError if a dancetutor.yaml is a link out of its folder.
+
+    An error message would otherwise describe a file that the chart's author may not read.
+    """
     if path.is_symlink() and is_outside(path, path.parent):
         raise FileError(path, "is a link to a file outside its folder; put a copy there, or name it with --config")
 
 
 def _places(start: Path) -> Iterator[str]:
-    """Where a dancetutor.yaml for the charts of the folder `start` may be, nearest first."""
+    """Yield the paths at which a dancetutor.yaml for the charts of the folder `start` may be, nearest first."""
     folder, below = os.path.abspath(start), ""  # noqa: PTH100 (links stay links)
     while folder != below:
         yield os.path.join(folder, SETTINGS_FILE)  # noqa: PTH118
         folder, below = os.path.dirname(folder), folder  # noqa: PTH120
 
 
-# The list of files in which people set feet: for the solver, for caches and for films.
+# The files in which authors set feet; the solver, caches and films use this list.
 #
-# Imports neither numpy nor the reader of charts: a cached result is reported without them.
+# This module imports neither numpy nor the chart reader, so that a cached result is reported without them.
 
 EDITOR_FILE = "data.sme"  # SMEditor's, in the song's folder
 
 
 def places_of_feet(song: Path) -> Iterator[Path]:
-    """Every file, present or not, that may set feet for the charts of the file `song`: to be watched.
+    """Yield every file, existing or not, that may set feet for the charts of the file `song`.
 
-    The file itself comes first (pinned measures); of the places of dancetutor.yaml the first one that is there counts.
+    The file itself comes first (pinned measures). Of the paths of dancetutor.yaml, the first that exists is used.
     """
     yield song
     yield song.parent / EDITOR_FILE
@@ -53,11 +55,10 @@ def places_of_feet(song: Path) -> Iterator[Path]:
 
 
 def feet_fingerprint(song: Path) -> str:
-    """Hash (hex) of everything that people have set about the feet of a song's charts; another hash may mean other
-    feet.
+    """Return a hash (hex) of all settings for the feet of a song's charts; if it changes, the feet may change.
 
-    What a file is called counts where its name does: `data.sme` is only used for the one song of a folder, and
-    entries of dancetutor.yaml are for paths below its folder.
+    File names are hashed where they matter: `data.sme` is only used in a folder with one song, and the entries of
+    dancetutor.yaml are for paths below its folder.
     """
     out = hashlib.sha256()
     for part in _hashed_bytes(song):
@@ -86,7 +87,7 @@ def _content(path: Path) -> bytes:
 
 
 def song_stems(folder: Path) -> set[str]:
-    """The names, without suffix, of the chart files in a folder; more than one means several songs."""
+    """Return the names, without suffix, of the chart files in a folder; more than one name means several songs."""
     songs = (path for path in folder.iterdir() if path.suffix.lower() in SONG_SUFFIXES)
     return {path.stem.lower() for path in songs if not path.name.startswith(".")}
 
@@ -94,12 +95,12 @@ def song_stems(folder: Path) -> set[str]:
 # A pack's `Pack.ini`, as ITGmania reads it: the sync of its songs.
 
 PACK_INI = "pack.ini"
-PACK_SYNCS = ("NULL", "ITG")  # what the game knows: no bias, and the 9 ms of In The Groove's machines
+PACK_SYNCS = ("NULL", "ITG")  # the game's values: no bias, or the 9 ms of In The Groove's machines
 
 
 @dataclass(frozen=True, slots=True)
 class PackIni:
-    """The contents of the file. sync : of its group, as written; "" if there is none; problem : one line, or None"""
+    """The contents of a Pack.ini. sync : its SyncOffset as written, "" if there is none; problem : one line, or None"""
 
     path: Path
     sync: str = ""
@@ -107,12 +108,15 @@ class PackIni:
 
 
 def pack_folder(song: Path) -> Path:
-    """The folder of the pack of a song's file: that above the song's own."""
+    """Return the folder of the pack of a song's file: the parent of the song's folder."""
     return song.parent.parent
 
 
 def read_pack_ini(folder: Path) -> PackIni | None:
-    """The `Pack.ini` of a pack's folder, whatever its case; None without one. What cannot be read is its problem."""
+    """Return the `Pack.ini` of a pack's folder, in upper or lower case; None if there is none.
+
+    A file that cannot be read is returned with a `problem`.
+    """
     try:
         path = next((one for one in sorted(folder.iterdir()) if one.name.lower() == PACK_INI), None)
     except OSError:

@@ -1,4 +1,4 @@
-"""From the bytes of a chart file to a `Song`: the values of its tags, its charts, and oddities in it."""
+"""Read the bytes of a chart file into a `Song`: the values of its tags, its charts, and its oddities."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from dancetutor_cli.run.errors import ChartError, FileError, NoChartsError
 from dancetutor_cli.run.files import CHART_SUFFIXES, EDIT_SUFFIX, UCS_SUFFIX
 from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
 
-# Tags whose loss somebody sees or hears in a game.
+# Tags whose loss a player sees or hears in a game.
 _TEXT_TAGS = frozenset({
     "TITLE", "SUBTITLE", "ARTIST", "TITLETRANSLIT", "SUBTITLETRANSLIT", "ARTISTTRANSLIT", "GENRE", "CREDIT", "BANNER",
     "BACKGROUND", "JACKET", "CDTITLE", "LYRICSPATH", "PREVIEWVID", "MUSIC", "OFFSET", "SAMPLESTART", "SAMPLELENGTH",
@@ -31,7 +31,7 @@ _LARGEST_METER = 2**31 - 1
 
 
 class _Head(NamedTuple):
-    """What stands before the note data of a chart; see `Chart`."""
+    """The values of a chart that come before its note data; see `Chart`."""
 
     steps_type: str
     difficulty: str
@@ -43,7 +43,7 @@ class _Head(NamedTuple):
 
 
 class SongReader:
-    """Reads one file: `song` of a form of it takes down its charts and hands over to `finished`."""
+    """The reader of one file. Each format has a subclass, whose `song` adds the charts and then calls `finished`."""
 
     format = ""
 
@@ -60,7 +60,7 @@ class SongReader:
         raise NotImplementedError
 
     def no_charts_error(self) -> ChartError:
-        """Why there is no chart; names the first that was skipped, and a wrong suffix."""
+        """Return the error of a file without charts; it names the first skipped chart, or a wrong suffix."""
         raise NotImplementedError
 
     def usual_no_charts_error(self) -> ChartError:
@@ -75,14 +75,14 @@ class SongReader:
             return ""
         a, b = tag.spans[index]
         value = self.data[a:b]
-        if value.isascii() and b"//" not in value and b"\\" not in value:  # most are, and the same in each encoding
+        if value.isascii() and b"//" not in value and b"\\" not in value:  # most values; the same in every encoding
             plain = value.decode("ascii")
             if plain.isprintable():
                 return plain.strip()
         return msd.decode(msd.plain(self.data[a:b]), self.encoding).strip()
 
     def values(self, tags: Iterable[Tag]) -> dict[str, str]:
-        """Their first values; of #DISPLAYBPM both, as they are written, "90:180"."""
+        """Return the first value of each tag by name; both values of a #DISPLAYBPM are joined as written, "90:180"."""
         return {tag.name: self._value(tag) for tag in tags if tag.name not in ("NOTES", "NOTEDATA")}
 
     def _value(self, tag: Tag) -> str:
@@ -91,7 +91,7 @@ class SongReader:
         return self.text(tag)
 
     def timing_texts(self, tags: Iterable[Tag]) -> dict[str, timing_tags.Text]:
-        """The timing tags, each character a byte; of several of one name the last."""
+        """Return the timing tags by name, one character per byte; of tags with the same name, the last one counts."""
         latest = {tag.name: tag for tag in tags if tag.name in timing_tags.TIMING_TAGS and tag.spans}
         return {
             name: timing_tags.Text(msd.plain(self.data[slice(*tag.spans[0])]).decode("latin-1"), self.lines(tag.start))
@@ -104,7 +104,7 @@ class SongReader:
     def add_chart(
         self, tags: dict[str, str], notes: tuple[int, int], timing: Timing, line: int, warnings: list[ReadWarning]
     ) -> None:
-        """Take down one chart. tags : its values by name; notes : span of its note data; line : where it starts"""
+        """Add one chart. tags : values of its tags by name; notes : span of its note data; line : its first line"""
         kind = names.steps_type(tags.get("STEPSTYPE", ""))
         columns = names.COLUMNS.get(kind)
         if columns is None:
@@ -127,7 +127,7 @@ class SongReader:
 
     @property
     def timing_before(self) -> Timing | None:
-        """That of the chart taken down last, if there is one."""
+        """The timing of the chart that was added last; None before the first chart."""
         return self._values[-1].timing if self._values else None
 
     def _read_charts(self) -> None:
@@ -186,13 +186,13 @@ class SongReader:
 
 
 def _unexpected(warnings: Iterable[ReadWarning], steps_type: str) -> Iterator[ReadWarning]:
-    """Oddities in note data: notes of one game that are not in its own charts."""
+    """Return the warnings of note data, except those about notes of one game in a chart for that game."""
     own = "stepmaniax-note" if steps_type.startswith("smx-") else ""
     return (warning for warning in warnings if warning.code != own)
 
 
 def _meter(value: str, line: int, warnings: list[ReadWarning]) -> int:
-    """The meter as the games read it: the whole number at the start; 1 if there is no usable number."""
+    """Return the meter as the games read it: the whole number at the start; 1 if there is no usable number."""
     meter, clean = number(value)
     if not clean or not 0 <= meter <= _LARGEST_METER:
         read = int(meter) if 0 < meter <= _LARGEST_METER else 1
@@ -203,7 +203,7 @@ def _meter(value: str, line: int, warnings: list[ReadWarning]) -> int:
 
 
 def suspicious_music(name: str) -> bool:
-    """Whether a music name is more than a plain relative file name: absolute, climbing, a URL or an option."""
+    """Whether a music name is not a plain relative path: it is absolute, has `..`, or is a URL or an option."""
     plain = name.strip().replace("\\", "/")
     return plain.startswith(("/", "-", "~")) or ":" in plain or "|" in plain or ".." in plain.split("/")
 
@@ -215,7 +215,7 @@ _NUL_TEXT = re.compile(rb"\A\s*(?:[^\0]\0){4}|\A\s*(?:\0[^\0]){4}")
 
 
 def load(path: Path) -> Song:
-    """Read a chart file. Raises `ChartError` for what cannot be understood, `FileError` for what cannot be read."""
+    """Read a chart file. Raises `ChartError` if it is not a valid chart file, `FileError` if it cannot be read."""
     path = Path(path)
     try:
         data = read_bytes(path, CHART_LIMIT)
@@ -229,14 +229,14 @@ def _why_unreadable(path: Path, error: FileError) -> str:
         readable = os.access(path, os.R_OK | os.X_OK)
         if not readable:
             return "the folder cannot be read"
-        # Commands that take folders search them first; what comes here has no charts, or one file was wanted.
+        # Commands that take folders search them first: a folder here has no charts, or the command needs one file.
         inside = any(entry.suffix.lower() in CHART_SUFFIXES for entry in path.rglob("*"))
         return "is a folder; name one of its files" if inside else f"no {_KINDS} file in this folder or below it"
     return error.message.removeprefix("cannot be read: ")
 
 
 def parse(data: bytes, path: Path) -> Song:
-    """Read the bytes of a chart file; `path` gives the format by its suffix, and the name in errors."""
+    """Read the bytes of a chart file; the suffix of `path` gives the format, and errors name the path."""
     path = Path(path)
     if wide := _wide_encoding(data):
         raise ChartError(path, f"the text is {wide}, which no game reads: no charts; save it as UTF-8", 1)
@@ -319,7 +319,7 @@ class _Ssc(SongReader):
     def _timing(
         self, group: list[Tag], song: Timing, source: timing_tags.Source, line: int, warnings: list[ReadWarning]
     ) -> Timing:
-        """The chart's own timing if it has any, else the song's."""
+        """Return the chart's own timing if it has any, else the song's."""
         own = self.timing_texts(group)
         if not timing_tags.is_own(own, source):
             return song
@@ -327,14 +327,17 @@ class _Ssc(SongReader):
             message = f"{', '.join(sorted(own))} gives the chart timing of its own, without BPMS: it plays at 60 BPM"
             warnings.append(ReadWarning("split-timing-without-bpms", message, line))
         timing = timing_tags.read(own, source, song.offset, warnings, line)
-        return next((known for known in (song, self.timing_before) if known == timing), timing)  # charts share its work
+        return next((known for known in (song, self.timing_before) if known == timing), timing)  # share caches
 
     def _version(self, song_tags: list[Tag]) -> Fraction:
         version = [self.text(tag) for tag in song_tags if tag.name == "VERSION"]
         return number(version[-1])[0] if version else Fraction(1)
 
     def _groups(self) -> tuple[list[Tag], list[tuple[list[Tag], Tag]]]:
-        """Song tags; and per chart its tags and its NOTES. Tags between NOTES and the next NOTEDATA are the song's."""
+        """Return the song's tags, and the tags and the NOTES of each chart.
+
+        Tags between NOTES and the next NOTEDATA are the song's.
+        """
         song_tags: list[Tag] = []
         groups: list[tuple[list[Tag], Tag]] = []
         current: list[Tag] | None = None

@@ -1,4 +1,4 @@
-"""What a path means: files, folders, pairs of .sm and .ssc; which charts of a file are meant, and how much that is."""
+"""The chart files that a path stands for (files, folders, pairs of .sm and .ssc), and the selected charts in them."""
 
 from __future__ import annotations
 
@@ -15,17 +15,16 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
 
 
-_RESOURCE_FORK = "._"  # what macOS leaves beside files on foreign disks; the games skip it too
+_RESOURCE_FORK = "._"  # prefix of files that macOS writes on foreign disks; the games skip them too
 
 
 def find_files(paths: Sequence[Path], exclude: Sequence[str] = ()) -> list[Path]:
-    """The chart files that paths name: a file as it is, a folder with every one below it, sorted; none twice.
+    """Return the chart files that paths stand for, none twice: a file itself, or all below a folder, sorted.
 
-    exclude : patterns of what is left out of folders, see `is_excluded`
+    exclude : patterns of files to leave out of folders, see `is_excluded`
 
-    Symbolic links to folders are not followed. What cannot be looked into stands for itself in the list (a path that
-    is not there, a folder that cannot be read or holds no charts): `reader.load` says what is wrong with it, and the
-    other files go on.
+    Symbolic links to folders are not followed. A path that does not exist stays in the list, and so does a folder that
+    cannot be read or has no charts. `reader.load` then reports the problem, and the other files are still processed.
     """
     found: dict[str, Path] = {}
     for path in paths:
@@ -46,10 +45,10 @@ def _below(folder: Path, exclude: Sequence[str]) -> Iterable[Path]:
 
 
 def is_excluded(name: str, exclude: Sequence[str]) -> bool:
-    """Whether a path below the folder that is searched is left out by a pattern of `--exclude`.
+    """Whether a pattern of `--exclude` matches a path below the searched folder.
 
-    A pattern (*, ?, [...]; capitals are all one) means the path, a folder on it, or a name anywhere: "Old", "*.sm",
-    "Pack/Old songs/*".
+    A pattern (*, ?, [...]; case is ignored) matches the path, one of its parent folders, or a name at any depth:
+    "Old", "*.sm", "Pack/Old songs/*".
     """
     if not exclude:
         return False
@@ -61,9 +60,10 @@ def is_excluded(name: str, exclude: Sequence[str]) -> bool:
 
 
 def without_links_out(paths: Sequence[Path], files: Sequence[Path]) -> tuple[list[Path], list[Path]]:
-    """Of what `find_files` has found: files to write, and links by which a search would leave its folders.
+    """Split the result of `find_files` into files to write, and links that lead out of the searched folders.
 
-    A folder of songs may be a stranger's, and a link in it lead to any file of the user's. Who names a link means it.
+    A folder of songs may come from a stranger, and a link in it may lead to any file of the user. A link that the user
+    has named is a file to write.
     """
     named = {os.path.abspath(path) for path in paths}  # noqa: PTH100 (links stay links)
     folders = [path.resolve() for path in paths if os.path.isdir(path)]  # noqa: PTH112 (Path.is_dir may raise)
@@ -76,7 +76,7 @@ def without_links_out(paths: Sequence[Path], files: Sequence[Path]) -> tuple[lis
 
 
 def _is_outside(link: Path, folders: Sequence[Path]) -> bool:
-    """Whether a link leads to a file outside of all folders; one to nowhere or to a device is an error of its own."""
+    """Whether a link leads to a file outside all folders; a broken link or a link to a device is another error."""
     try:
         target = link.resolve(strict=True)
     except (OSError, RuntimeError):
@@ -90,7 +90,7 @@ def is_chart_name(name: str) -> bool:
 
 
 def twin(path: Path) -> Path | None:
-    """The .ssc beside a .sm of the same name, or the .sm beside a .ssc; None if there is none. Games load the .ssc."""
+    """Return the .ssc beside a .sm of the same name, or the .sm beside a .ssc, or None. Games load the .ssc."""
     if path.suffix.lower() not in SONG_SUFFIXES:
         return None
     other = ".sm" if path.suffix.lower() == ".ssc" else ".ssc"
@@ -101,7 +101,7 @@ def twin(path: Path) -> Path | None:
 
 
 def one_song(path: Path) -> Path:
-    """The chart file a folder of one song stands for: its .ssc or .sm. Any other path is given back as it is."""
+    """Return the chart file of a folder with one song, its .ssc or else its .sm; return any other path unchanged."""
     if not os.path.isdir(path):  # noqa: PTH112 (Path.is_dir may raise)
         return path
     found = find_files([path])
@@ -114,9 +114,9 @@ _LARGE = 200_000  # bytes
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """Which charts are meant: values as the user typed them, several with commas; None stands for all.
+    """The selected charts: values as the user typed them, with commas between several; None stands for all.
 
-    player : of charts for several, whose part is meant
+    player : in charts for several players, the number of the selected player, from 1
     """
 
     steps_type: str | None = None
@@ -126,19 +126,20 @@ class Selection:
 
     @property
     def is_all(self) -> bool:
-        """Whether every chart is meant."""
+        """Whether every chart is selected."""
         return self == Selection()
 
     @property
     def options(self) -> str:
-        """What the user typed, for messages: "--difficulty hard, --index 9"."""
+        """The options that the user typed, for messages: "--difficulty hard, --index 9"."""
         typed = {name: getattr(self, name) for name in ("steps_type", "difficulty", "index", "player")}
         return ", ".join(f"--{name.replace('_', '-')} {value}" for name, value in typed.items() if value is not None)
 
     def charts(self, song: Song) -> tuple[Chart, ...]:
-        """The charts of `song` that match, in file order; may be empty.
+        """Return the selected charts of `song`, in file order; may be empty.
 
-        Names in any case, old ones too ("Heavy", "Oni"). Raises `UsageError` for a difficulty that no game has.
+        Names may be in any case, and old names are known ("Heavy", "Oni"). Raises `UsageError` for an unknown
+        difficulty.
         """
         from dancetutor_cli.chart import names
 
@@ -153,9 +154,9 @@ class Selection:
         )
 
     def one(self, song: Song) -> Chart:
-        """The one chart of `song` that matches; UsageError lists the charts there are if none or several do.
+        """Return the only selected chart of `song`. Raises `UsageError` with a list of charts if none or several match.
 
-        Of a chart for several the part of the player that is meant, else of the first.
+        For a chart for several players, return the part of the selected player, or of the first player.
         """
         charts = self.charts(song)
         if not charts:
@@ -173,16 +174,18 @@ class Selection:
         return players[0]
 
     def parts(self, chart: Chart) -> tuple[Chart, ...]:
-        """What feet are found for in a chart: itself, or of one for several each player's part that is meant."""
+        """Return the charts to find feet for: the chart itself or, for several players, the selected players' parts."""
         from dancetutor_cli.chart.note_data import player_charts
 
         return player_charts(chart, self.player)
 
 
 def note_bytes(path: Path, selection: Selection, data: bytes | None = None) -> int:
-    """How much there is to solve in a chart file: bytes of the note data that is meant; 0 where it cannot be read.
+    """Return the bytes of selected note data in a chart file, as a measure of the work; 0 if it cannot be read.
 
-    data : what to read in place of the file. A large file that is meant in part is not read only for this.
+    data : bytes to read in place of the file
+
+    For all charts, and for a large file, which is not read only for this, return the size of the file.
     """
     from dancetutor_cli.chart import reader
 

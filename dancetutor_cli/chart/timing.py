@@ -15,20 +15,20 @@ from dancetutor_cli.chart.names import TICKS_PER_BEAT
 # Segments are kept as exact fractions of the decimals in the file; floats are made from them once.
 
 Segments = tuple[tuple[int, Fraction], ...]  # (tick, value), sorted, one per tick
-_FIXED = 1 << 80  # sums of seconds are kept in these parts of a second: no float noise, no endless fractions
-_LONGEST = 1 << 2000  # sums of fractions with longer denominators are cut to _FIXED: thousands of changes in one gap
-SLOWEST, FASTEST = 0.25, 2.0  # speeds of the music: beyond them its sound is spoilt, and no feet follow
+_FIXED = 1 << 80  # parts of a second in which sums are kept: no float noise, no endless fractions
+_LONGEST = 1 << 2000  # sums with longer denominators, after thousands of changes in one gap, are rounded to _FIXED
+SLOWEST, FASTEST = 0.25, 2.0  # limits of the music's speed; beyond them, the sound is poor and no feet can follow
 _FAR = 1 << 40  # a tick beyond every chart
 
 
 def heard(second: float, rate: float) -> float:
-    """The second at which one hears what a song has at `second`, when its music plays at `rate`, 1 its own speed."""
+    """Return the second at which the moment `second` of a song is heard if its music plays at `rate` (1: as it is)."""
     return second / rate
 
 
 @dataclass(frozen=True)
 class Timing:
-    """The timing of a song or of a chart of its own. Segments are (tick, value), sorted, one per tick.
+    """The timing of a song, or of a chart with its own. Segments are (tick, value), sorted, one per tick.
 
     bpms : BPM, never empty, the first at tick 0, all positive
     stops, delays : seconds
@@ -48,19 +48,19 @@ class Timing:
             raise ValueError("there must be BPMs, all above 0")
 
     def seconds(self, ticks: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Second of a note on each tick, from the start of the music: after a delay, before a stop on it."""
+        """Return the second of a note on each tick, from the start of the music: after a delay, before a stop on it."""
         return self._knots.seconds(np.asarray(ticks, dtype=np.int64))
 
     def seconds_of_beats(self, beats: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Second of each beat, not rounded to ticks; a beat on a stop is the note's second."""
+        """Return the second of each beat, not rounded to ticks; on a stop, it is the second of a note there."""
         return self._knots.seconds(np.asarray(beats, dtype=np.float64) * TICKS_PER_BEAT)
 
     def beats(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Beat at each second; it rests during stops and delays, and jumps over warps."""
+        """Return the beat at each second; it stands still during stops and delays, and jumps over warps."""
         return self._knots.ticks(np.asarray(seconds, dtype=np.float64)) / TICKS_PER_BEAT
 
     def at_rate(self, rate: float) -> Timing:
-        """The timing of music that plays so fast, 1 its own speed: at half speed everything comes twice as late."""
+        """Return the timing of music that plays at `rate` (1: as it is); at 0.5 everything comes twice as late."""
         if rate == 1.0:
             return self
         speed = Fraction(rate)
@@ -74,12 +74,12 @@ class Timing:
         )
 
     def bpm_at(self, tick: int) -> float:
-        """BPM in force at a tick; a change on the tick counts, the first BPM reaches back before beat 0."""
+        """Return the BPM at a tick; a change on the tick counts, and the first BPM also holds before beat 0."""
         starts, values = self.tempos
         return values[max(bisect_right(starts, tick) - 1, 0)]
 
     def judged(self, ticks: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """False where the games judge nothing: in a warp (but not on a stop or delay in it) and in a fake segment."""
+        """Whether the games judge a note on each tick: not in fake segments, and in warps only on a stop or delay."""
         ticks = np.asarray(ticks, dtype=np.int64)
         if not self.warps and not self.fakes:
             return np.ones(ticks.shape, dtype=bool)
@@ -92,11 +92,12 @@ class Timing:
         seconds: NDArray[np.float64] | None = None,
         first: NDArray[np.intp] | None = None,
     ) -> NDArray[np.int64]:
-        """Time since the previous of the given ascending ticks, rounded half up to milliseconds; the first is 0.
+        """Return the milliseconds from the previous tick to each tick, rounded half up; 0 for the first.
 
-        The time is that of the exact decimals in the file: where floats could round the wrong way, fractions decide.
-        seconds : what `seconds` says of these ticks, where it has been asked
-        first : where ticks begin again, and ascend from there; None: they do not
+        The decimals in the file are exact: if floats could round the wrong way, fractions are used.
+        ticks : ascending
+        seconds : the result of `seconds` for these ticks, if it is known
+        first : indices at which a new ascending run of ticks begins; None: the ticks are one run
         """
         ticks = np.asarray(ticks, dtype=np.int64)
         out = np.zeros(ticks.shape, dtype=np.int64)
@@ -115,7 +116,10 @@ class Timing:
         return out
 
     def _exact_milliseconds(self, ticks: NDArray[np.int64], which: NDArray[np.intp]) -> list[tuple[int, int]]:
-        """Exact milliseconds from tick n - 1 to tick n for each n; those within one steady piece of time share work."""
+        """Return each n of `which` with the exact milliseconds from tick n - 1 to tick n.
+
+        Equal distances within one piece of time are computed once.
+        """
         knots = self._knots
         at = np.searchsorted(knots.tick, ticks, side="right") - 1
         steady: dict[tuple[int, int], int] = {}
@@ -141,12 +145,13 @@ class Timing:
 
 
 class _Knots:
-    """Time as straight pieces between the ticks at which something changes.
+    """Time as linear pieces between knots, the ticks at which the timing changes.
 
-    tick : int64, ascending; before, note, after : float64, the second there before everything, of a note, after
-    everything (delay, note, stop); rate : float64, seconds per tick from there on, 0 in a warp; first_rate : that
-    before the first knot; stops : whether a note ever has a stop behind it; exact : per knot the delay, the stop and
-    the rate as fractions.
+    tick : int64, ascending
+    before, note, after : float64, the second before the delay on the tick, of a note on it, and after its stop
+    rate : float64, seconds per tick after the knot, 0 in a warp; first_rate : the rate before the first knot
+    stops : whether any knot has a stop
+    exact : the delay, the stop and the rate of each knot as fractions
     """
 
     def __init__(self, timing: Timing) -> None:
@@ -157,7 +162,7 @@ class _Knots:
         self.exact_first_rate = rate = moving = Fraction(60) / timing.bpms[0][1] / TICKS_PER_BEAT
         previous, end_of_warp = 0, -_FAR
         now = _fixed(-timing.offset)
-        if order[0] < 0:  # whatever comes before beat 0 shifts the rest; beat 0 itself stays at the offset without it
+        if order[0] < 0:  # stops and delays before beat 0 shift the rest; without them, beat 0 is at the offset
             now += _fixed(order[0] * moving)
             previous = order[0]
         self.exact: list[tuple[Fraction, Fraction, Fraction]] = []
@@ -196,14 +201,14 @@ class _Knots:
         rate, following = self.rate[k], np.append(self.tick[1:], _FAR)[k]
         passed = seconds - self.after[k]
         moving = np.minimum(self.tick[k] + passed / np.where(rate > 0, rate, 1), following)
-        warping = np.where(passed > 0, following, self.tick[k])  # time passes in a warp only in a stop in it
+        warping = np.where(passed > 0, following, self.tick[k])  # time passes in a warp only during a stop
         later = np.where(rate > 0, moving, warping)
         sooner = np.minimum(self.tick[0] + (seconds - self.before[0]) / self.first_rate, self.tick[0])
         out: NDArray[np.float64] = np.where(i < 0, sooner, later)
         return out
 
     def between(self, a: int, i: int, b: int, j: int) -> Fraction:
-        """Exact seconds from the note on tick a to that on tick b; i and j are the knots at or before them."""
+        """Return the exact seconds from a note on tick a to one on tick b; i and j are the last knots up to a and b."""
         if a == b:
             return Fraction(0)
         here, rate = a, self.exact[i][2] if i >= 0 else self.exact_first_rate

@@ -1,4 +1,4 @@
-"""From the timing tags of a song, or of a chart that has its own, to a `Timing`: exact decimals, segments, warps."""
+"""Read the timing tags of a song, or of a chart with its own timing, into a `Timing`: decimals, segments, warps."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from dancetutor_cli.chart.timing import Segments, Timing
 # Numbers as the games read them (C's strtof and atoi), but exact.
 
 _NUMBER = re.compile(r"\s*([+-]?)(?:(\d+)(?:\.(\d*))?|\.(\d+))(?:[eE]([+-]?\d+))?(.*)", re.DOTALL | re.ASCII)
-_LARGEST = 35 * 10**37  # beyond it the games' floats are infinite, which they read as 0
-_SHORT = 40  # characters of a text that is worth to be kept
-_DIGITS = 60  # more decimals than any use has; Python refuses to read thousands
+_LARGEST = 35 * 10**37  # larger numbers are infinite as the games' floats, and the games read them as 0
+_SHORT = 40  # the numbers of texts with fewer characters are cached
+_DIGITS = 60  # limit of decimals, more than anyone needs; Python refuses to read thousands
 
 
 def number(text: str) -> tuple[Fraction, bool]:
-    """The decimal at the start of a text, and whether the text is nothing else. Junk and the not finite are 0."""
+    """Return the decimal at the start of a text, and whether the text is only that. Junk and infinite numbers are 0."""
     return _cached_number(text) if len(text) < _SHORT else _number(text)
 
 
@@ -52,11 +52,11 @@ def _number(text: str) -> tuple[Fraction, bool]:
     return value, clean
 
 
-_cached_number = lru_cache(maxsize=8192)(_number)  # charts of a song mostly say the same again
+_cached_number = lru_cache(maxsize=8192)(_number)  # charts of a song mostly repeat the same texts
 
 
 def beat(text: str) -> tuple[Fraction, bool]:
-    """A beat; with the suffix `r` it is given in rows of 1/48 beat."""
+    """Return a beat, and whether the text is only that; with the suffix `r` it is given in rows of 1/48 beat."""
     stripped = text.strip()
     bare = stripped.strip("rR")
     value, clean = number(bare)
@@ -64,14 +64,14 @@ def beat(text: str) -> tuple[Fraction, bool]:
 
 
 def tick_of(beat: Fraction) -> int:
-    """Beat to ticks of 1/48, halves to even."""
+    """Return a beat in ticks of 1/48 beat, with halves rounded to even."""
     return round(beat * TICKS_PER_BEAT)
 
 
-# From the text of timing tags to segments in beats: exact decimals; junk is named in warnings, not guessed.
+# From the text of timing tags to segments in beats: exact decimals; warnings name junk, which is not guessed at.
 
-FAST_BPM = 9_999_999  # anything faster is a warp, as the games have it
-MAX_BEAT = 2**30 // TICKS_PER_BEAT  # beyond this row numbers overflow in the games
+FAST_BPM = 9_999_999  # a faster BPM is a warp, as in the games
+MAX_BEAT = 2**30 // TICKS_PER_BEAT  # beyond this beat, row numbers overflow in the games
 
 Pairs = list[tuple[Fraction, Fraction]]  # (beat, value) in file order
 Warn = Callable[[str, str], None]  # code, message
@@ -79,7 +79,10 @@ Warn = Callable[[str, str], None]  # code, message
 
 @dataclass(slots=True)
 class Raw:
-    """Segments of one song or chart in beats: BPM, seconds, seconds, beats, beats; offset in seconds."""
+    """The segments of one song or chart, by beat.
+
+    bpms : BPM; stops, delays, offset : seconds; warps, fakes : length in beats
+    """
 
     bpms: Pairs = field(default_factory=list)
     stops: Pairs = field(default_factory=list)
@@ -90,19 +93,22 @@ class Raw:
 
 
 def entries(text: str) -> list[tuple[str, list[str]]]:
-    """The entries of `a=b,a=b`, each with its parts; empty parts do not count, as in the games."""
+    """Return the entries of `a=b,a=b`, each with its parts; empty parts do not count, as in the games."""
     return [(entry, [p for p in entry.split("=") if p]) for entry in text.split(",") if entry.strip()]
 
 
 def pairs(text: str, tag: str, negative: bool, warn: Warn) -> Pairs:
-    """The usable entries of `beat=value,beat=value` in file order. Only with `negative` may value and beat be so."""
+    """Return the usable entries of `beat=value,beat=value` in file order.
+
+    negative : whether entries with a negative beat or value are usable
+    """
     out: Pairs = []
     for entry, parts in entries(text):
         if len(parts) != 2:
             warn("odd-timing", f"{tag} entry '{quote(entry)}' has not exactly one '=' and is ignored")
             continue
         (at, clean), (value, clean_value) = beat(parts[0]), number(parts[1])
-        below = value.numerator < 0  # ten times as quick as to compare fractions
+        below = value.numerator < 0  # ten times as fast as a comparison of fractions
         if abs(at.numerator) > MAX_BEAT * at.denominator:
             warn("odd-timing", f"{tag} entry '{quote(entry)}' is too large for any song and is ignored")
         elif (below or (at.numerator < 0 and tag in ("BPMS", "STOPS"))) and not negative:
@@ -119,23 +125,23 @@ def pairs(text: str, tag: str, negative: bool, warn: Warn) -> Pairs:
 
 
 def at_ticks(segments: Pairs) -> Segments:
-    """Beats to ticks; of several entries on one tick the last counts."""
+    """Return segments by tick; of several segments on one tick, the last one counts."""
     return tuple(sorted({tick_of(at): value for at, value in segments}.items()))
 
 
 def lengths_at_ticks(segments: Pairs) -> Segments:
-    """The same for warps and fakes, whose values are lengths: whole ticks too."""
+    """Return warps or fakes by tick, with their lengths in whole ticks."""
     found = {
         tick_of(at): tick_of(min(length, Fraction(2 * MAX_BEAT))) for at, length in segments
-    }  # to the end of every song
+    }  # longer ones end after every song too
     return tuple((at, Fraction(length)) for at, length in sorted(found.items()) if length > 0)
 
 
 def holds_segment(tag: str, text: str) -> bool:
     """Whether a chart's own timing tag holds a segment, so that the chart leaves the song's timing.
 
-    Source: the games' readers of TIMESIGNATURES, TICKCOUNTS, COMBOS, SPEEDS, SCROLLS and LABELS. The other timing
-    tags are asked through their pairs; an OFFSET alone switches nothing.
+    Source: the games' readers of TIMESIGNATURES, TICKCOUNTS, COMBOS, SPEEDS, SCROLLS and LABELS. For the other timing
+    tags, `pairs` decides; an OFFSET alone does not make the chart leave the song's timing.
     """
     least = {"TIMESIGNATURES": 3, "TICKCOUNTS": 2, "COMBOS": 2, "SPEEDS": 3, "SCROLLS": 2, "LABELS": 2}[tag]
     for _, parts in entries(text):
@@ -150,7 +156,7 @@ def holds_segment(tag: str, text: str) -> bool:
 
 
 def odd_signatures(text: str) -> list[str]:
-    """Entries of TIMESIGNATURES that the games ignore."""
+    """Return the entries of TIMESIGNATURES that the games ignore."""
     out = []
     for entry, parts in entries(text):
         numbers = [math.trunc(number(p)[0]) for p in parts[:3]]
@@ -160,7 +166,7 @@ def odd_signatures(text: str) -> list[str]:
 
 
 def warner(into: list[ReadWarning], line: int) -> Warn:
-    """A function that adds warnings about one line; of more than 20 with one code the rest is only counted."""
+    """Return a function that adds warnings about one line: for each code the first 20, then one that there are more."""
     seen: dict[str, int] = {}
 
     def warn(code: str, message: str) -> None:
@@ -174,7 +180,7 @@ def warner(into: list[ReadWarning], line: int) -> Warn:
 
 
 def overlaps(warps: Sequence[tuple[Fraction, Fraction]]) -> list[Fraction]:
-    """Beats at which a warp starts inside the one before."""
+    """Return the beats at which a warp starts inside the warp before it."""
     order = sorted(warps)
     return [order[i + 1][0] for i in range(len(order) - 1) if order[i + 1][0] < sum(order[i])]
 
@@ -183,14 +189,14 @@ def overlaps(warps: Sequence[tuple[Fraction, Fraction]]) -> list[Fraction]:
 
 
 def has_tricks(raw: Raw) -> bool:
-    """Whether there is something to turn into warps, or a stop before beat 0."""
+    """Whether the timing has negative or infinite values that become warps, or a stop before beat 0."""
     return any(v < 0 or v > FAST_BPM for _, v in raw.bpms) or any(b < 0 or v < 0 for b, v in raw.stops)
 
 
 def to_warps(raw: Raw) -> Raw:
-    """The same timing without tricks, as StepMania 5 and ITGmania make it of an .sm file.
+    """Return the same timing without tricks, as StepMania 5 and ITGmania convert that of an .sm file.
 
-    Time is followed through the changes. Where it starts to run backwards (or not at all) a warp begins; it ends
+    Time is followed through the changes. A warp begins where time starts to run backwards or stands still; it ends
     where time is back at that point. Source: the games' `ProcessBPMsAndStops`.
     """
     walk = _Walk(raw)
@@ -219,12 +225,12 @@ def _runs(bpm: Fraction) -> bool:
 
 
 def _short(value: Fraction) -> Fraction:
-    """Keeps sums over thousands of BPMs from growing without end; exact where people look."""
+    """Round a value with a very long denominator to 1/2**96; sums over thousands of BPMs would grow without end."""
     return value if value.denominator < 1 << 512 else Fraction(round(value * (1 << 96)), 1 << 96)
 
 
 class _Walk:
-    """Follows time through the changes. `ahead` : how far time is past the start of the open warp, in seconds."""
+    """Time on its way through the changes. `ahead` : seconds from the time at the start of the open warp to now."""
 
     def __init__(self, raw: Raw) -> None:
         self.out = Raw(delays=raw.delays, warps=list(raw.warps), fakes=raw.fakes, offset=raw.offset)
@@ -238,7 +244,7 @@ class _Walk:
             self.out.bpms.append((Fraction(0), bpm))
 
     def advance(self, at: Fraction) -> None:
-        """Let time pass up to the next change; the open warp may end on the way."""
+        """Advance to the beat of the next change; the open warp may end before it."""
         if self.warp is not None and self.bpm <= FAST_BPM:
             self.ahead = _short(self.ahead + (at - self.here) * 60 / self.bpm)
             if self.bpm > 0 and self.ahead > 0:
@@ -262,7 +268,7 @@ class _Walk:
                 self.out.stops.append((at, seconds))
             return
         self.ahead += seconds
-        if seconds > 0 and self.ahead > 0:  # the stop makes up for more than was skipped: it stops for the rest
+        if seconds > 0 and self.ahead > 0:  # the stop is longer than the skipped time: the rest remains
             self.out.stops.append((at, self.ahead))
             if _runs(self.bpm):
                 self._end(at)
@@ -276,7 +282,7 @@ class _Walk:
             self._end(self.here - self.ahead * self.bpm / 60 if _runs(self.bpm) else Fraction(MAX_BEAT))
 
     def _end(self, at: Fraction) -> None:
-        """Close the open warp; a BPM that changed inside counts from its start."""
+        """Close the open warp at a beat; a BPM that changed inside the warp counts from its start."""
         assert self.warp is not None
         self.out.warps.append((self.warp, at - self.warp))
         if _runs(self.bpm) and self.bpm != self.bpm_before:
@@ -289,8 +295,8 @@ TIMING_TAGS = frozenset({
 })  # fmt: skip
 _PAIRS = ("BPMS", "STOPS", "DELAYS", "WARPS", "FAKES")
 _SSC_ONLY = ("WARPS", "FAKES")
-_LONG = 3600  # seconds; a stop longer than this is named
-SPLIT_TIMING_VERSION = Fraction(7, 10)  # older .ssc: no timing of a chart's own, warps say where they end
+_LONG = 3600  # seconds; a longer stop gets a warning
+SPLIT_TIMING_VERSION = Fraction(7, 10)  # in older .ssc files, no chart has its own timing, and warps give their end
 
 
 @dataclass(frozen=True, slots=True)
@@ -303,14 +309,17 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Where timing tags come from. sm : negative values are warps; version : of the .ssc file"""
+    """The file of timing tags. sm : whether it is an .sm file, where negative values are warps; version : of .ssc"""
 
     sm: bool
     version: Fraction = Fraction(1)
 
 
 def read(tags: Mapping[str, Text], source: Source, offset: Fraction, warnings: list[ReadWarning], line: int) -> Timing:
-    """The timing that tags describe; `offset` holds where they have no OFFSET, `line` where they have no BPMS."""
+    """Return the timing that tags describe.
+
+    offset : seconds, used if the tags have no OFFSET; line : line for warnings if the tags have no BPMS
+    """
     raw = Raw(offset=offset)
     for name, into in zip(_PAIRS, (raw.bpms, raw.stops, raw.delays, raw.warps, raw.fakes), strict=True):
         if tag := tags.get(name):
@@ -337,7 +346,7 @@ def read(tags: Mapping[str, Text], source: Source, offset: Fraction, warnings: l
 
 
 def is_own(tags: Mapping[str, Text], source: Source) -> bool:
-    """Whether a chart's tags hold any timing segment: then it uses nothing of the song's timing but the offset."""
+    """Whether a chart's tags hold any timing segment; if so, it uses only the offset of the song's timing."""
     if source.version < SPLIT_TIMING_VERSION:
         return False
     return any(

@@ -1,16 +1,16 @@
-"""Andamiro's User Custom Steps (.ucs), a text of Pump charts, to a `Song`: blocks, each with tempo and rows of its own.
+"""Read Andamiro's User Custom Steps (.ucs), a text format of Pump charts: blocks of rows, each with its own tempo.
 
     :Format=1
-    :Mode=Single           Double; S-Performance and D-Performance stand on the same pads
-    :BPM=150               a block: beats a minute,
-    :Delay=480             milliseconds before its first row; of the first block from the start of the music,
-    :Beat=4                beats a measure,
-    :Split=2               rows a beat
+    :Mode=Single           or Double; S-Performance and D-Performance use the same pads
+    :BPM=150               start of a block: beats per minute
+    :Delay=480             milliseconds before its first row; for the first block, from the start of the music
+    :Beat=4                beats per measure
+    :Split=2               rows per beat
     X....                  a letter for each panel: X a step; M, H, W the head, the body and the end of a hold
     ..M.M
 
-There is no document of the format; this is what its editors and converters agree on. A file holds one chart, and
-neither title nor meter: the one is the file's name, the other looked for in it ("Song S17.ucs").
+The format has no published specification; its editors and converters agree on this much. A file holds one chart,
+without title and meter. The title is the file's name, and the meter is read from that name ("Song S17.ucs").
 """
 
 from __future__ import annotations
@@ -43,15 +43,17 @@ _BLOCK = ("BPM", "Delay", "Beat", "Split")
 _NAMES = {name.lower(): name for name in ("Format", "Mode", *_BLOCK)}
 _LETTERS = b".XMHW"
 _MOST_ROWS = 1_000_000
-_FINEST = 1000  # rows a beat
+_FINEST = 1000  # limit of rows per beat, and of beats per measure
 _LONGEST = 86_400  # seconds
-_OVERTAKEN = Fraction(1, 1000)  # seconds that are left to rows which a later block would come before
+_OVERTAKEN = Fraction(1, 1000)  # seconds from a block's last note to a next block that would begin before that note
 _LEVEL = re.compile(r"(?<![a-z])(?:s|d|sp|dp|hd)(\d{1,2})(?!\d)", re.IGNORECASE)  # in a file's name
 
 
 @dataclass(slots=True)
 class _Block:
-    """line : of its first tag; delay : seconds before it; first, count : its rows among those of the file"""
+    """A block. line : line of its first tag; delay : seconds before its first row; first : index of its first row in
+    the file; count : number of rows
+    """
 
     line: int
     bpm: Fraction
@@ -67,7 +69,7 @@ class _Block:
 
 @dataclass(slots=True)
 class _Text:
-    """What a file says. spans : (line, start, end) of each row; unknown, rowless : lines for warnings"""
+    """The contents of a file. spans : (line, start, end) of each row; unknown, rowless : lines for warnings"""
 
     path: Path
     data: bytes
@@ -79,7 +81,7 @@ class _Text:
     rowless: list[int] = field(default_factory=list)
 
     def read(self) -> None:
-        """Take down blocks and rows; ChartError for the first line that is none."""
+        """Read the blocks and rows. Raises ChartError for the first line that does not follow the format."""
         head: dict[str, tuple[str, int]] = {}
         pause, lines = Fraction(0), 0
         for line, start, text in _lines(self.data):
@@ -104,7 +106,7 @@ class _Text:
             self.rowless.append(lines)
 
     def _tag(self, line: int, text: bytes) -> tuple[str, str]:
-        """A line `:Name=value`; the name as it is known, "" for one that is not."""
+        """Return the name and the value of a line `:Name=value`; "" for an unknown name."""
         given, equals, value = msd.decode(text[1:], msd.encoding_of(text)).partition("=")
         name, value = _NAMES.get(given.strip().lower(), ""), value.strip()
         if not equals or not given.strip():
@@ -139,7 +141,7 @@ class _Text:
         return _Block(line, bpm, delay / 1000, int(split), len(self.spans))
 
     def _number(self, name: str, value: str, line: int) -> Fraction:
-        """A decimal; some editors write a comma for its point."""
+        """Return a decimal number, with a comma or a point: some editors write a comma."""
         found, clean = number(value.replace(",", "."))
         if not clean:
             raise ChartError(self.path, f":{name}='{msd.quote(value)}' is not a number", line)
@@ -164,7 +166,7 @@ class _Text:
 
 
 def _lines(data: bytes) -> Iterator[tuple[int, int, bytes]]:
-    """Line, offset and text of each line that is not blank, without blanks around it."""
+    """Yield the number, the offset and the text of each line that is not blank, without surrounding blanks."""
     at = 0
     for line, raw in enumerate(data.splitlines(keepends=True), 1):
         text = raw.lstrip(b" \t\xef\xbb\xbf" if line == 1 else b" \t")
@@ -180,8 +182,8 @@ def _shown(text: bytes) -> str:
 
 # Rows -> steps and holds.
 #
-# Each letter is a panel that is pressed at its row; what hangs together is a hold. Rows of `.` between M and W hide
-# its body and end nothing. What lacks its M begins with its first row, what lacks its W ends with its last.
+# Each letter is a panel that is pressed at its row; M, H and W in one column form a hold. Rows of `.` between M and W
+# hide the body of a hold and do not end it. A hold without M begins at its first row; one without W ends at its last.
 
 
 @dataclass(slots=True)
@@ -192,7 +194,7 @@ class _Hold:
 
 @dataclass(slots=True)
 class _Steps:
-    """notes : (row, column, kind, row of the end or -1); the rest are rows for warnings"""
+    """The steps of a file. notes : (row, column, kind, row of the end or -1); headless, endless : rows for warnings"""
 
     notes: list[tuple[int, int, Kind, int]] = field(default_factory=list)
     headless: list[int] = field(default_factory=list)
@@ -238,12 +240,18 @@ class _Steps:
         self.notes.append((hold.first, column, Kind.HOLD if long else Kind.TAP, hold.last if long else -1))
 
 
-# Blocks -> ticks and timing. Seconds are exact; beats are those of the file wherever 1/48 beat can express them.
+# Blocks -> ticks and timing. Seconds are exact; beats are those of the file if ticks of 1/48 beat can express them.
 
 
 @dataclass(slots=True)
 class _Clock:
-    """ticks : of each row that something begins or ends in; altered : whether a BPM is not one of the file's"""
+    """The ticks and the timing of a file.
+
+    ticks : tick of each row in which a note begins or ends
+    bpms, delays : (tick, value), delays in seconds
+    altered : whether a BPM differs from those of the file
+    overtaken : lines for warnings
+    """
 
     ticks: dict[int, int] = field(default_factory=dict)
     bpms: list[tuple[int, Fraction]] = field(default_factory=list)
@@ -252,18 +260,18 @@ class _Clock:
     overtaken: list[int] = field(default_factory=list)
 
     def run(self, blocks: Sequence[_Block], rows: Sequence[int]) -> None:
-        """Lay the blocks one behind the other. rows : those that something begins or ends in, ascending"""
+        """Place the blocks one after the other. rows : rows in which a note begins or ends, ascending"""
         start = 0
         for block, following in zip(blocks, [*blocks[1:], None], strict=True):
             inside = rows[bisect_left(rows, block.first) : bisect_left(rows, block.first + block.count)]
             start = self._lay(block, start, [row - block.first for row in inside], following)
 
     def _lay(self, block: _Block, start: int, filled: Sequence[int], following: _Block | None) -> int:
-        """One block; returns the tick of the next one.
+        """Place one block, and return the tick of the next one.
 
-        Where 1/48 beat does not tell the rows apart that hold something, a beat is counted as several: as rows of 32nds
-        are counted at twice the BPM. What comes after the last of them, a shorter pause included, has a BPM that lets
-        the next block begin on a whole tick at its very time.
+        If filled rows do not fall on whole ticks, a beat counts as several beats, at a BPM as many times higher. The
+        time after the last filled row, less a negative delay of the next block, has its own BPM. With it, the next
+        block begins on a whole tick at its exact time.
         """
         spacing = Fraction(TICKS_PER_BEAT, block.split)
         if any((row * spacing).denominator != 1 for row in filled):
@@ -294,7 +302,7 @@ class _Clock:
 
 
 def read_ucs(data: bytes, path: Path) -> Song:
-    """Read the bytes of a .ucs file. Raises `ChartError`, with line, for the first thing that is none of the format."""
+    """Read the bytes of a .ucs file. Raises `ChartError`, with a line, for the first violation of the format."""
     text = _Text(path, data)
     text.read()
     steps_type, columns = _MODES[text.mode.lower()]
@@ -327,7 +335,7 @@ def read_ucs(data: bytes, path: Path) -> Song:
 
 
 def _level(path: Path) -> int:
-    """The meter in a file's name, "Song D22.ucs"; 0 without one."""
+    """Return the meter in a file's name, "Song D22.ucs"; 0 if the name has none."""
     found = _LEVEL.findall(path.stem)
     return int(found[-1]) if found else 0
 
@@ -341,7 +349,7 @@ def _timing(text: _Text, clock: _Clock) -> Timing:
 
 
 def _tags(text: _Text, clock: _Clock) -> dict[str, str]:
-    """The tempos of the file, where the timing has others to count by."""
+    """Return a DISPLAYBPM with the tempos of the file if the timing has other BPMs, else no tags."""
     if not clock.altered:
         return {}
     lasting = [block.bpm for block in text.blocks if 2 * block.count * block.row_seconds >= 1]
@@ -362,7 +370,7 @@ def _note_table(steps: _Steps, clock: _Clock, line_of: np.ndarray) -> NoteTable:
 
 
 def _row_table(text: _Text, clock: _Clock, rows: Sequence[int]) -> RowTable:
-    """The rows in which something begins or ends."""
+    """Return the table of the rows in which a note begins or ends."""
     spans = np.array([text.spans[row] for row in rows], dtype=np.int64).reshape(-1, 3)
     tick = np.array([clock.ticks[row] for row in rows], dtype=np.int64)
     line, start, end = spans[:, 0].astype(np.int32), spans[:, 1], spans[:, 2]
@@ -370,7 +378,7 @@ def _row_table(text: _Text, clock: _Clock, rows: Sequence[int]) -> RowTable:
 
 
 def _measure_table(clock: _Clock, rows: Sequence[int]) -> MeasureTable:
-    """Measures of four beats; nothing opens them in the file."""
+    """Return measures of four beats; the file does not mark them, so their anchors and lines are 0."""
     ticks = np.array([clock.ticks[row] for row in rows], dtype=np.int64)
     count = int(ticks.max(initial=0)) // TICKS_PER_MEASURE + 1
     first = ticks.searchsorted(np.arange(count + 1) * TICKS_PER_MEASURE).astype(np.int32)
