@@ -327,7 +327,7 @@ class _Ssc(SongReader):
             message = f"{', '.join(sorted(own))} gives the chart timing of its own, without BPMS: it plays at 60 BPM"
             warnings.append(ReadWarning("split-timing-without-bpms", message, line))
         timing = timing_tags.read(own, source, song.offset, warnings, line)
-        return next((known for known in (song, self.timing_before) if known == timing), timing)  # share caches
+        return next((known for known in (song, self.timing_before) if known == timing), timing)  # to share caches
 
     def _version(self, song_tags: list[Tag]) -> Fraction:
         version = [self.text(tag) for tag in song_tags if tag.name == "VERSION"]

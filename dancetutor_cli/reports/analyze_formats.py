@@ -1,4 +1,4 @@
-"""The formats of `analyze --format` by name, and what each of them is: a `Report`."""
+"""The formats of `analyze --format` by name, and their base class, `Report`."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """What a report is made with.
+    """The arguments of a report.
 
-    stream : for results; errors : for files that could not be read, standard error
-    preset : name of the cost preset; files : how many there will be
+    stream : stream for results; errors : stream for files that could not be read, standard error
+    preset : name of the cost preset; files : number of files in the run
     """
 
     stream: IO[str]
@@ -27,9 +27,9 @@ class Output:
 
 
 class Report:
-    """Writes results as they come.
+    """The base class of all reports, which write results as they come.
 
-    ENCODING : of the stream; None: the terminal's, with "?" for what it cannot show
+    ENCODING : encoding of the stream; None: the terminal's, with "?" for characters that it cannot show
     """
 
     ENCODING: ClassVar[str | None] = "utf-8"
@@ -38,17 +38,17 @@ class Report:
         self._stream, self._errors = output.stream, output.errors
 
     def begin(self) -> None:
-        """Write what comes before the first file."""
+        """Write the part before the first file."""
 
     def add(self, result: FileResult) -> None:
         """Write one file."""
         raise NotImplementedError
 
     def end(self, tally: Tally) -> None:
-        """Write what comes after the last file."""
+        """Write the part after the last file."""
 
 
-# Module and class; a module is imported when its format is asked for.
+# Module and class of each format; a module is imported when its format is used.
 FORMATS = {
     "text": "text_report:LineReport",
     "json": "data_formats:JsonReport",
@@ -59,12 +59,12 @@ FORMATS = {
     "gitlab": "code_formats:GitlabReport",
     "junit": "code_formats:JunitReport",
 }
-# What `text` is in other lengths: with tables and rows, at most a screen or a page, or without any finding.
+# Other lengths of `text`: with tables and rows, at most a screen or a page, or without findings.
 VIEWS = {"full": "text_report:TextReport", "brief": "brief:BriefReport", "none": "text_report:SummaryReport"}
 
 
 def open_report(name: str, output: Output) -> Report:
-    """A report in this format or view."""
+    """Return a report in a format or view."""
     module, _, kind = {**FORMATS, **VIEWS}[name].partition(":")
     report_class: type[Report] = getattr(import_module(f"{__package__}.{module}"), kind)
     if hasattr(output.stream, "reconfigure"):

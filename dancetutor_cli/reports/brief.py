@@ -1,4 +1,4 @@
-"""What a person at a terminal sees of `analyze`: at most a screen for a song, a page for a pack; `--full` says all."""
+"""The brief report of `analyze` for a terminal: at most a screen for a song, a page for a pack."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from dancetutor_cli.reports.terminal import FIXED_BLANK, cut, safe, safe_path, t
 from dancetutor_cli.reports.text_report import STYLES
 from dancetutor_cli.run.errors import plural
 
-_SONG = 2  # files that are one song: its .sm and its .ssc
+_SONG = 2  # limit of the files of one song: its .sm and its .ssc
 _MOST_UNREADABLE = 8
-_PAGE = 60  # lines of a pack
-_LEAST = 28  # characters of a path that are shown
-_ALIKE = 3  # lines of one rule that become one
+_PAGE = 60  # limit of lines for a pack
+_LEAST = 28  # least characters of a path that are shown
+_ALIKE = 3  # number of lines of one rule from which they become one line
 
 
 @dataclass(frozen=True, slots=True)
 class _Entry:
-    """All findings of one rule in one chart (None: about the file)."""
+    """All findings of one rule in one chart (None: in the file itself)."""
 
     path: str
     chart: ChartResult | None
@@ -39,12 +39,12 @@ class _Entry:
 
     @property
     def order(self) -> tuple[int, int, int]:
-        """Errors first, then what is surest and most frequent."""
+        """The sort key: errors first, then the surest and most frequent findings."""
         return -RANKS[self.first.severity], -max(f.margin or 0 for f in self.findings), -len(self.findings)
 
 
 class BriefReport(Report):
-    """Collects files and reports them at the end; files that could not be read go to the errors."""
+    """A report that is written at the end of the run; files that could not be read go to standard error."""
 
     ENCODING = None
 
@@ -60,7 +60,7 @@ class BriefReport(Report):
         self._below = ""
 
     def add(self, result: FileResult) -> None:
-        """Take note of one file."""
+        """Add one file."""
         if result.error is not None:
             self._unreadable.append(safe(result.error))
             return
@@ -78,7 +78,7 @@ class BriefReport(Report):
             self._charts += [(result, chart) for chart in result.charts if chart.findings]
 
     def end(self, tally: Tally) -> None:
-        """Write it all; the last line is what was found in all."""
+        """Write the whole report; its last line is the summary."""
         for line in self._unreadable[:_MOST_UNREADABLE]:
             self._errors.write(f"dancetutor: {line}\n")
         if len(self._unreadable) > _MOST_UNREADABLE:
@@ -92,13 +92,13 @@ class BriefReport(Report):
             self._stream.write(line + "\n")
 
     def _song(self) -> list[str]:
-        """A line for each chart, then one for each rule in each chart, as many as the screen holds."""
+        """Return a line for each chart, then a line for each rule in each chart, as many as fit on the screen."""
         room = max(12, shutil.get_terminal_size().lines - 4)
         by_file: dict[str, list[str]] = {}
         widest = max((len(safe(chart.label)) for _, chart in self._charts), default=0)
         for result, chart in self._charts:
             by_file.setdefault(result.path, []).append(self._cut(f"  {_counts(chart, widest)}"))
-        files: dict[tuple[str, ...], list[str]] = {}  # the .sm and the .ssc of a song say the same, mostly
+        files: dict[tuple[str, ...], list[str]] = {}  # the .sm and the .ssc of a song mostly have the same lines
         for path, charts in by_file.items():
             files.setdefault(tuple(charts), []).append(safe_path(path))
         lines: list[str] = []
@@ -110,7 +110,7 @@ class BriefReport(Report):
         return [*shown, *_more(len(lines) - len(shown), "charts"), *self._listed(room - len(shown))]
 
     def _pack(self, page: int) -> list[str]:
-        """The files with the most errors and warnings, then the surest finding of each rule; at most `page` lines."""
+        """Return the worst files, and then the surest findings of each rule; at most `page` lines."""
         worst = sorted(self._found.items(), key=lambda item: (-item[1][0], -item[1][1], item[0]))
         worst = [item for item in worst if any(item[1])]
         shown = worst[: page // 3]
@@ -150,7 +150,7 @@ class BriefReport(Report):
         return ["", *lines, *_more(len(found) - len(shown), "such lines"), _HINT]
 
     def _with_messages(self, found: Sequence[tuple[str, tuple[str, ...]]], room: int) -> list[str]:
-        """Each line, and below it the lines of its message, as far as there is room."""
+        """Return each line, and below it the lines of its message if there is room for them."""
         lines: list[str] = []
         free = room - len(found)
         for line, message in found:
@@ -161,11 +161,11 @@ class BriefReport(Report):
         return lines
 
     def _kind_lines(self, entries: Sequence[_Entry]) -> list[tuple[str, tuple[str, ...]]]:
-        """What is found of a rule in the charts of a song: a line and its message for each; three and more in one."""
+        """Return a line with its message for each chart with findings of a rule; three or more lines become one."""
         lines = list(dict.fromkeys((f"{self._rule(one)}: {_where(one)}", self._message(one)) for one in entries))
         if len(lines) < _ALIKE:
             return lines
-        # The .sm and the .ssc of a song say the same, mostly.
+        # The .sm and the .ssc of a song mostly have the same findings, which are counted once.
         own = {(e.chart and e.chart.label, tuple(f.beat for f in e.findings)): len(e.findings) for e in entries}
         labels = list(dict.fromkeys(entry.chart.label if entry.chart else "" for entry in entries))
         first = entries[0].first
@@ -173,14 +173,14 @@ class BriefReport(Report):
         return [(f"{self._rule(entries[0])}: {sum(own.values())} in {plural(len(labels), 'chart')}{where}", ())]
 
     def _name(self, path: str) -> str:
-        """A file by its path below the folder that all of them are in."""
+        """Return a file's path below the folder that contains all files."""
         return safe_path(os.path.relpath(path, self._below or "."))
 
     def _rule(self, entry: _Entry) -> str:
         return self._paint(f"{entry.first.rule} {entry.first.name}", STYLES[entry.first.severity])
 
     def _message(self, entry: _Entry) -> tuple[str, ...]:
-        """The message of a single finding in full, on lines as wide as the terminal; nothing of several."""
+        """Return the message of a single finding in full, on lines as wide as the terminal; none for several."""
         if len(entry.findings) > 1:
             return ()
         indent = " " * 4
@@ -191,9 +191,9 @@ class BriefReport(Report):
         )
 
     def _place(self, entry: _Entry) -> str:
-        """ "Pack/Song/song.ssc:12: 2 in dance-single Hard 9, measures 4 and 18"; of a long path the end.
+        """Return "Pack/Song/song.ssc:12: 2 in dance-single Hard 9, measures 4 and 18"; a long path is cut at its start.
 
-        A single finding about a file has its message there.
+        For a single finding about a file, the line ends with its message.
         """
         alone = entry.chart is None and len(entry.findings) == 1
         where = f":{entry.first.line or 1}: {safe(entry.first.message) if alone else _where(entry)}"
@@ -207,7 +207,7 @@ class BriefReport(Report):
 _HINT = "--full: findings with rows; --statistics: count by rule; --format json: all data"
 
 
-_MOVES = {  # those that the line of a chart counts, by name
+_MOVES = {  # moves that the line of a chart counts, and their names
     "doublestep": "doublestep",
     "crossover-full": "180° crossover",
     "spin": "spin",
@@ -216,14 +216,14 @@ _MOVES = {  # those that the line of a chart counts, by name
 
 
 def _head(widest: int, charts: Sequence[ChartResult]) -> str:
-    """The names of the columns of `_counts`, and what a "?" in them means."""
+    """Return the names of the columns of `_counts`, and the meaning of a "?" in them."""
     guess = any(chart.estimate and not chart.estimate.is_scale_known for chart in charts)
     names = f"{'':{widest + 2}}  plays like  scores like   rows"
     return f"{names}  (? = guessed scale)" if guess else names
 
 
 def _counts(chart: ChartResult, widest: int) -> str:
-    """The line of a chart in a table whose names are `widest` characters wide."""
+    """Return the line of a chart in a table whose names are `widest` characters wide."""
     found = [sum(f.severity == severity for f in chart.findings) for severity in ("error", "warning")]
     words = [plural(n, name) for n, name in zip(found, ("error", "warning"), strict=True) if n]
     counted = [
@@ -238,7 +238,7 @@ def _counts(chart: ChartResult, widest: int) -> str:
 
 
 def _where(entry: _Entry) -> str:
-    """ "2 in dance-single Medium 5, measures 4 and 18" """
+    """Return "2 in dance-single Medium 5, measures 4 and 18"."""
     where = safe(entry.chart.label) if entry.chart else "the file"
     return f"{len(entry.findings)} in {where}{measures_text(entry.findings)}"
 

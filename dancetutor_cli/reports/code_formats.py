@@ -27,7 +27,7 @@ _LEVELS = {"error": "error", "warning": "warning", "info": "note"}
 
 
 class SarifReport(Report):
-    """Writes one log with one run; every finding is a result with a region and a logical location."""
+    """A SARIF log with one run; every finding is a result with a region and a logical location."""
 
     def __init__(self, output: Output) -> None:
         super().__init__(output)
@@ -81,7 +81,7 @@ class SarifReport(Report):
 
 
 def uri(path: str) -> str:
-    """A relative or absolute path as a URI reference."""
+    """Return a relative or absolute path as a URI reference."""
     pure = PurePath(path)
     return pure.as_uri() if pure.is_absolute() else quote(path)
 
@@ -106,7 +106,7 @@ _COMMANDS = {"error": "error", "warning": "warning", "info": "notice"}
 
 
 class GithubReport(Report):
-    """Writes one command for each finding, and the summary as an ordinary line."""
+    """Workflow commands, one for each finding, and the summary as an ordinary line."""
 
     def add(self, result: FileResult) -> None:
         """Write the findings of one file."""
@@ -137,7 +137,7 @@ _SEVERITIES = {"error": "major", "warning": "minor", "info": "info"}
 
 
 class GitlabReport(Report):
-    """Writes one JSON list."""
+    """A code quality report: one JSON list."""
 
     def __init__(self, output: Output) -> None:
         super().__init__(output)
@@ -163,11 +163,11 @@ class GitlabReport(Report):
         self._stream.write(json_without_commands(json.dumps(self._issues, indent=1)) + "\n")
 
 
-# `--format junit`: a suite for each file, a test case for each chart, a failure for each finding that is no info.
+# `--format junit`: a suite for each file, a test case for each chart, a failure for each error or warning.
 
 
 class JunitReport(Report):
-    """Writes the XML that CI servers read."""
+    """A test report in XML, which CI servers read."""
 
     def __init__(self, output: Output) -> None:
         super().__init__(output)
@@ -175,7 +175,7 @@ class JunitReport(Report):
         self._failures = self._tests = self._unreadable = 0
 
     def add(self, result: FileResult) -> None:
-        """Add the suite of one file; the case "file" is about the file itself."""
+        """Add the suite of one file; the case "file" has the findings about the file itself."""
         path, found = relative(result.path), list(entries(result))
         cases = [self._case(path, "file", [e for e in found if e.chart is None], result.error)]
         for chart in result.charts:
@@ -190,7 +190,7 @@ class JunitReport(Report):
         self._unreadable += errors
 
     def end(self, tally: Tally) -> None:
-        """Write everything."""
+        """Write all suites."""
         sums = f'tests="{self._tests}" failures="{self._failures}" errors="{self._unreadable}"'
         self._stream.write('<?xml version="1.0" encoding="UTF-8"?>\n')
         suites = xml_without_commands("".join(self._suites))

@@ -1,4 +1,4 @@
-"""Formats for programs that want all: JSON (docs/formats.md), JSON lines, CSV."""
+"""Formats for other programs: JSON (docs/formats.md), JSON lines, CSV."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from dancetutor_cli.reports.tally import Tally
 from dancetutor_cli.reports.terminal import safe, safe_path
 from dancetutor_cli.run.foreign_text import as_text, json_without_commands
 
-# What the formats for other programs share: one entry per finding, with its file, its chart and a fingerprint.
+# The common part of all formats for programs: one entry per finding, with its file, its chart and a fingerprint.
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A finding with where it is; texts are safe to print. `path` is relative to the working folder where it can be."""
+    """A finding with its place; texts are safe to print. `path` is relative to the working folder if possible."""
 
     path: str
     finding: Finding
@@ -39,7 +39,7 @@ class Entry:
 
     @property
     def sentence(self) -> str:
-        """The same after the rule's name, for formats that show no name beside it."""
+        """The message after the rule's name, for formats that do not show the name beside it."""
         return self._placed(self.finding.sentence)
 
     def _placed(self, text: str) -> str:
@@ -49,13 +49,13 @@ class Entry:
 
     @property
     def moment(self) -> str:
-        """ " measure 4 beat 16", or nothing."""
+        """The text " measure 4 beat 16"; "" if the beat is not known."""
         beat, measure = self.finding.beat, self.finding.measure
         return "" if beat is None else f" measure {measure} beat {round(beat, 3):g}"
 
     @property
     def place(self) -> str:
-        """Where in the chart, as a path: "dance-single Hard 8/measure 4/beat 16"; "" for the file itself."""
+        """The place in the chart as a path: "dance-single Hard 8/measure 4/beat 16"; "" for the file itself."""
         if self.chart is None:
             return ""
         steps = [safe(self.chart.label)]
@@ -65,7 +65,7 @@ class Entry:
 
 
 def entries(result: FileResult) -> Iterator[Entry]:
-    """Every finding of a file. The fingerprint is made of chart, beat and rule, so that it survives edits elsewhere."""
+    """Yield every finding of a file. The fingerprint is a hash of file, chart, beat and rule; other edits keep it."""
     path = relative(result.path)
     seen: dict[str, int] = {}
     for finding, chart in result.all_findings():
@@ -78,7 +78,7 @@ def entries(result: FileResult) -> Iterator[Entry]:
 
 
 def relative(path: str) -> str:
-    """`path` with forward slashes, relative to the working folder if it lies inside."""
+    """Return `path` with forward slashes, relative to the working folder if it is inside."""
     pure = PurePath(path)
     if pure.is_absolute() and pure.is_relative_to(Path.cwd()):
         pure = pure.relative_to(Path.cwd())
@@ -91,9 +91,9 @@ SCHEMA = 1
 
 
 class JsonReport(Report):
-    """Writes one JSON object, UTF-8; every file is a line of its own inside `files`.
+    """One JSON object in UTF-8; every file is a line of its own inside `files`.
 
-    The head names the preset of the first file's first chart that has one, else that of the run.
+    The head names the preset of the first chart with a preset in the first file, else the preset of the run.
     """
 
     def __init__(self, output: Output) -> None:
@@ -121,12 +121,12 @@ class JsonReport(Report):
         self._write(json.dumps(head, ensure_ascii=False)[:-1] + ', "files": [')
 
     def _write(self, *texts: str) -> None:
-        for text in texts:  # not writelines: a stream that copies what is written, as click's for tests, misses that
+        for text in texts:  # not writelines: a stream that copies its text, as click's for tests, does not see that
             self._bytes.write(json_without_commands(text).encode("utf-8", "replace"))
 
 
 def file_texts(result: FileResult) -> Iterator[str]:
-    """One entry of `files`, in pieces, because it may be long; findings about the file itself follow its charts."""
+    """Yield one entry of `files` in pieces, because it may be long; findings about the file follow its charts."""
     head = _members({"path": result.path, "error": result.error, "warnings": list(result.warnings)})
     sync = {} if result.sync is None else {"sync": sync_object(result.sync)}
     tail = _members({**sync, "findings": [finding_object(finding) for finding in result.findings]})
@@ -137,7 +137,7 @@ def file_texts(result: FileResult) -> Iterator[str]:
 
 
 def _chart_texts(chart: ChartResult, before: str) -> Iterator[str]:
-    """One entry of `charts`; its rows are JSON already."""
+    """Yield one entry of `charts` in pieces; its rows are JSON already."""
     head = {
         "index": chart.index,
         "steps_type": chart.steps_type,
@@ -164,7 +164,7 @@ def _chart_texts(chart: ChartResult, before: str) -> Iterator[str]:
 
 
 def _cause_object(cause: Cause) -> dict[str, Any]:
-    """One entry of `doublesteps`; ten times quicker than `asdict`, and there are many."""
+    """Return one entry of `doublesteps`, ten times faster than `asdict`, because there are many."""
     return {
         "beat": cause.beat,
         "forced": cause.forced,
@@ -175,7 +175,7 @@ def _cause_object(cause: Cause) -> dict[str, Any]:
 
 
 def _estimate_object(estimate: Estimate) -> dict[str, Any]:
-    """How hard a chart plays, rounded to hundredths of a meter."""
+    """Return how hard a chart plays, rounded to hundredths of a meter."""
     return {
         "meter": round(estimate.meter, 2),
         "low": round(estimate.low, 2),
@@ -188,7 +188,7 @@ def _estimate_object(estimate: Estimate) -> dict[str, Any]:
 
 
 def _score_object(score: ScoreEstimate) -> dict[str, Any]:
-    """How hard a chart is to score on, rounded to thousandths of a level: the steps of tiers are 0.05."""
+    """Return how hard a chart is to score on, rounded to thousandths of a level; tiers are 0.05 levels apart."""
     return {
         "meter": round(score.meter, 3),
         "low": round(score.low, 3),
@@ -198,7 +198,7 @@ def _score_object(score: ScoreEstimate) -> dict[str, Any]:
 
 
 def sync_object(sync: Sync) -> dict[str, Any]:
-    """How the music lies under the beats; `reason` only where that could not be judged."""
+    """Return the sync of music and beats; `reason` is there only if the sync could not be judged."""
     return {
         "bias_ms": sync.bias_ms,
         "confidence": sync.confidence,
@@ -210,12 +210,12 @@ def sync_object(sync: Sync) -> dict[str, Any]:
 
 
 def _members(data: dict[str, Any]) -> str:
-    """The members of an object as JSON, without its braces."""
+    """Return the members of an object as JSON, without its braces."""
     return json.dumps(data, ensure_ascii=False)[1:-1]
 
 
 def finding_object(finding: Finding) -> dict[str, Any]:
-    """One entry of `findings`."""
+    """Return one entry of `findings`."""
     return {
         "rule": finding.rule,
         "name": finding.name,
@@ -231,11 +231,11 @@ def finding_object(finding: Finding) -> dict[str, Any]:
     }
 
 
-# `--format jsonl`: one JSON object a line for each finding.
+# `--format jsonl`: one line with a JSON object for each finding.
 
 
 class JsonLinesReport(Report):
-    """Writes each finding as a line, with its file and its chart in front."""
+    """One line for each finding, with its file and its chart in front."""
 
     def add(self, result: FileResult) -> None:
         """Write the findings of one file."""
@@ -251,7 +251,7 @@ class JsonLinesReport(Report):
 
 # `--format csv`: one line for each chart, tech counts under the names of ITGmania and counted as it does.
 
-# Further columns -> moves whose rows they count; ITGmania knows none of these.
+# Further columns -> moves whose rows they count; ITGmania has none of these columns.
 OWN = {
     "Spins": ("spin",),
     "JumpFootswitches": ("jump-footswitch",),
@@ -265,9 +265,9 @@ _COMMAND = ("::", "##[")  # at the start of a line, for the log of a CI job
 
 
 class CsvReport(Report):
-    """Writes a header and one line a chart; files that could not be read go to the errors.
+    """A header and one line for each chart; files that could not be read go to standard error.
 
-    Texts of other people that a spreadsheet would take for a formula begin with an apostrophe; numbers stay.
+    Untrusted texts that a spreadsheet would read as a formula begin with an apostrophe; numbers are unchanged.
     """
 
     def __init__(self, output: Output) -> None:
@@ -275,7 +275,7 @@ class CsvReport(Report):
         self._names = list(_line("", "", "", None))
 
     def begin(self) -> None:
-        """The header needs no chart."""
+        """Write the header."""
         self._stream.write(",".join(self._names) + "\n")
 
     def add(self, result: FileResult) -> None:
@@ -288,11 +288,11 @@ class CsvReport(Report):
 
 
 def _csv_line(cells: Iterable[Any]) -> str:
-    """One line of the file."""
+    """Return one line of the file."""
     line = io.StringIO()
     csv.writer(line, lineterminator="\n").writerow([as_text(cell) if isinstance(cell, str) else cell for cell in cells])
     text = line.getvalue()
-    if text.startswith(_COMMAND):  # the first cell, which nothing has made stand in quotes
+    if text.startswith(_COMMAND):  # the first cell, which is not in quotes yet
         first, comma, rest = text.partition(",")
         text = f'"{first}"{comma}{rest}'
     return text
@@ -329,7 +329,7 @@ def _line(path: str, title: str, artist: str, chart: ChartResult | None) -> Mapp
 
 
 def _estimated(chart: ChartResult | None) -> Mapping[str, Any]:
-    """How hard it plays; empty where the pad has no model of meters."""
+    """Return the columns of the meter estimate; empty if the pad has no model of meters."""
     estimate = chart.estimate if chart else None
     return {
         "plays_like": round(estimate.meter, 2) if estimate else "",
@@ -341,7 +341,7 @@ def _estimated(chart: ChartResult | None) -> Mapping[str, Any]:
 
 
 def _scored(chart: ChartResult | None) -> Mapping[str, Any]:
-    """The score estimate; empty if nobody has rated charts of the pad."""
+    """Return the columns of the score estimate; empty if nobody has rated charts of the pad."""
     estimate = chart.score if chart else None
     return {
         "scores_like": round(estimate.meter, 3) if estimate else "",

@@ -1,4 +1,4 @@
-"""Where in a song: measure, beat and time as players read them."""
+"""Places in a song as text: measure, beat and time as players read them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _MOST_MEASURES = 6  # that a line lists
 
 
 def moment(finding: Finding) -> str:
-    """ " measure 4 beat 16 0:07.512", or as much of it as is known."""
+    """Return " measure 4 beat 16 0:07.512", or as much of it as is known."""
     parts = []
     if finding.measure is not None:
         parts.append(f"measure {finding.measure}")
@@ -33,7 +33,7 @@ def measures_text(findings: Sequence[Finding]) -> str:
 
 
 def clock(second: float, *, milliseconds: bool = True) -> str:
-    """Seconds as players read them: "1:02.500", negative before the music starts; without milliseconds "1:02"."""
+    """Return seconds as "1:02.500", or "1:02" without milliseconds; negative before the music starts."""
     count = round(abs(second) * 1000)
     minutes, rest = divmod(count, 60_000)
     text = f"{'-' if second < 0 and count else ''}{minutes}:{rest // 1000:02}"

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 
-_NOTHING = 1e-6  # of any unit: shown as 0
+_NOTHING = 1e-6  # smaller values, in any unit, are shown as 0
 _DISTANCES = ("minimum", "maximum", "mean", "deviation")
 
 
 def print_report(report: MotionReport) -> None:
-    """The figures as a table on standard output."""
+    """Print the figures as a table on standard output."""
     from rich.console import Console
     from rich.table import Table
 
@@ -54,7 +54,7 @@ def _distances(report: MotionReport) -> Table:
 
 
 def as_json(report: MotionReport) -> dict[str, Any]:
-    """The report as plain data; a figure that could not be measured is null."""
+    """Return the report as plain data; a figure that could not be measured is null."""
     figures = [
         {
             "name": f.name,
@@ -86,7 +86,7 @@ INK, GRID, LINE, INPUT = "#222222", "#dddddd", "#3060c0", "#999999"
 
 
 def write_plot(path: Path, report: MotionReport) -> None:
-    """Write the report's curves as .svg or .png. Raises UsageError for another name, FileError if it cannot."""
+    """Write the report's curves as .svg or .png. Raises UsageError for another suffix, FileError if writing fails."""
     if path.suffix.lower() == ".svg":
         write_atomic(path, _svg(report).encode())
     elif path.suffix.lower() == ".png":
@@ -96,7 +96,7 @@ def write_plot(path: Path, report: MotionReport) -> None:
 
 
 class _Panel(NamedTuple):
-    """One curve's place. lines : (n, 2) pixels each, an input's before its output's; ends : t0, t1, low, high"""
+    """A diagram of one figure. lines : (n, 2) pixels each, the input before the output; ends : t0, t1, low, high"""
 
     title: str
     top: float
@@ -105,7 +105,7 @@ class _Panel(NamedTuple):
 
     @property
     def dots(self) -> bool:
-        """Whether the curve has single points."""
+        """Whether the curve is drawn as single points."""
         return "contact" in self.title
 
     @property

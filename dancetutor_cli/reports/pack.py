@@ -1,4 +1,4 @@
-"""A pack in facts and in a few lines of text: its charts, each once, what is missing and what stands out."""
+"""A pack as data and as a few lines of text: its charts, each once, what is missing, and what stands out."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from dancetutor_cli.reports.moments import measures_text
 from dancetutor_cli.reports.terminal import cut, safe, safe_path
 from dancetutor_cli.run.errors import plural
 
-# What a pack's charts are sorted by: name -> the moves that it is.
+# The techniques that are counted in a pack's charts: name -> moves.
 TECHNIQUES = {
     "crossovers": ("crossover-half", "crossover-full"),
     "footswitches": ("footswitch", "footswitch-up", "footswitch-down", "sideswitch-left", "sideswitch-right"),
@@ -25,15 +25,15 @@ TECHNIQUES = {
     "spins": ("spin",),
     "hand presses": ("hand",),
 }
-_SHORT = {"crossovers": "XO", "footswitches": "FS", "doublesteps": "DS"}  # as players write them
+_SHORT = {"crossovers": "XO", "footswitches": "FS", "doublesteps": "DS"}  # players' abbreviations
 _ORDER = ("Beginner", "Easy", "Medium", "Hard", "Challenge")
 _MUSIC, _PAIR = "DT107", "DT109"
-_MOST_HAVE = 0.8  # a difficulty that so many of the songs have is missed in the others
+_MOST_HAVE = 0.8  # share of the songs with a difficulty, from which it counts as missing in the others
 _FEWEST_SONGS = 5
-_FEW = 2.0  # meters between label and estimate, from which on a chart stands out
-_LEAST_ROWS = 8  # with a technique that a chart stands out for
-_NAMES = 3  # that a line lists
-_TIMES = 4.0  # how many times as much of a technique as the pack's charts of its meter have
+_FEW = 2.0  # meters between label and estimate, from which a chart stands out
+_LEAST_ROWS = 8  # rows with a technique that a chart needs to stand out
+_NAMES = 3  # limit of the names in a line
+_TIMES = 4.0  # a chart stands out with this many times the technique of the pack's charts near its meter
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,17 +46,17 @@ class PackChart:
 
     @property
     def name(self) -> str:
-        """For people: "Max 300, Hard 9"."""
+        """The chart's name for people: "Max 300, Hard 9"."""
         return f"{self.song}, {safe(self.result.difficulty)} {self.result.meter}"
 
     def rows_of(self, technique: str) -> int:
-        """Rows with a technique."""
+        """Return the number of rows with a technique."""
         return sum(self.result.counts.get(move, 0) for move in TECHNIQUES[technique])
 
 
 @dataclass(frozen=True, slots=True)
 class FileNeed:
-    """The parts of a file that need action. what : a rule of a chart each, errors first"""
+    """The findings of a file that need action. what : a line for each rule in each chart, errors first"""
 
     file: str
     errors: int
@@ -83,7 +83,7 @@ def _need(label: str, found: Sequence[Finding]) -> str:
 
 
 class Pack:
-    """Takes results as they come. A song that lies there as .sm and .ssc counts once: as .ssc, which games prefer."""
+    """The results of a pack. A song with a .sm and a .ssc file counts once: as .ssc, which the games prefer."""
 
     def __init__(self) -> None:
         self._results: dict[str, FileResult] = {}
@@ -92,7 +92,7 @@ class Pack:
         self._needs: dict[str, FileNeed] = {}
 
     def add(self, result: FileResult) -> None:
-        """Take note of a file. What is heavy of it (rows, excerpts) is not kept."""
+        """Add a file. Its large parts (rows, excerpts) are not kept."""
         path = Path(result.path)
         if path.is_dir() and result.error is None:  # findings about the pack itself
             return
@@ -113,30 +113,30 @@ class Pack:
             self._results[key] = replace(result, findings=(), charts=charts)
 
     def needs(self) -> Iterator[FileNeed]:
-        """The files with errors and warnings, the worst first, with paths below the pack's folder."""
+        """Yield the files with errors and warnings, the worst first, with paths below the pack's folder."""
         found = [one for one in self._needs.values() if one.errors or one.warnings]
         for one in sorted(found, key=lambda need: (-need.errors, -need.warnings, need.file)):
             yield replace(one, file=safe_path(os.path.relpath(os.path.abspath(one.file), self.folder)))  # noqa: PTH100
 
     @property
     def songs(self) -> int:
-        """How many there are."""
+        """The number of songs."""
         return len(self._results)
 
     @property
     def folder(self) -> str:
-        """The folder that all of it is in."""
+        """The folder that contains all songs."""
         paths = [os.path.dirname(os.path.abspath(one.path)) for one in self._results.values()]  # noqa: PTH100, PTH120
         return os.path.commonpath(paths) if paths else "."
 
     def _unread(self) -> Iterator[str]:
-        """Files that could not be read, by their paths below the folder of everything that was looked at."""
+        """Return the files that could not be read, by their paths below the folder that contains all files."""
         paths = [os.path.abspath(path) for path in (*self._unreadable, self.folder)]  # noqa: PTH100
         above = os.path.commonpath([os.path.dirname(path) for path in paths[:-1]] + paths[-1:])  # noqa: PTH120
         return (_below(path, above) for path in paths[:-1])
 
     def charts(self) -> list[PackChart]:
-        """Every chart that is danced, by song."""
+        """Return every playable chart with steps, song by song."""
         below, out = self.folder, []
         for result in self._results.values():
             name = _below(result.path, below)
@@ -145,7 +145,7 @@ class Pack:
         return out
 
     def missing(self) -> Iterator[str]:
-        """What the pack lacks and what is wrong in it, a line each."""
+        """Yield a line for each thing that is missing or wrong in the pack."""
         yield from self._missing_difficulties()
         for kind, words in (("music", "missing: music of"), ("differ", "wrong: .sm and .ssc differ:")):
             songs = list(dict.fromkeys(self.problems[kind]))
@@ -169,7 +169,7 @@ class Pack:
                     yield f"missing: {safe(steps_type)} {name} of {_some(titles)}"
 
     def _sync(self) -> Iterator[str]:
-        """What is wrong with the Pack.ini of each pack that files of these lie in."""
+        """Yield a line for each problem of a Pack.ini, or one if no pack of these files has a Pack.ini."""
         folders = {pack_folder(Path(result.path).absolute()) for result in self._results.values()}
         beside = {Path(result.path).absolute().parent for result in self._results.values()}
         found = [ini for folder in sorted(folders | beside) if (ini := read_pack_ini(folder)) is not None]
@@ -180,7 +180,7 @@ class Pack:
             yield "missing: Pack.ini (its SyncOffset says whether the songs use null or ITG sync)"
 
     def outliers(self) -> Iterator[str]:
-        """Charts that stand out, a line each, the farthest first."""
+        """Yield a line for each chart that stands out, the farthest first."""
         charts = self.charts()
         off = [
             (abs(estimate.meter - one.result.meter), one, estimate.meter, estimate.scale_name)
@@ -195,12 +195,12 @@ class Pack:
 
 
 def _below(path: str, folder: str) -> str:
-    """A file's path below a folder, for people; links are not followed."""
+    """Return a file's path below a folder, for people; links are not followed."""
     return safe_path(os.path.relpath(os.path.abspath(path), folder))  # noqa: PTH100
 
 
 def _much_of(charts: list[PackChart]) -> Iterator[tuple[float, str]]:
-    """Charts with far more of a technique than others of about their meter: how many times, and a line."""
+    """Yield a ratio and a line for each chart with far more of a technique than others near its meter."""
     for technique in TECHNIQUES:
         shares: dict[tuple[str, int], list[float]] = defaultdict(list)
         for one in charts:
@@ -218,18 +218,18 @@ def _much_of(charts: list[PackChart]) -> Iterator[tuple[float, str]]:
 
 
 def _some(names: list[str], what: str = "songs") -> str:
-    """The names; of many how many there are, and the first ones."""
+    """Return the names; of many names, their number and the first ones."""
     return f"{len(names)} {what}: {', '.join(names[:_NAMES])}, ..." if len(names) > _NAMES else ", ".join(names)
 
 
 # A pack in a few lines of text, at the end of a run over many songs.
 
-LINES = 11  # at most: what one pastes into a chat
+LINES = 11  # limit of lines, few enough to paste into a chat
 _TYPES, _OUTLIERS, _MISSING = 2, 3, 3
 
 
 def pack_lines(pack: Pack, width: int) -> list[str]:
-    """The page: at most `LINES` lines, none wider than `width`."""
+    """Return at most `LINES` lines about a pack, none wider than `width`."""
     charts = pack.charts()
     if not charts:
         return []
@@ -245,7 +245,7 @@ def pack_lines(pack: Pack, width: int) -> list[str]:
 
 
 def _meters_line(steps_type: str, charts: list[PackChart]) -> str:
-    """How many charts, and the middle half of their meters and of what they play like, on the commonest scale."""
+    """Return the number of charts, the middle half of their meters, and that of estimates on the commonest scale."""
     estimates = [one.result.estimate for one in charts if one.result.estimate]
     scales = Counter(one.scale_name for one in estimates).most_common(1)
     like = ""
@@ -258,14 +258,14 @@ def _meters_line(steps_type: str, charts: list[PackChart]) -> str:
 
 
 def _middle(meters: list[int]) -> str:
-    """The quartiles, "4 to 10", or one number where they are the same."""
+    """Return the quartiles, "4 to 10", or one number if they are equal."""
     ordered = sorted(meters)
     low, high = ordered[len(ordered) // 4], ordered[-1 - len(ordered) // 4]
     return f"{low} to {high}" if low != high else f"{low}"
 
 
 def _by_technique(charts: list[PackChart]) -> str:
-    """How many charts have each technique."""
+    """Return a line with the number of charts that have each technique."""
     counts = {technique: sum(one.rows_of(technique) > 0 for one in charts) for technique in TECHNIQUES}
     first, *others = [(_SHORT.get(name, name), count) for name, count in counts.items() if count] or [("steps", 0)]
     return f"  {first[0]} in {plural(first[1], 'chart')}" + "".join(f", {name} {count}" for name, count in others)

@@ -1,4 +1,4 @@
-"""A pack as one HTML file with its pictures inside as SVG: no script, no network; what people wrote is text."""
+"""A pack as one HTML file with inline SVG pictures: no script, no network; untrusted texts are escaped."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from dancetutor_cli.reports.terminal import safe, safe_path
 from dancetutor_cli.run import html
 from dancetutor_cli.run.errors import plural
 
-# Pictures of a pack as inline SVG: bars of meters, dots over meters, shares of facing. Hover says which chart.
+# Pictures of a pack as inline SVG: bars of meters, dots over meters, shares of facing. Tooltips name the chart.
 
 WIDTH, HEIGHT = 560, 240
 _LEFT, _BOTTOM, _TOP, _RIGHT = 44, 34, 14, 12
@@ -27,7 +27,7 @@ FACES = ("#2f6fb5", "#7fb2e5", "#e8c15a", "#e0863a", "#c0392b")  # from facing t
 
 @dataclass(frozen=True, slots=True)
 class Dot:
-    """A chart: where it stands, which difficulty, what hovering says."""
+    """A chart as a dot. x, y : values on the axes; name : its tooltip"""
 
     x: float
     y: float
@@ -36,7 +36,7 @@ class Dot:
 
 
 def _svg(title: str, y_name: str, *parts: str) -> str:
-    """A picture with its axes and their names."""
+    """Return a picture with its axes and their names."""
     middle = f"{HEIGHT / 2:.0f}"
     axes = (
         _label(f"{(WIDTH + _LEFT) / 2:.0f}", HEIGHT - 4, "meter"),
@@ -55,7 +55,7 @@ def _label(x: str, y: int, text: str) -> str:
 
 
 def _bar(x: float, top: float, bottom: float, width: float, about: tuple[str, str]) -> str:
-    """A part of a bar. about : its colour, what hovering says"""
+    """Return a part of a bar. about : its colour and its tooltip"""
     colour, words = about
     size = {"y": f"{top:.1f}", "width": f"{width:.1f}", "height": f"{bottom - top:.1f}"}
     return tag("rect", tag("title", words), x=f"{x:.1f}", **size, fill=colour)
@@ -70,7 +70,7 @@ def _y(value: float, most: float) -> float:
 
 
 def _grid(most: float) -> list[str]:
-    """Lines and numbers of the upward axis, about four."""
+    """Return the lines and numbers of the upward axis, about four."""
     step = _round_step(most / 4)
     out = []
     for n in range(1, int(most / step) + 1):
@@ -81,7 +81,7 @@ def _grid(most: float) -> list[str]:
 
 
 def _round_step(rough: float) -> float:
-    """1, 2 or 5 times a power of ten, not below `rough`."""
+    """Return 1, 2 or 5 times a power of ten, not below `rough`."""
     step = 0.01
     while step < rough:
         for times in (2.0, 2.5, 2.0):
@@ -92,7 +92,7 @@ def _round_step(rough: float) -> float:
 
 
 def bars(counts: Mapping[int, Mapping[str, int]], plays: Mapping[int, int]) -> str:
-    """Charts by meter, parted by difficulty; a line for how many play like that meter."""
+    """Return the bars of charts by meter and difficulty; a line shows how many charts play like each meter."""
     meters = range(min([*counts, *plays]), max([*counts, *plays]) + 1)
     most = max([sum(of.values()) for of in counts.values()] + list(plays.values()))
     out = _grid(most)
@@ -112,7 +112,7 @@ def bars(counts: Mapping[int, Mapping[str, int]], plays: Mapping[int, int]) -> s
 
 
 def dots(found: Sequence[Dot], title: str, y_name: str, *, diagonal: bool = False) -> str:
-    """Charts over their meters; several of one meter stand side by side."""
+    """Return the dots of charts over their meters; dots of the same meter are side by side."""
     last = max([one.x for one in found] + [1.0]) + 1
     most = max([one.y for one in found] + [last if diagonal else 0.0, 0.1]) * 1.05
     out = _grid(most)
@@ -133,7 +133,7 @@ def dots(found: Sequence[Dot], title: str, y_name: str, *, diagonal: bool = Fals
 
 
 def facing(shares: Mapping[int, Sequence[int]]) -> str:
-    """By meter, how many of the rows face where: the screen at the bottom, back to it at the top."""
+    """Return the share of rows for each facing, by meter: to the screen at the bottom, back to it at the top."""
     meters = sorted(shares)
     out = _grid(100)
     wide = (WIDTH - _LEFT - _RIGHT) / max(len(meters), 1)
@@ -169,11 +169,11 @@ td{white-space:nowrap}td.t,th.t{text-align:left;white-space:normal;overflow-wrap
 ul{margin:.3rem 0}li{overflow-wrap:anywhere}
 """
 _MINUTE = 60.0
-_OFF = 2.0  # meters from label to estimate that a cell is marked for
+_OFF = 2.0  # meters between label and estimate from which a cell is marked
 
 
 def html_page(pack: Pack, changes: Sequence[str] = ()) -> str:
-    """The page. changes : lines of what is new against another version of the pack"""
+    """Return the page. changes : lines about the changes since another version of the pack"""
     charts = pack.charts()
     name = safe_path(pack.folder.rsplit("/", 1)[-1])
     counts = f"{plural(pack.songs, 'song')}, {plural(len(charts), 'chart')}"
@@ -193,7 +193,7 @@ def html_page(pack: Pack, changes: Sequence[str] = ()) -> str:
 
 
 def _figures(charts: Sequence[PackChart]) -> Iterable[str]:
-    """The pictures of one steps type."""
+    """Yield the pictures of one steps type."""
     labels: dict[int, Counter[str]] = defaultdict(Counter)
     for one in charts:
         named = one.result.difficulty if one.result.difficulty in COLOURS else "Edit"
@@ -236,7 +236,7 @@ def _key(colours: dict[str, str]) -> str:
 
 
 def _techniques(charts: Sequence[PackChart]) -> str:
-    """Charts and rows with each technique, by bands of three meters."""
+    """Return a table of charts and rows with each technique, by bands of three meters."""
     bands = sorted({(max(one.result.meter, 1) - 1) // 3 for one in charts})
     head = "".join(f"<th>{3 * band + 1} to {3 * band + 3}</th>" for band in bands)
     rows = []
@@ -256,7 +256,7 @@ def _list(title: str, lines: Iterable[str]) -> str:
 
 
 def _needs(pack: Pack) -> str:
-    """Files with errors and warnings, the worst first."""
+    """Return a table of files with errors and warnings, the worst first."""
     rows = [
         f'<tr><td class="t">{escape(one.file)}</td><td{" class=off" if one.errors else ""}>{one.errors or ""}</td>'
         f'<td>{one.warnings or ""}</td><td class="t">{"<br>".join(map(escape, one.what))}</td></tr>'

@@ -19,7 +19,7 @@ _UNITS = {
 
 
 def explain(rule: type[Rule]) -> str:
-    """What a rule finds, how its bad and its better pattern look, and how it is set."""
+    """Return the page of a rule: what it finds, a bad and a better pattern, and its options."""
     settings = dict(default_rules()[rule.code])
     del settings["severity"]
     lines = [
@@ -41,7 +41,7 @@ def explain(rule: type[Rule]) -> str:
 
 
 def explain_all() -> str:
-    """One line for each rule: code, name, severity, first sentence."""
+    """Return one line for each rule: code, name, severity, first line of its documentation."""
     lines: list[str] = []
     family = ""
     for code, rule in all_rules().items():
@@ -55,7 +55,8 @@ def explain_all() -> str:
     return "\n".join(lines) + "\n"
 
 
-# A docstring for readers: its tests read options such as "Bad (max_seconds = 0.6):" and the letters beside rows.
+# The docstring of a rule, prepared for readers. Tests of the rule read its options, as in "Bad (max_seconds = 0.6):",
+# and the letters beside its rows.
 
 _HEAD = re.compile(r"^(Bad|Better) \((\w+ = .*?)\):", re.MULTILINE)
 _OPTION = re.compile(r"(\w+) = (\[.*?\]|[^,]*)")
@@ -63,13 +64,13 @@ _BOTH = re.compile(r"^(Bad\b.*?)[ \n](Better: )", re.MULTILINE)
 _TAG = re.compile(r"(?<!`)#[A-Z]+:(?:[^;`\n]*;|\S+)")
 _PATTERN = re.compile(r"(?:^    \S.*\n?)+", re.MULTILINE)
 _ROWS = re.compile(r"^    [0-9MLFKx]{3,10}(?:  (\S+))?$", re.MULTILINE)
-_WIDTH = 115  # of the lines of docstrings
+_WIDTH = 115  # characters of a docstring's line
 _SPACING = " (the rows are 4ths at 120 BPM, 0.5 s apart)"
 _LETTERS = "Letters: L R feet, l r toes of a bracket, < > left and right hand, ? no free limb."
 
 
 def documentation(rule: type[Rule]) -> str:
-    """The docstring in sentences: options of the patterns, tags as code, letters other than L and R explained."""
+    """Return a rule's docstring: its options in words, tags as code, and letters other than L and R explained."""
     text = inspect.cleandoc(rule.__doc__ or "")
     heads = [match[2] for match in _HEAD.finditer(text)]
     text = _HEAD.sub(lambda match: _head(rule.code, match, heads), text)
@@ -80,7 +81,10 @@ def documentation(rule: type[Rule]) -> str:
 
 
 def _head(code: str, match: re.Match[str], heads: list[str]) -> str:
-    """ "Bad, if max_seconds is set to 0.6 s:" of "Bad (max_seconds = 0.6):"; not twice of both patterns."""
+    """Return "Bad, if max_seconds is set to 0.6 s:" for "Bad (max_seconds = 0.6):".
+
+    If both patterns have the same options, the better one does not repeat them.
+    """
     if match[1] == "Better" and heads[0] == match[2]:
         return "Better:"
     *said, last = (f"{name} is set to {_with_unit(code, name, value)}" for name, value in _OPTION.findall(match[2]))
@@ -90,7 +94,7 @@ def _head(code: str, match: re.Match[str], heads: list[str]) -> str:
 
 
 def _value(code: str, name: str, value: Any) -> str:
-    """The value of an option as YAML, with its unit: "5 %", "[mine, roll]"."""
+    """Return the value of an option as YAML, with its unit: "5 %", "[mine, roll]"."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, list):

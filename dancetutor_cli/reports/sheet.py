@@ -23,7 +23,7 @@ from dancetutor_cli.run import html
 from dancetutor_cli.run.languages import ENGLISH
 
 _LEFT = 12.0
-_FACTS, _FACT = 66.0, 14.0  # the first line of facts, and how far apart they are
+_FACTS, _FACT = 66.0, 14.0  # y of the first line of facts, and the spacing of these lines
 _GAP = 22.0
 _LIMBS = ("left-foot", "right-foot", "left-hand", "right-hand", "none")  # labels of a language
 _LONG_LIST = 24  # more findings than these are listed in two columns
@@ -31,7 +31,7 @@ _FONT = "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 
 
 def make_sheet(subject: ChartSubject, findings: Sequence[Finding], language: str = ENGLISH) -> Sheet:
-    """A chart ready to be drawn; one without a pad has notes without feet. language : a name of configs/languages"""
+    """Return a chart ready to be drawn; without a pad, it has no feet. language : a name in configs/languages"""
     style, chart, limbs = sheet_style(), subject.chart, {}
     if subject.play is not None:
         play = subject.play
@@ -46,7 +46,7 @@ def make_sheet(subject: ChartSubject, findings: Sequence[Finding], language: str
 
 
 def svg_sheet(sheet: Sheet, facts: Sequence[str]) -> str:
-    """The sheet as one picture. `facts` : lines about the chart, printed under its name."""
+    """Return the sheet as one picture. `facts` : lines about the chart, printed under its name."""
     style, layout = sheet.style, sheet.layout
     y = _heading_height(sheet, facts)
     parts = [_heading(sheet, facts)]
@@ -57,7 +57,7 @@ def svg_sheet(sheet: Sheet, facts: Sequence[str]) -> str:
 
 
 def html_page(sheets: Sequence[tuple[Sheet, Sequence[str]]]) -> str:
-    """All sheets as one self-contained page: each system is a picture that is not cut when printing."""
+    """Return all sheets as one self-contained page: each system is a picture that is not cut when printing."""
     style = sheets[0][0].style
     song = sheets[0][0].subject.song
     name = safe(song.title) or song.path.name
@@ -79,7 +79,7 @@ def _heading_height(sheet: Sheet, facts: Sequence[str]) -> float:
 
 
 def _heading(sheet: Sheet, facts: Sequence[str]) -> str:
-    """Title, facts, legend and density strip."""
+    """Return the title, the facts, the legend and the density strip."""
     song, chart = sheet.subject.song, sheet.subject.chart
     by = " · ".join(part for part in (song.artist, chart.label, chart.description) if part.strip())
     parts = [text(song.title or song.path.name, _LEFT, 30, "title"), text(by, _LEFT, 50, "subtitle")]
@@ -91,7 +91,7 @@ def _heading(sheet: Sheet, facts: Sequence[str]) -> str:
 
 
 def _density(sheet: Sheet) -> str:
-    """A bar for each measure, as high as it has rows, with the findings as ticks above."""
+    """Return a bar for each measure, as high as its number of rows, with the findings as ticks above."""
     style, layout, play = sheet.style, sheet.layout, sheet.subject.play
     width = style.page_width
     ticks = np.unique(sheet.subject.chart.notes.tick) if play is None else play.rows.tick
@@ -113,7 +113,7 @@ def _density(sheet: Sheet) -> str:
 
 
 def _legend(sheet: Sheet) -> str:
-    """Colours of the notes, of those grids the chart has, and the limbs as they stand on the arrows."""
+    """Return the colours of the grids that the chart has, and the limbs as they are marked on the arrows."""
     style, chart = sheet.style, sheet.subject.chart
     used = {style.note_colour(tick) for tick in np.unique(chart.notes.tick).tolist()}
     parts, x = [], 0.0
@@ -145,7 +145,7 @@ def _legend(sheet: Sheet) -> str:
 
 
 def _letters(name: str) -> int:
-    """How wide a text is, in Latin letters: those of Chinese, Japanese and Korean are twice as wide."""
+    """Return the width of a text in Latin letters; Chinese, Japanese and Korean letters are twice as wide."""
     return sum(2 if east_asian_width(letter) in "WF" else 1 for letter in name)
 
 
@@ -213,17 +213,17 @@ def _page_css(style: SheetStyle) -> str:
 
 
 def facts_of(counts: Sequence[tuple[str, int]], numbers: Sequence[str]) -> list[str]:
-    """Lines under the name of a chart: its numbers, and how often each move happens."""
+    """Return the lines under the name of a chart: its numbers, and the number of each move."""
     moves = " · ".join(_move_words(counts))
     return [" · ".join(numbers), moves] if moves else [" · ".join(numbers)]
 
 
-_KIND = re.compile("-(up|down|left|right|half|full)$")  # a part of a name that its count leaves out
+_KIND = re.compile("-(up|down|left|right|half|full)$")  # suffix of a move that its count leaves out
 _SIDES = {"crossover-back": "behind", "crossover-front": "in front"}
 
 
 def _move_words(counts: Sequence[tuple[str, int]]) -> Iterator[str]:
-    """How often each move happens: "6 crossovers (4 behind, 2 in front)", "1 bracket"."""
+    """Yield the number of each move: "6 crossovers (4 behind, 2 in front)", "1 bracket"."""
     sums: dict[str, int] = {}
     for name, count in counts:
         if name not in _SIDES:

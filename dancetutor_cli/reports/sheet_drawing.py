@@ -1,4 +1,4 @@
-"""The notes of a system of measures: grid, holds, arrows with L and R, feet where they cross, findings beside them."""
+"""The drawing of a system of measures: grid, holds, arrows with L and R, crossed feet, and findings beside them."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from dancetutor_cli.run.languages import ENGLISH, Language, load_language
 
 HOLD_OPACITY = 0.55
 _BAND_OPACITY = 0.2
-_FEET_SPACING = 27.0  # diagrams of feet nearer than this would overlap
+_FEET_SPACING = 27.0  # pixels; diagrams of feet that are nearer would overlap
 
 
 @dataclass(frozen=True)
 class Sheet:
     """One chart to be drawn. `limbs` : (tick, column) -> limb and part of every step, `arrows` : angle per column.
 
-    language : of its words, a name of configs/languages
+    language : language of its words, a name in configs/languages
     """
 
     subject: ChartSubject
@@ -40,32 +40,32 @@ class Sheet:
 
     @property
     def words(self) -> Language:
-        """Its words."""
+        """The words of the sheet in its language."""
         return load_language(self.language)
 
     def say(self, label: str, **values: object) -> str:
-        """Words of the sheet with their {places} filled in."""
+        """Return the words of a label with their {places} filled in."""
         return self.words.sheet[label].format_map(values)
 
     def message(self, finding: Finding) -> str:
-        """What a finding says; the linter speaks English, in other languages its rule's meaning stands in its place."""
+        """Return the sentence of a finding in English, or the meaning of its rule in another language."""
         return safe(finding.sentence) if self.language == ENGLISH else self.words.findings[finding.rule]
 
     @property
     def style(self) -> SheetStyle:
-        """Sizes and colours."""
+        """The sizes and colours of the sheet."""
         return self.layout.style
 
 
 def definitions(style: SheetStyle) -> str:
-    """Shapes used again and again: the arrow (pointing up) and the middle panel, one unit high."""
+    """Return the definitions of repeated shapes: the arrow (pointing up), one unit high, and the middle panel."""
     arrow = "M0,-.5 L.48,-.02 L.34,.14 L.13,-.06 L.13,.5 L-.13,.5 L-.13,-.06 L-.34,.14 L-.48,-.02 Z"
     shapes = f'<path id="arrow" d="{arrow}"/><rect id="middle" x="-.4" y="-.4" width=".8" height=".8" rx=".15"/>'
     return tag("defs", shapes)
 
 
 def system(sheet: Sheet, which: int) -> str:
-    """All that stands in one system, as SVG elements."""
+    """Return the contents of one system as SVG elements."""
     measures = sheet.layout.measures_of(which)
     ticks = range(measures.start * TICKS_PER_MEASURE, measures.stop * TICKS_PER_MEASURE)
     parts = [
@@ -81,7 +81,7 @@ def system(sheet: Sheet, which: int) -> str:
 
 
 def _measure(sheet: Sheet, measure: int) -> str:
-    """Shade, lines and number of a measure."""
+    """Return the shade, the lines and the number of a measure."""
     layout, style = sheet.layout, sheet.style
     left, top = layout.left(measure), layout.top(measure)
     width, height = layout.lanes * style.lane, layout.measure_height
@@ -106,7 +106,7 @@ def _line(x1: float, y1: float, x2: float, y2: float, colour: str, width: float)
 
 
 def _holds(sheet: Sheet, ticks: range) -> Iterator[str]:
-    """Bodies of holds and rolls, cut where a column of measures ends."""
+    """Yield the bodies of holds and rolls, cut at the end of each column of measures."""
     layout, style, notes = sheet.layout, sheet.style, sheet.subject.chart.notes
     at = np.flatnonzero((notes.end > ticks.start) & (notes.tick < ticks.stop))
     for n in at.tolist():
@@ -124,7 +124,7 @@ def _holds(sheet: Sheet, ticks: range) -> Iterator[str]:
 
 
 def _notes(sheet: Sheet, ticks: range) -> Iterator[str]:
-    """Arrows and mines, and then the letters: no arrow hides the letter of another one."""
+    """Yield arrows and mines, and then the letters, so that no arrow hides the letter of another."""
     notes, marks = sheet.subject.chart.notes, []
     at = np.flatnonzero((notes.tick >= ticks.start) & (notes.tick < ticks.stop))
     for n in at.tolist():
@@ -160,7 +160,10 @@ def _mine(style: SheetStyle, x: float, y: float) -> str:
 
 
 def mark(style: SheetStyle, x: float, y: float, limb: int, part: int) -> str:
-    """L in a disc, R in a square, hands in a lozenge: told apart without colours. Toes in small letters."""
+    """Return the mark of a limb: L in a disc, R in a square, a hand in a lozenge, a toe with a small letter.
+
+    The shapes can be distinguished without colours.
+    """
     half, colour = style.mark / 2, style.limbs[limb] if limb >= 0 else style.colours["mine"]
     letter = LETTERS[limb] if limb >= 0 else "?"
     letter = letter.lower() if part == Part.TOE else letter
@@ -178,7 +181,7 @@ def mark(style: SheetStyle, x: float, y: float, limb: int, part: int) -> str:
 
 
 def unsure_rows(sheet: Sheet) -> list[tuple[int, int, float]]:
-    """Row, tick and confidence in per cent of every row that is less sure than the style says; none if unknown."""
+    """Return row, tick and confidence in per cent of every row below `SheetStyle.unsure`; none if unknown."""
     play = sheet.subject.play
     if play is None or play.confidence is None:
         return []
@@ -188,7 +191,7 @@ def unsure_rows(sheet: Sheet) -> list[tuple[int, int, float]]:
 
 
 def _unsure_bands(sheet: Sheet, ticks: range) -> Iterator[str]:
-    """A band across each unsure row, behind its notes."""
+    """Yield a band across each unsure row, behind its notes."""
     for _, tick, percent in unsure_rows(sheet):
         if tick in ticks:
             left, width = sheet.layout.left(tick // TICKS_PER_MEASURE), sheet.layout.lanes * sheet.style.lane
@@ -198,7 +201,7 @@ def _unsure_bands(sheet: Sheet, ticks: range) -> Iterator[str]:
 
 
 def _unsure_marks(sheet: Sheet, ticks: range) -> Iterator[str]:
-    """How sure each unsure row is, in per cent, at the corner of its last note: over the arrows beside it."""
+    """Yield the confidence of each unsure row, in per cent, at the corner of its last note, above other arrows."""
     play = sheet.subject.play
     for row, tick, percent in unsure_rows(sheet):
         if play is not None and tick in ticks:
@@ -208,14 +211,14 @@ def _unsure_marks(sheet: Sheet, ticks: range) -> Iterator[str]:
 
 
 def badge(style: SheetStyle, x: float, y: float, percent: float) -> str:
-    """A confidence in per cent, white on a plate; x, y : its middle."""
+    """Return a confidence in per cent, white on a plate; x, y : its middle."""
     plate = tag("rect", x=x - 7, y=y - 5, width=14, height=10, rx=3, fill=style.colours["unsure"],
                 stroke=style.colours["paper"], stroke_width=0.8)  # fmt: skip
     return plate + text(f"{percent:.0f}", x, y + 3, "sure", text_anchor="middle")
 
 
 def _feet(sheet: Sheet, ticks: range) -> Iterator[str]:
-    """Small diagrams of the pad where the feet are crossed, as many as there is room for."""
+    """Yield small diagrams of the pad for rows with crossed feet, as many as there is room for."""
     play, pad = sheet.subject.play, sheet.subject.pad
     if play is None or pad is None:
         return
@@ -234,7 +237,7 @@ def _feet(sheet: Sheet, ticks: range) -> Iterator[str]:
 
 
 def _pose(sheet: Sheet, x: float, y: float, feet: Sequence[int], facing: float) -> str:
-    """The pad from above with the panels around the feet, and two soles that point where the dancer faces."""
+    """Return the panels around the feet from above, and two soles that point where the dancer faces."""
     pad, style = sheet.subject.pad, sheet.style
     assert pad is not None
     middle = pad.panels[list(feet)].mean(axis=0)
@@ -255,7 +258,7 @@ def _pose(sheet: Sheet, x: float, y: float, feet: Sequence[int], facing: float) 
 
 
 def _findings(sheet: Sheet, ticks: range) -> Iterator[str]:
-    """A line across the row and the codes beside it."""
+    """Yield a line across the row of each finding, and the code of its rule beside it."""
     by_tick: dict[int, list[Finding]] = {}
     for finding in sheet.findings:
         if finding.beat is not None and (tick := round(finding.beat * TICKS_PER_BEAT)) in ticks:

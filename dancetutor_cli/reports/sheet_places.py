@@ -1,4 +1,4 @@
-"""Where measures stand on a chart sheet; its sizes and colours: configs/sheet.yaml, with those of notes and feet."""
+"""The layout of a chart sheet, and its sizes and colours: configs/sheet.yaml, with the colours of notes and feet."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ _Grid = Annotated[int, Bounds(1)]
 class SheetStyle:
     """Sizes in CSS pixels, colours as "#rrggbb".
 
-    unsure : per cent; rows whose feet are less sure are marked
+    unsure : per cent; rows with a lower confidence are marked
     beat : least and greatest height of a beat; limbs : by `feet.limbs.Limb`
-    quantisation : colour of a note by the coarsest grid it stands on (4 for 4ths ...)
+    quantisation : colour of a note by the coarsest grid that it is on (4 for 4ths ...)
     """
 
     page_width: Positive
@@ -49,7 +49,7 @@ class SheetStyle:
     limbs: Annotated[tuple[str, ...], NOT_IN_FILES] = ()
 
     def note_colour(self, tick: int) -> str:
-        """Colour of a note at a tick."""
+        """Return the colour of a note at a tick."""
         finest = max(self.quantisation)
         fits = (q for q in sorted(self.quantisation) if tick % max(TICKS_PER_MEASURE // q, 1) == 0)
         return self.quantisation[next(fits, finest)]
@@ -57,27 +57,27 @@ class SheetStyle:
 
 @cache
 def sheet_style() -> SheetStyle:
-    """The style of the project's configuration; FileError names what is missing or unknown."""
+    """Return the style of the project's configuration. Raises FileError for a missing or unknown key."""
     style = load(config_path("sheet.yaml"), SheetStyle)
     quantisation = convert(read(config_path("highway.yaml")), dict[_Grid, HexColour], ("quantisation",))
     limbs = tuple(hex_colour(rgb) for rgb in limb_colours().by_limb)
     return replace(style, quantisation=quantisation, limbs=limbs)
 
 
-# Where measures stand on a sheet: columns of measures side by side, systems of columns one below the other.
+# The layout of a sheet: columns of measures side by side, systems of columns one below the other.
 
 _COMMON_SHARE = 0.1  # a rhythm is common if at least this share of the distances between rows is as short
-_SHRUNK = 0.9  # a beat may be as much lower than the rhythm needs, so that one more measure fits the page
-_EDGE = 12.0  # beside the outermost columns
-_TOP = 18.0  # above the first measure of a column and below its last, for half an arrow
+_SHRUNK = 0.9  # a beat may shrink to this share of the height it needs, so that one more measure fits the page
+_EDGE = 12.0  # pixels beside the outermost columns
+_TOP = 18.0  # pixels above the first measure of a column and below its last, for half an arrow
 
 
 @dataclass(frozen=True, slots=True)
 class SheetLayout:
-    """Places in CSS pixels: measures in columns, columns in systems, each system a page when printed.
+    """The places of measures in CSS pixels: measures in columns, columns in systems, each system a page when printed.
 
-    beat : height of a beat; columns : side by side in a system
-    heights : for each system, how many measures its columns have
+    beat : height of a beat; columns : number of columns in a system
+    heights : number of measures in a column, for each system
     """
 
     style: SheetStyle
@@ -89,43 +89,43 @@ class SheetLayout:
 
     @property
     def column_width(self) -> float:
-        """Width of a column with its margin and gutter."""
+        """The width of a column with its margin and gutter."""
         return (self.style.page_width - 2 * _EDGE) / self.columns
 
     @property
     def measure_height(self) -> float:
-        """Height of a measure."""
+        """The height of a measure."""
         return self.beat * 4
 
     @property
     def systems(self) -> int:
-        """How many systems the chart needs."""
+        """The number of systems of the chart."""
         return len(self.heights)
 
     def system_height(self, system: int) -> float:
-        """Height of a system."""
+        """Return the height of a system."""
         return self.heights[system] * self.measure_height + 2 * _TOP
 
     def measures_of(self, system: int) -> range:
-        """Measures of a system."""
+        """Return the measures of a system."""
         before = sum(self.heights[:system]) * self.columns
         return range(before, min(before + self.heights[system] * self.columns, self.measures))
 
     def column_of(self, measure: int) -> range:
-        """Measures of the column that a measure stands in."""
+        """Return the measures of the column that holds a measure."""
         system = self._system_of(measure)
         here, height = self.measures_of(system), self.heights[system]
         start = here.start + (measure - here.start) // height * height
         return range(start, min(start + height, here.stop))
 
     def left(self, measure: int) -> float:
-        """x of the first lane of a measure, inside its system."""
+        """Return x of the first lane of a measure, inside its system."""
         system = self._system_of(measure)
         column = (measure - self.measures_of(system).start) // self.heights[system]
         return _EDGE + column * self.column_width + self.style.margin
 
     def top(self, measure: int) -> float:
-        """y of the start of a measure, inside its system."""
+        """Return y of the start of a measure, inside its system."""
         return _TOP + (measure - self.column_of(measure).start) * self.measure_height
 
     def _system_of(self, measure: int) -> int:
@@ -133,17 +133,17 @@ class SheetLayout:
         return bisect_right(starts, measure) - 1
 
     def x(self, tick: int, lane: int) -> float:
-        """Middle of a lane at a tick."""
+        """Return x of the middle of a lane at a tick, inside its system."""
         return self.left(tick // TICKS_PER_MEASURE) + (lane + 0.5) * self.style.lane
 
     def y(self, tick: int) -> float:
-        """Height of a tick."""
+        """Return y of a tick, inside its system."""
         measure, inside = divmod(tick, TICKS_PER_MEASURE)
         return self.top(measure) + inside / TICKS_PER_BEAT * self.beat
 
 
 def lay_out(ticks: NDArray[np.int64], lanes: int, style: SheetStyle, last: int = 0) -> SheetLayout:
-    """A layout for rows at these ticks: a beat as high as the chart's densest common rhythm needs.
+    """Return a layout for rows at these ticks; a beat is as high as the chart's densest common rhythm needs.
 
     last : tick of the last end of a hold
     """
@@ -161,7 +161,7 @@ def lay_out(ticks: NDArray[np.int64], lanes: int, style: SheetStyle, last: int =
 
 
 def _heights(measures: int, columns: int, first: int, tallest: int) -> Iterator[int]:
-    """Measures in the columns of each system; the last one has no more than it needs to fill its columns."""
+    """Yield the measures in a column of each system; the last system has no more than its columns need."""
     most = first
     while measures > most * columns:
         yield most

@@ -8,12 +8,12 @@ from dancetutor_cli.reports.terminal import safe
 
 
 def number(value: float) -> str:
-    """As short as one decimal allows: "3", "2.5"."""
+    """Return a number as text with at most one decimal: "3", "2.5"."""
     return f"{value:.1f}".rstrip("0").rstrip(".") if value != 0 else "0"
 
 
 def tag(name: str, inside: str = "", /, **attributes: object) -> str:
-    """An element. Attributes: underscores stand for hyphens, floats are shortened, None is left out."""
+    """Return an element. Attributes: underscores stand for hyphens, numbers are shortened, None is left out."""
     texts = []
     for key, value in attributes.items():
         if value is None:
@@ -24,10 +24,10 @@ def tag(name: str, inside: str = "", /, **attributes: object) -> str:
 
 
 def text(content: str, x: float, y: float, class_: str, **attributes: object) -> str:
-    """A line of text of other people: made safe and escaped."""
+    """Return a line of untrusted text, made safe and escaped."""
     return tag("text", escape(safe(content)), x=x, y=y, class_=class_, **attributes)
 
 
 def title(content: str) -> str:
-    """What is shown when the pointer rests on an element."""
+    """Return the tooltip of an element."""
     return f"<title>{escape(safe(content))}</title>"

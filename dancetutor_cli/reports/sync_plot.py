@@ -1,4 +1,4 @@
-"""`analyze --sync --plot FILE.svg`: by how much the music's attacks come after the beats, over the song."""
+"""`analyze --sync --plot FILE.svg`: the delay of the music's attacks after the beats, over the song."""
 
 from __future__ import annotations
 
@@ -17,12 +17,15 @@ _WIDTH, _HEIGHT = 900, 420
 _LEFT, _RIGHT, _TOP, _BOTTOM = 64, 16, 56, 48
 _REACH = 40.0  # ms above and below the bias
 _STEP = 10  # ms between lines
-_DARK, _LIGHT = np.array([24, 48, 104]), np.array([255, 255, 255])  # where much and where nothing sounds
+_DARK, _LIGHT = np.array([24, 48, 104]), np.array([255, 255, 255])  # colours of the highest and the lowest values
 _INK, _GREY, _LINE, _BIAS = "#1d2430", "#6b7484", "#c9ced8", "#d9480f"
 
 
 def sync_plot(name: str, found: Judgement) -> str:
-    """The picture as SVG: how well each part of the song fits each bias, dots at each part's best, and the whole's."""
+    """Return the picture as SVG: how well each part of the song fits each bias.
+
+    Dots are at the best bias of each part; a line is at the bias of the song.
+    """
     bias = found.sync.bias_ms or 0.0
     low, high = bias - _REACH, bias + _REACH
     parts = [
@@ -48,7 +51,7 @@ def _x(share: float) -> str:
 
 
 def _heat(found: Judgement, low: float, high: float) -> str:
-    """The profile of each part, its highest value dark, as one picture."""
+    """Return the profiles of all parts as one picture, in which the highest values are dark."""
     wanted = np.linspace(high, low, 161) / 1000
     rows = np.array([np.interp(wanted, found.lags, part, left=0.0, right=0.0) for part in found.profile])
     strength: NDArray[np.float64] = np.clip(rows / np.maximum(rows.max(axis=1, keepdims=True), 1e-9), 0, 1)
@@ -59,7 +62,7 @@ def _heat(found: Judgement, low: float, high: float) -> str:
 
 
 def _grid(found: Judgement, low: float, high: float) -> list[str]:
-    """Lines of milliseconds, those of null and ITG by name, and the time of the song below."""
+    """Return lines of milliseconds, with names for null and ITG, and the time of the song below."""
     out = []
     lines = {float(one): f"{one} ms" for one in range(int(low // _STEP + 1) * _STEP, int(high) + 1, _STEP)}
     lines.update({one: name for one, name in ((NULL, "null"), (ITG, "ITG")) if low < one < high})

@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 @dataclass
 class Tally:
-    """Counts files, charts and findings as results come in.
+    """The counts of files, charts and findings of a run.
 
     fail_on : "error", "warning" or "never"; the least severity that fails the run
-    exit_zero : findings do not fail the run whatever they are; unreadable files still do
-    folders : that gave no file, because none is in them or they cannot be read; they are unreadable, and no files
-    suggested, suggested_rule : findings with an edit; the rule of the first of them
-    page : lines about all files together (a pack, `--statistics`), to stand above the summary
-    quiet : nothing is said at the end
+    exit_zero : whether findings never fail the run; unreadable files still do
+    folders : number of folders without a file that can be read; they count as unreadable, but not as files
+    suggested, suggested_rule : number of findings with an edit; the rule of the first of them
+    page : lines about all files together (a pack, `--statistics`), printed above the summary
+    quiet : whether nothing is printed at the end
     """
 
     fail_on: str = "warning"
@@ -42,7 +42,7 @@ class Tally:
 
     def add(self, result: FileResult) -> None:
         """Count one file."""
-        is_folder = Path(result.path).is_dir()  # one that gave no file, or a pack with findings
+        is_folder = Path(result.path).is_dir()  # a folder without files, or a pack with findings
         self.folders += is_folder and result.error is not None
         self.files += not is_folder
         self.charts += len(result.charts)
@@ -65,12 +65,12 @@ class Tally:
         return int(any(n and RANKS[name] >= RANKS[self.fail_on] for name, n in self.severities.items()))
 
     def statistics(self) -> list[str]:
-        """How often each rule was found, one line each, most frequent first."""
+        """Return a line with the number of findings of each rule, most frequent first."""
         ordered = sorted(self.rules.items(), key=lambda item: (-item[1], item[0]))
         return [f"{count:7} {rule}" for rule, count in ordered]
 
     def suggestions(self) -> str:
-        """What --suggest has found, also when that is nothing."""
+        """Return a line about the edits that --suggest has found, even if there are none."""
         if not self.suggested:
             return "no small edit would remove a finding"
         have = "has" if self.suggested == 1 else "have"
@@ -78,11 +78,11 @@ class Tally:
         return f"{plural(self.suggested, 'finding')} {have} a small edit; `{fix}` writes it, `{fix} --diff` shows it"
 
     def closing_lines(self) -> list[str]:
-        """What stands below all findings: the page and the summary."""
+        """Return the lines below all findings: the page and the summary."""
         return [] if self.quiet else [*self.page, self.summary()]
 
     def summary(self) -> str:
-        """ "2 files, 7 charts: 1 error, 3 warnings, 2 infos"."""
+        """Return "2 files, 7 charts: 1 error, 3 warnings, 2 infos"."""
         found = [plural(self.severities[name], name) for name in reversed(RANKS) if self.severities[name]]
         text = f"{plural(self.files, 'file')}, {plural(self.charts, 'chart')}"
         if found or self.charts or not self.unreadable:

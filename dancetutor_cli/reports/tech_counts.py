@@ -12,7 +12,7 @@ from dancetutor_cli.run.errors import plural
 
 
 def table_lines(found: TechniqueComparison) -> Iterator[str]:
-    """The table: for each technique how often each counts it, how often both do in the same chart, charts alike."""
+    """Yield the table: for each technique the counts of both programs, their common count, and the charts alike."""
     rows = [["technique", "charts", "ours", "theirs", "both", "charts alike"]]
     for name in TEN:
         charts = [one for one in found.charts if name in one.theirs]
@@ -33,7 +33,7 @@ def table_lines(found: TechniqueComparison) -> Iterator[str]:
 
 
 def chart_lines(found: TechniqueComparison) -> Iterator[str]:
-    """Every chart that differs, a technique a line: the measures of ours, or the rows that only one has."""
+    """Yield a line for each technique in which a chart differs: measures of ours, or rows that only one side has."""
     for one in found.charts:
         for name in TEN:
             if name in one.theirs and one.differs(name):

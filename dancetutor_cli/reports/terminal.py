@@ -1,4 +1,4 @@
-"""Text for terminals: made safe, as wide and colourful as they are; diffs, joined warnings, failures, progress."""
+"""Text for terminals: safe characters, width and colours; diffs, joined warnings, tables of failures, progress."""
 
 from __future__ import annotations
 
@@ -17,41 +17,44 @@ if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
 
-# Text of other people's files, made safe to print: no control characters, no escapes, one line.
+# Text from untrusted files, made safe to print: no control characters, no escapes, one line.
 
-# Controls (C0, DEL, C1), line and paragraph separators, and what turns the direction of text round.
+# Controls (C0, DEL, C1), line and paragraph separators, and characters that change the direction of text.
 _UNSAFE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\u200e\u200f\u202a-\u202e\u2066-\u2069\ufeff\ufffe\uffff]+")
 
 
 def safe(text: str) -> str:
-    """`text` on one line, without what could move a cursor, change a colour or hide text."""
+    """Return `text` on one line, without characters that move a cursor, change a colour or hide text."""
     return _UNSAFE.sub(" ", text).encode("utf-8", "replace").decode("utf-8").strip()
 
 
 def safe_path(path: str) -> str:
-    """A path to print: as `safe`, and bytes that are no UTF-8 become "�"."""
+    """Return a path for printing: as by `safe`, and bytes that are not UTF-8 become "�"."""
     try:
         name = os.fsencode(path)
-    except UnicodeEncodeError:  # a name out of a cache that was written where names have more letters
+    except UnicodeEncodeError:  # a name from a cache, written under an encoding with more letters
         name = path.encode("utf-8", "surrogateescape")
     return _UNSAFE.sub("?", name.decode("utf-8", "replace"))
 
 
-# The width and colours of a stream; rich is asked only if the stream may be a terminal.
+# The width and colours of a stream; rich is used only if the stream may be a terminal.
 
 _WITHOUT_TERMINAL = 100  # characters of a line
-_SAY_MORE = ("FORCE_COLOR", "TTY_COMPATIBLE", "COLUMNS")  # variables that rich looks at for any stream
+_SAY_MORE = ("FORCE_COLOR", "TTY_COMPATIBLE", "COLUMNS")  # environment variables that rich obeys for any stream
 
 
 class Terminal(NamedTuple):
-    """What a report is written for. colours : None without any; plain : whether it has no letters but ASCII's"""
+    """The properties of an output stream.
+
+    width : characters of a line; colours : None for no colours; plain : whether it shows only ASCII characters
+    """
 
     width: int = _WITHOUT_TERMINAL
     colours: ColorSystem | None = None
     plain: bool = False
 
     def paint(self, text: str, style: str) -> str:
-        """Text in a style of rich's, such as "bold red", where there are colours."""
+        """Return text in a style of rich, such as "bold red"; unchanged if there are no colours."""
         if self.colours is None or not text:
             return text
         from rich.style import Style
@@ -60,7 +63,7 @@ class Terminal(NamedTuple):
 
 
 def terminal_of(stream: IO[str]) -> Terminal:
-    """What a stream leads to: without colours if it is no terminal or NO_COLOR is set, and then of our width."""
+    """Return the properties of a stream. It has no colours if it is not a terminal, or if NO_COLOR is set."""
     plain = not can_encode(stream, "─")
     if not stream.isatty() and not any(name in os.environ for name in _SAY_MORE):
         return Terminal(plain=plain)
@@ -69,7 +72,7 @@ def terminal_of(stream: IO[str]) -> Terminal:
 
 
 def can_encode(stream: IO[str], text: str) -> bool:
-    """Whether a stream's encoding has these letters."""
+    """Whether a stream's encoding has all characters of a text."""
     try:
         text.encode(getattr(stream, "encoding", None) or "utf-8")
     except UnicodeEncodeError:
@@ -98,24 +101,24 @@ def _colours(console: Console) -> ColorSystem | None:
     return systems.get(console.color_system or "") if not console.legacy_windows else None
 
 
-# A unified diff for people: in colours where reports have them.
+# A unified diff for people, in colours if the terminal has them.
 
 _STYLES = {"+": "green", "-": "red", "@": "cyan"}
 
 
 def coloured(diff: Iterable[str]) -> Iterator[str]:
-    """Its lines, as standard output shows them."""
+    """Yield the lines of a diff, in colours if standard output has them."""
     paint = terminal_of(sys.stdout).paint
     for line in diff:
         style = _STYLES.get(line[:1])
         yield paint(line, style) if style else line
 
 
-# A table of what failed in a run over many charts.
+# The table of failures of a run over many charts.
 
 
 def failures_table(rows: Iterable[tuple[str, str, str]]) -> None:
-    """Print (file, chart, error) to standard error."""
+    """Print rows of (file, chart, error) as a table to standard error."""
     from rich.console import Console
     from rich.table import Table
 
@@ -127,18 +130,18 @@ def failures_table(rows: Iterable[tuple[str, str, str]]) -> None:
     Console(stderr=True, markup=False, highlight=False).print(table)
 
 
-# Warnings of a run over many files: what is the same of several is one line, with a count and the first names.
+# Warnings of a run over many files: a warning that several files share is one line, with a count and the first names.
 
-_NAMED = 4  # files at most
+_NAMED = 4  # limit of the files that a warning names
 _PLACE = re.compile(r"(:\d+)*:\s*")
 _CHART = re.compile(r"[a-z]+-[a-z-]+ \S+ -?\d+: ")  # "dance-single Hard 9: "
 _NUMBER = re.compile(r"\d+")
 
 
 class JoinedWarnings:
-    """Takes warnings as they come, and prints them at the end.
+    """The warnings of a run, collected for its end.
 
-    every : each of them is a line of its own
+    every : whether each warning is a line of its own
     """
 
     def __init__(self, *, every: bool = False) -> None:
@@ -146,14 +149,14 @@ class JoinedWarnings:
         self._kinds: dict[tuple[Path, str] | str, list[tuple[Path, str]]] = {}
 
     def add(self, path: Path, warning: str) -> None:
-        """Take note of what is said of a file, which may name it first; what is said twice is counted."""
+        """Add a warning about a file, which may begin with the file's name; repeated warnings are counted."""
         if not warning.startswith(str(path)):
             warning = f"{path}: {warning}"
         kind = _NUMBER.sub("0", _CHART.sub("", _PLACE.sub("", warning.removeprefix(str(path)), count=1)))
         self._kinds.setdefault((path, warning) if self._every else kind, []).append((path, warning))
 
     def lines(self) -> Iterator[str]:
-        """The first of each kind, and of which files the same is true."""
+        """Yield the first warning of each kind, with the other files that have the same one."""
         for found in self._kinds.values():
             path, warning = found[0]
             others = list(dict.fromkeys(other for other, _ in found if other != path))
@@ -169,21 +172,21 @@ class JoinedWarnings:
             yield f"warning: {safe(warning)}{more}" + (" (-v prints each)" if more and not self._every else "")
 
 
-# How far a film is: a bar with speed and time left on a terminal, a line now and then elsewhere.
+# The progress of a film: a bar with speed and remaining time at a terminal, a line from time to time elsewhere.
 
-EVERY = 30.0  # seconds between lines where there is no terminal
-ENOUGH = 0.03  # share of a film, and at least a second of it, whose drawing says the speed
+EVERY = 30.0  # seconds between lines if there is no terminal
+ENOUGH = 0.03  # share of a film (at least a second of it) that must be drawn before the speed is known
 
 
 class FilmProgress:
-    """Shows the progress of one film on standard error; `quiet` shows nothing. Use as a context manager."""
+    """The progress of one film on standard error; nothing if `quiet`. Use it as a context manager."""
 
     def __init__(self, name: str, quiet: bool = False) -> None:
         self.name, self.quiet = name, quiet
         self.terminal = sys.stderr.isatty() and not quiet
         self.frames = self.fps = self.done = 0
         self.began = self.last_report = 0.0
-        self.early = 0  # frames that were drawn before the clock of the speed began
+        self.early = 0  # frames that were drawn before the speed was measured
         self.bar: Progress | None = None
         self.task: TaskID | None = None
 
@@ -197,7 +200,7 @@ class FilmProgress:
             self.bar.stop()
 
     def begin(self, frames: int, fps: int) -> None:
-        """The film has that many frames."""
+        """Start with the number of frames of the film."""
         self.frames, self.fps = frames, fps
         self.began = self.last_report = time.monotonic()
         if self.terminal:
@@ -219,7 +222,7 @@ class FilmProgress:
         self.task = self.bar.add_task(self.name, total=self.frames, speed="")
 
     def add(self, frames: int) -> None:
-        """That many more frames are to be drawn."""
+        """Add frames that will be drawn."""
         self.frames += frames
         if self.bar is not None and self.task is not None:
             self.bar.update(self.task, total=self.frames)
@@ -233,9 +236,9 @@ class FilmProgress:
             sys.stderr.flush()
 
     def advance(self, frames: int) -> None:
-        """That many more frames are drawn."""
+        """Count more frames as drawn, and show the progress."""
         now = time.monotonic()
-        if not self.done:  # until now workers have started and compiled, which says nothing about the rest
+        if not self.done:  # until now, workers have started and compiled, so their speed is not known
             self.began, self.early = now, frames
         self.done += frames
         speed = self._speed(now)
@@ -250,7 +253,7 @@ class FilmProgress:
             sys.stderr.flush()
 
     def _speed(self, now: float) -> float | None:
-        """Seconds of film per second; None until enough is drawn to say."""
+        """Return the seconds of film per second; None until enough is drawn."""
         drawn = self.done - self.early
         if not self.fps or drawn < max(self.fps, ENOUGH * self.frames) or now <= self.began:
             return None
@@ -263,7 +266,7 @@ _LONGEST_WORD = 20
 
 
 def cut(line: str, width: int) -> str:
-    """As many words of a line as have room in `width` characters, colours aside. Long words, such as paths, are cut."""
+    """Return the words of a line that fit in `width` characters without colours. Long words, as of paths, are cut."""
     plain = len(_COLOUR.sub("", line))
     if plain > width:
         line = line[: width - 1 + len(line) - plain]

@@ -1,4 +1,4 @@
-"""`--format text`: per chart a table and its findings with rows drawn beside them."""
+"""`--format text`: a line for each finding; with `--full`, a table for each chart and the rows around findings."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Paint = Callable[[str, str], str]
 
 
 def draw(rows: Sequence[ExcerptRow], arrows: str, paint: Paint, *, plain: bool) -> Iterator[str]:
-    """A line for each row; `arrows` has a sign per column, `paint(text, style)` colours, `plain` keeps to ASCII."""
+    """Yield a line for each row. arrows : a sign for each column; paint : colours a text; plain : only ASCII"""
     measure = -1
     for row in rows:
         shown = f"measure {int(row.beat // 4):<4}" if row.beat // 4 != measure else ""
@@ -40,7 +40,7 @@ def _columns(row: ExcerptRow, arrows: str) -> Iterator[tuple[str, str, str]]:
 
 
 def _cell(note: str, limb: str, sign: str, paint: Paint) -> str:
-    """Three characters: a blank, the sign, who presses it."""
+    """Return three characters: a blank, the sign, and the limb that presses it."""
     if note == " ":
         return paint(" · ", "dim")
     if note == "|":
@@ -56,7 +56,7 @@ def _cell(note: str, limb: str, sign: str, paint: Paint) -> str:
 
 
 class Column(NamedTuple):
-    """A column of the table. `moves` are those it counts; one that is not `always` shows where there are any."""
+    """A column of the table. moves : the moves that it counts; always : whether it is shown even if all are 0"""
 
     header: str
     width: int
@@ -86,13 +86,13 @@ _ONE = {"rows": "row", "cost units": "cost unit", "spins": "spin", "brackets": "
 
 
 def chart_table(chart: ChartResult, terminal: Terminal, charts: Sequence[ChartResult] = ()) -> str:
-    """The table as text for this terminal, with a final newline.
+    """Return the table as text for a terminal, with a final newline.
 
-    charts : those of its file; all their tables have the same columns, as wide
+    charts : the charts of the file; all their tables have the same columns of the same width
     """
     every = [_column_counts(one) for one in charts or (chart,)]
     shown = tuple(column for column in MOVE_COLUMNS if column.always or any(counts[column] for counts in every))
-    if _width(shown) > terminal.width:  # zeros give way to numbers
+    if _width(shown) > terminal.width:  # columns without numbers are left out
         shown = tuple(column for column in shown if any(counts[column] for counts in every))
     if _width(shown) > terminal.width:
         return _listed(chart, _column_counts(chart), terminal.width)
@@ -105,7 +105,7 @@ def chart_table(chart: ChartResult, terminal: Terminal, charts: Sequence[ChartRe
 
 
 def _width(shown: Sequence[Column]) -> int:
-    """Characters that the columns need, those of rows and cost among them."""
+    """Return the number of characters that the columns need, with those of rows and cost."""
     return sum(column.width + 1 for column in (_ROWS, _COST, *shown)) - 1
 
 
@@ -119,7 +119,7 @@ def _cells(chart: ChartResult, shown: Sequence[Column]) -> list[str]:
 
 
 def _listed(chart: ChartResult, counts: dict[Column, int], width: int) -> str:
-    """The same numbers as lines of words, without zeros, for a terminal that is too narrow for the table."""
+    """Return the numbers of the table as words, without zeros, for a terminal that is too narrow for the table."""
     numbers = [(chart.row_count, "rows"), (chart.cost, "cost units")]
     named = ((count, column.header.replace("\n", " ")) for column, count in counts.items() if count)
     numbers += [(count, "hand presses" if name == "hand press" and count > 1 else name) for count, name in named]
@@ -129,7 +129,7 @@ def _listed(chart: ChartResult, counts: dict[Column, int], width: int) -> str:
 
 @lru_cache(maxsize=64)
 def _header(terminal: Terminal, columns: Sequence[Column], widths: Sequence[int]) -> str:
-    """The names of the columns, each above its numbers' ends, and a line below."""
+    """Return the names of the columns, aligned right above the numbers, and a line below."""
     names = [column.header.split("\n") for column in columns]
     height = max(map(len, names))
     lines = zip(*([""] * (height - len(name)) + name for name in names), strict=True)
@@ -143,16 +143,16 @@ def _header(terminal: Terminal, columns: Sequence[Column], widths: Sequence[int]
     )
 
 
-# `--format text` into files and pipes: a line for each finding and one for all; with `--full` a table for each chart,
-# and the rows of findings.
+# `--format text` into files and pipes: a line for each finding, and a summary. With `--full`, also a table for each
+# chart, and the rows around findings.
 
 STYLES = {"error": "bold red", "warning": "bold yellow", "info": "bold cyan"}
-_MOST_LETTERS = 16  # rows of another play that are written out
-_MOST_FORCED = 12  # doublesteps of a chart whose cause is written out
+_MOST_LETTERS = 16  # limit of the rows of other feet that are written out
+_MOST_FORCED = 12  # limit of the doublesteps of a chart whose cause is written out
 
 
 class LineReport(Report):
-    """Writes findings, a line each; files that could not be read go to the errors."""
+    """One line for each finding; files that could not be read go to standard error."""
 
     ENCODING = None
 
@@ -172,7 +172,7 @@ class LineReport(Report):
         self._file(result)
 
     def end(self, tally: Tally) -> None:
-        """Write the last line: what was found in all."""
+        """Write the closing lines; the last one is the summary."""
         for line in tally.closing_lines():
             self._line(line)
 
@@ -193,14 +193,14 @@ class LineReport(Report):
 
 
 class SummaryReport(LineReport):
-    """Only what could not be read, and the last lines."""
+    """Only the files that could not be read, and the closing lines."""
 
     def _file(self, result: FileResult) -> None:
-        """Nothing is said of it."""
+        """Write nothing about a file that could be read."""
 
 
 class TextReport(LineReport):
-    """The same with a table for each chart and the rows around its findings."""
+    """All findings, with a table for each chart and the rows around its findings."""
 
     def _file(self, result: FileResult) -> None:
         name = " - ".join(safe(text) for text in (result.artist, result.title) if safe(text))
@@ -215,7 +215,7 @@ class TextReport(LineReport):
             self._chart(result, chart)
 
     def end(self, tally: Tally) -> None:
-        """Write the last line, apart from what is above it."""
+        """Write the closing lines, after a blank line if they are more than the summary."""
         if tally.page and not tally.quiet:
             self._line()
         super().end(tally)
@@ -239,7 +239,7 @@ class TextReport(LineReport):
             self._line()
 
     def _alternatives(self, chart: ChartResult) -> None:
-        """The next best feet: what they cost more and why, and their letters against those of the feet above."""
+        """Write the next best feet: their extra cost and its reasons, and their letters instead of the best feet's."""
         if chart.alternatives is None:
             return
         self._line("the next best feet:" if chart.alternatives else "no other feet are possible")
@@ -253,7 +253,7 @@ class TextReport(LineReport):
                 self._line(f"      beat {beats}: ", _cut(run.other), self._paint(" instead of ", "dim"), _cut(run.best))
 
     def _forced(self, chart: ChartResult) -> None:
-        """Doublesteps that are no fault of the feet, each with what forces it."""
+        """Write the forced doublesteps, each with its cause."""
         forced = [cause for cause in chart.causes or () if cause.forced]
         for cause in forced[:_MOST_FORCED]:
             panel = (
@@ -269,7 +269,7 @@ class TextReport(LineReport):
             self._line(f"... and {len(forced) - _MOST_FORCED} more; --format json has all")
 
     def _drawn(self, result: FileResult, chart: ChartResult | None, finding: Finding) -> None:
-        """A finding, the edit that would remove it, and its rows."""
+        """Write a finding, the edit that would remove it, and its rows."""
         self._finding(result, chart, finding)
         if finding.suggestion:
             self._line(f"    better: {safe(finding.suggestion)}")
