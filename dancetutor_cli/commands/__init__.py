@@ -1,15 +1,15 @@
 """The command line: one module per subcommand, imported only when it is called.
 
-analyze                       its options as a record are in analyze_options
+analyze                       the subcommand; its options as a record are in analyze_options
 pack, drawings                `analyze` of packs, `--compare` and `--tech-counts`; `--sheet` and `--plot`
 fix_option, settings          `analyze --fix`; `analyze --show-settings`
 render, render_batch          a film; the films of a folder
-film_options                  the options of `render`, and the request that they make
+film_options                  the options of `render`, and the request made from them
 annotate, animate, retarget, page, doctor, warmup, completion   the other subcommands
 motion_output                 `--report` and `--plot` of `animate` and `retarget`
 shared_options, tab_names     options of several commands; the names that the Tab key completes
 arguments, help_groups        paths, charts and targets on the command line; the groups of `--help`
-first_run                     what is said before work that compiles
+first_run                     messages before work that compiles; the output without a subcommand
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import click
 import dancetutor_cli
 from dancetutor_cli.run.errors import choice
 
-# name -> (module, short help); the short help stands here so that `--help` imports no subcommand.
+# name -> (module, short help); the short help is here so that `--help` imports no subcommand.
 COMMANDS = {
     "analyze": ("analyze", "Find which foot steps each note, and check the chart."),
     "annotate": ("annotate", "Write L/R foot markers into chart files, or remove them."),
@@ -38,7 +38,7 @@ COMMANDS = {
 
 
 def _set_colours(context: click.Context, _: click.Parameter, value: str) -> None:
-    """Have this run, and whatever it starts, write colours or none: by the variables that all of them obey."""
+    """Make this run, and the processes it starts, print colours or none, by environment variables that all obey."""
     if value == "auto" or context.resilient_parsing:
         return
     names = ("NO_COLOR", "FORCE_COLOR")
@@ -54,7 +54,7 @@ def _set_colours(context: click.Context, _: click.Parameter, value: str) -> None
 
 
 def _colour_option() -> click.Option:
-    """--color, which all subcommands have."""
+    """Return the option --color, which all subcommands have."""
     return click.Option(
         ["--color"],
         type=click.Choice(["auto", "always", "never"]),
@@ -68,7 +68,7 @@ def _colour_option() -> click.Option:
 
 
 class _LazyGroup(click.Group):
-    """Imports a subcommand's module when it is called, not before."""
+    """A group that imports the module of a subcommand only when the subcommand is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(COMMANDS)

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 
 def _explain(context: click.Context, _: click.Parameter, value: str | None) -> None:
-    """Print the documentation of a rule and end; needs no PATH."""
+    """Print the documentation of a rule and exit; no PATH is needed."""
     if value is None or context.resilient_parsing:
         return
     from dancetutor_cli.lint.rule import rule_named
@@ -215,13 +215,13 @@ def command(selection: Selection, options: AnalyzeOptions) -> int:
 
 
 def _watch(request: LintRequest, options: AnalyzeOptions) -> int:
-    """Run for all files, then for those that are saved, until Ctrl-C."""
+    """Analyze all files, then each file that is saved, until Ctrl-C."""
     from dancetutor_cli.lint.run import LintRun
     from dancetutor_cli.lint.watch import changes
 
     if any(str(path) == "-" for path in options.paths):
         raise UsageError("--watch needs files or folders, not standard input")
-    run = LintRun(request)  # a new one each time: configurations may have changed
+    run = LintRun(request)  # a new run each time: configurations may have changed
 
     def needs(path: Path) -> Iterable[Path]:
         return run.needs(path)
@@ -229,14 +229,14 @@ def _watch(request: LintRequest, options: AnalyzeOptions) -> int:
     for _, changed in changes(lambda: find_files(options.paths, options.exclude), needs):
         run = LintRun(request)
         if changed:
-            click.clear()  # nothing without a terminal
+            click.clear()  # does nothing without a terminal
             _report_errors(partial(_run, run, [(file, None) for file in changed], options))
             click.echo("waiting for changes; Ctrl-C ends", err=True)
     return 0
 
 
 def _report_errors(work: Callable[[], object]) -> None:
-    """A wrong configuration is reported and waited out: the next save may correct it."""
+    """Do the work, and report an error, such as a wrong configuration, which the next save may correct."""
     try:
         work()
     except DancetutorError as error:
@@ -269,7 +269,7 @@ def _run(run: LintRun, files: list[Source], options: AnalyzeOptions) -> int:
 
 
 def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO[str]) -> int:
-    """Analyze all files and write the report; the exit status."""
+    """Analyze all files and write the report. Returns the exit status."""
     from dancetutor_cli.lint.results import ResultCache, default_folder
     from dancetutor_cli.lint.run import analyze_all
 
@@ -283,7 +283,7 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
     if any(task.settings.sync for task in tasks):
         from dancetutor_cli.run.ffmpeg import executable
 
-        executable()  # without one, nothing is heard: say so before the work
+        executable()  # raises an error before the work if there is no ffmpeg, which reads the music
     preset = next(tasks[0].presets.candidates()).name
     report = open_report(view, Output(output, preset=preset, files=len(tasks)))
     least = "warning" if tally.fail_on == "never" else tally.fail_on
@@ -305,7 +305,7 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
         report.add(result)
     selection = run.request.selection
     none_matches = not tally.charts and not tally.unreadable and bool(tally.unselected or selection.player)
-    tally.quiet |= none_matches  # the error says it all
+    tally.quiet |= none_matches  # the error is enough
     tally.page += pack.lines()
     if options.statistics and options.format_name == "text":
         tally.page += tally.statistics()
@@ -327,7 +327,7 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
 
 
 def _drawn(tasks: list[AnalyzeTask], options: AnalyzeOptions) -> Iterator[str]:
-    """Write --sheet and --plot; a line about each."""
+    """Write --sheet and --plot, and yield a line about each."""
     if options.sheet is not None:
         yield write_sheet(options.sheet, tasks, options.language)
     if options.plot is not None:
@@ -335,7 +335,7 @@ def _drawn(tasks: list[AnalyzeTask], options: AnalyzeOptions) -> Iterator[str]:
 
 
 def _keep(files: list[Source]) -> None:
-    """Keep the charts as they are now, for --compare last."""
+    """Store the charts as they are now, for --compare last."""
     from dancetutor_cli.lint.snapshots import open_store
 
     store = open_store()
@@ -347,7 +347,7 @@ def _keep(files: list[Source]) -> None:
 
 
 def _before_work(tasks: Sequence[AnalyzeTask]) -> None:
-    """Decide whether kernels have to be compiled for these files, and say so."""
+    """Decide whether kernels must be compiled for these files, and print a note if so."""
     solves_often = any(task.suggest or task.alternatives for task in tasks)
 
     def size() -> int:
@@ -357,7 +357,7 @@ def _before_work(tasks: Sequence[AnalyzeTask]) -> None:
 
 
 def _finish(run: LintRun, tally: Tally, options: AnalyzeOptions) -> None:
-    """What is said after the results, to standard error: so that the results stay one document."""
+    """Print the messages after the results, to standard error, so that the results stay one document."""
     message = run.close_baseline()
     for line in tally.statistics() if options.statistics and options.format_name != "text" else ():
         click.echo(line, err=True)

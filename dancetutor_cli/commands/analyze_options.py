@@ -1,4 +1,4 @@
-"""The options of `analyze` as a record, what goes together of them, and how findings are shown."""
+"""The options of `analyze` as a record, with checks of their combinations and the view of findings."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from dancetutor_cli.run.errors import UsageError
 
 @dataclass(frozen=True, slots=True)
 class AnalyzeOptions:
-    """What the options ask for, but for the charts (`chart.selection.Selection`); None where they say nothing.
+    """The options without those of the charts (`chart.selection.Selection`); None for options that are not given.
 
-    full : whether findings are shown in full, else in brief; the others are explained by their help
+    full : whether findings are shown in full, else in brief; for the other options, see their help
     """
 
     paths: tuple[Path, ...]
@@ -53,7 +53,7 @@ class AnalyzeOptions:
     stdin_filename: Path | None
 
     def check(self) -> None:
-        """UsageError for an option without the one that it belongs to."""
+        """Raise UsageError for an option without the option that it needs."""
         if self.language is not None and self.sheet is None:
             raise UsageError("--language belongs to --sheet; add --sheet")
         if self.plot is not None and not self.sync:
@@ -62,7 +62,7 @@ class AnalyzeOptions:
             raise UsageError("--diff and --backup belong to --fix; add --fix RULE or --fix safe")
 
     def view(self, output: IO[str]) -> str:
-        """How findings are shown: a format, or of text all that is known, what a screen holds, or none."""
+        """Return how findings are shown: a format or, for text, also "full", "brief" or "none"."""
         if self.format_name != "text":
             return self.format_name
         if self.full is not None:

@@ -1,4 +1,4 @@
-"""`dancetutor animate`: bake a dancer who plays a chart, and say how good the motion is."""
+"""`dancetutor animate`: bake a dancer who plays a chart, and measure the quality of the motion."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.request import ChartChoice
 
 _FILE = GivenPath()
-AFTER = 2.5  # seconds after the last row that a section may still reach
+AFTER = 2.5  # limit of a section's end, seconds after the last row
 
 
 @dataclass(frozen=True, slots=True)
 class AnimateOptions:
-    """The options besides those of the charts and of the dance."""
+    """The options without those of the charts and of the dance."""
 
     output: Path | None
     report_to: str | None
@@ -145,7 +145,7 @@ def command(file: Path, selection: Selection, dance: DanceOptions, options: Anim
 
 
 def _section(choice: ChartChoice, section: str | None, performance: Performance) -> tuple[float, float] | None:
-    """The section in seconds of the music as it is heard."""
+    """Return the start and the end of a section in seconds of the music as it is heard; None for the whole chart."""
     from dancetutor_cli.dance.request import section_of
 
     if section is None:
@@ -158,14 +158,14 @@ def _section(choice: ChartChoice, section: str | None, performance: Performance)
 
 @dataclass(frozen=True, slots=True)
 class _Places:
-    """Where all that is made goes. report_to : as `report_option` gives it; plot : its diagram; None: nowhere"""
+    """The output files. report_to : as `report_option` gives it; plot : the diagram, or None"""
 
     output: Path
     report_to: str | None
     plot: Path | None
 
     def of(self, player: int) -> _Places:
-        """The same for one of two: NAME-p1.glb, NAME-p2.glb."""
+        """Return the files of one of two players: NAME-p1.glb, NAME-p2.glb."""
 
         def named(path: Path) -> Path:
             return path.with_stem(f"{path.stem}-p{player}")

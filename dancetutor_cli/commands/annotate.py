@@ -1,4 +1,4 @@
-"""`dancetutor annotate`: write L/R foot markers into chart files, or take them out."""
+"""`dancetutor annotate`: write L/R foot markers into chart files, or remove them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from dancetutor_cli.run.files import check_folder
 if TYPE_CHECKING:
     from dancetutor_cli.markers.annotate import AnnotateOutcome, AnnotateRequest, Item
 
-_MANY = 24  # songs from which on starting worker processes pays
+_MANY = 24  # number of songs from which worker processes save time
 
 
 def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[str, ...] | None:
@@ -47,7 +47,7 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
 
 @dataclass(frozen=True, slots=True)
 class AnnotateOptions:
-    """What the options ask for; the others are called like the fields of `markers.annotate.AnnotateRequest`."""
+    """The options of `annotate`, without those that are fields of `markers.annotate.AnnotateRequest`."""
 
     styles: tuple[str, ...] | None
     check: bool
@@ -139,7 +139,10 @@ def command(paths: tuple[Path, ...], selection: Selection, options: AnnotateOpti
 
 
 def _items(paths: Sequence[Path], output: Path | None, files: Sequence[Path]) -> list[Item]:
-    """The target of each file. With -o DIR, a file goes into DIR, a file of a folder to the same place below DIR."""
+    """Return each file with its target.
+
+    With -o DIR, a file goes into DIR; a file in a folder keeps its relative path below DIR.
+    """
     from dancetutor_cli.markers.annotate import Item
 
     if output is None:
@@ -157,7 +160,7 @@ def _items(paths: Sequence[Path], output: Path | None, files: Sequence[Path]) ->
 
 
 def _songs(items: Sequence[Item]) -> list[tuple[Item, ...]]:
-    """Files of one song together: they share what lies beside them."""
+    """Return the files in groups, one for each song: files of one song share the files beside them."""
     songs: dict[tuple[Path, str], list[Item]] = {}
     for item in items:
         songs.setdefault((item.source.parent, item.source.stem.lower()), []).append(item)
@@ -167,7 +170,7 @@ def _songs(items: Sequence[Item]) -> list[tuple[Item, ...]]:
 def _outcomes(
     songs: Sequence[tuple[Item, ...]], request: AnnotateRequest, jobs: int | None
 ) -> Iterator[AnnotateOutcome]:
-    """What became of each file, in the order of the files as far as they are done."""
+    """Yield the outcome of each file as soon as it is known, in the order of the files."""
     from dancetutor_cli.markers.annotate import annotate_song
 
     wanted = jobs or _fitting_jobs(len(songs))
@@ -192,7 +195,7 @@ def _fitting_jobs(songs: int) -> int:
 
 @dataclass
 class _Talk:
-    """Says what happened, and knows how it ends."""
+    """The messages and the exit status of a run."""
 
     request: AnnotateRequest
     check: bool
@@ -258,7 +261,7 @@ class _Talk:
 
 
 def _leftover_message(outcome: AnnotateOutcome) -> str:
-    """What taking the markers out has left in the file."""
+    """Return the message about markers that --strip has not removed."""
     pinned = dict(outcome.counts).get("pinned", 0)
     if not pinned:
         return ""

@@ -1,4 +1,4 @@
-"""Paths and charts that a command is given, where its results go, and what it says or asks beside them."""
+"""Paths, numbers and charts on the command line, the output of results, and the messages and questions beside it."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 
 class GivenPath(click.Path):
-    """A path of the user's, as a `Path`.
+    """A path from the user, as a `Path`.
 
-    An empty one, as of a variable that is not set in a shell, is refused: it would mean the folder one stands in, and
-    `annotate ""` wrote into every file below it.
+    An empty path, as from a shell variable that is not set, is refused. It would mean the current folder, and
+    `annotate ""` would write into every file below it.
     """
 
     def __init__(self, *, holds_charts: bool = False, **options: Any) -> None:
-        """holds_charts : charts are read there, so that no code is taken from there."""
+        """holds_charts : whether charts are read there, so that no code may be loaded from there."""
         super().__init__(path_type=Path, **options)
         self._holds_charts = holds_charts
 
@@ -46,7 +46,7 @@ class GivenPath(click.Path):
 
 
 class _Range:
-    """What number types have in common: the words for a range, and one line for a value outside it."""
+    """The common part of number types: the words for a range, and a one-line error for a value outside it."""
 
     min: Any  # float or None, of click
     max: Any
@@ -58,7 +58,7 @@ class _Range:
         return f"{self.min:g} or more" if self.max is None else f"{self.min:g} to {self.max:g}"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the number. Raises UsageError if it is none, is not a number (nan) or is outside of the range."""
+        """Return the number. Raises UsageError if the text is not a number, or the number is nan or out of range."""
         try:
             converted = super().convert(value, param, ctx)  # type: ignore[misc]
             if converted == converted:  # nan is within every range
@@ -70,13 +70,13 @@ class _Range:
 
 
 class WholeNumber(_Range, click.IntRange):
-    """A whole number within limits, both included, in the option's unit; a limit that is None does not count."""
+    """A whole number within limits, both included, in the option's unit; None stands for no limit."""
 
     what = "a whole number"
 
 
 class Number(_Range, click.FloatRange):
-    """A number within limits, both included, in the option's unit; a limit that is None does not count."""
+    """A number within limits, both included, in the option's unit; None stands for no limit."""
 
 
 class Second(Number):
@@ -86,27 +86,27 @@ class Second(Number):
 
 
 def within_folders(paths: Sequence[Path], files: Sequence[Path]) -> list[Path]:
-    """The files that may be written of those that a search has found; each link out of its folders is one line."""
+    """Return the files of a search that may be written; print a warning for each link out of the searched folders."""
     kept, links = without_links_out(paths, files)
     where = "outside the folder that is searched; it is not changed; name it to change it"
     warn(f"{link}: is a link to {os.path.realpath(link)}, {where}" for link in links)
     return kept
 
 
-# The charts that `analyze` is given: files, folders that are searched, or one on standard input.
+# The charts on the command line of `analyze`: files, folders that are searched, or one chart on standard input.
 
-Source = tuple[Path, bytes | None]  # a chart file, and what standard input had of it
+Source = tuple[Path, bytes | None]  # a chart file, and its bytes if they come from standard input
 
 
 def _suffix_of(data: bytes) -> str:
-    """How a chart's format is recognised where no name says it."""
+    """Return the suffix of a chart without a file name, from its contents."""
     if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b":":
         return UCS_SUFFIX
     return ".ssc" if b"#NOTEDATA" in data.upper() else ".sm"
 
 
 def sources(paths: tuple[Path, ...], stdin_filename: Path | None, exclude: Sequence[str] = ()) -> list[Source]:
-    """The chart files that the paths mean, without those left out; standard input with its bytes."""
+    """Return the chart files that paths stand for, without excluded ones; standard input comes with its bytes."""
     if any(str(path) == "-" for path in paths):
         if len(paths) > 1:
             raise UsageError("standard input (-) cannot be combined with other paths")
@@ -120,12 +120,12 @@ def sources(paths: tuple[Path, ...], stdin_filename: Path | None, exclude: Seque
     return [(path, None) for path in find_files(paths, exclude)]
 
 
-# Where results go: standard output, or a file that is written when all of them are there.
+# The output of results: standard output, or a file that is written when all results are known.
 
 
 @contextmanager
 def open_output(path: Path | None) -> Iterator[IO[str]]:
-    """A stream of text with a `buffer` of bytes; what is written to it is in the file at once, or not at all."""
+    """Yield a stream of text with a `buffer` of bytes; its contents reach the file in one step, or not at all."""
     if path is None:
         yield sys.stdout
         return
@@ -138,37 +138,37 @@ def open_output(path: Path | None) -> Iterator[IO[str]]:
 
 
 def default_name(song: Song, chart: Chart, suffix: str) -> Path:
-    """SONG-difficulty, in characters that every file system takes: where a result goes that is given no name."""
+    """Return the default name of a result, SONG-difficulty, in characters that every file system accepts."""
     name = f"{song.title or song.path.stem}-{chart.difficulty or 'chart'}"
     return Path(plain_name(name) + suffix)
 
 
-# What a command says beside its result.
+# Warnings beside the result of a command.
 
 
 def warn(warnings: Iterable[str]) -> None:
-    """Each as a line of standard error."""
+    """Print each warning as a line on standard error."""
     for warning in warnings:
         click.echo(f"warning: {safe(warning)}", err=True)
 
 
 def note(text: str) -> None:
-    """A line of standard error about something that is no fault."""
+    """Write a line to standard error about something that is no fault."""
     click.echo(f"note: {safe(text)}", err=True)
 
 
 def report_error(error: Exception | str) -> None:
-    """An error after which the command goes on, as the line that errors at its end have."""
+    """Write an error after which the command goes on, in the form of errors that end a command."""
     click.echo(f"dancetutor: {safe(str(error))}", err=True)
 
 
-# Asks before hours of work: films and dances longer than anybody means.
+# The question before hours of work, for films and dances that are longer than anyone intends.
 
-LONG = 20 * 60.0  # seconds of film or motion; more than this is asked about first
+LONG = 20 * 60.0  # seconds of film or motion; longer ones need a confirmation
 
 
 def confirm_long(what: str, verb: str) -> None:
-    """Ask a person whether they mean it; without a terminal nobody can answer, so refuse. verb : "Render", "Bake" """
+    """Ask the user to confirm; without a terminal, refuse, because nobody can answer. verb : "Render", "Bake" """
     if sys.stdin is not None and sys.stdin.isatty() and sys.stderr.isatty():
         click.confirm(f"{what}. {verb} it?", abort=True, err=True)
     else:

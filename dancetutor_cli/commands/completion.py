@@ -19,7 +19,7 @@ _BEGIN, _END = "# >>> dancetutor completion >>>", "# <<< dancetutor completion <
 
 @add_completion_class
 class PowerShell(ShellComplete):
-    """What click lacks. PowerShell hands over the words, and the one that is completed, as variables."""
+    """Completion in PowerShell, which click lacks. The words, and the word to complete, come in variables."""
 
     name = "powershell"
     source_template = """\
@@ -39,13 +39,13 @@ Register-ArgumentCompleter -Native -CommandName %(prog_name)s -ScriptBlock {
 """
 
     def get_completion_args(self) -> tuple[list[str], str]:
-        """The words before, without the program's own; and the word, empty at the start of one."""
+        """Return the words before, without the program's name, and the word to complete, which may be empty."""
         words = os.environ.get("COMP_WORDS", "").split("\n")[1:]
         incomplete = os.environ.get("COMP_CWORD", "")
         return (words[:-1] if incomplete and words else words), incomplete
 
     def format_completion(self, item: click.shell_completion.CompletionItem) -> str:
-        """A line: kind, value and help, parted by tabs."""
+        """Return a line with kind, value and help, separated by tabs."""
         return f"{item.type}\t{item.value}\t{item.help or ''}"
 
 
@@ -76,8 +76,8 @@ def command(shell: str | None, only_print: bool, remove: bool) -> None:
 
 
 def script_for(shell: str) -> str:
-    """The script that a shell reads when it starts."""
-    if shell == "bash":  # click asks the bash that it finds for its version, and there may be none
+    """Return the script that a shell reads when it starts."""
+    if shell == "bash":  # click would run bash to find its version, and there may be no bash
         return BashComplete.source_template % _variables("bash")
     found = get_completion_class(shell)
     assert found is not None
@@ -89,7 +89,7 @@ def _variables(shell: str) -> dict[str, str]:
 
 
 def running_shell() -> str:
-    """The shell of this user; UsageError if it is none of those that can be completed."""
+    """Return the shell of this user. Raises UsageError for a shell without completion."""
     if sys.platform == "win32":
         return "powershell"
     name = Path(os.environ.get("SHELL", "")).name
@@ -99,7 +99,7 @@ def running_shell() -> str:
 
 
 def place_for(shell: str) -> tuple[Path, bool]:
-    """The file that holds the script, and whether it holds nothing else. UsageError for a user without a home."""
+    """Return the file for the script, and whether it holds nothing else. Raises UsageError without a home folder."""
     try:
         home = Path.home()
     except RuntimeError as error:
@@ -117,15 +117,15 @@ def place_for(shell: str) -> tuple[Path, bool]:
 
 
 def _with(text: str, script: str) -> str:
-    """A start file of the user's with our part at its end."""
+    """Return the text of a start file with our part at its end."""
     gap = "" if not text or text.endswith("\n") else "\n"
-    if "compdef" in script:  # zsh: its own completion has to be on
+    if "compdef" in script:  # zsh's own completion must be on
         script = f"autoload -Uz compinit && (( $+functions[compdef] )) || compinit\n{script}"
     return f"{text}{gap}{_BEGIN}\n{script.strip()}\n{_END}\n"
 
 
 def _without(text: str) -> str:
-    """A start file of the user's without our part."""
+    """Return the text of a start file without our part."""
     before, begun, rest = text.partition(_BEGIN + "\n")
     _, ended, after = rest.partition(_END + "\n")
     return before + after if begun and ended else text

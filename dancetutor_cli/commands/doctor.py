@@ -1,4 +1,4 @@
-"""`dancetutor doctor`: what this machine can render with, a line each, and below it how to repair what is missing."""
+"""`dancetutor doctor`: a line for each thing that rendering needs, and how to repair what is missing."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.run.errors import DancetutorError, UnavailableError, install_command, plural
 from dancetutor_cli.run.foreign_text import json_without_commands
 
-# The checks of `doctor`: each looks at one thing that rendering needs, and never raises.
+# The checks of `doctor`: each examines one thing that rendering needs, and never raises.
 
 GIGABYTE = 1e9
 _NOTHING = "nothing compiled yet; the first film takes about 30 s longer"
-_ROOM = 2 * GIGABYTE  # a long song at best quality takes less
+_ROOM = 2 * GIGABYTE  # enough free space: a long song at best quality needs less
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """What was found. state : "ok", "without" (optional) or "broken"; remedy : what to do, or ""."""
+    """The result of a check. state : "ok", "without" (optional) or "broken"; remedy : what to do, or ""."""
 
     name: str
     state: str
@@ -33,7 +33,7 @@ class Check:
 
 
 def examine() -> list[Check]:
-    """All checks, in the order in which a render needs the things."""
+    """Return the results of all checks, in the order in which a render needs the things."""
     checks = [_guarded("cpu renderer", _cpu), _guarded("gl renderer", _gl), _guarded("physics", _physics)]
     checks.append(_guarded("ffmpeg", _ffmpeg))
     if checks[-1].state == "ok":
@@ -49,7 +49,7 @@ _OPTIONAL = {
     "nvenc": "an NVIDIA GPU and its driver; x264 needs neither",
     "vaapi": "a GPU with a VA driver; x264 needs neither",
 }
-# Scripts in which titles come, with letters that say whether a font has them.
+# Scripts of titles, with letters that show whether a font has the script.
 SCRIPTS = {"Western": "éßø", "Cyrillic": "Жя", "Japanese": "あ日", "Korean": "한", "Chinese": "们"}
 
 
@@ -172,7 +172,7 @@ def _disk() -> Check:
 
 
 WIDTH = 80  # columns
-_SHOWN = {"without": "missing"}  # states that the table calls by another word than the JSON
+_SHOWN = {"without": "missing"}  # states that have another word in the table than in the JSON
 
 
 @click.command(cls=GroupedCommand)
@@ -202,7 +202,7 @@ def command(as_json: bool) -> None:
 
 
 def _print_entry(head: str, text: str) -> None:
-    """One line, and more below its text if it is long; paths are never broken."""
+    """Print a line, with further lines below its text if that is long; paths are never broken."""
     lines = textwrap.wrap(text, WIDTH - len(head), break_long_words=False, break_on_hyphens=False)
     for number, line in enumerate(lines):
         click.echo(f"{head if number == 0 else ' ' * len(head)}{line}")

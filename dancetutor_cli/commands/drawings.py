@@ -17,16 +17,16 @@ SUFFIXES = (".html", ".htm", ".svg")
 
 
 def check_sheet(path: Path, files: int) -> None:
-    """Refuse before the work what could not be written after it. files : of how many files charts are asked for."""
+    """Raise the error of a sheet that could not be written, before the work. files : number of files with charts"""
     check_file(path, SUFFIXES)
     if files != 1:
         raise UsageError("--sheet draws the charts of one file: name a file, not a folder")
 
 
 def write_sheet(path: Path, tasks: list[AnalyzeTask], language: str | None) -> str:
-    """Draw the charts of one file; returns a line about it. An .svg holds one chart, a page any number of them.
+    """Draw the charts of one file, and return a line about the sheet. An .svg holds one chart, an .html page many.
 
-    language : of the sheet's words, a name of configs/languages; None: English
+    language : language of the sheet's words, a name in configs/languages; None: English
     """
     from dancetutor_cli.lint.analysis import drawable_charts
     from dancetutor_cli.reports.sheet import html_page, make_sheet, svg_sheet
@@ -69,7 +69,7 @@ def _facts(chart: Drawable, sheet: Sheet) -> list[str]:
 
 
 def check_plot(path: Path, files: int) -> None:
-    """Refuse before the work what could not be written after it. files : of how many files the sync is asked for"""
+    """Raise the error of a plot that could not be written, before the work. files : number of files"""
     check_file(path, (".svg",))
     if files != 1:
         raise UsageError("--plot draws the sync of one file: name a file, not a folder")

@@ -1,4 +1,4 @@
-"""The options that say what a film looks and sounds like, and the request that they make."""
+"""The options for the look and the sound of a film, and the request made from them."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.media.film_formats import FilmFormat
     from dancetutor_cli.film.work.request import FilmRequest
 
-MOST_LATE = 60_000.0  # milliseconds that the music may be moved
+MOST_LATE = 60_000.0  # limit of --sync-offset, milliseconds
 
 
 class _Size(click.ParamType):  # type: ignore[type-arg,unused-ignore]
-    """A size in pixels, as 1280x720."""
+    """A size in pixels, such as 1280x720."""
 
     name = "WxH"
 
@@ -139,7 +139,7 @@ film_options = combined(
 
 @dataclass(frozen=True, slots=True)
 class RenderOptions:
-    """The options of `render` besides those of the charts and of the dance; None where they say nothing."""
+    """The options of `render` without those of the charts and of the dance; None for options that are not given."""
 
     size: tuple[int, int] | None
     fps: int | None
@@ -186,7 +186,7 @@ class RenderOptions:
 def film_request(
     file: Path, selection: Selection, dance: DanceOptions, options: RenderOptions, film_format: FilmFormat
 ) -> FilmRequest:
-    """The request that these options make."""
+    """Return the request of these options. Raises UsageError for a wrong option."""
     from dancetutor_cli.character.characters import check_character
     from dancetutor_cli.dance.request import with_style
     from dancetutor_cli.film.layout import FilmLook, load_layout
@@ -202,7 +202,7 @@ def film_request(
     if options.font is not None:
         from dancetutor_cli.film.overlay.text import font
 
-        font(str(options.font), 24)  # refused before the work begins
+        font(str(options.font), 24)  # raises an error for a wrong font before the work begins
     from dancetutor_cli.film.overlay.text import check_letters
 
     check_letters(options.language, options.font)
@@ -246,7 +246,7 @@ def _rates(options: RenderOptions, layout: Layout) -> tuple[float, ...]:
 
 
 def _practice(options: RenderOptions, layout: Layout, film: bool) -> Practice:
-    """film : of a passage she comes to rest after it; poses are single pictures of its rows"""
+    """Return the options for practising. film : whether the dancer comes to rest after a passage; poses need no rest"""
     from dancetutor_cli.film.clock import REST, Practice
     from dancetutor_cli.film.layout import PracticePart
 

@@ -27,11 +27,11 @@ _NO_STORE_MESSAGE = (
 
 
 def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = None, *, quiet: bool = False) -> None:
-    """Say that kernels of these presets are compiled, if they are; only to a terminal, where somebody wonders.
+    """Print a note if the kernels of these presets must be compiled; only at a terminal, where a person waits.
 
-    size : gives the bytes of the note data to be solved; little is solved without compiling. None: compile in any case
+    size : returns the bytes of note data to be solved; small charts are solved without compiling. None: always compile
 
-    That they cannot be kept in the usual place is said everywhere: each run may take 30 s longer for it.
+    If kernels cannot be stored in the usual folder, a note says so in every case: each run may take 30 s longer.
     """
     from dancetutor_cli.commands.arguments import note
     from dancetutor_cli.feet.solver.compiled import interpret, is_compiled
@@ -58,13 +58,13 @@ def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = No
         )
 
 
-# The output of `dancetutor` without a command: what it is, and what to try next, with a song that is at hand.
+# The output of `dancetutor` without a command: what it does, and what to try next with a song that the user has.
 
-_MOST = 2000  # entries of the folder that are looked at: it may be a disk
+_MOST = 2000  # limit of the entries of the folder that are examined: it may be a whole disk
 
 
 def first_steps(folder: Path) -> str:
-    """The text; its examples take a chart of `folder`, or of a folder in it, else the demo song."""
+    """Return the text; its examples use a chart in `folder` or in a folder in it, else the demo song."""
     song = next(_charts(folder), None)
     whose = "your song" if song is not None else "the demo song"
     name = _quoted(song or str(next(charts_path().rglob("*.ssc"))))
@@ -90,7 +90,7 @@ def first_steps(folder: Path) -> str:
 
 
 def _charts(folder: Path) -> Iterator[str]:
-    """Chart files in a folder and those just below it, as one would type them; .ssc before .sm of a folder."""
+    """Yield the chart files in a folder and its subfolders, as a user would type them; in each folder, .ssc first."""
     try:
         with os.scandir(folder) as entries:
             found = list(islice(entries, _MOST))
@@ -111,5 +111,5 @@ def _charts(folder: Path) -> Iterator[str]:
 
 
 def _quoted(path: str) -> str:
-    """A path as the shell of this system takes it."""
+    """Return a path quoted for the shell of this system."""
     return subprocess.list2cmdline([path]) if os.name == "nt" else shlex.quote(path)

@@ -1,4 +1,4 @@
-"""`analyze --fix`: what is asked for, which files it is done in, and what is said about it."""
+"""`analyze --fix`: the requested fixes, the files that are corrected, and the messages about them."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.run import LintRun
 
 SAFE = "safe"
-# Options of `analyze` that say how its report looks: there is none when files are corrected.
+# Options of `analyze` that cannot be used with --fix, which prints no report.
 _OF_REPORTS = ("sheet", "watch", "suggest", "alternatives", "update_baseline", "statistics", "stdin_filename")
 
 
 @dataclass(frozen=True, slots=True)
 class FixRequest:
-    """One `--fix`: all findings of a rule, or of them the one of a number, from 1; rule `SAFE`: the safe fixes."""
+    """One `--fix`: all findings of a rule, or only the finding with a number, from 1; rule `SAFE`: the safe fixes."""
 
     rule: str
     number: int | None = None
 
 
 def _parse_fix_request(text: str) -> FixRequest:
-    """What the option means; UsageError for a rule that has no fix."""
+    """Return the request of the option's text. Raises UsageError for a rule that has no fix."""
     if text.strip().lower() == SAFE:
         return FixRequest(SAFE)
     match = re.fullmatch(r"\s*([^:]+?)\s*(?::\s*([1-9]\d{0,8})\s*)?", text)
@@ -52,7 +52,7 @@ def _parse_fix_request(text: str) -> FixRequest:
 
 
 def fix_all(run: LintRun, tasks: Sequence[AnalyzeTask], options: AnalyzeOptions) -> int:
-    """Correct every file, print what was done; the exit status: 1 if a finding that was asked for is left."""
+    """Correct every file, and print the results. Returns the exit status: 1 if a requested finding remains."""
     wanted = [_parse_fix_request(text) for text in options.fix]
     _check(tasks, options)
     talk = _Talk(diff=options.diff)
@@ -69,7 +69,7 @@ def fix_all(run: LintRun, tasks: Sequence[AnalyzeTask], options: AnalyzeOptions)
 
 
 def _check(tasks: Sequence[AnalyzeTask], options: AnalyzeOptions) -> None:
-    """UsageError for options that do not go with --fix."""
+    """Raise UsageError for options that cannot be used with --fix."""
     if options.format_name != "text":
         raise UsageError("--fix prints only text; leave --format out")
     for name in _OF_REPORTS:
@@ -106,7 +106,7 @@ def _of_file(result: FileResult, asked_for: FixRequest) -> tuple[tuple[Finding, 
 
 @dataclass
 class _Talk:
-    """Says what became of the files, and knows how it ends. diff : nothing is written, the change is shown"""
+    """The messages and the exit status of a run. diff : whether changes are only shown, and not written"""
 
     diff: bool
     files: int = 0
@@ -137,7 +137,7 @@ class _Talk:
         warn(outcome.notes)
 
     def _say(self, text: str) -> None:
-        """Under --diff the diff alone goes to standard output, so that `patch` can read it."""
+        """Print a line. With --diff, only the diff goes to standard output, so that `patch` can read it."""
         click.echo(safe(text), err=self.diff)
 
     def end(self) -> int:

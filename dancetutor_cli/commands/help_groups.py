@@ -39,22 +39,22 @@ GROUPS = {
 }  # fmt: skip
 
 
-# Names that options had before an option's name meant one thing in all commands; they still work.
+# Old and new names of options: each name now means one thing in all commands. The old names still work.
 RENAMED = (("--style", "--markers"), ("--beside", "--tech-counts"), ("--beside", "--second"))
 
 
 class GroupedCommand(click.Command):
-    """A command whose help prints its options by `GROUPS`; one that is in no group comes under "Other options"."""
+    """A command whose help prints its options by `GROUPS`; an option in no group is under "Other options"."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Called by click with what the user typed."""
+        """Parse the arguments that the user typed, with old names of options replaced; click calls this."""
         options = {name for parameter in self.params for name in parameter.opts}
         renamed = {old: new for old, new in RENAMED if old not in options and new in options}
         parts = [argument.partition("=") for argument in args]
         return super().parse_args(ctx, [renamed.get(name, name) + equals + value for name, equals, value in parts])
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Called by click for `--help`."""
+        """Write the options in groups; click calls this for `--help`."""
         group_of = {name: title for title, names in GROUPS.items() for name in names}
         rank = {name: place for names in GROUPS.values() for place, name in enumerate(names)}
         rows: dict[str, list[tuple[int, tuple[str, str]]]] = {title: [] for title in (*GROUPS, "Other options")}

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def check_targets(report_to: str | None, plot: Path | None) -> None:
-    """UsageError for a report or a plot that could not be written. report_to : as `report_option` gives it"""
+    """Raise UsageError for a report or a plot that could not be written. report_to : as `report_option` gives it"""
     if plot is not None:
         check_file(plot, (".svg", ".png"))
     if report_to is not None and report_to != TABLE:
@@ -24,7 +24,7 @@ def check_targets(report_to: str | None, plot: Path | None) -> None:
 
 
 def write_report(report: MotionReport, report_to: str | None, plot: Path | None) -> None:
-    """Print the table of a report if it was asked for; write it as JSON and as a diagram where files are named."""
+    """Print a report as a table if `report_to` is set; write it as JSON and as a diagram if files are named."""
     from dancetutor_cli.reports.motion_report import as_json, print_report, write_plot
 
     if report_to is not None:

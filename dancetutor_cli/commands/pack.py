@@ -1,4 +1,4 @@
-"""`analyze` about a pack as a whole: options, its page, `--compare` with another version, `--tech-counts`."""
+"""`analyze` for a whole pack: options, the page of the pack, `--compare` with another version, `--tech-counts`."""
 
 from __future__ import annotations
 
@@ -64,17 +64,17 @@ pack_options = combined(
 )
 
 
-_SONG = 2  # files that are one song: its .sm and its .ssc
-_WIDE = 160  # characters of a line into a file
-_BRIEF = 20  # changes of a comparison in the brief form
-_BRIEF_ROWS = 4  # of a chart in it
+_SONG = 2  # limit of the files of one song: its .sm and its .ssc
+_WIDE = 160  # characters of a line in the full view
+_BRIEF = 20  # limit of the changes of a comparison in the brief form
+_BRIEF_ROWS = 4  # limit of the rows of a chart in the brief form
 
 
 class PackReport:
-    """Takes the results of a run as they come, and reports all of them at the end.
+    """The report about all results of a run, for its end.
 
-    options : of the command line; known : whether only what is new against a baseline is reported
-    files : how many there are: one song is no pack; view : how findings are shown
+    options : the options of `analyze`; known : whether only findings that are not in a baseline are reported
+    files : number of files, because one song is not a pack; view : how findings are shown
     """
 
     def __init__(self, options: AnalyzeOptions, known: bool, files: int, view: str) -> None:
@@ -91,12 +91,12 @@ class PackReport:
             self._pack = Pack()
 
     def add(self, result: FileResult) -> None:
-        """Take note of a file."""
+        """Add a file."""
         if self._pack is not None:
             self._pack.add(result)
 
     def lines(self) -> list[str]:
-        """What is said at the end; writes the page, too."""
+        """Return the lines about the pack; also write the page."""
         if self._pack is None:
             return []
         from dancetutor_cli.reports.pack import pack_lines
@@ -114,7 +114,7 @@ class PackReport:
 
 
 def check_comparison(options: AnalyzeOptions) -> None:
-    """UsageError for what does not go with --compare."""
+    """Raise UsageError for options that cannot be used with --compare."""
     if len(options.paths) != 1 or str(options.paths[0]) == "-":
         raise UsageError("--compare takes one file or folder as PATH, to compare with OTHER")
     if options.format_name != "text":
@@ -122,7 +122,7 @@ def check_comparison(options: AnalyzeOptions) -> None:
 
 
 def report_changes(options: AnalyzeOptions, output: IO[str]) -> int:
-    """`--compare`: print what changed; the exit status."""
+    """`--compare`: print the changes. Returns the exit status."""
     is_brief = not options.full if options.full is not None else output.isatty()
     lines = list(_changes(options, _BRIEF_ROWS if is_brief else None))
     from dancetutor_cli.lint.snapshots import LAST
@@ -136,7 +136,7 @@ def report_changes(options: AnalyzeOptions, output: IO[str]) -> int:
 
 
 def _changes(options: AnalyzeOptions, most_rows: int | None) -> Iterator[str]:
-    """A line that says how much changed, and the changes. most_rows : of a chart, None: all"""
+    """Yield a line with the number of changes, and the changes. most_rows : limit of rows of a chart; None: all"""
     from dancetutor_cli.lint.snapshots import of_path, snapshot_of
     from dancetutor_cli.lint.versions import change_lines, compare
 
@@ -154,7 +154,7 @@ def _changes(options: AnalyzeOptions, most_rows: int | None) -> Iterator[str]:
 
 
 def report_tech_counts(tasks: Sequence[AnalyzeTask], options: AnalyzeOptions, output: IO[str]) -> int:
-    """`--tech-counts`: print the table, with --full every chart that differs below it; the exit status."""
+    """`--tech-counts`: print the table and, with --full, every chart that differs. Returns the exit status."""
     from dancetutor_cli.lint.techniques import compare_techniques, read_theirs
     from dancetutor_cli.reports.tech_counts import chart_lines, table_lines
 

@@ -39,7 +39,7 @@ SUFFIXES = (".html", ".htm")
 
 @dataclass(frozen=True, slots=True)
 class PageOptions:
-    """The options besides those of the charts and of the dance."""
+    """The options without those of the charts and of the dance."""
 
     output: Path | None
     music: bool
@@ -112,7 +112,7 @@ def command(path: Path, selection: Selection, dance: DanceOptions, options: Page
 
 
 def _only(request: PageRequest, output: Path, options: PageOptions) -> PageRequest:
-    """The request of the one chart in a folder that matches; an error if there is not exactly one for the file."""
+    """Return the request of the only matching chart in a folder. Raises UsageError if none or several match."""
     from dancetutor_cli.page.work import page_jobs
 
     wanted, _ = page_jobs(request, output.parent, options.exclude)
@@ -136,7 +136,7 @@ def _page(request: PageRequest, output: Path | None, quiet: bool) -> None:
 
 
 def _pages(request: PageRequest, folder: Path, options: PageOptions) -> None:
-    """A page for each chart and the index; exit status 2 if one could not be made."""
+    """Write a page for each chart, and the index. Exits with 2 if a page could not be made."""
     from dancetutor_cli.page.work import INDEX, make_all, page_jobs, write_index
 
     if request.dance.play is not None:
@@ -145,7 +145,7 @@ def _pages(request: PageRequest, folder: Path, options: PageOptions) -> None:
     wanted, bad = page_jobs(request, folder, options.exclude)
     if not wanted and not bad:
         raise UsageError(f"{request.dance.path}: no chart here matches")
-    if not wanted and [path for path, _ in bad] == [request.dance.path]:  # a folder without charts, or a closed one
+    if not wanted and [path for path, _ in bad] == [request.dance.path]:  # without charts, or unreadable
         raise DancetutorError(bad[0][1])
     if wanted:
         make_folder(folder)

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.work.request import FilmRequest, FilmSubject
 
 
-# Options that a film behind the notes cannot have: the game starts it with the music and plays it once, at its speed.
+# Options that exclude --background: the game starts the film with the music and plays it once, at its own speed.
 _NO_BACKGROUND = (
     "poses",
     "section",
@@ -138,7 +138,7 @@ def command(path: Path, selection: Selection, dance: DanceOptions, options: Rend
 
 
 def _background(path: Path, options: RenderOptions) -> list[Path]:
-    """The chart files that get an entry of the film; UsageError for options that make no film behind notes."""
+    """Return the chart files in which to enter the film. Raises UsageError for options that exclude --background."""
     if not options.background:
         if options.into_file:
             raise UsageError("--into-file works only with --background; add --background")
@@ -156,7 +156,7 @@ def _background(path: Path, options: RenderOptions) -> list[Path]:
 
 
 def into_file_name(path: Path, selection: Selection) -> str:
-    """What a film is called that is entered into a chart file: SONG-which.dancetutor.mp4."""
+    """Return the name of a film that is entered into a chart file: SONG-which.dancetutor.mp4."""
     which = selection.difficulty or (f"{selection.index}" if selection.index is not None else "")
     stem = plain_name(f"{path.stem}-{which}" if which else path.stem) or "film"
     return "".join("_" if letter in ",;:=#\\" else letter for letter in stem) + ".dancetutor.mp4"
@@ -171,7 +171,7 @@ def _enter(film: Path, files: Sequence[Path], quiet: bool) -> None:
 
 
 def _one_film(path: Path, options: RenderOptions) -> Path:
-    """The file of a folder of one song, if what is asked for is about one chart; else the path as it is."""
+    """Return the file of a folder with one song if the options are for one chart, else the path unchanged."""
     output = options.output
     film = output is not None and output.suffix.lower() in FILES and not output.is_dir()
     if not path.is_dir() or not (film or options.poses or options.poster or options.srt or options.background):
@@ -211,11 +211,11 @@ def _render_one(path: Path, selection: Selection, dance: DanceOptions, options: 
     finally:
         if is_new:
             with suppress(OSError):
-                target.rmdir()  # only while nothing is in it
+                target.rmdir()  # fails if the folder is not empty
 
 
 def _allow_long(subject: FilmSubject, file: Path, yes: bool) -> None:
-    """Ask before hours of work; without a terminal nobody can answer, so refuse."""
+    """Ask before hours of work; without a terminal, refuse, because nobody can answer."""
     clock = subject.clock
     if yes or max(clock.seconds, subject.chart_seconds) <= LONG:
         return
@@ -256,7 +256,7 @@ def _make(request: FilmRequest, subject: FilmSubject, target: Path, kind: str, o
 
 
 def _end_on_term() -> None:
-    """End on SIGTERM as on Ctrl-C: workers stopped, nothing half-written left."""
+    """End on SIGTERM as on Ctrl-C: workers are stopped, and no half-written file stays."""
 
     def stop(_number: int, _frame: object) -> None:
         raise KeyboardInterrupt

@@ -1,4 +1,4 @@
-"""The part of `render` that makes the films of a whole folder."""
+"""`render` for a whole folder: a film of every chart in it."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
 
 
 def render_batch(path: Path, selection: Selection, dance: DanceOptions, options: RenderOptions) -> None:
-    """Make a film of every chart below `path` that matches. Exits with 2 if one of them failed."""
+    """Make a film of every matching chart below `path`. Exits with 2 if a film failed."""
     from dancetutor_cli.film.work.batch import Batch, film_list
     from dancetutor_cli.film.work.records import find_records
     from dancetutor_cli.run.pool import default_jobs
 
-    if options.scheduler:  # its workers have a working folder of their own
+    if options.scheduler:  # its workers have other working folders
         path = path.absolute()
     batch = _batch(path, selection, dance, options)
     check_folder(batch.folder)
@@ -42,7 +42,7 @@ def render_batch(path: Path, selection: Selection, dance: DanceOptions, options:
     films, unreadable, without = film_list(batch)
     if not films and not unreadable:
         raise UsageError(f"{path}: no chart matches{_filters(selection, options)}")
-    if not films and [bad.path for bad in unreadable] == [path]:  # a folder without chart files, or a closed one
+    if not films and [bad.path for bad in unreadable] == [path]:  # a folder without chart files, or an unreadable one
         raise DancetutorError(unreadable[0].error)
     if films:
         make_folder(batch.folder)
@@ -71,7 +71,7 @@ def render_batch(path: Path, selection: Selection, dance: DanceOptions, options:
 
 
 def _batch(path: Path, selection: Selection, dance: DanceOptions, options: RenderOptions) -> BatchRequest:
-    """The request of the charts below `path`, with the kind of film and the folder that the options name."""
+    """Return the request of the charts below `path`, with the format and the output folder of the options."""
     from dancetutor_cli.film.media.encoder import Encoding, choose
     from dancetutor_cli.film.media.film_formats import FORMATS, PICTURES
     from dancetutor_cli.film.work.batch import DEFAULT_NAME, BatchRequest, parse_meters, parse_shard
@@ -131,13 +131,13 @@ def _tell(outcome: FilmOutcome, progress: FilmProgress, quiet: bool, number: int
 
 
 def _warn(warnings: JoinedWarnings, progress: FilmProgress) -> None:
-    """The warnings of the films so far, also of a run that is interrupted."""
+    """Print the warnings of the films so far, even if the run was interrupted."""
     for line in warnings.lines():
         progress.say(line)
 
 
 def _sum_up(outcomes: list[FilmOutcome], unreadable: list[UnreadableFile], without: list[Path], quiet: bool) -> None:
-    """The sum, the table of what failed, and the exit status."""
+    """Print the summary and the table of failures. Exits with 2 if there are failures."""
     counts = Counter(outcome.status for outcome in outcomes)
     failed = [outcome for outcome in outcomes if outcome.status == "failed"]
     if not quiet:
@@ -154,7 +154,7 @@ def _sum_up(outcomes: list[FilmOutcome], unreadable: list[UnreadableFile], witho
 
 
 def _filters(selection: Selection, options: RenderOptions) -> str:
-    """The options that choose among the charts of a folder, as the user typed them, and what to do."""
+    """Return the options that select charts of a folder, as the user typed them, and what to do."""
     typed = [selection.options, *(f"--{n} {getattr(options, n)}" for n in ("meter", "shard") if getattr(options, n))]
     words = ", ".join(one for one in typed if one)
     return f" {words}; change or leave out one of these options" if words else ", so there is nothing to render"

@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 SUFFIXES = (*FORMATS, ".mp4", ".html")
 _FILE = GivenPath()
-_CORRECTIONS = ("knees", "feet", "limits")  # as physics.pipeline has them; a test holds both together
+_CORRECTIONS = ("knees", "feet", "limits")  # as in physics.pipeline; a test compares both
 
 
 @dataclass(frozen=True, slots=True)
 class RetargetOptions:
-    """What the options ask for."""
+    """The options of `retarget`."""
 
     output: Path
     character: str
@@ -100,7 +100,7 @@ def command(file: Path, options: RetargetOptions) -> None:
 
 
 def corrections_of(text: str) -> tuple[str, ...]:
-    """The corrections in a list as on the command line. Raises UsageError for a word that is none."""
+    """Return the corrections in a list from the command line. Raises UsageError for an unknown word."""
     words = [] if text.strip() in ("", "none") else [word.strip() for word in text.split(",")]
     for word in words:
         if word not in _CORRECTIONS:

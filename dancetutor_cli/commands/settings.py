@@ -1,4 +1,4 @@
-"""`analyze --show-settings`: what holds for files and their charts, written as a dancetutor.yaml that says it alone."""
+"""`analyze --show-settings`: the settings of files and their charts, printed as one complete dancetutor.yaml."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _Rules = Mapping[str, Mapping[str, Any]]
 
 
 def show_settings(run: LintRun, files: list[Source]) -> int:
-    """Print the settings of the first file of each configuration; the exit status, 0."""
+    """Print the settings of the first file of each configuration. Returns the exit status, 0."""
     seen: set[tuple[Path, ...]] = set()
     for path, data in files:
         sources = run.configuration(path).sources
@@ -64,14 +64,14 @@ def _preset(run: LintRun, path: Path, chart: Chart) -> str:
 
 
 def _all_off() -> _Rules:
-    """What a rule is compared with where nothing was said yet: no rule's settings."""
+    """Return rules without settings, to compare the first settings with."""
     from dancetutor_cli.lint.rule import all_rules
 
     return {code: {"severity": None} for code in all_rules()}
 
 
 def _rule_lines(rules: _Rules, before: _Rules) -> Iterator[str]:
-    """What of each rule differs from before, a line each; a rule that does not run is off."""
+    """Yield a line for each rule with the settings that differ from `before`; a rule that does not run is off."""
     from dancetutor_cli.lint.rule import all_rules
 
     for code, rule in all_rules().items():
@@ -83,12 +83,12 @@ def _rule_lines(rules: _Rules, before: _Rules) -> Iterator[str]:
 
 
 def _quoted(value: object) -> str:
-    """A value as YAML writes it on one line."""
+    """Return a value as YAML on one line."""
     return json.dumps(value, ensure_ascii=False)
 
 
 def _charts(path: Path, data: bytes | None) -> tuple[Chart, ...]:
-    """The charts of a file; none of one that cannot be read, which `analyze` says."""
+    """Return the charts of a file; none if it cannot be read, which `analyze` reports."""
     from dancetutor_cli.chart import reader
 
     try:

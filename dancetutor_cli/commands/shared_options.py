@@ -1,4 +1,4 @@
-"""Options that several commands have, with one meaning in all of them, and how a command gets them as a record."""
+"""Options with one meaning in all commands that have them, and a decorator that gives them to a command as a record."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _Command = TypeVar("_Command", bound=Callable[..., Any])
 
 
 def combined(*options: Callable[[_Command], _Command]) -> Callable[[_Command], _Command]:
-    """One decorator that adds several options, in the order of --help."""
+    """Return one decorator that adds several options, in the order of --help."""
 
     def decorate(command: _Command) -> _Command:
         for option in reversed(options):
@@ -36,9 +36,9 @@ def combined(*options: Callable[[_Command], _Command]) -> Callable[[_Command], _
 
 
 def into(name: str, kind: type) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Give a command one argument `name`, a `kind`, in place of the options that are called like its fields.
+    """Return a decorator that gives a command one argument `name`, a `kind`, in place of the options of its fields.
 
-    A field with a default may have no option. To stand below the options: ``@options`` first, then
+    A field with a default may have no option. The decorator is placed below the options: ``@options`` first, then
     ``@into("options", CommandOptions)``, then the function.
     """
     known = tuple(field.name for field in fields(kind))
@@ -164,7 +164,7 @@ dance_options = combined(
     ),
 )
 
-# The ragdoll that follows a dance or a capture, and what befalls it.
+# The ragdoll that follows a dance or a capture, and disturbances of it.
 ragdoll_options = combined(
     click.option(
         "--style",
@@ -192,7 +192,7 @@ ragdoll_options = combined(
 
 @dataclass(frozen=True, slots=True)
 class DanceOptions:
-    """The options of a command about the dance, which are called like fields of `dance.request.DanceRequest`."""
+    """The options of a command about the dance, with the names of fields of `dance.request.DanceRequest`."""
 
     preset: str | None
     play: Path | None
@@ -205,14 +205,14 @@ class DanceOptions:
     trip: tuple[float, ...] = ()
 
     def request(self, path: Path, selection: Selection) -> DanceRequest:
-        """The dance that they ask for, of one chart of a file."""
+        """Return the request of the dance for one chart of a file."""
         from dancetutor_cli.dance.request import DanceRequest
 
         return DanceRequest(path, selection, **same_fields(self, DanceRequest))
 
 
 def jobs_option(words: str) -> Callable[[_Command], _Command]:
-    """Adds --jobs of a command that usually runs in one process. words : for what more of them are faster"""
+    """Return --jobs for a command that usually runs in one process. words : the work that more processes speed up"""
     return click.option(
         "--jobs",
         type=WholeNumber(1, 256),
@@ -224,12 +224,12 @@ def jobs_option(words: str) -> Callable[[_Command], _Command]:
 
 
 def report_option(words: str) -> Callable[[_Command], _Command]:
-    """Adds --report with these words; the function gets `report_to`: a file's name, `TABLE` without one, or None."""
+    """Return --report with a help text; the command gets `report_to`: a file's name, `TABLE` without one, or None."""
     return click.option("--report", "report_to", is_flag=False, flag_value=TABLE, metavar="[FILE.json]", help=words)
 
 
 def language_option(text: str, default: str | None = None) -> Callable[[_Command], _Command]:
-    """Makes --language; the function gets keyword argument `language`, a name of configs/languages. text : its help."""
+    """Return --language; the command gets the argument `language`, a name in configs/languages. text : its help"""
     return click.option(
         "--language",
         shell_complete=named(folder("languages"), files=False),

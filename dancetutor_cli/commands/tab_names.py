@@ -1,4 +1,4 @@
-"""The names that the Tab key completes an option to; they are looked up only while a shell completes."""
+"""The names with which the Tab key completes an option; they are read only while a shell completes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _Completer = Callable[[click.Context, click.Parameter, str], list[CompletionItem
 
 
 def named(names: Callable[[], Iterable[str]], files: bool = True) -> _Completer:
-    """Completes an option from `names`; where none fits and `files` may be given, the shell completes those."""
+    """Return a completer of an option from `names`; if no name fits and `files` is set, the shell completes files."""
 
     def complete(_context: click.Context, _option: click.Parameter, begun: str) -> list[CompletionItem]:
         found = [CompletionItem(name) for name in sorted(names()) if name.lower().startswith(begun.lower())]
@@ -24,21 +24,21 @@ def named(names: Callable[[], Iterable[str]], files: bool = True) -> _Completer:
 
 
 def rules() -> Iterable[str]:
-    """Codes and names of the rules."""
+    """Return the codes and names of the rules."""
     from dancetutor_cli.lint.rule import all_rules
 
     return [word for code, rule in all_rules().items() for word in (code, rule.name)]
 
 
 def fixes() -> Iterable[str]:
-    """What --fix takes."""
+    """Return the values that --fix accepts."""
     from dancetutor_cli.lint.fix import FIXABLE
 
     return ["safe", *FIXABLE]
 
 
 def folder(name: str) -> Callable[[], Iterable[str]]:
-    """The files of a folder of configs, without their suffix."""
+    """Return a function that lists the files in a folder of configs, without their suffix."""
 
     def names() -> Iterable[str]:
         return [path.stem for path in config_path(name).glob("*.yaml")]
@@ -47,17 +47,17 @@ def folder(name: str) -> Callable[[], Iterable[str]]:
 
 
 def steps_types() -> Iterable[str]:
-    """Those that have a name."""
+    """Return the names of all steps types."""
     return COLUMNS
 
 
 def difficulties() -> Iterable[str]:
-    """As the games name them."""
+    """Return the games' names of difficulties, in lower case."""
     return ["beginner", "easy", "medium", "hard", "challenge", "edit"]
 
 
 def characters() -> Iterable[str]:
-    """Who is built in."""
+    """Return the names of the built-in characters."""
     from dancetutor_cli.character.characters import BUILT_IN
 
     return BUILT_IN

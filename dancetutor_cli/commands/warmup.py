@@ -1,4 +1,4 @@
-"""`dancetutor warmup`: compile every kernel once and keep it, for example while a CI image is built."""
+"""`dancetutor warmup`: compile every kernel once and store it, for example while a CI image is built."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.work.planning import PreparedFilm
 
 
-# Doing a little of everything, so that numba's cache is full.
+# A little work of every kind, which compiles all kernels.
 
 _SONG = "two_left_feet/two_left_feet.ssc"
 _TYPES = ("dance-single", "dance-double")
 
 
 def steps() -> Iterator[tuple[str, Callable[[], None]]]:
-    """What to do, by name."""
+    """Yield the name and the function of each piece of work."""
     prepared: dict[str, PreparedFilm] = {}
     for steps_type in _TYPES:
         yield f"solve and bake {steps_type}", lambda kind=steps_type: _prepare(prepared, kind)  # type: ignore[misc]
@@ -43,9 +43,9 @@ def steps() -> Iterator[tuple[str, Callable[[], None]]]:
 
 
 def _solve() -> None:
-    """Presets by name or file are of one of two models, which have kernels of their own; the default one is done.
+    """Solve a chart with the other one of the two cost models, each of which has its own kernels.
 
-    Tables that are full, as those of many charts become, are filled into larger ones.
+    Also copy full tables, which the solver gets after many charts, into larger ones.
     """
     from dancetutor_cli.feet.pads import load_pad
     from dancetutor_cli.feet.preset import load_preset
@@ -83,7 +83,7 @@ def _draw(prepared: PreparedFilm, quality: Quality) -> None:
     width, height = look.size
     for number in (0, 1):
         frame = film.frame(number)
-        strip(frame, np.zeros((8, 8, 4), dtype=np.uint8), 0, Run(0, 8, 0))  # the body of a hold: none is seen here
+        strip(frame, np.zeros((8, 8, 4), dtype=np.uint8), 0, Run(0, 8, 0))  # a hold's body, which these frames lack
         yuv420(frame, np.empty(width * height * 3 // 2, dtype=np.uint8))
 
 
