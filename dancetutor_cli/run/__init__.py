@@ -1,12 +1,12 @@
-"""The base of every package; nothing here knows of charts. Read `errors` and `files` first.
+"""The base of every package; nothing here depends on charts. Read `errors` and `files` first.
 
-errors, foreign_text    one line for each error; text of strangers made harmless in CSV and in logs of CI
-reading, files          bytes in, bounded in size and kind; files out, whole or not at all
-schema, yaml_files      settings files into dataclasses, each error with its line
-languages               what players read, by language, from configs/languages
-pool                    pieces of work in, results out: in this process, in others (`worker_processes`), on a cluster
-process, preload        this process: its streams, Ctrl-C; what worker processes have in common
-fingerprint, trust      keys of kept results; the folders from which they and machine code are taken
-kernels                 functions as machine code, by numba
-ffmpeg, pictures, html  what writes and reads films, music and pictures; the frame of every HTML page
+errors, foreign_text    one-line errors; untrusted text made harmless in CSV files and CI logs
+reading, files          reading with limits of size and kind; writing of whole files or nothing
+schema, yaml_files      settings files as dataclasses, each error with its line
+languages               the texts for players, by language, from configs/languages
+pool                    workers in this process, in other processes (`worker_processes`) or on a cluster
+process, preload        the streams of this process, and Ctrl-C; the import that worker processes share
+fingerprint, trust      keys of stored results; the folders from which results and machine code are loaded
+kernels                 functions that run as machine code, by numba
+ffmpeg, pictures, html  films and music; pictures; the frame of every HTML page
 """

@@ -55,7 +55,7 @@ class NoChartsError(ChartError):
 
 
 class UnavailableError(DancetutorError):
-    """Something outside the project is missing: OpenGL, an encoder, disk space. Says how to repair it."""
+    """Something outside the project is missing: OpenGL, an encoder, disk space. The message says how to repair it."""
 
 
 _MANY = 12  # a message does not list more names than this if one name is near

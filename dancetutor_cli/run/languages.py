@@ -40,7 +40,7 @@ class Language:
     page: dict[str, str]
 
     def finding_name(self, rule: str, otherwise: str) -> str:
-        """The name of a rule's findings; `otherwise` for a rule that the file does not have."""
+        """Return the name of a rule's findings; `otherwise` for a rule that the file does not have."""
         return self.findings.get(rule, otherwise).partition(": ")[0]
 
     def film_texts(self) -> list[str]:

@@ -154,10 +154,10 @@ def perform(task: Task) -> FinishedWork:
 
 
 class ClusterWorkers:
-    """`run.pool.Workers` on a Dask scheduler. Pieces whose worker is lost are done again by another one.
+    """`run.pool.Workers` on a Dask scheduler. If a worker is lost, another one does its task again.
 
-    A piece of work writes its file under another name and renames it, so that one that is done twice is there once.
-    Reports are only made when a piece is done: `frames(task)` says how many frames it was.
+    A task writes its file under another name and renames it, so that a task that is done twice leaves one file.
+    Reports are only made when a task is done: `frames(task)` returns its number of frames.
     """
 
     def __init__(self, address: str, report: Callable[[Any, int], None], frames: Callable[[Task], int]) -> None:
@@ -185,7 +185,7 @@ class ClusterWorkers:
         self._running.add(future)
 
     def results(self) -> Iterator[FinishedWork]:
-        """Results as they come."""
+        """Yield results as they come."""
         while self._running.count():
             future = next(self._running)
             task = self._tasks.pop(future.key)

@@ -341,7 +341,7 @@ def _description(hint: Any) -> str:
 
 
 def _range(bounds: Bounds | Entries) -> str:
-    """ "from 0 to 1", "of 0 or more"; empty without bounds."""
+    """Return bounds in words: "from 0 to 1", "of 0 or more"; empty without bounds."""
     least, most, above = bounds.least, bounds.most, getattr(bounds, "above", False)
     if least == -inf:
         return ""
@@ -351,7 +351,7 @@ def _range(bounds: Bounds | Entries) -> str:
 
 
 def _path(keys: Keys) -> str:
-    """ "overrides[0].when.meter"."""
+    """Return a key path as text: "overrides[0].when.meter"."""
     parts = (f"[{key}]" if isinstance(key, int) else f".{shown_key(key)}" for key in keys)
     return "".join(parts).removeprefix(".")
 

@@ -45,7 +45,7 @@ def _uninterrupted() -> Iterator[None]:
         return
     from multiprocessing import resource_tracker
 
-    # started with the first process, it would have this process hear of Ctrl-C again, and what is started after it
+    # if it started only with the first process, it would end the blocking of Ctrl-C here
     resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, ())
     try:
@@ -106,7 +106,7 @@ def _worker(connection: Connection, common: str) -> None:
             if task is None:
                 skip_last_collection()
                 return
-            # so that an encoder at work is ended first; not while modules are imported, whose C code would swallow it
+            # SIGTERM ends a running encoder first; not during imports, whose C code would swallow the exception
             signal.signal(signal.SIGTERM, _leave)
             done = attempt(task, lambda n: connection.send(n))
             signal.signal(signal.SIGTERM, signal.SIG_DFL)
@@ -152,10 +152,10 @@ class ProcessWorkers:
     def _start(self) -> None:
         if self._server is not None:
             try:
-                # it may still import: waiting for that can be interrupted; its children hear of nothing, as it does
+                # the wait for the server's imports can be interrupted; its children block Ctrl-C, as it does
                 self._started(self._server, contextlib.nullcontext())
                 return
-            except (EOFError, OSError):  # it has been killed
+            except (EOFError, OSError):  # the server has been killed
                 self._server = None
         self._started(multiprocessing.get_context("spawn"), _uninterrupted())
 

@@ -53,7 +53,7 @@ def _parsed(content: bytes, path: Path) -> tuple[Any, dict[Keys, int]]:
             return loader.construct_document(node), lines
         finally:
             loader.dispose()
-    except yaml.reader.ReaderError as error:  # bytes that are no text
+    except yaml.reader.ReaderError as error:  # bytes that are not text
         line = content.count(b"\n", 0, error.position) + 1
         raise FileError(path, f"not YAML: {error.reason}", line) from error
     except yaml.YAMLError as error:
@@ -62,7 +62,7 @@ def _parsed(content: bytes, path: Path) -> tuple[Any, dict[Keys, int]]:
         syntax = isinstance(error, yaml.scanner.ScannerError | yaml.parser.ParserError)
         message = f"not YAML: {problem}" if syntax else _without_tag(str(problem))
         raise FileError(path, message, None if mark is None else mark.line + 1) from error
-    except (ValueError, OverflowError) as error:  # numbers without end, dates that do not exist, bytes that are no text
+    except (ValueError, OverflowError) as error:  # endless numbers, dates that do not exist, bytes that are not text
         why = "has a number of too many digits" if "digits" in str(error) else str(error)
         raise FileError(path, f"cannot be read: {why}") from error
 
@@ -107,7 +107,7 @@ class _Loader(_Base):  # type: ignore[misc]
     def construct_yaml_int(self, node: Any) -> int:
         try:
             return int(super().construct_yaml_int(node))
-        except IndexError:  # "!!int" of nothing, or of underscores alone
+        except IndexError:  # "!!int" without text, or with underscores only
             raise yaml.MarkedYAMLError(problem="has a number without digits", problem_mark=node.start_mark) from None
 
 

@@ -1,4 +1,5 @@
-"""Functions as machine code: `compiling` makes it with numba, `store` keeps it, `native` calls it without numba.
+"""Kernels, functions that run as machine code.
 
-Start with `store`, where the form of a kept file stands and for which processor it is.
+`compiling` makes the code with numba, `store` stores it, and `native` calls it without numba. Start with `store`, which
+describes the files with the code and the processor that they are for.
 """

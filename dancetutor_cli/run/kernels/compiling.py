@@ -1,7 +1,7 @@
-"""Compiles kernels with numba: `njit` of this module in place of numba's, and what `native` calls. Alone imports numba.
+"""Compile kernels with numba: an `njit` in place of numba's, and machine code for `native`.
 
-numba gives up where it finds no folder that it can write, and where a file that it has written is cut short. With
-`njit` of this module both only mean that a kernel is compiled again: `store` keeps what it compiles.
+Only this module imports numba. numba fails if it finds no folder that it can write, or if one of its files was cut
+short. With `njit` of this module, the kernel is only compiled again: `store` stores the compiled code.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from llvmlite import binding
 from dancetutor_cli.run.kernels.native import INNER_KERNELS, RESULTS, MachineCode
 from dancetutor_cli.run.kernels.store import StoredCode, pin, processor
 
-_ASKS_FOR_BLAS = "numba.np.arraymath"  # the module of numba that imports the next one, once, for a third of a second
-_BLAS = "scipy.linalg"  # for what no kernel uses
+_ASKS_FOR_BLAS = "numba.np.arraymath"  # numba's module that imports the next one, in a third of a second
+_BLAS = "scipy.linalg"  # needed only for functions that no kernel uses
 
 
 @contextmanager
 def without_module(name: str) -> Iterator[None]:
-    """In here there is no module of a name to import, whether it has been imported before or not."""
+    """Make a module impossible to import in this context, whether or not it has been imported before."""
     present = {key: module for key, module in sys.modules.items() if key == name}
     sys.modules[name] = None  # type: ignore[assignment]  # the import system reads it as "there is none"
     try:
@@ -40,8 +40,8 @@ def without_module(name: str) -> Iterator[None]:
         sys.modules.update(present)
 
 
-# numba reads `.numba_config.yaml` in the current folder, as it is imported and whenever it compiles. A stranger's file
-# there would choose the processor that is compiled for. Where there is no YAML, numba does without it, and warns.
+# numba reads `.numba_config.yaml` in the current folder when it is imported, and whenever it compiles. An untrusted
+# file there could choose the processor to compile for. If numba cannot import YAML, it ignores the file and warns.
 warnings.filterwarnings("ignore", message="A Numba config file is found")
 with without_module("yaml"):
     import numba as numba
@@ -51,31 +51,32 @@ with without_module("yaml"):
     from numba import uint32 as uint32
     from numba import uint64 as uint64
 
-    _core: Any = import_module("numba.core")  # has types in some versions only
+    _core: Any = import_module("numba.core")  # has type hints only in some versions
 _extending: Any = import_module("numba.extending")
 _arrays: Any = import_module("numba.np.arrayobj")
 _runtime: Any = import_module("numba.core.runtime.nrt").rtsys
 _results: Any = import_module("numba.core.compiler").CompileResult
 _dumps: Any = import_module("numba.core.serialize").dumps
 _types: Any = numba.types
-_plain: Any = numba.njit  # what it says of its options has not all that are used here
+_plain: Any = numba.njit  # its type hints lack some options that are used here
 pin(_core.config)
 
 F = TypeVar("F")
 
 
 def njit(*, cache: bool = False, counted: bool = True, **options: Any) -> Callable[[F], F]:
-    """`numba.njit`; a kernel has the types that it says. cache : keep it in `store`
+    """Return the decorator `numba.njit`, which here keeps the type hints of the function.
 
-    counted : False for a kernel that makes no arrays and only looks at those it is given: references to them are not
-        counted. numba counts one up and down wherever an array is taken out of a tuple or handed on, by a call each,
-        also inside of loops: in the solver's rules that took half of the time.
+    cache : whether the compiled code is stored in `store`
+    counted : False for a kernel that makes no arrays and only uses those it is given: then numba does not count
+        references. It counts them by calls wherever an array is taken from a tuple or passed on, also inside loops. In
+        the solver's rules, that took half of the time.
     """
     if not counted:
         options["_nrt"] = False
 
     def compiled(function: F) -> F:
-        kernel: Any = _plain(no_cfunc_wrapper=True, **options)(function)  # that one is for ctypes
+        kernel: Any = _plain(no_cfunc_wrapper=True, **options)(function)  # only ctypes needs that wrapper
         if cache:
             kernel._cache = _KeptOverloads(function)
         return kernel  # type: ignore[no-any-return]
@@ -84,17 +85,18 @@ def njit(*, cache: bool = False, counted: bool = True, **options: Any) -> Callab
 
 
 def inner_kernel(function: F) -> F:
-    """A kernel that only kernels call, never Python: there it would crash.
+    """Return a kernel that only kernels call; a call from Python would crash.
 
-    It is compiled into each of them, and they are kept. tests/run/test_run_kernels.py looks for such calls.
+    It is compiled into each kernel that calls it, and those are stored. tests/run/test_run_kernels.py finds calls from
+    Python.
     """
     return njit(no_cpython_wrapper=True)(function)
 
 
 class _KeptOverloads:
-    """What a function of numba's asks for what is kept of it, in place of numba's own files."""
+    """The store from which numba loads the machine code of a function, in place of numba's own files."""
 
-    cache_path = None  # which numba's statistics show
+    cache_path = None  # shown in numba's statistics
 
     def __init__(self, function: Any) -> None:
         source = Path(function.__code__.co_filename)
@@ -103,9 +105,10 @@ class _KeptOverloads:
         self._function = f"{function.__qualname__} {function.__code__.co_firstlineno} {_dumps(cells).hex()}"
 
     def load_overload(self, signature: Any, context: Any) -> Any:
-        """Kept machine code needs what arrays are made with, and nothing that numba knows of Python's functions.
+        """Return the stored machine code for a signature, or None.
 
-        To gather that takes a process a sixth of a second, and where something must be compiled numba does it then.
+        Stored code needs numba's runtime for arrays, but not its knowledge of Python's functions. Gathering that takes
+        a sixth of a second in each process; numba does it only if it must compile something.
         """
         _runtime.initialize(context)
         with without_module(_BLAS):
@@ -117,24 +120,24 @@ class _KeptOverloads:
         return None
 
     def save_overload(self, signature: Any, result: Any) -> None:
-        """Without the list of types in words: half of a file, which nobody reads."""
+        """Store machine code for a signature, without the types in words: half of a file, which nobody reads."""
         if _is_for_target(result.library.codegen) and not result.library.has_dynamic_globals:
             body = _dumps(result._replace(type_annotation="")._reduce())
             self.kept.write(f"{self._function} {signature}", body)
 
 
 def _is_for_target(codegen: Any) -> bool:
-    """Whether numba compiles for the processor that stands in what is kept; the first import decides that."""
+    """Whether numba compiles for the processor of the stored code; the first import of numba decides that."""
     return tuple(codegen.magic_tuple()[1:]) == processor()
 
 
 def is_kept(kernel: Any) -> bool:
-    """Whether there is machine code of a kernel as it is now, of an earlier run or of a wheel; for one with `cache`."""
+    """Whether code of a kernel's current source is stored, by an earlier run or a wheel. It must have `cache`."""
     return bool(kernel._cache.kept.is_there())
 
 
 def machine_code(function: FunctionType, args: tuple[Any, ...], results: int) -> MachineCode:
-    """Compile a kernel for arguments like these, as `native` calls it."""
+    """Compile a kernel for arguments of the same types, in the form that `native` calls."""
     with without_module(_BLAS):
         import_module(_ASKS_FOR_BLAS)
     names: dict[str, Any] = {"array_at": _array_at, "int64": np.int64}
@@ -156,7 +159,7 @@ def machine_code(function: FunctionType, args: tuple[Any, ...], results: int) ->
 
 
 def _expression(argument: Any, places: Iterator[int], names: dict[str, Any]) -> str:
-    """How an argument is made of the words that stand for it; names : where the expression's names are found."""
+    """Return the expression that makes an argument from its words. names : the names in the expression, added here"""
     if isinstance(argument, tuple):
         name = f"{type(argument).__name__}_{id(type(argument))}" if hasattr(argument, "_fields") else ""
         names[name] = type(argument)
@@ -171,7 +174,7 @@ def _expression(argument: Any, places: Iterator[int], names: dict[str, Any]) -> 
 
 @_extending.intrinsic
 def _array_at(context: Any, address: Any, shape: Any, number: Any) -> Any:
-    """In kernels: an array of numbers of a type, row by row from an address on, which nothing of numba's owns."""
+    """In kernels: return the array of a number type, row by row from an address on; numba does not own its memory."""
     kind = _types.Array(number.dtype, len(shape), "C")
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -189,7 +192,7 @@ def _array_at(context: Any, address: Any, shape: Any, number: Any) -> Any:
 
 @cache
 def _kernel(function: FunctionType, **options: Any) -> Any:
-    """What numba makes of a kernel; its inner kernels, plain functions for everybody else, are made the same way."""
+    """Return a kernel compiled by numba, together with its inner kernels, which are plain functions elsewhere."""
     names = dict(function.__globals__)
     for name in function.__code__.co_names:
         inner = names.get(name)

@@ -1,9 +1,9 @@
-"""Kernels that Python calls without numba, whose import takes longer than all else that a command does for a chart.
+"""Kernels that Python calls without numba, whose import takes longer than everything else that a command does.
 
-What is kept of such a kernel is one object file. LLVM alone (llvmlite) loads it in a few milliseconds, `ctypes` calls
-it, with one array of whole numbers: two places for results, then each argument in order, tuples opened. A number stands
-for itself, an array as the address of its first item and its shape. Where no such code is kept
-`compiling` makes it; where that fails, and for arguments that it does not take, the function runs as Python.
+The stored code of such a kernel is one object file. LLVM alone (llvmlite) loads it in a few milliseconds. `ctypes`
+calls it with one array of whole numbers: two places for results, then each argument in order, with tuples opened. A
+number is passed as it is, an array as the address of its first item and its shape. If no code is stored, `compiling`
+makes it. If that fails, or if a kernel cannot take the arguments, the function runs as Python.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ from numpy.typing import NDArray
 from dancetutor_cli.run.errors import DancetutorError
 from dancetutor_cli.run.kernels.store import StoredCode
 
-RESULTS = 2  # places for what a kernel gives, before its arguments
-_OBJECT_FILES = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\x64\x86", b"\x64\xaa")  # what those of the systems start with
-_start: Any = (ctypes.c_char * 0).from_buffer  # nothing of an array but where it begins, so that empty ones do, too
-_Unused: Any = ctypes.c_void_p * 2  # where a kernel puts what it gives (nothing), and numba an exception's number
+RESULTS = 2  # places for a kernel's results, before its arguments
+_OBJECT_FILES = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\x64\x86", b"\x64\xaa")  # first bytes of the systems' object files
+_start: Any = (ctypes.c_char * 0).from_buffer  # no items, only the address of the first, so that empty arrays work too
+_Unused: Any = ctypes.c_void_p * 2  # for the kernel's return value (none) and the number of an exception of numba
 _prototype: Any = ctypes.PYFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
 
-INNER_KERNELS: dict[Callable[..., Any], dict[str, Any]] = {}  # those that kernels call, with numba's options
+INNER_KERNELS: dict[Callable[..., Any], dict[str, Any]] = {}  # kernels for kernels -> numba's options
 F = TypeVar("F", bound=Callable[..., Any])
-Kind = tuple[np.dtype[Any], int] | None  # of an array: its numbers and dimensions, row by row; None: a whole number
+Kind = tuple[np.dtype[Any], int] | None  # type and dimensions of an array, row by row; None: a whole number
 
 
 def inner_kernel(function: F, **options: Any) -> F:
-    """A kernel that other kernels call. Python calls it as an ordinary function."""
+    """Mark a kernel that other kernels call; Python calls it as an ordinary function. options : numba's"""
     INNER_KERNELS[function] = options
     return function
 
@@ -50,7 +50,7 @@ class MachineCode(NamedTuple):
 
 
 class LoadedCode(NamedTuple):
-    """Machine code that can be called. kinds : of its arguments in order; engine : LLVM's, which holds it"""
+    """Machine code that can be called. kinds : kinds of its arguments, in order; engine : the engine of LLVM"""
 
     kinds: tuple[Kind, ...]
     run: Callable[[Any, Any, int], int]
@@ -60,11 +60,11 @@ class LoadedCode(NamedTuple):
 class Kernel:
     """A function of whole numbers, numpy arrays, and named tuples of those, that runs as machine code.
 
-    It gives nothing, a whole number, or a tuple of two.
+    It returns nothing, a whole number, or a tuple of two whole numbers.
     """
 
     def __init__(self, function: FunctionType, results: int = 0) -> None:
-        """results : how many whole numbers it gives."""
+        """results : number of whole numbers that it returns."""
         self.function, self._results = function, results
         self._stored_code = StoredCode(Path(function.__code__.co_filename), function.__name__)
         self._last: LoadedCode | None = None
@@ -72,7 +72,7 @@ class Kernel:
         self._lock = Lock()
 
     def __call__(self, *args: Any) -> Any:
-        """The result of the function. DancetutorError if it raises: machine code cannot report more."""
+        """Return the function's result. Raises DancetutorError if it raises: machine code cannot report more."""
         arguments: list[Any] = []
         _open(args, arguments)
         words = _words(arguments, self._last)
@@ -82,7 +82,7 @@ class Kernel:
             words = _words(arguments, self._last)
         if words is None or self._last is None:
             try:
-                with np.errstate(over="ignore"):  # numbers of hash functions wrap round
+                with np.errstate(over="ignore"):  # hash functions overflow on purpose
                     return self.function(*args)
             except Exception as error:
                 raise self._error(error) from error
@@ -95,7 +95,7 @@ class Kernel:
         return DancetutorError(f"the kernel {self.function.__qualname__} raised an exception ({cause})")
 
     def _loaded_for(self, args: tuple[Any, ...], arguments: list[Any]) -> LoadedCode | None:
-        """Machine code for such arguments, fetched or made; None if there can be none."""
+        """Return machine code for such arguments, loaded or compiled; None if there can be none."""
         try:
             kinds = tuple(map(_kind, arguments))
         except TypeError:
@@ -107,7 +107,7 @@ class Kernel:
 
     def _fetch(self, name: str, kinds: tuple[Kind, ...]) -> LoadedCode | None:
         for body in self._stored_code.read(name):
-            with suppress(Exception):  # whatever LLVM raises of what was made on another system
+            with suppress(Exception):  # any error of LLVM about code from another system
                 line, _, data = body.partition(b"\n")
                 entry, needs = json.loads(line)
                 return _load(MachineCode(entry, needs, data), kinds)
@@ -119,14 +119,14 @@ class Kernel:
 
             code = machine_code(self.function, args, self._results)
             loaded = _load(code, kinds)
-        except Exception:  # whatever numba and LLVM raise
+        except Exception:  # any error of numba or LLVM
             return None
         self._stored_code.write(name, json.dumps(code[:-1]).encode() + b"\n" + code.data)
         return loaded
 
 
 def _open(arguments: Iterable[Any], into: list[Any]) -> None:
-    """Numbers and arrays in order, those in tuples, too."""
+    """Append numbers and arrays in order, also those in tuples."""
     for one in arguments:
         if isinstance(one, tuple):
             _open(one, into)
@@ -135,7 +135,7 @@ def _open(arguments: Iterable[Any], into: list[Any]) -> None:
 
 
 def _kind(argument: Any) -> Kind:
-    """TypeError for what machine code does not take."""
+    """Return the kind of an argument. Raises TypeError if machine code cannot take it."""
     if not isinstance(argument, np.ndarray):
         index(argument)
         return None
@@ -145,7 +145,10 @@ def _kind(argument: Any) -> Kind:
 
 
 def _words(arguments: list[Any], loaded: LoadedCode | None) -> NDArray[np.int64] | None:
-    """What machine code gets; None if it is for other arguments, or one is too large or does not lie in a row."""
+    """Return the words for machine code.
+
+    None if the code is for other arguments, or an argument is too large or not stored row by row.
+    """
     words = [0] * RESULTS
     try:
         for one, kind in zip(arguments, loaded.kinds if loaded else (), strict=True):
@@ -163,9 +166,9 @@ def _words(arguments: list[Any], loaded: LoadedCode | None) -> NDArray[np.int64]
 
 
 def _address(array: NDArray[Any]) -> int:
-    """Where an array's items begin. TypeError if they do not lie row by row.
+    """Return the address of an array's first item. Raises TypeError if the items are not stored row by row.
 
-    The buffer protocol says it in a fifth of the time of `__array_interface__`, but not of arrays that are read-only.
+    The buffer protocol takes a fifth of the time of `__array_interface__`, but refuses read-only arrays.
     """
     try:
         return ctypes.addressof(_start(array))
@@ -176,11 +179,11 @@ def _address(array: NDArray[Any]) -> int:
 
 
 def _load(code: MachineCode, kinds: tuple[Kind, ...]) -> LoadedCode:
-    """Hand an object file to LLVM. ImportError if this process lacks what it needs."""
+    """Load an object file with LLVM. Raises ImportError if this process lacks a function that it needs."""
     from llvmlite import binding
 
     if not code.data.startswith(_OBJECT_FILES) or not all(map(binding.address_of_symbol, code.needs)):
-        raise ImportError("no machine code for this process")  # LLVM would end it
+        raise ImportError("no machine code for this process")  # LLVM would end the process
     binding.initialize_native_target()
     binding.initialize_native_asmprinter()
     triple = binding.get_process_triple()
@@ -191,4 +194,4 @@ def _load(code: MachineCode, kinds: tuple[Kind, ...]) -> LoadedCode:
     address = engine.get_function_address(code.entry)
     if not address:
         raise ImportError(f"no function {code.entry}")
-    return LoadedCode(kinds, _prototype(address), engine)  # other threads of Python wait, as with numba
+    return LoadedCode(kinds, _prototype(address), engine)  # it holds Python's global lock, as with numba

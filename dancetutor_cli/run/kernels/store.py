@@ -1,11 +1,11 @@
-"""The place and form of compiled kernels, found without importing numba.
+"""The folders and files of compiled kernels, found without importing numba.
 
-Beside the modules where that can be written, else in the user's cache, else in a temporary folder of the user's own:
-compiling takes the better part of a minute, and an installation may be read-only and its user without a home. Only
-places that `run.trust` lets pass are read or written. A wheel may bring kernels, beside the modules as well.
+Kernels are stored beside the modules if that folder can be written, else in the user's cache, else in a temporary
+folder of the user. Compiling takes most of a minute, an installation may be read-only, and its user may have no home.
+Only folders that `run.trust` accepts are read or written. A wheel may contain kernels, also beside the modules.
 
-A file holds one kernel for one kind of arguments. It begins with the SHA-256 of all that follows (a cut or damaged file
-is none), the digest of the source that it was made of, and the digest of what made it, for which processor.
+A file holds one kernel for one kind of arguments. It begins with the SHA-256 of everything after it, so that a cut or
+damaged file is not used. The digest of the source follows, and then that of the compiler and the processor.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ _CONSTANT = re.compile(r"\b[A-Z][A-Z0-9_]+\b")
 
 @dataclass(frozen=True, slots=True)
 class KernelFolder:
-    """Where new kernels go. root : a folder, or None: beside the modules, in their `__pycache__`
+    """The folder for new kernels. root : the folder, or None: in the `__pycache__` beside the modules
 
-    is_writable : False if nothing can be written anywhere, so that each run compiles again
-    fault : why the usual place is not used, in words for people; "" if it is
+    is_writable : whether kernels can be stored; if not, each run compiles them again
+    fault : why the usual folder is not used, in words for people; "" if it is used
     """
 
     root: Path | None
@@ -50,7 +50,7 @@ class KernelFolder:
     fault: str = ""
 
     def of_module(self, source: Path) -> Path:
-        """The folder for the kernels of a module's file."""
+        """Return the folder for the kernels of a module. source : its file"""
         if self.root is None:
             return source.parent / "__pycache__"
         digest = hashlib.sha1(str(source.parent).encode("utf-8", "surrogateescape"), usedforsecurity=False)
@@ -59,13 +59,13 @@ class KernelFolder:
 
 @dataclass(frozen=True, slots=True)
 class StoredCode:
-    """The kept machine code of a function. source : its module's file"""
+    """The stored machine code of a function. source : its module's file"""
 
     source: Path
     function: str
 
     def read(self, kinds: str) -> Iterator[bytes]:
-        """What is kept for some kinds of arguments, in the likeliest place first."""
+        """Yield the stored code for some kinds of arguments, from the likeliest folder first."""
         for folder in places_of(self.source):
             with suppress(OSError):
                 data = read_file(folder / self._name(kinds))
@@ -74,7 +74,7 @@ class StoredCode:
                     yield data[HEAD:]
 
     def write(self, kinds: str, body: bytes) -> None:
-        """Keep something, if there is a place for it; on a full disk the kernel is there, only not kept."""
+        """Store code if there is a folder for it. On a full disk, the kernel works, but is not stored."""
         folder = kernel_folder().of_module(self.source)
         with suppress(OSError):
             if kernel_folder().is_writable and not use_folder(folder):
@@ -82,7 +82,7 @@ class StoredCode:
                 write_file(folder / self._name(kinds), hashlib.sha256(data).digest() + data)
 
     def is_there(self) -> bool:
-        """Whether anything is kept for the code as it is now, for whichever kinds; True if that cannot be known."""
+        """Whether code of the current source is stored, for any kinds of arguments; True if that cannot be known."""
         try:
             return any(
                 _head_of(path) == self._source_digest()
@@ -101,7 +101,7 @@ class StoredCode:
 
 
 def kernel_folder() -> KernelFolder:
-    """Where this process keeps its kernels: in the first place that nobody else can write, and this user can."""
+    """Return the folder for the kernels of this process: the first one that only this user can write."""
     refused: list[str] = []
     for root, words in _roots():
         fault = _use_folder(root or PACKAGE / "__pycache__", os.environ.get(TREES, ""))
@@ -113,8 +113,9 @@ def kernel_folder() -> KernelFolder:
 
 
 def places_of(source: Path) -> Iterator[Path]:
-    """Where kernels of a module may lie, the likeliest first. No file is written to try them, but for the last:
-    `kernel_folder` has tried that.
+    """Yield the folders that may have kernels of a module, the likeliest first.
+
+    No file is written to test a folder, except the last one, which `kernel_folder` tests.
     """
     for root, _ in _roots():
         place = KernelFolder(root).of_module(source)
@@ -126,9 +127,10 @@ def places_of(source: Path) -> Iterator[Path]:
 
 
 def _roots() -> Iterator[tuple[Path | None, str]]:
-    """Folders for new kernels, None for those beside the modules, and what they are called.
+    """Yield folders for new kernels (None: beside the modules), each with its name in messages.
 
-    Resolved, so that what has been looked at is what is used; a relative one stays that, and is refused.
+    Links are resolved, so that the checked folder is the one that is used. A relative folder stays relative, and is
+    refused later.
     """
     if named := os.environ.get(VARIABLE):
         yield Path(os.path.realpath(named) if Path(named).is_absolute() else named), f"{named} ({VARIABLE})"
@@ -138,7 +140,7 @@ def _roots() -> Iterator[tuple[Path | None, str]]:
 
 
 def count_kernels(folder: Path) -> tuple[int, int]:
-    """How many usable kernels a folder and those below it hold, and how many that another version compiled."""
+    """Return the number of usable kernels in a folder and below it, and of those that another version compiled."""
     kernels = {(path.parent, *path.name.split(".")[:2]): path for path in folder.rglob(f"*{SUFFIX}")}
     fits = [_head_of(path)[CHECKSUM:] == maker() for path in kernels.values()]
     return sum(fits), len(fits) - sum(fits)
@@ -146,7 +148,7 @@ def count_kernels(folder: Path) -> tuple[int, int]:
 
 @cache
 def _use_folder(place: Path, trees: str) -> str:
-    """What `use_folder` says, which writes there; asked once for what is read."""
+    """Return the result of `use_folder`, which writes there. trees : the folders of charts, a key of the cache"""
     return use_folder(place)
 
 
@@ -159,18 +161,21 @@ def _head_of(file: Path) -> bytes:
 
 @cache
 def source_digest(source: Path) -> bytes:
-    """A digest of a module with kernels and of what else of the package they may be made of."""
+    """Return a digest of a module with kernels, and of all modules whose code its kernels may contain."""
     return hashlib.sha256(b"".join(path.read_bytes() for path in source_modules(source))).digest()
 
 
 def source_modules(source: Path, package: Path = PACKAGE) -> list[Path]:
-    """The modules whose code is in a module's kernels: its own, those whose kernels or constants it has, and theirs."""
+    """Return the modules whose code a module's kernels may contain.
+
+    These are the module itself, the modules whose kernels or constants it imports, and so on.
+    """
     found, new = {source.resolve(): source.read_text("utf-8")}, [source.resolve()]
     while new:
         for name, names in _IMPORT.findall(found[new.pop()]):
             room = package / name.replace(".", "/")
             module = room.with_suffix(".py")
-            is_module = module in found or module.is_file()  # else a folder, and names are those of its modules
+            is_module = module in found or module.is_file()  # else a folder, and the names are its modules
             for path in [module] if is_module else (room / f"{word}.py" for word in _WORD.findall(names)):
                 if path in found or name.startswith("run.") or not path.is_file():
                     continue
@@ -181,14 +186,14 @@ def source_modules(source: Path, package: Path = PACKAGE) -> list[Path]:
     return sorted(found)
 
 
-# The processor for which kernels are compiled, and their compiler: known without importing numba.
+# The processor for which kernels are compiled, and their compiler, found without importing numba.
 #
-# numba compiles for the very processor that it runs on, so what it has compiled fits few others. Here all of them that
-# can do what most have done since 2013 get the same code: what came compiled with the package fits, a cache in a shared
-# folder fits every node, and the same numbers come out everywhere.
+# numba compiles for exactly the processor that it runs on, so that the code fits few others. Here, all processors with
+# the abilities of most since 2013 get the same code. So kernels in a wheel fit, a cache in a shared folder fits every
+# node, and all machines compute the same numbers.
 
 COMPILERS = ("numba", "llvmlite")
-_FORM = 7  # of what `store` keeps, and of the options by which it is compiled; count it up with either
+_FORM = 7  # version of the form of stored code and of the compiler's options; increase it with changes of either
 LEVEL = "x86-64-v3"  # LLVM's name of the processor
 _ABILITIES = (
     *("avx", "avx2", "bmi", "bmi2", "cx16", "f16c", "fma", "lzcnt", "movbe", "popcnt", "sahf"),
@@ -196,16 +201,16 @@ _ABILITIES = (
 )
 _NAME, _FEATURES = "NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"
 _PORTABLE = (LEVEL, ",".join(f"+{one}" for one in _ABILITIES))
-# numba's settings that make other code of the same source
+# numba's settings that change the code for the same source
 _SETTINGS = tuple(
     f"NUMBA_{one}" for one in ("OPT", "BOUNDSCHECK", "DEBUGINFO", "LOOP_VECTORIZE", "SLP_VECTORIZE", "ENABLE_AVX")
 )
 
 
 def pin(config: Any) -> None:
-    """Let numba compile for the portable processor, in this process and its workers, unless the user has named one.
+    """Make numba compile for the portable processor, in this process and its workers, unless the user has named one.
 
-    config : `numba.core.config`; to be called before the first kernel is made
+    Call this before the first kernel is made. config : `numba.core.config`
     """
     if processor() == _PORTABLE:
         os.environ.update(zip((_NAME, _FEATURES), _PORTABLE, strict=True))
@@ -213,7 +218,7 @@ def pin(config: Any) -> None:
 
 
 def processor() -> tuple[str, str]:
-    """LLVM's names of the processor and of the abilities that are compiled for."""
+    """Return LLVM's names of the processor, and of its abilities, for which kernels are compiled."""
     name, features = os.environ.get(_NAME), os.environ.get(_FEATURES)
     if name is None and features is None and _is_able():
         return _PORTABLE
@@ -225,15 +230,13 @@ def processor() -> tuple[str, str]:
 
 
 def is_portable() -> bool:
-    """Whether the kernels that this process compiles work elsewhere: for the portable processor, without numba
-    settings.
-    """
+    """Whether this process compiles kernels that work elsewhere: for the portable processor, with no numba settings."""
     return not _settings() and processor() == _PORTABLE
 
 
 @cache
 def maker() -> bytes:
-    """A digest of what makes machine code of a kernel's source, and for which processor. What differs is not read."""
+    """Return a digest of the compiler, its settings and the processor. Code with another digest is not used."""
     versions = [(name, _version(name)) for name in COMPILERS]
     words = repr((_FORM, versions, sys.implementation.cache_tag, processor(), _settings(), sys.platform))
     return hashlib.sha256(words.encode()).digest()
@@ -244,7 +247,7 @@ def _settings() -> dict[str, str]:
 
 
 def _version(name: str) -> str:
-    """The version of a compiler, by the name of what pip leaves beside it if that is clear: an import takes longer."""
+    """Return the version of a compiler, from its unique `.dist-info` folder if possible: an import takes longer."""
     spec = find_spec(name)
     beside = Path(spec.origin).parents[1].glob(f"{name}-*.dist-info") if spec and spec.origin else ()
     versions = [path.stem.removeprefix(f"{name}-") for path in beside]
