@@ -14,10 +14,10 @@ from dancetutor_cli.chart.model import STEP_KINDS, Kind, ReadWarning
 # Additions of StepF2, a game for Pump charts, to the notation of the other games.
 #
 # `{note|look|fake|0}` is one note of one column with any look; a 1 in the third place makes it a fake. In a chart for
-# several players, X, Y and Z are steps, and x, y and z heads of holds, of the first, second and third player; the game
-# shows each player's notes in a different colour. A chart with steps of the first and the second player, and none of
-# the third, is read as a chart for two. Its other notes (the third player's holds, plain notes) belong to the player on
-# their half of the pads. A chart with steps of all three players is for three or more, see `notes_by_player`.
+# several players, X, Y and Z are steps of the first, second and third player, and x, y and z are heads of their holds.
+# The game shows each player's notes in a different colour. A chart with steps of the first and the second player, and
+# none of the third, is read as a chart for two. Its other notes (the third player's holds, plain notes) belong to the
+# player on their half of the pads. A chart with steps of all three is for three or more, see `notes_by_player`.
 
 PLAYERS = b"XYZxyz"
 TEXTS = {
@@ -54,8 +54,9 @@ def player_of(letter: int) -> int:
 
 
 def note_at(text: bytes, at: int, columns: int) -> tuple[int, int, str] | None:
-    """Return the letter of a StepF2 or StepManiaX note at an offset, the offset of its end, and its key in `TEXTS`, or
-    None.
+    """Read a StepF2 or StepManiaX note at an offset.
+
+    Returns its letter, the offset of its end, and its key in `TEXTS`; None if there is no such note.
     """
     if found := _NOTE.match(text, at):
         letter = _FAKED.get(found[1], "F") if found[2] == b"1" else found[1].decode("ascii")
@@ -80,8 +81,11 @@ _MOST = 20  # limit of warnings of one sort; further ones are only counted
 
 @dataclass(frozen=True, slots=True)
 class Cells:
-    """Non-empty cells, arrays of one length: part of the file (a chart, or one of its players), tick, column, kind (a
-    `Kind` or `TAIL`), line, end."""
+    """Non-empty cells as arrays of one length; tick, column, line and end are as in `NoteTable`.
+
+    part : number of the part of the file: a chart, or one of its players
+    kind : a `Kind`, `TAIL`, `OTHERS_HEAD` or `ROW_OF_MINES`
+    """
 
     part: NDArray[np.int64]
     tick: NDArray[np.int64]
@@ -105,10 +109,9 @@ class Cells:
 
 
 def notes_of(cells: Cells, warnings: Sequence[list[ReadWarning]]) -> Cells:
-    """Return the notes of all parts, sorted by part, column and tick; tails are removed, and `end` is set for holds and
-    rolls.
+    """Return the notes of all parts, sorted by part, column and tick, without tails; holds and rolls have an `end`.
 
-    cells : cells, sorted by tick within a part; warnings : a list for each part, to which warnings are added
+    cells : sorted by tick within a part; warnings : a list for each part, to which warnings are added
 
     A tail belongs to the nearest note before it in its column, if that is an open head; keysounds do not count. So a
     tap or a second head inside a hold deletes the first head. A tail looks only at earlier ticks: on the tick of a
@@ -171,16 +174,16 @@ def report(warnings: list[ReadWarning], code: str, text: str, lines: NDArray[np.
 # The parts of players whose notes are in the same rows and are marked by letters.
 
 _PLAIN = 4  # the colour of plain notes in a chart with three letters
-_LEAST = 0.5  # the share of the rarest letter's notes from which on plain notes are a fourth player's
+_LEAST = 0.5  # share of the rarest letter's notes from which plain notes belong to a fourth player
 
 
 def notes_by_player(cells: Cells, marks: Mapping[tuple[int, int], int], columns: int, letters: bytes) -> list[Cells]:
     """Return the notes of each player, in the order of letters, left before right; mines are in all parts.
 
     Each of two players has the notes with their own letter, and the notes without a letter on their half of the pads.
-    With a third letter, plain notes are a fourth player's, as StepF2 colours them, if there are enough of them;
-    otherwise they go to the player who mostly steps that panel. A colour that is mostly on both pads at once belongs to
-    two players, one on each. A player with nothing but fakes does not dance.
+    With a third letter, enough plain notes belong to a fourth player, as StepF2 colours them. Fewer plain notes go to
+    the player who mostly steps that panel. A colour that is mostly on both pads at once belongs to two players, one on
+    each pad. A player with only fakes has no part.
 
     marks : (tick, column) -> player whose letter is in that cell
     """

@@ -103,7 +103,7 @@ _BPMS = re.compile(rb"#BPMS:([^;]*)", re.IGNORECASE)
 
 
 class HarmError(FileError):
-    """An edit that would change what a game reads, and so is not written: a bug of the program, or a very odd file."""
+    """An edit that is not written, because games would read another song: a bug of the program, or a very odd file."""
 
 
 def check_edit(

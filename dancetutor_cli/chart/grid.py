@@ -25,7 +25,7 @@ _KIND = np.full(256, _UNKNOWN, dtype=np.uint8)
 _KIND[list(b"01234MLFK")] = (
     Kind.EMPTY, Kind.TAP, Kind.HOLD, TAIL, Kind.ROLL, Kind.MINE, Kind.LIFT, Kind.FAKE, Kind.KEYSOUND,
 )  # fmt: skip
-# How the letters of several players are read: in a chart for several players as notes, in other charts as no notes.
+# Kinds of cells for the letters of players: notes in a chart for several players, no notes in other charts.
 _NOBODYS = {letter: int(Kind.EMPTY) if chr(letter).isupper() else OTHERS_HEAD for letter in stepf2.PLAYERS}
 _NOBODYS |= {stepf2.FAKE_HEAD: OTHERS_HEAD, stepf2.MINES_HEAD: ROW_OF_MINES}
 _OF_PLAYERS = _NOBODYS | {letter: int(Kind.TAP if chr(letter).isupper() else Kind.HOLD) for letter in stepf2.PLAYERS}
@@ -51,8 +51,7 @@ class NoteSpan:
 
     start, end : the span; begin : offset before which a `,` does not end a measure
     of_players : whether letters mark the player of a note; if not, notes with players' letters are not read
-    marks : (tick, column) -> player whose letter is in that cell; both this and `warnings` are filled while rows are
-    read
+    marks : (tick, column) -> player whose letter is in that cell; filled, as `warnings`, while rows are read
     """
 
     start: int
@@ -243,8 +242,8 @@ def odd_row(
 ) -> tuple[list[int], list[tuple[str, str]], dict[int, tuple[int, str]]]:
     """Read the cells of one row character by character, as the games do.
 
-    Returns the kinds of the cells, the code and message of each oddity, and for each column with a StepF2 or StepManiaX
-    note its letter and its key in `cells.TEXTS`.
+    Returns the kinds of the cells, and the code and message of each oddity. The third result has, for each column with
+    a StepF2 or StepManiaX note, its letter and its key in `cells.TEXTS`.
     """
     cells: list[int] = []
     found: dict[tuple[str, str], None] = {}

@@ -6,8 +6,9 @@ The hash depends only on notes and BPMs: a mirrored chart, or a chart at another
 offset, stops, comments, blanks and line breaks do not change it.
 
 Source: chart hash version 3, as themes for StepMania 5 and ITGmania compute it from the text of a file. Newer releases
-of ITGmania compute it in the engine from the parsed notes and BPMs; whether the hash is then the same for every file is
-not known. No comment ends the notes here, as in the engine; in those themes, one with a `;` does: see `hash_input`.
+of ITGmania compute it in the engine from the parsed notes and BPMs. It is not known whether that hash is the same for
+every file. Here, as in the engine, no comment ends the notes; in those themes a comment with a `;` does, see
+`hash_input`.
 """
 
 from __future__ import annotations
@@ -114,9 +115,7 @@ def normalised_bpms(text: str) -> str:
 
 
 def _decimals(text: str) -> str:
-    """Return a number with three decimals, with halves rounded up (not to even, as by `%.3f`); "" if it is not a
-    number.
-    """
+    """Return a number with three decimals, halves rounded up (not to even, as by `%.3f`); "" for other text."""
     plain = "".join(c for c in text if c.isprintable()).strip()
     thousandths = float(plain) * 1000 + 0.5 if _NUMBER.fullmatch(plain) else math.inf
     if not math.isfinite(thousandths):

@@ -30,7 +30,7 @@ def scan(data: bytes) -> list[Tag]:
     tags: list[Tag] = []
     params: list[tuple[int, int]] = []
     begin = -1  # offset of the '#' of the open tag, -1 between tags
-    start = 0  # where the open value starts
+    start = 0  # offset of the open value
     for match in _TOKEN.finditer(data):
         at = match.start()
         token = data[at]
@@ -107,8 +107,8 @@ _DROPPED = frozenset({"Cc", "Cf", "Cs", "Cn", "Co", "Zl", "Zp"})
 def encoding_of(data: bytes) -> str:
     """Return the encoding of a file, by Python's name: "ascii", "utf-8", "utf-8-sig", "cp932", "cp949" or "cp1252".
 
-    The old encodings can only be guessed: Asian letters are pairs of high bytes (in Shift-JIS often a high and a low
-    byte), and high bytes of Western text are single.
+    The old encodings can only be guessed. Asian letters are pairs of high bytes (in Shift-JIS often a high and a low
+    byte), while high bytes of Western text are single.
     """
     if data.isascii():
         return "ascii"

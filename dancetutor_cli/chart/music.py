@@ -18,7 +18,7 @@ def music_file(song: Song, chart: Chart | None = None) -> Path:
     """Return the music of a song, or of a chart with music of its own.
 
     The case of the name is ignored, as by the games on Windows. If the tag is empty, the music is the only audio file
-    in the folder; the music of a .ucs file has the name of that file.
+    in the folder. The music of a .ucs file has the name of that file.
 
     Raises
     ------
@@ -75,9 +75,7 @@ def other_case(folder: Path, name: str) -> str | None:
 
 
 def _of_same_name(song: Song, folder: Path) -> Path:
-    """Return the audio file with the stem of the chart file, such as "CS001.mp3", else the only audio file in the
-    folder.
-    """
+    """Return the audio file with the stem of the chart file, as "CS001.mp3", else the folder's only audio file."""
     wanted = _plain(song.path.stem)
     audio = [name for name in _names(folder) if name.lower().endswith(SUFFIXES) and _plain(Path(name).stem) == wanted]
     return _inside(song, folder / min(audio), folder) if audio else _only_audio_file(song, folder)

@@ -20,7 +20,7 @@ from dancetutor_cli.chart.timing import Timing
 
 _PLAYERS = 2
 _AT_ONCE = 200  # charts that are read together; a file may hold thousands
-_PART = 40  # bits of a tick in a sort key: the number of the part stands above them
+_PART = 40  # bits of a tick in a sort key, below the number of the part
 _BLANKS = re.compile(rb"[\r\n\t ]*")
 _COUNTS = np.ones(256, dtype=bool)
 _COUNTS[[Kind.FAKE, Kind.KEYSOUND]] = False
@@ -109,7 +109,7 @@ class _PartCells:
         return NoteData(notes, *self._tables(at), tuple(self._parts[at].warnings))
 
     def of_players(self, parts: range, value: Value) -> NoteData:
-        """Return the note data of a chart for several players, who have a part each, or whose notes letters mark."""
+        """Return the note data of a chart for several players; each has a part, or letters mark their notes."""
         (start, end), form, timing = value
         players = [self._cells[self._bounds[at] : self._bounds[at + 1]] for at in parts]
         own = [
@@ -178,8 +178,8 @@ def _table(players: list[Cells], timing: Timing) -> NoteTable:
 # Charts for several players: the steps of each player, as a chart for the pad on which the player stands.
 #
 # In a couple chart, each player has a pad and half of the columns. In a routine, both players dance on one double pad,
-# and `&` separates their notes. Two or more players also share a double pad if letters mark the player of each note:
-# in StepF2's co-op, a pump-double, and in a pump-routine without `&`. Then the notes of all players share rows.
+# and `&` separates their notes. Two or more players also share a double pad if letters mark the player of each note.
+# Such charts are StepF2's co-op, a pump-double, and a pump-routine without `&`. In them, all players' notes share rows.
 
 # Steps type of a chart for several players -> steps type of the pad on which each player stands.
 OWN_PADS = {"dance-couple": "dance-single", "pump-couple": "pump-single"}

@@ -57,8 +57,8 @@ def places_of_feet(song: Path) -> Iterator[Path]:
 def feet_fingerprint(song: Path) -> str:
     """Return a hash (hex) of all settings for the feet of a song's charts; if it changes, the feet may change.
 
-    File names are hashed where they matter: `data.sme` is only used in a folder with one song, and the entries of
-    dancetutor.yaml are for paths below its folder.
+    File names are hashed if they matter. For example, `data.sme` is only used in a folder with one song, and the
+    entries of dancetutor.yaml are for paths below its folder.
     """
     out = hashlib.sha256()
     for part in _hashed_bytes(song):

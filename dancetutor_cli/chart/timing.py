@@ -208,7 +208,7 @@ class _Knots:
         return out
 
     def between(self, a: int, i: int, b: int, j: int) -> Fraction:
-        """Return the exact seconds from a note on tick a to one on tick b; i and j are the last knots up to a and b."""
+        """Return the exact seconds from a note on tick a to one on tick b. i, j : the last knots up to a and b"""
         if a == b:
             return Fraction(0)
         here, rate = a, self.exact[i][2] if i >= 0 else self.exact_first_rate

@@ -31,7 +31,8 @@ def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = No
 
     size : returns the bytes of note data to be solved; small charts are solved without compiling. None: always compile
 
-    If kernels cannot be stored in the usual folder, a note says so in every case: each run may take 30 s longer.
+    If kernels cannot be stored in the usual folder, a note says so even without a terminal: each run may take 30 s
+    longer.
     """
     from dancetutor_cli.commands.arguments import note
     from dancetutor_cli.feet.solver.compiled import interpret, is_compiled

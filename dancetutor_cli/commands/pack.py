@@ -108,7 +108,7 @@ class PackReport:
         return pack_lines(self._pack, shutil.get_terminal_size().columns if self._brief else _WIDE) * self._is_told
 
     def summary_lines(self, tally: Tally) -> Iterator[str]:
-        """The lines on standard error: the file that was written, and its contents."""
+        """Yield the lines for standard error: the file that was written, and its contents."""
         if self._html is not None and self._pack is not None:
             yield f"{self._html}: {plural(self._pack.songs, 'song')}; {tally.summary()}"
 

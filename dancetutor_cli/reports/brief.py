@@ -230,7 +230,7 @@ def _counts(chart: ChartResult, widest: int) -> str:
         plural(n, name).replace(" ", FIXED_BLANK) for move, name in _MOVES.items() if (n := chart.counts.get(move))
     ]
     plays, scores = chart.estimate.short if chart.estimate else "", chart.score.short if chart.score else ""
-    plays += "" if plays.endswith("?") else " "  # so that digits stand below digits
+    plays += "" if plays.endswith("?") else " "  # to align the digits
     rows = str(chart.row_count) if chart.playable else "no pad"
     more = "; ".join(filter(None, (", ".join(words), ", ".join(counted))))
     line = f"{safe(chart.label):{widest}}  {plays:>11} {scores:>11} {rows:>6}  {more}"

@@ -36,7 +36,7 @@ class SarifReport(Report):
         self._places = {code: number for number, code in enumerate(all_rules())}
 
     def add(self, result: FileResult) -> None:
-        """Remember the findings of one file."""
+        """Collect the findings of one file."""
         self._results += [self._result(entry) for entry in entries(result)]
         if result.error is not None:
             self._unreadable.append(safe(result.error))
@@ -144,7 +144,7 @@ class GitlabReport(Report):
         self._issues: list[dict[str, Any]] = []
 
     def add(self, result: FileResult) -> None:
-        """Remember the findings of one file."""
+        """Collect the findings of one file."""
         self._issues += [
             {
                 "type": "issue",

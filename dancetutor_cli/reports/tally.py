@@ -57,7 +57,7 @@ class Tally:
 
     @property
     def exit_status(self) -> int:
-        """2 if a file could not be read, else 1 if findings fail the run, else 0."""
+        """The exit status: 2 if a file could not be read, else 1 if findings fail the run, else 0."""
         if self.unreadable:
             return 2
         if self.exit_zero or self.fail_on == "never":

@@ -200,7 +200,7 @@ class FilmProgress:
             self.bar.stop()
 
     def begin(self, frames: int, fps: int) -> None:
-        """Start with the number of frames of the film."""
+        """Start the clock. frames : number of frames of the film; fps : frames per second"""
         self.frames, self.fps = frames, fps
         self.began = self.last_report = time.monotonic()
         if self.terminal:

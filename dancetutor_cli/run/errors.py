@@ -14,9 +14,7 @@ class DancetutorError(Exception):
 
 
 class UsageError(DancetutorError):
-    """The command line, a preset or a configuration names something that does not exist; the message has the valid
-    names.
-    """
+    """The command line, a preset or a configuration has an unknown name; the message has the valid names."""
 
 
 class FileError(DancetutorError):

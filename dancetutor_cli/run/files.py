@@ -26,7 +26,7 @@ EDIT_SUFFIX = ".edit"  # in .sm or .ssc form; the difficulty of its charts is al
 # Write a file whole or not at all, in a way that another process, a crash or a full disk cannot spoil.
 #
 # The new bytes go to a temporary file beside the old one, reach the disk, and take its place by a rename. The temporary
-# file has a name made from the file's own, and is locked while it is written: so it is the lock between two processes.
+# file has a name made from the name of the file. It is locked while it is written, so it is the lock between processes.
 # The next process finds a temporary file that a killed process has left, sees that it is not locked, and removes it.
 
 try:
@@ -347,9 +347,7 @@ def one_of(names: Iterable[str]) -> str:
 
 
 def plain_name(text: str) -> str:
-    """Make a file name from any text: in lower case, with "_" for characters that file systems may refuse; may be
-    empty.
-    """
+    """Make a lower-case file name, which may be empty; "_" replaces characters that file systems may refuse."""
     return re.sub(r"[^\w.-]+", "_", text.lower()).strip("._")[:120]
 
 

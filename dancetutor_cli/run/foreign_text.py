@@ -1,4 +1,4 @@
-"""Escaping of other people's text, so that it is not a formula in a spreadsheet or a command in a CI log."""
+"""Escaping of untrusted text, so that it is not a formula in a spreadsheet or a command in a CI log."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from typing import IO
 
 # Cells of a CSV file that a spreadsheet reads as text, whatever they begin with, and their conversion back.
 
-# A cell that begins with one of these is a formula in a spreadsheet (OWASP); some spreadsheets accept the wide forms,
-# too.
+# A cell that begins with one of these is a formula in a spreadsheet (OWASP); some spreadsheets accept wide forms.
 _FORMULA = ("=", "+", "-", "@", "\t", "\r", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 
 

@@ -44,9 +44,7 @@ def freeze_objects() -> None:
 
 
 def skip_last_collection() -> None:
-    """Skip the garbage collection at the end of the process, which takes longer than a chart because of numba's
-    objects.
-    """
+    """Skip the garbage collection at the end of the process: numba's objects make it take longer than a chart."""
     gc.freeze()
 
 
@@ -128,11 +126,9 @@ def os_error_message(error: OSError) -> str:
     return line
 
 
-# A Ctrl-C where Python cannot raise an exception is sent again a moment later, and the errors that it causes are not
-# reported.
+# If Python cannot raise an exception for a Ctrl-C, it is sent again a moment later, and its errors are not reported.
 #
-# The compiler swallows exceptions that are raised in its callbacks into Python, and then fails with an error of its
-# own.
+# The compiler swallows exceptions that are raised in its callbacks into Python, and then fails with another error.
 
 _AGAIN = 0.05  # seconds
 

@@ -39,7 +39,7 @@ _KINDS = (
 def read_bytes(path: Path, limit: int) -> bytes:
     """Return the content of a regular file of at most `limit` bytes.
 
-    Raises MissingFileError if the file does not exist, and FileError for a pipe, a device, a folder, circular links,
+    Raises MissingFileError if the file does not exist. Raises FileError for a pipe, a device, a folder, circular links,
     too many bytes, or an error of the system.
     """
     with _opened(path) as (file, size):
@@ -195,8 +195,9 @@ def config_names(folder: str) -> list[str]:
 def named_file(folder: str, name: str | Path) -> Path:
     """Return the file in `configs/` with a name, or a file of the user.
 
-    folder : the folder, such as "presets", whose name without the last letter is the noun in messages. Raises
-    UsageError for an unknown name
+    folder : the folder, such as "presets"; its name without the last letter is the noun in messages
+
+    Raises UsageError for an unknown name.
     """
     names, path = config_names(folder), Path(name)
     if str(name) in names:

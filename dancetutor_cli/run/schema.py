@@ -161,9 +161,9 @@ class MarkedYaml:
 def convert(source: MarkedYaml, kind: type[T], keys: Keys = (), base: T | None = None) -> T:
     """Convert the value at a key path to a dataclass or another type. Raises FileError with the line of a wrong value.
 
-    kind : a type whose fields are the allowed keys (`HYPHENS = True`: with "-" in place of "_") and whose hints define
-    the values: numbers, text, `bool`, `Literal`, `tuple` for lists, `dict`, dataclasses, `X | None`, all of them with
-    marks in `Annotated`. A key without a default must be there
+    kind : a type whose fields are the allowed keys (`HYPHENS = True`: with "-" in place of "_"). Its hints define the
+    values: numbers, text, `bool`, `Literal`, `tuple` for lists, `dict`, dataclasses, `X | None`, all of them with marks
+    in `Annotated`. A key without a default must be there
     base : the values of keys that the file leaves out; mappings are merged with those of `base`
     """
     data: Any = source.data

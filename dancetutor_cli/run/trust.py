@@ -1,7 +1,7 @@
 """The check of folders and files from which machine code is loaded: only this user or root may be able to write them.
 
 Loaded machine code and pickles can do anything, and a user who can write a file can write its checksum. So the owners
-of a file and of every folder above it are checked (as for ssh's keys), and none may be in a folder of songs. On
+of a file and of every folder above it are checked (as for ssh's keys). No such file may be in a folder of songs. On
 Windows, Python cannot check permissions, so only paths are checked.
 """
 
@@ -18,7 +18,7 @@ from threading import get_ident
 
 from dancetutor_cli.run.reading import PACKAGE
 
-CACHE_VARIABLE = "DANCETUTOR_CACHE"  # the user's choice of a folder for kept results
+CACHE_VARIABLE = "DANCETUTOR_CACHE"  # the user's choice of a folder for stored results
 TREES = "_DANCETUTOR_TREES"  # JSON list of the folders whose charts are read; worker processes inherit it
 _FLAGS = [getattr(os, name, 0) for name in ("O_NOFOLLOW", "O_NONBLOCK", "O_CLOEXEC", "O_BINARY")]
 _TEMPORARY = (Path("/tmp"), Path("/var/tmp"))  # if the environment has no folder for temporary files
@@ -57,7 +57,7 @@ def fault_of(folder: Path) -> str:
 
 
 def use_folder(folder: Path) -> str:
-    """Make a folder for this user alone if it does not exist, and check that it is writable; returns as `fault_of`."""
+    """Make a folder for this user only, if it does not exist, and check that it is writable; returns as `fault_of`."""
     if fault := fault_of(folder):
         return fault
     probe = folder / f".dancetutor-{os.getpid()}-{get_ident()}.tmp"
@@ -130,7 +130,7 @@ def kept_folder(name: str) -> Path | None:
 
 
 def temporary_folder(name: str) -> Path | None:
-    """Return a folder for temporary files of this user alone, made if needed; it is never in the current folder."""
+    """Return a folder for temporary files of this user only, made if needed; it is never in the current folder."""
     if sys.platform == "win32":
         from tempfile import gettempdir
 
@@ -163,8 +163,9 @@ def _trees() -> list[str]:
 
 
 def _fault(status: os.stat_result, *, may_be_shared: bool = False) -> str:
-    """Return how other users can change a file or folder, or "". may_be_shared : whether a sticky folder such as /tmp
-    is allowed
+    """Return how other users can change a file or folder, or "".
+
+    may_be_shared : whether a sticky folder such as /tmp is allowed
     """
     if not hasattr(os, "geteuid"):
         return ""
@@ -191,9 +192,7 @@ def _is_private_group(number: int) -> bool:
 
 
 def programs(name: str, path: str) -> Iterator[Path]:
-    """Yield programs of a name in the folders of PATH, in order; relative folders are skipped, because they may be
-    packs.
-    """
+    """Yield programs of a name in the folders of PATH, in order; relative folders may be packs, and are skipped."""
     for folder in path.split(os.pathsep):
         program = Path(folder) / name
         with suppress(OSError, ValueError):

@@ -94,7 +94,7 @@ def _server(common: str) -> Any:
 
 
 def _worker(connection: Connection, common: str) -> None:
-    """The loop of a worker process. The parent decides when it ends; a parent that dies ends it too."""
+    """Run the loop of a worker process. The parent decides when it ends; a parent that dies ends it too."""
     reduce_garbage_collection()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if common:
