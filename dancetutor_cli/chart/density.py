@@ -24,7 +24,7 @@ def bpm_shares(chart: Chart) -> list[tuple[float, float]]:
 
 
 def fastest_bpm(chart: Chart) -> float:
-    """Return the highest BPM that at least 2 % of the chart reaches, so that short gimmicks do not count."""
+    """Return the highest BPM that the chart reaches for at least 2 % of its time; short gimmicks do not count."""
     shares = sorted(bpm_shares(chart), reverse=True)
     total, heard = sum(length for _, length in shares), 0.0
     for bpm, length in shares:

@@ -165,7 +165,7 @@ def _table(players: list[Cells], timing: Timing) -> NoteTable:
     if len(players) > 1:
         cells = Cells.joined(players)
         cells = cells[np.argsort(cells.column, kind="stable")]
-    cells = cells[np.argsort(cells.tick, kind="stable")]  # sorted by column already
+    cells = cells[np.argsort(cells.tick, kind="stable")]  # columns are in order
     if len(players) > 1 and len(cells.tick) > 1:
         same = (np.diff(cells.tick) == 0) & (np.diff(cells.column) == 0)
         cells = cells[np.append(~same, True)]

@@ -181,7 +181,7 @@ class Selection:
 
 
 def note_bytes(path: Path, selection: Selection, data: bytes | None = None) -> int:
-    """Return the bytes of selected note data in a chart file, as a measure of the work; 0 if it cannot be read.
+    """Return the size of the selected note data in a chart file, bytes, as a measure of the work; 0 if unreadable.
 
     data : bytes to read in place of the file
 

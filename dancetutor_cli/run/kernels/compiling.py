@@ -24,7 +24,7 @@ from llvmlite import binding
 from dancetutor_cli.run.kernels.native import INNER_KERNELS, RESULTS, MachineCode
 from dancetutor_cli.run.kernels.store import StoredCode, pin, processor
 
-_ASKS_FOR_BLAS = "numba.np.arraymath"  # numba's module that imports the next one, in a third of a second
+_ASKS_FOR_BLAS = "numba.np.arraymath"  # numba's module that imports the next one, which takes a third of a second
 _BLAS = "scipy.linalg"  # needed only for functions that no kernel uses
 
 
