@@ -163,7 +163,7 @@ IN_CODE = {words: better for words, better in FORBIDDEN.items() if not words.sta
     r"dearer|dearest": "costlier, slower",
 }
 # Names of fields and modules that docstrings explain, and data that has been called so since before.
-NAMED = re.compile(r"\b(?:told|mend)(?= : |, fix\b)|^notes let go$", re.M)
+NAMED = re.compile(r"\b(?:told|mend)(?= : |, fix\b)", re.M)
 
 
 def code_texts(name: str) -> Iterator[tuple[int, str, bool]]:

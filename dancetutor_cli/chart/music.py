@@ -9,7 +9,7 @@ from pathlib import Path
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.msd import quote
 from dancetutor_cli.chart.reader import suspicious_music
-from dancetutor_cli.run.errors import FileError, MissingFileError
+from dancetutor_cli.run.errors import FileError, MissingFileError, plural
 
 SUFFIXES = (".ogg", ".oga", ".mp3", ".wav", ".flac", ".opus")
 
@@ -84,7 +84,8 @@ def _of_same_name(song: Song, folder: Path) -> Path:
 def _only_audio_file(song: Song, folder: Path) -> Path:
     audio = [name for name in _names(folder) if name.lower().endswith(SUFFIXES) and not name.startswith("._")]
     if len(audio) != 1:
-        raise MissingFileError(song.path, f"the file names no music, and its folder has {len(audio)} audio files")
+        found = plural(len(audio), "audio file") if audio else "no audio file"
+        raise MissingFileError(song.path, f"#MUSIC is empty, and the folder has {found}; name the music in the tag")
     return _inside(song, folder / audio[0], folder)
 
 

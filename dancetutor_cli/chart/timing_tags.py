@@ -378,7 +378,7 @@ def _built(raw: Raw, warnings: list[ReadWarning], line: int) -> Timing:
             warn("negative-timing", "negative or infinite BPMs or stops are read as warps")
         raw = to_warps(raw)
     if not raw.bpms:
-        warn("no-bpm", "there is no usable BPM: 60 BPM is used")
+        warn("no-bpm", "there is no usable BPM, so 60 BPM is used")
         raw.bpms.append((Fraction(0), Fraction(60)))
     bpms = at_ticks(raw.bpms)
     return Timing(

@@ -69,7 +69,7 @@ class AnimateOptions:
 @click.option(
     "--fps",
     type=Number(1, 1000),
-    default=60.0,
+    default=60,
     show_default=True,
     metavar="N",
     help="Frames per second.",
@@ -78,7 +78,7 @@ class AnimateOptions:
 @click.option(
     "--rate",
     type=Number(SLOWEST, FASTEST),
-    default=1.0,
+    default=1,
     show_default=True,
     metavar="RATE",
     help="Speed of the music, 1 is normal.",

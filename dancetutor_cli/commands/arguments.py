@@ -66,7 +66,9 @@ class _Range:
         except click.BadParameter:
             pass
         name = max(param.opts, key=len) if param is not None else "number"
-        raise UsageError(f"{name} {value}: write {', '.join(filter(None, (self.what, self._describe_range())))}")
+        limits = self._describe_range()
+        between = ", " if self.max is None else " from "
+        raise UsageError(f"{name} {value}: write {self.what}{between * bool(limits)}{limits}")
 
 
 class WholeNumber(_Range, click.IntRange):

@@ -180,7 +180,7 @@ _SHOWN = {"without": "missing"}  # states that have another word in the table th
 def command(as_json: bool) -> None:
     """Check renderers, encoders, caches, fonts and disk, and print how to repair what is missing.
 
-    Exit status: 0 videos can be made, 2 they cannot.
+    Exit status: 0 films can be made, 2 they cannot.
     """
     checks = examine()
     if as_json:

@@ -56,7 +56,7 @@ pack_options = combined(
     click.option(
         "--rate",
         type=Number(0.1, 10),
-        default=1.0,
+        default=1,
         show_default=True,
         metavar="RATE",
         help="Speed of the music, 1 is normal. It changes the estimated meters; the feet stay those of rate 1.",

@@ -168,13 +168,13 @@ class Estimate:
         return _SCALE_NAMES[self.scale]
 
     @property
-    def bill(self) -> str:
-        """The estimate for people: "11.4 on the ITG scale (80 % likely: 10.2 to 12.6): streams +3.1, other +0.2"."""
-        return _bill(f"{self.meter:.1f}{self.span}", self.terms, 1)
+    def terms_text(self) -> str:
+        """The estimate for people: "11.4 on the ITG scale (80 % likely: 10.2 to 12.6): streams +3.1 levels"."""
+        return _terms_text(f"{self.meter:.1f}{self.span}", self.terms, 1)
 
     def most(self, count: int) -> str:
-        """Return the meter with at most `count` terms: "11.4 on the ITG scale: streams +3.1, crossovers +0.6"."""
-        return _bill(f"{self.meter:.1f} on the {_SCALE_NAMES[self.scale]} scale", self.terms, 1, count)
+        """Return the meter with at most `count` terms: "11.4 on the ITG scale: streams +3.1, jumps +0.6 levels"."""
+        return _terms_text(f"{self.meter:.1f} on the {_SCALE_NAMES[self.scale]} scale", self.terms, 1, count)
 
     @property
     def short(self) -> str:
@@ -204,10 +204,10 @@ class ScoreEstimate:
     terms: tuple[tuple[str, float], ...]
 
     @property
-    def bill(self) -> str:
+    def terms_text(self) -> str:
         """The estimate for people: "14.62 on the DDR scale (80 % likely: 14.35 to 14.89): base level 14.41, ..."."""
         (name, level), *terms = self.terms
-        return _bill(f"{self.meter:.2f}{self.span}", terms, 2, first=(f"base {name} {level:.2f}",))
+        return _terms_text(f"{self.meter:.2f}{self.span}", terms, 2, first=(f"base {name} {level:.2f}",))
 
     @property
     def span(self) -> str:
@@ -220,13 +220,13 @@ class ScoreEstimate:
         return f"{_SCALE_NAMES['ddr']} {self.meter:.2f}"
 
 
-def _bill(
+def _terms_text(
     meter: str, terms: Sequence[tuple[str, float]], digits: int, most: int | None = None, first: tuple[str, ...] = ()
 ) -> str:
     """Return a meter, given as text, with its terms, without the terms that round to 0."""
     named = [("other" if name == "rest" else name, value) for name, value in terms if round(abs(value), digits) > 0]
     parts = [f"{name} {value:+.{digits}f}" for name, value in named]
-    return f"{meter}: {', '.join([*first, *parts][:most])}"
+    return f"{meter}: {', '.join([*first, *parts][:most])} levels"
 
 
 # The sync of beats and music, as it is kept and shown.

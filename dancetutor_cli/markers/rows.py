@@ -11,7 +11,10 @@ from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.feet.annotations import StepRows
 from dancetutor_cli.markers.model import ChartFeet, Lack, NoteChange
 
-WARNING = "Etterna joins rows that carry a comment with the next one; the style 'rows' is for other games and editors"
+WARNING = (
+    "Etterna misreads rows with a comment: it joins them with the next row; "
+    "use --markers rows only for other games and editors"
+)
 # This program's letters, directly after the row; older blanks or the mark of an added chart may follow.
 _OURS = re.compile(rb"//dt[LRlr<>.]+(?=[ \t]*(?:\r?\n|\Z)|//\{dt1 edit\})")
 _FREE = re.compile(rb"(?=[ \t]*(?:\r?\n|\Z))")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 
-_NOTHING = 1e-6  # smaller values, in any unit, are shown as 0
+_NOTHING = 5e-4  # smaller values, in any unit, are shown as 0
 _DISTANCES = ("minimum", "maximum", "mean", "deviation")
 
 
@@ -34,11 +34,16 @@ def print_report(report: MotionReport) -> None:
     for f in report.figures:
         unit = f" {f.unit}" if f.unit else ""
         goal = "" if f.goal is None else f"{'at least' if f.at_least else 'at most'} {f.goal:g}{unit}"
-        value = "nothing to measure" if f.value != f.value else f"{0 if abs(f.value) < _NOTHING else f.value:.4g}{unit}"
+        value = "nothing to measure" if f.value != f.value else f"{_number(f.value)}{unit}"
         table.add_row(f.name, value, goal, {None: "", True: "yes", False: "NO"}[f.met])
     Console().print(table)
     if report.distances:
         Console().print(_distances(report))
+
+
+def _number(value: float) -> str:
+    """Return a figure for people: three digits that count, none of numbers near 0, no exponent below 10,000."""
+    return f"{0 if abs(value) < _NOTHING else value:.{4 if abs(value) >= 1000 else 3}g}"
 
 
 def _distances(report: MotionReport) -> Table:

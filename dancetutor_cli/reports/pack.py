@@ -190,7 +190,7 @@ class Pack:
         for how_far, one, meter, scale_name in sorted(off, key=lambda x: -x[0]):
             if how_far >= _FEW:
                 beside = "above" if meter > one.result.meter else "below"
-                yield f"{one.name}: plays like {scale_name} {meter:.1f}, {how_far:.1f} {beside} its meter"
+                yield f"{one.name}: plays like {scale_name} {meter:.1f}, {how_far:.1f} levels {beside} its meter"
         yield from (words for _, words in sorted(_much_of(charts), reverse=True))
 
 

@@ -228,9 +228,9 @@ class TextReport(LineReport):
         if chart.playable:
             self._stream.write(chart_table(chart, self._terminal, [one for one in result.charts if one.playable]))
             if chart.estimate is not None:
-                self._line(f"plays like meter {chart.estimate.bill}")
+                self._line(f"plays like meter {chart.estimate.terms_text}")
             if chart.score is not None:
-                self._line(f"as hard to score on as meter {chart.score.bill}")
+                self._line(f"as hard to score on as meter {chart.score.terms_text}")
             self._alternatives(chart)
             self._forced(chart)
         for finding in chart.findings:

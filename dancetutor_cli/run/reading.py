@@ -117,7 +117,7 @@ def parse_json(data: bytes, path: Path) -> Any:
             data.decode("utf-8-sig"), object_pairs_hook=_once, parse_float=_finite, parse_constant=_finite
         )
     except json.JSONDecodeError as error:
-        raise FileError(path, f"is not JSON: {error.msg}", error.lineno, error.colno) from None
+        raise FileError(path, f"is not JSON ({error.msg.lower()})", error.lineno, error.colno) from None
     except UnicodeDecodeError:
         raise FileError(path, "is not JSON: the text is not UTF-8") from None
     except RecursionError:

@@ -13,12 +13,12 @@ SONG = "charts/two_left_feet/two_left_feet.ssc"
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        (["analyze", SONG, "--alternatives", "200"], "--alternatives 200: write a whole number, 0 to 100"),
+        (["analyze", SONG, "--alternatives", "200"], "--alternatives 200: write a whole number from 0 to 100"),
         (["analyze", SONG, "--index", "x"], "--index x: write a whole number, 0 or more"),
         (["analyze", SONG, "--index", "1.5"], "--index 1.5: write a whole number, 0 or more"),
-        (["animate", SONG, "--rate", "nan"], "--rate nan: write a number, 0.25 to 2"),
+        (["animate", SONG, "--rate", "nan"], "--rate nan: write a number from 0.25 to 2"),
         (["animate", SONG, "--trip", "nan"], "--trip nan: write seconds, such as 12.5"),
-        (["render", SONG, "--sync-offset", "inf"], "--sync-offset inf: write a number, -60000 to 60000"),
+        (["render", SONG, "--sync-offset", "inf"], "--sync-offset inf: write a number from -60000 to 60000"),
         (["annotate", SONG, "--jobs", "0"], "--jobs 0: write a whole number, 1 or more"),
     ],
 )

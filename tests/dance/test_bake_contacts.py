@@ -135,9 +135,11 @@ def test_hand_reaches_the_floor_with_its_palm(medley: Motion) -> None:
 
 def test_the_report_reports_how_far_soles_are_inside_their_panels(medley: Motion) -> None:
     inside = soles_inside(medley)
-    assert report(medley)["soles with it 2 cm inside"].value == pytest.approx(100.0 * (inside > 0.02).mean())
+    assert report(medley)["soles with the middle at least 2 cm inside the panel"].value == pytest.approx(
+        100.0 * (inside > 0.02).mean()
+    )
     shifted = replace(medley, root=medley.root + np.array([0.5, 0.0, 0.0]))
-    assert report(shifted)["soles with their middle on the panel"].value == 0.0
+    assert report(shifted)["soles with the middle on the panel"].value == 0.0
 
 
 @pytest.mark.parametrize(("gap", "least"), [(0.4, 0.1), (0.2, -1e-3), (0.12, -1e-3)])

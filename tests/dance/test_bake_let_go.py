@@ -36,7 +36,7 @@ def test_only_what_she_plays_is_a_contact(motion: Motion) -> None:
     ]
     assert motion.notes[0].startswith("2 notes not played")
     figures = {f.name: f for f in report(motion).figures}
-    assert figures["notes let go"].value == 2 and figures["notes let go"].goal is None
+    assert figures["notes not played"].value == 2 and figures["notes not played"].goal is None
     assert figures["contacts"].value == 5 and figures["contacts missed"].value == 0
     assert figures["contact error"].met
 

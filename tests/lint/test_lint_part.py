@@ -75,7 +75,7 @@ def test_the_speeds_are_those_of_the_other_command(capsys: pytest.CaptureFixture
         with pytest.raises(SystemExit) as stop:
             main(["animate", str(DEMO), "--rate", wrong])
         assert stop.value.code == 2
-        assert "write a number, 0.25 to 2" in capsys.readouterr().err
+        assert "write a number from 0.25 to 2" in capsys.readouterr().err
 
 
 def test_animate_bakes_what_is_around_a_finding(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

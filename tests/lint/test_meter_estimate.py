@@ -49,11 +49,11 @@ def test_the_terms_add_up_and_are_printed_in_order() -> None:
         told = estimated(play, steps_type)
         assert sum(meters for _, meters in told.terms) == pytest.approx(told.meter)
         assert told.low <= told.meter <= told.high
-        assert told.bill.startswith(f"{told.meter:.1f} on the ")
+        assert told.terms_text.startswith(f"{told.meter:.1f} on the ")
     one = Estimate(11.4, 10, 13, "itg", True, (("streams", 3.1), ("rest", 0.02)))
     assert (
-        one.bill == "11.4 on the ITG scale (80 % likely: 10.0 to 13.0): streams +3.1"
-        and one.most(1) == "11.4 on the ITG scale: streams +3.1"
+        one.terms_text == "11.4 on the ITG scale (80 % likely: 10.0 to 13.0): streams +3.1 levels"
+        and one.most(1) == "11.4 on the ITG scale: streams +3.1 levels"
     )
 
 

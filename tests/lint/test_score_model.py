@@ -75,7 +75,7 @@ def test_terms_are_what_charts_of_the_level_do_not_have(tmp_path: Path) -> None:
     assert (told.low, told.high) == (pytest.approx(told.meter - 0.2), pytest.approx(told.meter + 0.3))
     assert told.span == f" on the DDR scale (80 % likely: {told.low:.2f} to {told.high:.2f})"
     terms = "base level 5.90, rhythm +0.20, timing tempo changes +0.18, timing stops +0.03"
-    assert told.bill.startswith(f"6.31{told.span}: {terms}")
+    assert told.terms_text.startswith(f"6.31{told.span}: {terms}")
 
 
 def test_beyond_what_the_fit_has_seen_nothing_is_added(tmp_path: Path) -> None:

@@ -83,7 +83,7 @@ def test_a_link_that_cannot_be_followed_says_so(flat: Browser, page_file: Path) 
     assert text(flat, ".said").startswith("The link begins in measure 900, but the last one is measure ")
     start = float(flat.run(NOW))
     for link, said in (("#m2-1", "The link ends before it begins"), ("#nonsense", "This link is not understood"),
-                       ("#m1-99", "The link goes on beyond the last measure")):  # fmt: skip
+                       ("#m1-99", "The link goes beyond the last measure")):  # fmt: skip
         flat.run(f"location.hash = '{link}'")
         flat.wait(f"document.querySelector('.said').textContent.startsWith('{said}')")
     assert start < 2 and float(flat.run(NOW)) == pytest.approx(2.0, abs=0.01)

@@ -171,16 +171,16 @@ def smoothness_figures(
     exempt = in_fast_jumps(body.times[:-3] + 1.5 / body.rate, contacts)
     sizes = {name: jerk(path, body.rate) for name, path in parts.items()}
     jerks = tuple(
-        Figure(f"jerk of the {name}", float(size[~exempt].mean()) if not exempt.all() else float("nan"), "m/s^3", 200.0)
+        Figure(f"jerk of the {name}", float(size[~exempt].mean()) if not exempt.all() else float("nan"), "m/s³", 200.0)
         for name, size in sizes.items()
     )
     notes = (
         f"{exempt.sum() / body.rate:.1f} s of jumps faster than {FAST_JUMPS:g} per second are exempt from the jerk; "
-        f"the root's is {sizes['root'][exempt].mean():.0f} m/s^3 there",
+        f"the root's is {sizes['root'][exempt].mean():.0f} m/s³ there",
     ) if exempt.any() else ()  # fmt: skip
     figures = (
         Figure("knee angle", float(knees.max()), "degrees", 176.0),
-        Figure("knee acceleration near straight", pop, "degrees/s^2", 10000.0),
+        Figure("knee acceleration near straight", pop, "degrees/s²", 10000.0),
         *jerks,
     )
     return figures, notes

@@ -83,7 +83,7 @@ def _curves(motion: Motion, body: Body, errors: NDArray[np.float64]) -> dict[str
     return {
         "contact error, ms (late positive)": (starts, errors),
         "height of the centre of mass, m": (body.times, body.mass[:, 1]),
-        "jerk of the root, m/s^3 (10 Hz)": (body.times[: len(root)], root),
+        "jerk of the root, m/s³ (10 Hz)": (body.times[: len(root)], root),
     }
 
 

@@ -114,5 +114,5 @@ FILES = tuple(f".{name}" for name, form in FORMATS.items() if form.join is not N
 def target_of(path: Path) -> str:
     """Return the format of an output name by its ending; UsageError lists the formats."""
     if path.suffix.lower() not in FILES:
-        raise UsageError(f"{path}: cannot write '{path.suffix or path.name}'; give a name that ends in {one_of(FILES)}")
+        raise UsageError(f"{path}: the name must end in {one_of(FILES)}")
     return path.suffix.lower().removeprefix(".")

@@ -165,12 +165,12 @@ def on_scale(one: MeteredChart, name: str, known: bool, *, faster: bool = True) 
     number = next((n for n, scale in enumerate(model.scales) if scale.name == name), 0)
     scale, terms = model.scales[number], (one.played if faster else one.terms)[number]
     meter = scale.meter(terms)
-    billed = sorted(((term, value) for term, value in terms.items() if value >= _WORTH), key=lambda bill: -bill[1])
-    rest = meter - sum(value for _, value in billed)
+    named = sorted(((term, value) for term, value in terms.items() if value >= _WORTH), key=lambda term: -term[1])
+    rest = meter - sum(value for _, value in named)
     low, high = _interval(scale, meter)
     if not known:
         low, high = min(low, max(meter - model.alone[0], 0.0)), max(high, min(meter + model.alone[1], scale.most))
-    return Estimate(meter, low, high, scale.name, known, (*billed, ("rest", rest)), one.rate if faster else 1.0)
+    return Estimate(meter, low, high, scale.name, known, (*named, ("rest", rest)), one.rate if faster else 1.0)
 
 
 # A chart's level of DDR by its label. The score is estimated from it.

@@ -231,11 +231,11 @@ class ScoreModel:
         added = self.added(steps_type, level.meter, oddities)
         base = level.meter + self.start[steps_type]
         meter = base + sum(added.values())
-        billed = sorted(
-            ((term, value) for term, value in added.items() if abs(value) >= _WORTH), key=lambda bill: -bill[1]
+        named = sorted(
+            ((term, value) for term, value in added.items() if abs(value) >= _WORTH), key=lambda term: -term[1]
         )
-        rest = meter - base - sum(value for _, value in billed)
-        terms = (("level", base), *billed, ("rest", rest))
+        rest = meter - base - sum(value for _, value in named)
+        terms = (("level", base), *named, ("rest", rest))
         return ScoreEstimate(meter, meter - level.below - self.below, meter + level.above + self.above, terms)
 
 

@@ -26,15 +26,16 @@ class Doublestep(MoveRule):
     the pattern before them.
 
     Not reported:
-    - doublesteps that a hold forces or that a mine asks for, and brackets (two panels at once are one step);
+    - doublesteps that a hold or a mine forces, and brackets (two panels at once are one step);
     - the first step after a pause of about two steps, or a step just before one: players take a side panel with the
       foot on that side;
-    - steps beside two panels that can be jumped, after a wall of mines, or beside a holdswitch:
+    - steps before or after a jump, after a wall of mines, or next to a holdswitch:
       there, players can go on with either foot;
     - doublesteps that cross the feet, and 16ths where a short crossover avoids the doublestep;
     - groups of steps, if the gap between groups is about twice the gap between steps, and each group can start on the
       foot that keeps it uncrossed;
-    - steps at 0.25 s and slower, if a quicker group begins with the step, or if the repeat can wait until after a rest.
+    - steps at 0.25 s and slower, if a quicker group begins with the step, or if the
+      same foot could also step twice after the next rest instead.
 
     It is only an info:
     - on Pump, if the step goes to or from the centre, at 0.25 s and slower;
@@ -202,11 +203,11 @@ def _own_side(subject: ChartSubject, row: int, *, exchanged: bool = False) -> bo
 
 
 class TripleStep(TimedRule):
-    """A triple step: one foot plays three rows in a row and moves each time, two doublesteps without a rest.
+    """A triple step: one foot steps three times in a row, each time on another panel: two doublesteps without a rest.
 
     Not reported:
     - steps while the other foot is on a hold, taps of a roll, and steps around a mine;
-    - steps beside two panels that can be jumped, after a wall of mines, or beside a holdswitch:
+    - steps before or after a jump, after a wall of mines, or next to a holdswitch:
       there, players can go on with either foot;
     - steps after a jack, if alternating feet stay uncrossed.
 

@@ -84,10 +84,10 @@ class Unplayable(MoveRule):
     less than 20 ms apart. It is also an info if a hand would have to come down again within 0.4 s, because a foot may
     bracket instead. The dancer of the films leaves out such steps, and steps that are too far for a foot (DT305).
 
-    Bad: five panels at once.
+    Bad: all panels of two pads at once.
 
         10000000  L
-        11111000  LRLR?
+        11111111  <L?lrR?>
         10000000  L
         00010000  R
 
