@@ -151,10 +151,9 @@ def _sort(values, count):  # type: ignore[no-untyped-def]
 def _connect(key, total, found, out, t):  # type: ignore[no-untyped-def]
     """Store the transition to the states that the moves of a layer lead to. Returns which table has no room, or DONE.
 
-    key : layer << 32 | pattern; total : number of moves of the layer
-    `out.packed` : first move and number of moves of each state of the layer, as in `Tables.pair`; `out.reached` : rank
-    and number of each of the
-        `found` next states, in any order; becomes scratch
+    key : layer << 32 | pattern; total : number of moves of the layer; found : number of next states
+    `out.packed` : first move and number of moves of each state of the layer, as in `Tables.pair`
+    `out.reached` : rank and number of each of the `found` next states, in any order; becomes scratch
     """
     counts, moves, edge, transition, met = t.counts, t.move, t.edge, t.transition, t.met
     edge_move, edge_limbs, packed, reached = t.edge_move, t.edge_limbs, out.packed, out.reached

@@ -77,9 +77,9 @@ assert len(EVENTS) < 30
 
 @inner_kernel
 def name_neighbours(rows, found, rules):  # type: ignore[no-untyped-def]
-    """Add the events that depend on several rows to `found.events`. rows :
+    """Add the events that depend on several rows to `found.events`. The limbs are read from `found.limb`.
 
-    `RowArrays`; limbs are read from `found.limb`
+    rows : `RowArrays`
     """
     tick, second, limb, events = rows.tick, rows.second, found.limb, found.events
     limits, long = rules.limits, rules.long
