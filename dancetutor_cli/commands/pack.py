@@ -155,13 +155,13 @@ def _changes(options: AnalyzeOptions, most_rows: int | None) -> Iterator[str]:
 
 def report_tech_counts(tasks: Sequence[AnalyzeTask], options: AnalyzeOptions, output: IO[str]) -> int:
     """`--tech-counts`: print the table and, with --full, every chart that differs. Returns the exit status."""
-    from dancetutor_cli.lint.techniques import compare_techniques, read_theirs
+    from dancetutor_cli.lint.techniques import compare_techniques, read_game_counts
     from dancetutor_cli.reports.tech_counts import chart_lines, table_lines
 
     if options.format_name != "text":
         raise UsageError("--tech-counts prints only a Markdown table; leave --format out")
     assert options.tech_counts is not None
-    found = compare_techniques(tasks, read_theirs(options.tech_counts))
+    found = compare_techniques(tasks, read_game_counts(options.tech_counts))
     if not found.charts:
         raise UsageError(
             f"{options.tech_counts}: no chart in it is one of PATH's: they are matched by folder, file and chart"

@@ -17,5 +17,6 @@ fix_edits, fix                fixes as edits of bytes; the fixes are made in a f
 sync, song_sync               the music against the beats: the method; the sync of one file
 meter                         how hard a chart is
 versions, snapshots           the changes between two versions of a pack; where the older version comes from
-other_foot, techniques        ways with fewer crossed feet; technique counts beside the game's
+other_foot                    ways with fewer crossed feet
+technique_rows, techniques    technical steps by ITGmania's rules; their counts beside the game's
 """

@@ -100,12 +100,13 @@ def tech_counts(subject: ChartSubject) -> dict[str, int]:
     """Return how often each of `TECH_COUNTS` happens; all 0 for a chart without a play."""
     if subject.facts is None:
         return dict.fromkeys(TECH_COUNTS, 0)
-    return subject.facts.candidates.tech_counts[subject.facts.number]
+    return subject.facts.own(subject.facts.candidates.tech_counts)
 
 
 def hand_rows(subject: ChartSubject) -> list[int]:
     """Return the rows with a step in which a hand presses or three panels are down, as the games and DT302 count."""
-    return [] if subject.facts is None else sorted({*subject.rows_with("hand"), *subject.facts.triples()})
+    facts = subject.facts
+    return [] if facts is None else sorted({*subject.rows_with("hand"), *facts.own(facts.candidates.triples)})
 
 
 def tech_rows(subject: ChartSubject) -> dict[str, NDArray[np.int64]]:
@@ -118,7 +119,7 @@ def tech_rows(subject: ChartSubject) -> dict[str, NDArray[np.int64]]:
 
 def facing_counts(subject: ChartSubject) -> tuple[int, ...]:
     """Return the number of rows by how far the dancer is turned away (`Figures.facing`); () without a play."""
-    return () if subject.facts is None else subject.facts.candidates.facing_counts[subject.facts.number]
+    return () if subject.facts is None else subject.facts.own(subject.facts.candidates.facing_counts)
 
 
 # The rows around a finding, which are shown below it.

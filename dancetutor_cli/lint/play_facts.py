@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,9 @@ _LIMB_NAMES = {Limb.LEFT_FOOT: "left foot", Limb.RIGHT_FOOT: "right foot", Limb.
                Limb.RIGHT_HAND: "right hand"}  # fmt: skip
 
 
+T = TypeVar("T")
+
+
 class PlayFacts:
     """Facts about one of several plays that are checked together.
 
@@ -39,6 +43,10 @@ class PlayFacts:
         self._play = plays.plays[number]
         self._timing = timing
 
+    def own(self, of_plays: list[T]) -> T:
+        """Return this play's part of a fact about all plays: `facts.own(facts.candidates.ties)`."""
+        return of_plays[self.number]
+
     @cached_property
     def _pressed(self) -> PlayedSteps:
         """All presses of the play, with the virtual taps of rolls."""
@@ -52,16 +60,6 @@ class PlayFacts:
     @cached_property
     def _of_feet(self) -> tuple[PlayedSteps, PlayedSteps]:
         return self.presses.of(0), self.presses.of(1)
-
-    @property
-    def has_mines(self) -> bool:
-        """Whether the play has mines."""
-        return self._plays.with_mines[self.number]
-
-    @property
-    def has_holds(self) -> bool:
-        """Whether the play has holds."""
-        return self._plays.with_holds[self.number]
 
     @cached_property
     def stepped(self) -> NDArray[np.int64]:
@@ -82,21 +80,13 @@ class PlayFacts:
         """(n,) number of panels that are down in each row, stepped on or held; taps of rolls do not count."""
         return self._plays.down[self._first : self._after]
 
-    def triples(self) -> list[int]:
-        """Return the rows with a step in which three or more panels are down."""
-        return self.candidates.triples[self.number]
-
-    def doublesteps(self) -> list[int]:
-        """Return the rows of doublesteps that do not cross the feet, where the other foot was free."""
-        return self.candidates.free_doublesteps[self.number]
-
     def crossed(self, row: int) -> bool:
         """Whether the feet are crossed after a row."""
         return bool(abs(self._play.facing[row]) > CROSSED)
 
     def crossed_rows(self, least: float) -> Iterator[list[int]]:
         """Yield the rows of every run of at least `least` stepped rows with crossed feet."""
-        for first, count in self.crossed_runs():
+        for first, count in self.own(self.candidates.crossed_runs):
             if count >= least:
                 at = int(self.stepped.searchsorted(first))
                 yield self.stepped[at : at + count].tolist()
@@ -107,7 +97,7 @@ class PlayFacts:
         Each step comes at most `max_seconds` after the step before. Nothing is yielded if the limbs of a play never
         change so quickly on a panel.
         """
-        if self.candidates.least_switch_seconds[self.number] > max_seconds + EPSILON:
+        if self.own(self.candidates.least_switch_seconds) > max_seconds + EPSILON:
             return
         rows, here = self._play.rows, slice(self._first, self._after)
         lone = np.flatnonzero(self._plays.lone[here])
@@ -121,17 +111,9 @@ class PlayFacts:
             if (self.down[run] == 1).all():
                 yield run.tolist(), limb[first : last + 1].tolist()
 
-    def crossed_runs(self) -> list[tuple[int, int]]:
-        """Return first row and number of rows of every run of stepped rows with crossed feet."""
-        return self.candidates.crossed_runs[self.number]
-
     def holds(self, foot: int, row: int) -> bool:
         """Whether a hold that a foot pressed before a row is still down in it."""
         return bool(self._holding(foot, np.array([row]))[0] >= 0)
-
-    def ties(self) -> list[int]:
-        """Return the first row of every run of rows with steps that cost the same with other limbs."""
-        return self.candidates.ties[self.number]
 
     def unsure_passages(self, below: float) -> list[list[tuple[int, float]]]:
         """Return passages of unsure rows, as pairs of row and confidence less than `below`; none if it is not known.
@@ -152,10 +134,6 @@ class PlayFacts:
             before = place
         return passages
 
-    def half_turns(self) -> list[int]:
-        """Return the rows to which the body turns by 180 degrees, also jumps. The first row of a play is never one."""
-        return self.candidates.half_turns[self.number]
-
     def triple_steps(self, min_seconds: float, max_seconds: float) -> Iterator[tuple[int, float]]:
         """Yield the rows in which one foot makes its third single step in a row, each on a new panel, with a time (s).
 
@@ -163,7 +141,7 @@ class PlayFacts:
         dancer has no choice. Taps of rolls, steps around a mine, and steps less than `min_seconds` or more than
         `max_seconds` apart do not count either.
         """
-        if self.candidates.least_triple_seconds[self.number] > max_seconds + EPSILON:
+        if self.own(self.candidates.least_triple_seconds) > max_seconds + EPSILON:
             return
         repeats, (low, high) = self.candidates.repeats, self._bounds(self.candidates.repeats.row)
         count, last = 1, -1
@@ -187,7 +165,7 @@ class PlayFacts:
 
         max_speed : panel widths per second; min_seconds : steps sooner after the foot's last step do not count
         """
-        if self.candidates.least_travel_seconds[self.number] * max_speed >= 1.0 + EPSILON:
+        if self.own(self.candidates.least_travel_seconds) * max_speed >= 1.0 + EPSILON:
             return
         for one in self._plays.travels:
             low, high = self._bounds(one.row)
@@ -222,7 +200,7 @@ class PlayFacts:
         row of the mine has left its panel. Before a wall of mines, dancers leave the panels, so a wall counts only for
         a foot that has just stepped.
         """
-        if not (self.has_mines and self.has_holds):
+        if not (self._plays.with_mines[self.number] and self._plays.with_holds[self.number]):
             return
         rows, play = self._play.rows, self._play
         row, column = np.nonzero(rows.mines)
@@ -268,7 +246,7 @@ class PlayFacts:
 
     def mines_after_holds(self, max_seconds: float) -> Iterator[tuple[int, int, float]]:
         """Yield row, column and time (s) of each mine at most `max_seconds` after a foot's hold on its panel ends."""
-        if not (self.has_mines and self.has_holds):
+        if not (self._plays.with_mines[self.number] and self._plays.with_holds[self.number]):
             return
         rows, play = self._play.rows, self._play
         for column in np.flatnonzero(rows.mines.any(axis=0)).tolist():
@@ -289,7 +267,7 @@ class PlayFacts:
 
         A step by a foot that already stands on the panel does not count.
         """
-        if not self.has_mines:
+        if not self._plays.with_mines[self.number]:
             return
         rows, play = self._play.rows, self._play
         for column in np.flatnonzero(rows.mines.any(axis=0)).tolist():

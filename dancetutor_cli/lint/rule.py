@@ -234,14 +234,14 @@ class TimedRule(ChartRule):
             if len(rows) > 1:
                 first, last = (round(subject.beat(one), 3) for one in (rows[0], rows[-1]))
                 message += f"; {len(rows)} of them from beat {first:g} to {last:g}"
-            least = {"severity": "info"} if self.no_surprise(subject, rows) else {}
+            least = {"severity": "info"} if self.is_expected(subject, rows) else {}
             yield self.finding(message, subject.at_row(row, column), **least)
 
     def representative(self, subject: ChartSubject, rows: list[int]) -> int:
         """Return the index of the row in a passage at which the finding is placed and whose message it has."""
         return subject.most_confident(rows) if self.about_feet else 0
 
-    def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
+    def is_expected(self, subject: ChartSubject, rows: list[int]) -> bool:
         """Whether players of this chart expect the move in these rows; then the finding is never more than an info."""
         return False
 

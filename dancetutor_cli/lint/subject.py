@@ -75,11 +75,9 @@ class FileSubject:
         """The charts that have notes, without lights."""
         return tuple(one for one in self.song.charts if len(one.notes) and not is_lights(one.steps_type))
 
-    def warnings(self, codes: Collection[str]) -> Iterator[tuple[str, dict[str, Any]]]:
-        """Yield message and place of the reader's warnings about the song that have one of these codes."""
-        for warning in self.song.warnings:
-            if warning.code in codes:
-                yield warning.message, self.place(warning.line)
+    def warnings(self, codes: Collection[str]) -> list[tuple[str, dict[str, Any]]]:
+        """Return message and place of the reader's warnings about the song that have one of these codes."""
+        return [(one.message, self.place(one.line)) for one in self.song.warnings if one.code in codes]
 
     def tag_place(self, name: str) -> dict[str, Any]:
         """Return the place of a tag of the song; the whole file if the tag is not found as written."""
@@ -133,18 +131,16 @@ class ChartSubject(PlacedChart):
         assert self.play is not None
         assert self.facts is not None
         timing = timing_oddities(self.chart.timing, self.play.rows.tick[self.step_rows])
-        return Oddities((*self.facts.candidates.oddities[self.facts.number], *timing.numbers), timing)
+        return Oddities((*self.facts.own(self.facts.candidates.oddities), *timing.numbers), timing)
 
     @property
     def row_count(self) -> int:
         """The number of rows of the play; 0 without one."""
         return len(self.play.rows) if self.play else 0
 
-    def warnings(self, codes: Collection[str]) -> Iterator[tuple[str, dict[str, Any]]]:
-        """Yield message and place of the reader's warnings about the chart that have one of these codes."""
-        for warning in self.chart.warnings:
-            if warning.code in codes:
-                yield warning.message, self.at_line(warning.line)
+    def warnings(self, codes: Collection[str]) -> list[tuple[str, dict[str, Any]]]:
+        """Return message and place of the reader's warnings about the chart that have one of these codes."""
+        return [(one.message, self.at_line(one.line)) for one in self.chart.warnings if one.code in codes]
 
     def has(self, move: str) -> bool:
         """Whether a move of this name or of a kind of it happens in the play."""
@@ -163,7 +159,7 @@ class ChartSubject(PlacedChart):
         """Row, column and reason of each note that the dancer does not play, because the limb cannot come in time."""
         if self.play is None or self.pad is None or self.facts is None:
             return ()
-        if self.facts.candidates.least_foot_seconds[self.facts.number] > LEAP + SAME_TIME and not self.has("hand"):
+        if self.facts.own(self.facts.candidates.least_foot_seconds) > LEAP + SAME_TIME and not self.has("hand"):
             return ()
         return tuple(too_quick(self.play, self.pad))
 
@@ -245,7 +241,7 @@ class ChartSubject(PlacedChart):
         if self.play is None or self.facts is None:
             return
         known = self.play.ambiguity
-        for first in self.facts.ties():
+        for first in self.facts.own(self.facts.candidates.ties):
             yield first, known is not None and int(known[first]) == Ambiguity.RESOLVED
 
     def seconds_played(self) -> float:

@@ -35,7 +35,7 @@ SIX = ("Crossovers", "Footswitches", "Sideswitches", "Jacks", "Brackets", "Doubl
 FIVE = SIX[:5]
 COMPARED_STEPS_TYPES = ("dance-single", "dance-double")  # steps types that the game has a pad for
 # Technique -> number of occurrences, or the tick of each occurrence, ascending.
-Theirs = Mapping[str, int] | Mapping[str, Sequence[int]]
+GameCounts = Mapping[str, int] | Mapping[str, Sequence[int]]
 _PLAYERS = 2  # the game writes the numbers of two players for every chart
 _MOST = 1_000_000  # most occurrences in a chart
 
@@ -52,12 +52,12 @@ class Key:
 
 @dataclass(frozen=True, slots=True)
 class ComparedChart:
-    """A chart that both programs know. ours : technique -> tick of each occurrence, ascending; theirs : see `Theirs`"""
+    """A chart that both programs know. ours : technique -> tick of each occurrence, ascending; theirs : the game's counts"""
 
     file: str
     label: str
     ours: Mapping[str, Sequence[int]]
-    theirs: Theirs
+    theirs: GameCounts
 
     def shared(self, name: str) -> int:
         """Return the number of occurrences in the same row; if only numbers are known, the most that this can be."""
@@ -81,12 +81,12 @@ class TechniqueComparison:
     only_theirs: int = 0
 
 
-def read_theirs(path: Path) -> Mapping[Key, Theirs]:
+def read_game_counts(path: Path) -> Mapping[Key, GameCounts]:
     """Return the game's counts from a CSV file, a file of its cache, or a folder of cache files.
 
     UsageError if there are no counts.
     """
-    found: Mapping[Key, Theirs]
+    found: Mapping[Key, GameCounts]
     if path.is_file() and path.suffix.lower() == ".csv":
         rows = list(_table_rows(path))
         found = (
@@ -187,7 +187,7 @@ def _key(file: str, steps_type: str, difficulty: str, description: str) -> Key:
     return Key(parts[-2:], steps_type.strip().lower(), named(difficulty, description, 0, True)[0], description.strip())
 
 
-def compare_techniques(tasks: Iterable[AnalyzeTask], theirs: Mapping[Key, Theirs]) -> TechniqueComparison:
+def compare_techniques(tasks: Iterable[AnalyzeTask], theirs: Mapping[Key, GameCounts]) -> TechniqueComparison:
     """Return our counts beside the game's for every chart that the game knows; unreadable files are left out."""
     found, seen = TechniqueComparison(), set[Key]()
     by_chart: dict[tuple[object, ...], list[Key]] = defaultdict(list)

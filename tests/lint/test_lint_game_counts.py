@@ -13,7 +13,7 @@ from dancetutor_cli.commands.analyze import command
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.lint.figures import tech_counts, tech_rows
 from dancetutor_cli.lint.subject import solved_chart
-from dancetutor_cli.lint.techniques import TEN, read_theirs
+from dancetutor_cli.lint.techniques import TEN, read_game_counts
 from dancetutor_cli.run.errors import FileError, UsageError
 from dancetutor_cli.run.reading import charts_path
 
@@ -119,7 +119,7 @@ def printed(*words: str | Path) -> str:
 
 
 def test_the_first_players_numbers_are_read_by_name(places: tuple[Path, Path]) -> None:
-    theirs = read_theirs(places[1])
+    theirs = read_game_counts(places[1])
     by_difficulty = {key.difficulty: counts for key, counts in theirs.items()}
     assert by_difficulty["Hard"] == dict(zip(TEN, (5, 4, 1, 2, 1, 1, 0, 3, 0, 7), strict=True))
     assert by_difficulty["Challenge"]["Doublesteps"] == 1 and "HalfCrossovers" not in by_difficulty["Challenge"]
@@ -137,9 +137,9 @@ def test_only_lists_that_the_game_writes_are_read(tmp_path: Path, numbers: str, 
     (tmp_path / "Songs_P_T").write_text(text)
     if first is None:
         with pytest.raises(UsageError, match="TECHCOUNTS"):
-            read_theirs(tmp_path)
+            read_game_counts(tmp_path)
     else:
-        assert list(read_theirs(tmp_path).values()) == [first]
+        assert list(read_game_counts(tmp_path).values()) == [first]
 
 
 def test_the_table_has_ours_theirs_and_both(places: tuple[Path, Path]) -> None:
@@ -202,7 +202,7 @@ def test_where_beats_are_known_both_are_the_same_rows(places: tuple[Path, Path],
 def test_a_beat_that_is_none_names_the_line(tmp_path: Path) -> None:
     (tmp_path / "t.csv").write_text(TIMES.replace("3.5", "nan"))
     with pytest.raises(FileError) as error:
-        read_theirs(tmp_path / "t.csv")
+        read_game_counts(tmp_path / "t.csv")
     assert error.value.line == 3
 
 
@@ -218,7 +218,7 @@ def test_our_own_csv_is_equal_to_ourselves(tmp_path: Path) -> None:
 def test_a_file_without_counts_is_reported(tmp_path: Path, text: str) -> None:
     (tmp_path / "Songs_A").write_text(text)
     with pytest.raises(UsageError, match="TECHCOUNTS"):
-        read_theirs(tmp_path)
+        read_game_counts(tmp_path)
 
 
 @pytest.mark.parametrize("number", ["x", "nan", "inf", "-"])
@@ -227,7 +227,7 @@ def test_a_table_with_a_word_for_a_number_names_the_line(tmp_path: Path, number:
         f"file,steps_type,difficulty,description,Jacks\na/b.sm,dance-single,Hard,,{number}\n"
     )
     with pytest.raises(FileError) as error:
-        read_theirs(tmp_path / "t.csv")
+        read_game_counts(tmp_path / "t.csv")
     assert error.value.line == 2
 
 

@@ -70,8 +70,9 @@ class Crossover(TimedRule):
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, goes_on_the_other_foot
 
         slow = Freedom(self.longest(subject), switch=_SLOW, slip=_SLOW, lead=_LEAD)
-        found = [first for first, _ in subject.facts.crossed_runs()] if subject.facts else []
-        for first in self.quick(subject, found):
+        facts = subject.facts
+        runs = facts.own(facts.candidates.crossed_runs) if facts else []
+        for first in self.quick(subject, [first for first, _ in runs]):
             if fewest_crossed(subject, first, slow) == 0:
                 continue
             if goes_on_the_other_foot(subject, first, self.longest(subject)) or _walks_over(subject, first):
@@ -79,7 +80,7 @@ class Crossover(TimedRule):
             message = f"the feet cross here, or one foot doublesteps, in a chart of meter {subject.chart.meter}"
             yield Occurrence(first, subject.pause(first), message)
 
-    def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
+    def is_expected(self, subject: ChartSubject, rows: list[int]) -> bool:
         """Whether only single steps cross, each on the way from one of two pads to the other."""
         return all(_in_passing(subject, row) for row in rows)
 
@@ -202,13 +203,14 @@ class HeldCrossover(TimedRule):
 
     def occurrences(self, subject: ChartSubject) -> Iterable[Occurrence]:
         """Yield each single step after which the feet are newly crossed, while the other foot holds."""
-        if subject.play is None or subject.facts is None:
+        facts = subject.facts
+        if subject.play is None or facts is None:
             return
         limbs = subject.play.limb
-        for row in self.quick(subject, [first for first, _ in subject.facts.crossed_runs()]):
+        for row in self.quick(subject, [first for first, _ in facts.own(facts.candidates.crossed_runs)]):
             pressed = subject.pressed(row)
             foot = int(limbs[row].max())
-            if len(pressed) == 1 and foot <= 1 and subject.facts.holds(1 - foot, row):
+            if len(pressed) == 1 and foot <= 1 and facts.holds(1 - foot, row):
                 feet = ("left", "right") if foot == 0 else ("right", "left")
                 message = f"the {feet[0]} foot crosses the {feet[1]} foot, which is on a hold"
                 yield Occurrence(row, subject.pause(row), message)

@@ -77,15 +77,16 @@ class Doublestep(MoveRule):
         """Return the quick doublesteps for which there is no other way to dance that players prefer."""
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, in_groups
 
-        longest = self.longest(subject)
+        facts, longest = subject.facts, self.longest(subject)
+        found = facts.own(facts.candidates.free_doublesteps) if facts else []
         return [
-            row for row in self.quick(subject, subject.facts.doublesteps() if subject.facts else ())
+            row for row in self.quick(subject, found)
             if subject.pause(row) >= self.options["min_seconds"] and not any_foot_near(subject, row)
             and not _has_better_start(subject, row, longest) and not _at_a_pause(subject, row)
             and not (in_groups(subject, row) and fewest_crossed(subject, row, Freedom(longest)) == 0)
         ]  # fmt: skip
 
-    def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
+    def is_expected(self, subject: ChartSubject, rows: list[int]) -> bool:
         """Whether players expect it: a Pump centre, one crossover to a jump, or a way between two pads after a jack."""
         from dancetutor_cli.lint.other_foot import Freedom, fewest_crossed, led_by_a_jack
 

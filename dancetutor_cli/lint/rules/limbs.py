@@ -109,7 +109,7 @@ class Unplayable(MoveRule):
         """Return the rows with a step for which no limb is free, or for which a hand comes too late."""
         return sorted({*subject.rows_with(self.move), *_hands(subject)})
 
-    def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
+    def is_expected(self, subject: ChartSubject, rows: list[int]) -> bool:
         """Whether the chart is a gimmick by its meter or rows, or only a hand comes too late, so a foot may bracket."""
         gimmick = subject.chart.meter == _GIMMICK or any(subject.pause(row) < _SLIP for row in rows)
         return gimmick or not any(subject.unplayed(row) for row in rows)

@@ -120,7 +120,7 @@ class Spin(MoveRule):
         first = segment(subject, int(rows.searchsorted(row)), self.longest(subject))[0]
         return int(first > 0 and len(subject.pressed(int(rows[first - 1]))) > 1)
 
-    def no_surprise(self, subject: ChartSubject, rows: list[int]) -> bool:
+    def is_expected(self, subject: ChartSubject, rows: list[int]) -> bool:
         """Whether the author means the spins: a Pump chart of twists, steps not in a ring, or steps between mines."""
         pump, meter = subject.chart.steps_type.startswith("pump"), subject.chart.meter
         if pump and meter >= _TWISTS:
@@ -233,7 +233,8 @@ class HalfTurn(ChartRule):
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each half turn."""
-        for row in subject.facts.half_turns() if subject.facts else ():
+        facts = subject.facts
+        for row in facts.own(facts.candidates.half_turns) if facts else ():
             if subject.pause(row) <= self.options["max_seconds"] + EPSILON:
                 yield self.finding(
                     f"the body turns by 180 degrees at once{_landing(subject, row)}", subject.at_row(row)
