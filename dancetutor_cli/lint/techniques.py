@@ -52,7 +52,7 @@ class Key:
 
 @dataclass(frozen=True, slots=True)
 class ComparedChart:
-    """A chart that both programs know. ours : technique -> tick of each occurrence, ascending; theirs : the game's counts"""
+    """A chart that both programs know. ours : technique -> tick of each occurrence, ascending; theirs : `GameCounts`"""
 
     file: str
     label: str

@@ -14,7 +14,7 @@ from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.preset import preset_for
 from dancetutor_cli.markers import background, edit
-from dancetutor_cli.markers.model import FileChange, Lack, NoteChange
+from dancetutor_cli.markers.model import CheckLine, FileChange, NoteChange
 from dancetutor_cli.markers.styles import IN_FILES, OF_EACH_FILE, OF_UCS, file_style
 from dancetutor_cli.run.errors import FileError, NoChartsError
 from dancetutor_cli.run.files import ChangedError, back_up, make_folder, remove_leftovers, write_atomic
@@ -134,8 +134,8 @@ class _Work:
     def __init__(self, item: Item, request: AnnotateRequest, song: Song, beside: tuple[str, ...]) -> None:
         self.item, self.request, self.song, self.beside = item, request, song, beside
         self.changes: list[FileChange] = []
-        self.lacks: list[Lack] = []
-        self.problems: list[Lack] = []
+        self.lacks: list[CheckLine] = []
+        self.problems: list[CheckLine] = []
         self.notes: list[str] = []
         self.errors: list[str] = []
         self.counts: Counter[str] = Counter()
@@ -187,9 +187,9 @@ class _Work:
         plan.check(song, data)
         self._add_chart_file(data, change)
         if song is not own:
-            self.lacks.append(Lack("has a film in its background changes to take out"))
+            self.lacks.append(CheckLine("has a film in its background changes to take out"))
         if own is not self.song:
-            self.lacks.append(Lack("has charts for two pads to take out"))
+            self.lacks.append(CheckLine("has charts for two pads to take out"))
         for name in self.beside if self._in_place else ():
             try:
                 for planned in file_style(name).strip(self.song, charts):
@@ -215,8 +215,8 @@ class _Work:
             if selection.is_all or self._charts(self.song)
             else tuple(f"{c.index} {c.label}" for c in self.song.charts),
             counts=tuple(sorted(self.counts.items())),
-            changed=any(change.needed for change in self.changes),
-            companions=tuple(change.path for change in self.changes[1:] if change.needed),
+            changed=any(change.is_change for change in self.changes),
+            companions=tuple(change.path for change in self.changes[1:] if change.is_change),
             diff=tuple(self._diff()) if self.request.diff else (),
         )
 
@@ -254,7 +254,7 @@ class _Work:
 
     def _write_change(self, change: FileChange) -> None:
         """Write one change; with -o, unchanged files are written too, so that the copy is complete."""
-        if self._in_place and not change.needed:
+        if self._in_place and not change.is_change:
             return
         if not change.path.parent.is_dir():
             make_folder(change.path.parent)

@@ -16,7 +16,7 @@ from dancetutor_cli.chart.note_writer import write_notes
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play
-from dancetutor_cli.markers.model import ChartFeet, FileChange, old_content, removed, written
+from dancetutor_cli.markers.model import ChartFeet, FileChange, change_of, old_content, removal_of
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
 
@@ -93,13 +93,13 @@ def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileC
         if isinstance(data, FileError):
             yield data
         else:
-            yield written(folder / path.name, old_content(folder / path.name, song), data)
+            yield change_of(folder / path.name, old_content(folder / path.name, song), data)
 
 
 def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
     """Yield the removal of the .edit files."""
     for path in edit_paths(song, charts):
-        yield removed(path, read_bytes(path, CHART_LIMIT), None)
+        yield removal_of(path, read_bytes(path, CHART_LIMIT), None)
 
 
 def edit_files(song: Song, feet: Sequence[ChartFeet]) -> Iterator[tuple[Path, bytes | EditError]]:

@@ -9,8 +9,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from dancetutor_cli.chart.model import Chart, Song
-from dancetutor_cli.markers.model import ChartFeet, FileChange, old_content, removed, written
-from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.markers.model import ChartFeet, FileChange, change_of, check_is_ours, old_content, removal_of
 
 SUFFIX = ".feet.txt"
 _OURS = b"feet by dancetutor, preset "  # begins its last line
@@ -20,20 +19,7 @@ def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileC
     """Yield the text with the feet of a .ucs."""
     path = folder / (song.path.stem + SUFFIX)
     old = old_content(path, song)
-    yield written(path, old, write_feet_text(path, old, song, feet))
-
-
-def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
-    """Yield the removal of the text."""
-    path = song.path.with_name(song.path.stem + SUFFIX)
-    old = old_content(path, song)
-    check_text(path, old)
-    yield removed(path, old, None)
-
-
-def write_feet_text(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> bytes:
-    """Return the content of the text. Raises FileError if the old file was not written by this program."""
-    check_text(path, old)
+    _check_text(path, old)
     lines = [line.rstrip(b"\r\n") for line in song.data.splitlines(keepends=True)]
     newline = b"\r\n" if b"\r\n" in song.data else b"\n"
     for one in feet:
@@ -44,10 +30,18 @@ def write_feet_text(path: Path, old: bytes | None, song: Song, feet: Sequence[Ch
             at = int(one.chart.rows.line[row]) - 1
             lines[at] = lines[at].rstrip() + b"  " + cells
     preset = ", ".join(dict.fromkeys(one.play.preset for one in feet)).encode()
-    return newline.join([*lines, _OURS + preset, b""])
+    yield change_of(path, old, newline.join([*lines, _OURS + preset, b""]))
 
 
-def check_text(path: Path, old: bytes | None) -> None:
+def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
+    """Yield the removal of the text."""
+    path = song.path.with_name(song.path.stem + SUFFIX)
+    old = old_content(path, song)
+    _check_text(path, old)
+    yield removal_of(path, old, None)
+
+
+def _check_text(path: Path, old: bytes | None) -> None:
     """Raise FileError if the old file was not written by this program."""
-    if old is not None and not old.rstrip().rpartition(b"\n")[2].startswith(_OURS):
-        raise FileError(path, "was not written by dancetutor; move it away or choose --markers sidecar")
+    is_ours = old is None or old.rstrip().rpartition(b"\n")[2].startswith(_OURS)
+    check_is_ours(path, is_ours, "a text with feet by dancetutor")

@@ -11,7 +11,7 @@ from dancetutor_cli.chart.edits import Splice
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.feet.annotations import StepRows, markers_in, measure_lines
 from dancetutor_cli.feet.limbs import NotationError, marker, parse
-from dancetutor_cli.markers.model import ChartFeet, Lack, NoteChange
+from dancetutor_cli.markers.model import ChartFeet, CheckLine, NoteChange
 
 
 class State(Enum):
@@ -44,14 +44,14 @@ _WORDS = {
 def write(song: Song, feet: ChartFeet, force: bool) -> NoteChange:
     """Update the markers of a chart. Missing markers are reported in one line for each state, with the first place."""
     chart = feet.chart
-    splices, states = write_measures(song.data, chart, feet.rows, feet.letters, force)
+    splices, states = _updates(song.data, feet, force)
     change = NoteChange(splices, Counter(one.state.value for one in states))
     by_state = {state: [one for one in states if one.state is state] for state in State}
     for state, text in _WORDS.items():
         if found := by_state[state]:
             number = f"{len(found)} measures" if len(found) > 1 else f"measure {found[0].measure}"
             text = text if len(found) > 1 else text.replace("have", "has", 1)
-            change.lacks.append(Lack(f"{chart.label}: {number} {text}", found[0].line))
+            change.lacks.append(CheckLine(f"{chart.label}: {number} {text}", found[0].line))
     if found := by_state[State.IMPOSSIBLE]:
         single = len(found) == 1
         text = "1 measure begins on the line of its" if single else f"{len(found)} measures begin on the line of their"
@@ -61,23 +61,23 @@ def write(song: Song, feet: ChartFeet, force: bool) -> NoteChange:
 
 
 def strip(song: Song, chart: Chart, force: bool) -> NoteChange:
-    """Remove the markers of a chart, and count the pinned ones, which stay."""
+    """Remove the markers of a chart, and count the pinned ones, which stay without `force`."""
     left = 0 if force else pinned(song.data, chart)
-    return NoteChange(strip_measures(song.data, chart, force), Counter(pinned=left))
+    splices = []
+    for line in measure_lines(song.data, chart):
+        comment = song.data[line.start : line.end]
+        new = _without(comment, force)
+        if new != comment:
+            splices.append(Splice(line.start, line.end, new))
+    return NoteChange(splices, Counter(pinned=left))
 
 
-def write_measures(
-    data: bytes, chart: Chart, rows: StepRows, letters: Sequence[str], force: bool = False
-) -> tuple[list[Splice], list[MeasureState]]:
+def _updates(data: bytes, feet: ChartFeet, force: bool) -> tuple[list[Splice], list[MeasureState]]:
     """Return the replacements that update the markers of a chart, and the old state of each measure.
 
-    Parameters
-    ----------
     data : the bytes of the chart's file
-    rows, letters : the chart's rows with steps, and the letters of each row
-    force : overwrite pinned measures too
     """
-    wanted = _by_measure(chart, rows, letters)
+    chart, wanted = feet.chart, _by_measure(feet.chart, feet.rows, feet.letters)
     splices, states = [], []
     for line in measure_lines(data, chart):
         comment = data[line.start : line.end]
@@ -94,17 +94,6 @@ def write_measures(
             splices.append(Splice(line.start, line.end, new))
     states += (MeasureState(m, int(chart.measures.line[m]), State.IMPOSSIBLE) for m in wanted)
     return splices, states
-
-
-def strip_measures(data: bytes, chart: Chart, force: bool = False) -> list[Splice]:
-    """Return the replacements that remove the markers of a chart; pinned ones only with `force`."""
-    splices = []
-    for line in measure_lines(data, chart):
-        comment = data[line.start : line.end]
-        new = _without(comment, force)
-        if new != comment:
-            splices.append(Splice(line.start, line.end, new))
-    return splices
 
 
 def pinned(data: bytes, chart: Chart) -> int:

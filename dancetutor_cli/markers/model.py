@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -33,8 +34,11 @@ class ChartFeet:
 
 
 @dataclass(frozen=True, slots=True)
-class Lack:
-    """A report of `--check`. line, column : 1-based place in the chart file, None: it is about another file"""
+class CheckLine:
+    """A line about a file, mostly of `--check`.
+
+    line, column : 1-based place in the chart file, None: the line is about another file
+    """
 
     message: str
     line: int | None = None
@@ -55,7 +59,7 @@ class NoteChange:
 
     splices: list[Splice]
     counts: Counter[str] = field(default_factory=Counter)
-    lacks: list[Lack] = field(default_factory=list)
+    lacks: list[CheckLine] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
     def add(self, other: NoteChange) -> None:
@@ -73,23 +77,23 @@ class FileChange:
     path: Path
     old: bytes | None
     new: bytes | None
-    lacks: tuple[Lack, ...] = ()
+    lacks: tuple[CheckLine, ...] = ()
 
     @property
-    def needed(self) -> bool:
+    def is_change(self) -> bool:
         """Whether the file changes."""
         return self.old != self.new
 
 
-def written(path: Path, old: bytes | None, new: bytes | None, problem: str | None = None) -> FileChange:
+def change_of(path: Path, old: bytes | None, new: bytes | None, problem: str | None = None) -> FileChange:
     """Return the change of a file with feet. problem : the report of `--check` after the file's name"""
     problem = problem or f"is {'missing' if old is None else 'stale'}"
-    return FileChange(path, old, new, () if old == new else (Lack(f"{path.name} {problem}"),))
+    return FileChange(path, old, new, () if old == new else (CheckLine(f"{path.name} {problem}"),))
 
 
-def removed(path: Path, old: bytes | None, new: bytes | None) -> FileChange:
+def removal_of(path: Path, old: bytes | None, new: bytes | None) -> FileChange:
     """Return the change that removes feet from a file."""
-    return written(path, old, new, "has feet to remove")
+    return change_of(path, old, new, "has feet to remove")
 
 
 def old_content(path: Path, song: Song) -> bytes | None:
@@ -108,18 +112,18 @@ def own_json(path: Path, old: bytes, what: str, fits: Callable[[Any], bool]) -> 
     what : name of the expected file in messages; fits : whether the parsed file has the form; KeyError and TypeError
     mean no
     """
-    try:
+    data, is_ours = None, False
+    with suppress(FileError, KeyError, TypeError, AttributeError):
         data = parse_json(encoded(old.decode("utf-8", "surrogateescape")), path)
-        if data["program"] == "dancetutor" and fits(data):
-            return data
-    except (FileError, KeyError, TypeError, AttributeError):
-        pass
-    raise not_ours(path, what)
+        is_ours = data["program"] == "dancetutor" and fits(data)
+    check_is_ours(path, is_ours, what)
+    return data
 
 
-def not_ours(path: Path, what: str) -> FileError:
-    """Return the error about a file that another program wrote. what : the expected file, for people"""
-    return FileError(path, f"is not {what}; move it away or choose another style")
+def check_is_ours(path: Path, is_ours: bool, what: str) -> None:
+    """Raise FileError unless this program wrote a file. what : the expected file, for people"""
+    if not is_ours:
+        raise FileError(path, f"is not {what}; move it away or choose another style")
 
 
 def json_lines(entries: Iterable[Any]) -> str:

@@ -10,13 +10,14 @@ import numpy as np
 
 from dancetutor_cli.chart.edits import check_edit
 from dancetutor_cli.chart.model import Chart, Song
+from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.chart.note_data import player_charts, written_parts
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.annotations import step_rows
 from dancetutor_cli.feet.preset import Preset, mismatch
 from dancetutor_cli.feet.solved import solve_song
 from dancetutor_cli.markers import edit
-from dancetutor_cli.markers.model import ChartFeet, Lack, NoteChange, row_letters
+from dancetutor_cli.markers.model import ChartFeet, CheckLine, NoteChange, row_letters
 from dancetutor_cli.markers.styles import note_styles
 
 
@@ -26,7 +27,7 @@ class SolvedSong:
 
     charts: list[ChartFeet] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
-    problems: list[Lack] = field(default_factory=list)
+    problems: list[CheckLine] = field(default_factory=list)
 
 
 def solve_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart], Preset]) -> SolvedSong:
@@ -38,7 +39,7 @@ def solve_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart
     for chart, players in zip(charts, parts, strict=True):
         feet = []
         for part, one in zip(players, solved, strict=False):  # the next players of the song
-            found.problems += (Lack(problem.message, problem.line, problem.column) for problem in one.problems)
+            found.problems += (CheckLine(problem.message, problem.line, problem.column) for problem in one.problems)
             if one.play is None:
                 padless.add(part.steps_type)
                 continue
@@ -46,7 +47,7 @@ def solve_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart
             feet.append(ChartFeet(part, rows, tuple(row_letters(part, rows, one.play)), one.play))
         separate = written_parts(chart) != (chart,) or not chart.players
         found.charts += feet if separate else [_in_shared_rows(song, chart, feet)]
-    padless = {name for name in padless if not name.startswith("lights")}
+    padless = {name for name in padless if not is_lights(name)}
     if padless:
         found.notes.append(
             f"{song.path}: there is no pad for {', '.join(sorted(padless))}, so these charts get no feet"
@@ -92,11 +93,11 @@ def unmark(song: Song, charts: Sequence[Chart], names: Sequence[str], force: boo
             for style in note_styles(names):
                 change.add(style.strip(song, part, force))
         if found := len(change.splices) - before:
-            change.lacks.append(Lack(f"{chart.label}: {found} markers to remove", chart.line))
+            change.lacks.append(CheckLine(f"{chart.label}: {found} markers to remove", chart.line))
     return change
 
 
-def add_charts(song: Song, before: Song, data: bytes, feet: Sequence[ChartFeet]) -> tuple[bytes, list[Lack]]:
+def add_charts(song: Song, before: Song, data: bytes, feet: Sequence[ChartFeet]) -> tuple[bytes, list[CheckLine]]:
     """Return the file with the lane-split charts added, and the reports of `--check` about them.
 
     song : the song without these charts; before : the song as read, perhaps with older ones; data : bytes of `song`
@@ -110,7 +111,7 @@ def add_charts(song: Song, before: Song, data: bytes, feet: Sequence[ChartFeet])
             raise edit.EditError(song.path, f"{source.label}: cannot be added as a chart for two pads; nothing written")
     if before.data.endswith(added) and len(before.data) - len(song.data) == len(added):
         return data + added, []
-    return data + added, [Lack(f"{c.label}: its chart for two pads is missing or stale", c.line) for c in singles]
+    return data + added, [CheckLine(f"{c.label}: its chart for two pads is missing or stale", c.line) for c in singles]
 
 
 def check(song: Song, data: bytes) -> None:

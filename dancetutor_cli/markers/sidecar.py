@@ -13,13 +13,13 @@ from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.markers.model import (
     ChartFeet,
+    CheckLine,
     FileChange,
-    Lack,
     json_lines,
     limbs_of_steps,
     old_content,
     own_json,
-    removed,
+    removal_of,
 )
 from dancetutor_cli.run.files import encoded
 
@@ -28,42 +28,30 @@ _SCHEMA = 1
 
 
 def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileChange]:
-    """Yield the sidecar of a chart file; the .sm and the .ssc of one song share it."""
+    """Yield the sidecar of a chart file, which the .sm and the .ssc share; entries of other files and charts stay."""
     path = folder / (song.path.stem + SUFFIX)
     old = old_content(path, song)
-    new = write_sidecar(path, old, song, feet)
-    why = ((one.chart, lack(path, old, song, one.chart, new)) for one in feet)
-    yield FileChange(path, old, new, tuple(Lack(text, chart.line) for chart, text in why if text))
-
-
-def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
-    """Yield the sidecar without some charts of a file."""
-    path = song.path.with_name(song.path.stem + SUFFIX)
-    old = old_content(path, song)
-    yield removed(path, old, strip_sidecar(path, old, song, charts))
-
-
-def write_sidecar(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> bytes:
-    """Return the new content of a sidecar; entries of other files and charts stay."""
     files = _files(path, old)
     before = files.get(song.path.name, {}).get("charts", [])
     indices = {one.chart.index for one in feet}
     kept = [entry for entry in before if entry.get("index") not in indices and _still_there(entry, song)]
     charts = sorted([*kept, *(_entry(one) for one in feet)], key=lambda entry: int(entry["index"]))
     files[song.path.name] = {"charts": charts}
-    return _dump(files)
+    new = _dump(files)
+    why = ((one.chart, lack(path, old, song, one.chart, new)) for one in feet)
+    yield FileChange(path, old, new, tuple(CheckLine(text, chart.line) for chart, text in why if text))
 
 
-def strip_sidecar(path: Path, old: bytes | None, song: Song, charts: Sequence[Chart]) -> bytes | None:
-    """Return the sidecar without the entries of some charts; None if it has no other entries."""
-    if old is None:
-        return None
+def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
+    """Yield the sidecar without some charts of a file; without the last entry, the sidecar is removed."""
+    path = song.path.with_name(song.path.stem + SUFFIX)
+    old = old_content(path, song)
     files = _files(path, old)
     gone = {chart.index for chart in charts}
     before = files.pop(song.path.name, {}).get("charts", [])
     if kept := [entry for entry in before if entry.get("index") not in gone]:
         files[song.path.name] = {"charts": kept}
-    return _dump(files) if files else None
+    yield removal_of(path, old, _dump(files) if files else None)
 
 
 def lack(path: Path, old: bytes | None, song: Song, chart: Chart, new: bytes) -> str | None:

@@ -15,7 +15,7 @@ from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.pack_files import song_stems
 from dancetutor_cli.feet.sme import FEET, FILE_NAME, OURS, overrides_of, place_in_type, tick_of
-from dancetutor_cli.markers.model import ChartFeet, FileChange, limbs_of_steps, old_content, removed, written
+from dancetutor_cli.markers.model import ChartFeet, FileChange, change_of, limbs_of_steps, old_content, removal_of
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import parse_json
 
@@ -29,27 +29,17 @@ def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileC
     if len(stems := song_stems(song.path.parent)) > 1:
         raise FileError(path, f"its folder has {len(stems)} songs, but data.sme can hold only one; it is not written")
     old = old_content(path, song)
-    yield written(path, old, write_editor_data(path, old, song, feet), "does not have the feet that the solver finds")
+    new = {(one.chart.steps_type, place_in_type(song, one.chart)): overrides(one) for one in feet}
+    yield change_of(path, old, _rewrite(path, old, new), "does not have the feet that the solver finds")
 
 
 def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
-    """Yield the `data.sme` without the feet that this program wrote."""
+    """Yield the `data.sme` without the feet that this program wrote; a file that would be empty is removed."""
     path = song.path.with_name(FILE_NAME)
     old = old_content(path, song)
-    yield removed(path, old, strip_editor_data(path, old, song, charts))
-
-
-def write_editor_data(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> bytes | None:
-    """Return the new content of `data.sme` with the feet of these charts; this program's feet of other charts stay."""
-    new = {(one.chart.steps_type, place_in_type(song, one.chart)): overrides(one) for one in feet}
-    return _rewrite(path, old, new)
-
-
-def strip_editor_data(path: Path, old: bytes | None, song: Song, charts: Sequence[Chart]) -> bytes | None:
-    """Return `data.sme` without this program's feet of these charts; None if a file of the program would be empty."""
-    if old is None:
-        return None
-    return _rewrite(path, old, {(chart.steps_type, place_in_type(song, chart)): [] for chart in charts})
+    gone: dict[_Key, list[list[Any]]]
+    gone = {(chart.steps_type, place_in_type(song, chart)): [] for chart in charts}
+    yield removal_of(path, old, None if old is None else _rewrite(path, old, gone))
 
 
 def overrides(one: ChartFeet) -> list[list[Any]]:

@@ -19,12 +19,12 @@ from dancetutor_cli.feet.play import Play
 from dancetutor_cli.markers.model import (
     ChartFeet,
     FileChange,
+    change_of,
+    check_is_ours,
     json_lines,
-    not_ours,
     old_content,
     own_json,
-    removed,
-    written,
+    removal_of,
 )
 from dancetutor_cli.markers.sidecar import notes_hash
 from dancetutor_cli.run.files import encoded
@@ -141,8 +141,8 @@ def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileC
     old, script = old_content(table, song), old_content(lua, song)
     check_lua(lua, script)
     content = cue_table(table, old, song, feet)
-    yield written(table, old, as_json(content))
-    yield written(lua, script, as_lua(content))
+    yield change_of(table, old, as_json(content))
+    yield change_of(lua, script, as_lua(content))
 
 
 def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
@@ -153,8 +153,8 @@ def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
     gone = {chart.index for chart in charts}
     kept = [entry for entry in charts_in(table, old) if entry["index"] not in gone]
     content = {**cue_table(table, None, song, ()), "charts": kept}
-    yield removed(table, old, as_json(content) if kept and old else None)
-    yield removed(lua, script, as_lua(content) if kept and script else None)
+    yield removal_of(table, old, as_json(content) if kept and old else None)
+    yield removal_of(lua, script, as_lua(content) if kept and script else None)
 
 
 def cue_table(path: Path, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> dict[str, Any]:
@@ -181,8 +181,7 @@ def _holds_charts(data: Any) -> bool:
 
 def check_lua(path: Path, old: bytes | None) -> None:
     """Raise FileError if this program did not write the old Lua file."""
-    if old is not None and not old.startswith(_HEAD):
-        raise not_ours(path, _OURS)
+    check_is_ours(path, old is None or old.startswith(_HEAD), _OURS)
 
 
 def as_json(table: dict[str, Any]) -> bytes:

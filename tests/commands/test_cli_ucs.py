@@ -124,7 +124,7 @@ def test_a_text_of_another_user_is_left_alone(ucs: Path) -> None:
     text.write_text("my own notes\n")
     for words in (("annotate", ucs), ("annotate", ucs, "--strip", "--markers", "measure")):
         result = run(*words)
-        assert result.exit_code == 2 and "was not written by dancetutor" in result.output
+        assert result.exit_code == 2 and "is not a text with feet by dancetutor" in result.output
     assert run("annotate", ucs, "--strip").exit_code == 0
     assert text.read_text() == "my own notes\n"
 

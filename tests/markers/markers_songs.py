@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 
@@ -13,7 +14,9 @@ from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.annotations import StepRows, step_rows
 from dancetutor_cli.feet.limbs import LETTERS
+from dancetutor_cli.feet.play import Play
 from dancetutor_cli.markers import measure, rows
+from dancetutor_cli.markers.model import ChartFeet
 from dancetutor_cli.run.errors import FileError
 
 HEADER = b"#TITLE:Song;\n#OFFSET:0;\n#BPMS:0=120;\n"
@@ -36,6 +39,11 @@ def random_letters(chart: Chart, found: StepRows, seed: int) -> list[str]:
     return [text[a:b] for a, b in zip([0, *ends[:-1]], ends, strict=True)] if ends else []
 
 
+def letters_as_feet(chart: Chart, found: StepRows, letters: Sequence[str]) -> ChartFeet:
+    """Feet without a play, which the styles in note data do not need."""
+    return ChartFeet(chart, found, tuple(letters), cast(Play, None))
+
+
 def annotated(song: Song, seed: int = 1, styles: Sequence[str] = ("measure",), force: bool = False) -> bytes:
     """The file with random feet in it; the same seed gives the same feet."""
     splices = []
@@ -43,9 +51,9 @@ def annotated(song: Song, seed: int = 1, styles: Sequence[str] = ("measure",), f
         found = step_rows(song.data, chart)
         letters = random_letters(chart, found, seed)
         if "measure" in styles:
-            splices += measure.write_measures(song.data, chart, found, letters, force)[0]
+            splices += measure.write(song, letters_as_feet(chart, found, letters), force).splices
         if "rows" in styles:
-            splices += rows.write_rows(song.data, chart, found, letters)[0]
+            splices += rows.write(song, letters_as_feet(chart, found, letters), force).splices
     return apply(song.data, splices)
 
 
@@ -53,9 +61,9 @@ def stripped(song: Song, styles: Sequence[str] = ("measure",), force: bool = Fal
     splices = []
     for chart in song.charts:
         if "measure" in styles:
-            splices += measure.strip_measures(song.data, chart, force)
+            splices += measure.strip(song, chart, force).splices
         if "rows" in styles:
-            splices += rows.strip_rows(song.data, chart)
+            splices += rows.strip(song, chart, force).splices
     return apply(song.data, splices)
 
 

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -12,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from markers_songs import sm, song_of
 
-from dancetutor_cli.chart.model import Song
+from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.feet.annotations import step_rows
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.solve import solve_chart
@@ -21,7 +26,6 @@ from dancetutor_cli.markers.model import ChartFeet, row_letters
 from dancetutor_cli.run.errors import FileError
 
 MEASURES = b"\n1000\n0001\n0110\n0M00\n,\n2002\n0000\n0010\n3003\n;\n"
-PATH = Path("data.sme")
 
 
 def two_charts() -> Song:
@@ -39,10 +43,37 @@ def feet_of(song: Song) -> list[ChartFeet]:
     return out
 
 
+NAMES = {sidecar: "song.dancetutor.json", smeditor: "data.sme"}
+
+
+def write(style: ModuleType, old: bytes | None, song: Song, feet: Sequence[ChartFeet]) -> bytes | None:
+    """The new content of a style's file in a folder where it has the old content."""
+    with placed(style, old, song) as beside:
+        (change,) = style.write(beside, beside.path.parent, feet)
+    assert change.old == old
+    return change.new
+
+
+def strip(style: ModuleType, old: bytes | None, song: Song, charts: Sequence[Chart]) -> bytes | None:
+    with placed(style, old, song) as beside:
+        (change,) = style.strip(beside, charts)
+    assert change.old == old
+    return change.new
+
+
+@contextmanager
+def placed(style: ModuleType, old: bytes | None, song: Song) -> Iterator[Song]:
+    """The song in a folder of its own, with the style's file beside it."""
+    with TemporaryDirectory() as folder:
+        if old is not None:
+            Path(folder, NAMES[style]).write_bytes(old)
+        yield replace(song, path=Path(folder, song.path.name))
+
+
 def test_the_sidecar_says_beat_column_and_limb() -> None:
     song = two_charts()
     feet = feet_of(song)
-    data = json.loads(sidecar.write_sidecar(Path("song.dancetutor.json"), None, song, feet))
+    data = json.loads(write(sidecar, None, song, feet) or b"")
     charts = data["files"]["song.sm"]["charts"]
     assert [(c["index"], c["steps_type"], c["difficulty"], c["meter"]) for c in charts] == [
         (0, "dance-single", "Hard", 8), (1, "dance-single", "Easy", 8),
@@ -57,26 +88,26 @@ def test_the_sidecar_says_beat_column_and_limb() -> None:
 
 
 def test_the_sidecar_is_for_both_files_of_a_song_and_keeps_other_charts() -> None:
-    path, song = Path("song.dancetutor.json"), two_charts()
+    song = two_charts()
     feet = feet_of(song)
-    first = sidecar.write_sidecar(path, None, song, feet)
-    assert sidecar.write_sidecar(path, first, song, feet) == first
-    assert sidecar.write_sidecar(path, first, song, feet[1:]) == first
+    first = write(sidecar, None, song, feet)
+    assert write(sidecar, first, song, feet) == first
+    assert write(sidecar, first, song, feet[1:]) == first
     twin = song_of(sm(MEASURES), "song.SM")
-    both = sidecar.write_sidecar(path, first, twin, feet_of(twin))
-    assert set(json.loads(both)["files"]) == {"song.sm", "song.SM"}
-    assert sidecar.strip_sidecar(path, both, twin, twin.charts) == first
-    half = sidecar.strip_sidecar(path, first, song, song.charts[:1])
+    both = write(sidecar, first, twin, feet_of(twin))
+    assert set(json.loads(both or b"")["files"]) == {"song.sm", "song.SM"}
+    assert strip(sidecar, both, twin, twin.charts) == first
+    half = strip(sidecar, first, song, song.charts[:1])
     assert half is not None
     assert [c["index"] for c in json.loads(half)["files"]["song.sm"]["charts"]] == [1]
-    assert sidecar.strip_sidecar(path, half, song, song.charts) is None
+    assert strip(sidecar, half, song, song.charts) is None
 
 
 def test_the_sidecar_notices_that_notes_have_changed() -> None:
     path, song = Path("song.dancetutor.json"), song_of(sm(MEASURES))
-    old = sidecar.write_sidecar(path, None, song, feet_of(song))
+    old = write(sidecar, None, song, feet_of(song))
     edited = song_of(sm(MEASURES.replace(b"0001", b"0010")))
-    new = sidecar.write_sidecar(path, old, edited, feet_of(edited))
+    new = write(sidecar, old, edited, feet_of(edited))
     assert "its notes have changed" in str(sidecar.lack(path, old, edited, edited.charts[0], new))
     assert sidecar.lack(path, new, edited, edited.charts[0], new) is None
     # a comment, which an editor may drop, changes nothing
@@ -88,22 +119,22 @@ def test_the_sidecar_notices_that_notes_have_changed() -> None:
 def test_a_file_that_is_no_sidecar_is_left_alone(text: bytes) -> None:
     song = two_charts()
     with pytest.raises(FileError, match="not a sidecar"):
-        sidecar.write_sidecar(Path("song.dancetutor.json"), text, song, feet_of(song))
+        write(sidecar, text, song, feet_of(song))
 
 
 def test_data_sme_has_the_form_of_the_specification() -> None:
     song = two_charts()
-    new = smeditor.write_editor_data(PATH, None, song, feet_of(song))
+    new = write(smeditor, None, song, feet_of(song))
     assert new is not None
     assert new.startswith(
         b'{"version":1,"parity":{"dance-single":[{"overrides":[[0,0,"Left"],[1,3,"Right"],[2,1,"Right"],[2,2,"Left"],'
         b'[4,0,"Left"],[4,3,"Right"]],"ignores":{}},{"overrides":[[0,0,"Left"]'
     )
-    assert smeditor.write_editor_data(PATH, new, song, feet_of(song)) == new
-    assert smeditor.strip_editor_data(PATH, new, song, song.charts) is None
-    one = smeditor.strip_editor_data(PATH, new, song, song.charts[:1])
+    assert write(smeditor, new, song, feet_of(song)) == new
+    assert strip(smeditor, new, song, song.charts) is None
+    one = strip(smeditor, new, song, song.charts[:1])
     assert one is not None
-    assert smeditor.write_editor_data(PATH, one, song, feet_of(song)[:1]) == new
+    assert write(smeditor, one, song, feet_of(song)[:1]) == new
 
 
 def test_beats_have_three_digits() -> None:
@@ -122,7 +153,7 @@ def test_what_a_person_set_is_never_touched() -> None:
         "version": 1,
     }
     old = json.dumps(theirs, indent=3).encode()
-    new = smeditor.write_editor_data(PATH, old, song, feet_of(song))
+    new = write(smeditor, old, song, feet_of(song))
     assert new is not None
     data = json.loads(new)
     assert list(data) == ["future", "parity", "version", "dancetutor"]
@@ -132,17 +163,17 @@ def test_what_a_person_set_is_never_touched() -> None:
     assert entry["overrides"][:2] == [[2, 1, "Right"], [1.0, 3, 2]]
     assert [item[:2] for item in entry["overrides"][2:]] == [[0, 0], [2, 2], [4, 0], [4, 3]]
     assert (entry["ignores"], entry["note"]) == ({"1": ["DS"]}, "x")
-    assert smeditor.write_editor_data(PATH, new, song, feet_of(song)) == new
-    assert smeditor.strip_editor_data(PATH, new, song, song.charts) == old
+    assert write(smeditor, new, song, feet_of(song)) == new
+    assert strip(smeditor, new, song, song.charts) == old
 
 
 def test_a_change_by_a_person_after_us_is_theirs() -> None:
     song = song_of(sm(MEASURES))
-    data = json.loads(smeditor.write_editor_data(PATH, None, song, feet_of(song)) or b"")
+    data = json.loads(write(smeditor, None, song, feet_of(song)) or b"")
     overrides = data["parity"]["dance-single"][0]["overrides"]
     overrides[0] = [0, 0, "Right"]
     data["parity"]["dance-single"][0]["ignores"] = {"2": ["AM"]}
-    left = smeditor.strip_editor_data(PATH, json.dumps(data).encode(), song, song.charts)
+    left = strip(smeditor, json.dumps(data).encode(), song, song.charts)
     assert json.loads(left or b"") == {
         "version": 1, "parity": {"dance-single": [{"overrides": [[0, 0, "Right"]], "ignores": {"2": ["AM"]}}]},
     }  # fmt: skip
@@ -150,11 +181,11 @@ def test_a_change_by_a_person_after_us_is_theirs() -> None:
 
 def test_after_smeditor_has_saved_all_feet_are_a_persons() -> None:
     song = song_of(sm(MEASURES))
-    data = json.loads(smeditor.write_editor_data(PATH, None, song, feet_of(song)) or b"")
+    data = json.loads(write(smeditor, None, song, feet_of(song)) or b"")
     del data["dancetutor"]
     saved = json.dumps(data, separators=(",", ":")).encode()
-    assert smeditor.strip_editor_data(PATH, saved, song, song.charts) == saved
-    assert smeditor.write_editor_data(PATH, saved, song, feet_of(song)) == saved
+    assert strip(smeditor, saved, song, song.charts) == saved
+    assert write(smeditor, saved, song, feet_of(song)) == saved
 
 
 @pytest.mark.parametrize(
@@ -164,7 +195,7 @@ def test_after_smeditor_has_saved_all_feet_are_a_persons() -> None:
 def test_an_odd_file_is_left_alone(text: bytes) -> None:
     song = song_of(sm(MEASURES))
     with pytest.raises(FileError, match=r"left alone|did not write"):
-        smeditor.write_editor_data(PATH, text, song, feet_of(song))
+        write(smeditor, text, song, feet_of(song))
 
 
 _OVERRIDE = st.tuples(st.integers(0, 8), st.integers(0, 3), st.sampled_from(["Left", "Right", 1, 2, 3, 4])).map(list)
@@ -183,7 +214,7 @@ _FEET = feet_of(_SONG)
 
 @given(_SME)
 def test_any_data_sme_round_trips(old: bytes) -> None:
-    new = smeditor.write_editor_data(PATH, old, _SONG, _FEET)
+    new = write(smeditor, old, _SONG, _FEET)
     assert new is not None
-    assert smeditor.write_editor_data(PATH, new, _SONG, _FEET) == new
-    assert smeditor.strip_editor_data(PATH, new, _SONG, _SONG.charts) == old
+    assert write(smeditor, new, _SONG, _FEET) == new
+    assert strip(smeditor, new, _SONG, _SONG.charts) == old

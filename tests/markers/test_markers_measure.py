@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from markers_songs import HEADER, SM_CHART, annotated, sm, song_of, stripped
+from markers_songs import HEADER, SM_CHART, annotated, letters_as_feet, sm, song_of, stripped
 
 from dancetutor_cli.chart.edits import Splice, apply
 from dancetutor_cli.feet.annotations import step_rows
 from dancetutor_cli.markers import measure
-from dancetutor_cli.markers.measure import State
+from dancetutor_cli.markers.model import NoteChange
 
 # The example of the specification: two measures, four rows with steps and then two.
 PLAIN = sm(b"\n1000\n0100\n0010\n1001\n,  // measure 1\n0100\n1011\n0000\n0000\n;\n")
@@ -20,20 +20,25 @@ LETTERS = ["L", "R", "L", "LR", "R", "LLR"]
 MARKED = sm(b"//{dt1 LRL(LR)}\n1000\n0100\n0010\n1001\n,  // measure 1 {dt1 R(LLR)}\n0100\n1011\n0000\n0000\n;\n")
 
 
-def mark(data: bytes, letters: Sequence[str], force: bool = False) -> bytes:
+def change(data: bytes, letters: Sequence[str], force: bool = False) -> NoteChange:
     song = song_of(data)
     (chart,) = song.charts
-    return apply(data, measure.write_measures(data, chart, step_rows(data, chart), letters, force)[0])
+    return measure.write(song, letters_as_feet(chart, step_rows(data, chart), letters), force)
 
 
-def states(data: bytes, letters: Sequence[str]) -> list[State]:
-    (chart,) = song_of(data).charts
-    return [one.state for one in measure.write_measures(data, chart, step_rows(data, chart), letters)[1]]
+def mark(data: bytes, letters: Sequence[str], force: bool = False) -> bytes:
+    return apply(data, change(data, letters, force).splices)
+
+
+def states(data: bytes, letters: Sequence[str]) -> dict[str, int]:
+    """The number of measures in each state."""
+    return dict(change(data, letters).counts)
 
 
 def unmark(data: bytes, force: bool = False) -> bytes:
-    (chart,) = song_of(data).charts
-    return apply(data, measure.strip_measures(data, chart, force))
+    song = song_of(data)
+    (chart,) = song.charts
+    return apply(data, measure.strip(song, chart, force).splices)
 
 
 def test_the_example_of_the_specification() -> None:
@@ -98,7 +103,7 @@ def test_lines_that_are_left_alone(line: bytes) -> None:
     (chart,) = song_of(data).charts
     letters = ["L"] * len(step_rows(data, chart))
     assert mark(data, letters) == data
-    assert letters == [] or states(data, letters) == [State.IMPOSSIBLE]
+    assert letters == [] or states(data, letters) == {"impossible": 1}
 
 
 def test_a_file_with_cr_alone_is_left_alone(hostile) -> None:  # type: ignore[no-untyped-def]
@@ -108,21 +113,23 @@ def test_a_file_with_cr_alone_is_left_alone(hostile) -> None:  # type: ignore[no
 
 def test_other_feet_and_stale_counts_are_reported_and_replaced() -> None:
     other = ["R", "L", "R", "RL", "L", "LRR"]
-    assert states(MARKED, LETTERS) == [State.CURRENT, State.CURRENT]
-    assert states(MARKED, other) == [State.DIFFERENT, State.DIFFERENT]
+    assert states(MARKED, LETTERS) == {"current": 2}
+    assert states(MARKED, other) == {"different": 2}
     assert mark(MARKED, other) == mark(PLAIN, other)
     fewer = MARKED.replace(b"0010\n1001\n", b"0000\n1001\n")  # a step deleted in an editor that keeps comments
-    assert states(fewer, ["L", "R", "LR", "R", "LLR"]) == [State.STALE, State.CURRENT]
+    assert states(fewer, ["L", "R", "LR", "R", "LLR"]) == {"stale": 1, "current": 1}
+    assert [one.line for one in change(fewer, ["L", "R", "LR", "R", "LLR"]).lacks] == [9]
     gone = MARKED.replace(b"0100\n1011\n0000", b"0000\n0000\n0000")
-    assert states(gone, ["L", "R", "L", "LR"]) == [State.CURRENT, State.STALE]
+    assert states(gone, ["L", "R", "L", "LR"]) == {"current": 1, "stale": 1}
+    assert [one.line for one in change(gone, ["L", "R", "L", "LR"]).lacks] == [14]
     assert b"// measure 1\n" in mark(gone, ["L", "R", "L", "LR"])
-    assert states(PLAIN, LETTERS) == [State.MISSING, State.MISSING]
+    assert states(PLAIN, LETTERS) == {"missing": 2}
 
 
 def test_pinned_measures_are_left_alone_unless_forced() -> None:
     pinned = MARKED.replace(b"{dt1 R(LLR)}", b"{dt1! L(LRR)}")
     assert mark(pinned, LETTERS) == pinned
-    assert states(pinned, LETTERS) == [State.CURRENT, State.PINNED]
+    assert states(pinned, LETTERS) == {"current": 1, "pinned": 1}
     assert mark(pinned, LETTERS, force=True) == MARKED
     assert b"{dt1! L(LRR)}" in unmark(pinned)
     assert unmark(pinned, force=True) == PLAIN
