@@ -93,14 +93,14 @@ class Grid:
         first = of_measure.searchsorted(np.arange(len(parts)))
         real[first] &= closes[first] > [part.begin for part in parts]
         self._anchor, of_measure = opens[real], of_measure[real]
-        self._row_first = self.first.searchsorted(self._anchor)
-        self._row_count = self.first.searchsorted(closes[real]) - self._row_first
+        row_first = self.first.searchsorted(self._anchor)
+        row_count = self.first.searchsorted(closes[real]) - row_first
         self._measures = of_measure.searchsorted(np.arange(len(parts) + 1)).tolist()
         self._rows = self._of_row.searchsorted(np.arange(len(parts) + 1)).tolist()
         number = np.arange(len(self._anchor)) - np.array(self._measures)[of_measure]
-        measure = np.arange(len(self._anchor)).repeat(self._row_count)
-        count = self._row_count[measure]
-        scaled = TICKS_PER_MEASURE * (np.arange(len(self.first)) - self._row_first[measure])
+        measure = np.arange(len(self._anchor)).repeat(row_count)
+        count = row_count[measure]
+        scaled = TICKS_PER_MEASURE * (np.arange(len(self.first)) - row_first[measure])
         whole, rest = np.divmod(scaled, np.maximum(count, 1))
         up = (2 * rest > count) | ((2 * rest == count) & (whole % 2 == 1))  # halves to even
         self._measure = number[measure].astype(np.int32)
@@ -118,8 +118,7 @@ class Grid:
     def measure_table(self, part: int) -> MeasureTable:
         """Return the measures of a part."""
         here = slice(self._measures[part], self._measures[part + 1])
-        first = (self._row_first[here] - self._rows[part]).astype(np.int32)
-        return MeasureTable(self._anchor[here], self._opened[here], first, self._row_count[here].astype(np.int32))
+        return MeasureTable(self._anchor[here], self._opened[here])
 
     def cells(self) -> Cells:
         """Return the non-empty cells of all parts; within a part, they are in file order."""

@@ -87,13 +87,10 @@ class MeasureTable:
 
     anchor : int64, byte offset directly after the `:` or `,` that opens the measure
     line : int32, 1-based line of that `:` or `,`
-    first_row, row_count : int32, first row and number of rows in the `RowTable`
     """
 
     anchor: NDArray[np.int64]
     line: NDArray[np.int32]
-    first_row: NDArray[np.int32]
-    row_count: NDArray[np.int32]
 
 
 @dataclass(frozen=True, slots=True)

@@ -381,6 +381,5 @@ def _measure_table(clock: _Clock, rows: Sequence[int]) -> MeasureTable:
     """Return measures of four beats; the file does not mark them, so their anchors and lines are 0."""
     ticks = np.array([clock.ticks[row] for row in rows], dtype=np.int64)
     count = int(ticks.max(initial=0)) // TICKS_PER_MEASURE + 1
-    first = ticks.searchsorted(np.arange(count + 1) * TICKS_PER_MEASURE).astype(np.int32)
     nowhere = np.zeros(count, dtype=np.int64)
-    return MeasureTable(nowhere, nowhere.astype(np.int32), first[:-1], np.diff(first))
+    return MeasureTable(nowhere, nowhere.astype(np.int32))
