@@ -4,6 +4,7 @@ reader.load                   the entry point; a file is read in four steps
   |   msd                       tags, with the byte span of each value
   |   timing_tags, timing       timing tags; the second of each beat
   |   grid, cells, note_data    measures and rows; the contents of cells; notes
+  |   players                   the parts of charts for several players
   |   ucs                       UCS files of Pump, a different format without these steps
 model.Song, model.Chart       what every other package works with
 

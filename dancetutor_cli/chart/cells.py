@@ -1,15 +1,15 @@
-"""From cells of the note grid to notes: holds with their tails, the player of each note, and StepF2's additions."""
+"""From cells of the note grid to notes: holds with their tails, and the notation of StepF2 and StepManiaX."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.model import STEP_KINDS, Kind, ReadWarning
+from dancetutor_cli.chart.model import Kind, ReadWarning
 
 # Additions of StepF2, a game for Pump charts, to the notation of the other games.
 #
@@ -17,7 +17,7 @@ from dancetutor_cli.chart.model import STEP_KINDS, Kind, ReadWarning
 # several players, X, Y and Z are steps of the first, second and third player, and x, y and z are heads of their holds.
 # The game shows each player's notes in a different colour. A chart with steps of the first and the second player, and
 # none of the third, is read as a chart for two. Its other notes (the third player's holds, plain notes) belong to the
-# player on their half of the pads. A chart with steps of all three is for three or more, see `notes_by_player`.
+# player on their half of the pads. A chart with steps of all three is for three or more, see `players`.
 
 PLAYERS = b"XYZxyz"
 TEXTS = {
@@ -26,7 +26,6 @@ TEXTS = {
     "other games read them letter by letter",
     "X": "X, Y and Z are steps of several players in StepF2, of whom the first or the second has none here: no notes",
 }
-_SEVERAL = "the chart is for {} players ({} mark their notes, as in StepF2); each has feet of their own"
 _NOTE = re.compile(rb"\{([0-4MLFKXYZxyz])\|[A-Za-z]\|([01])\|[0-9]\}")
 FAKE_HEAD = ord("f")  # head of a fake hold, which is removed together with its end
 MINES_HEAD = ord("m")
@@ -41,11 +40,6 @@ def letters_of(text: bytes, columns: int) -> bytes:
     if columns != _BOTH_PADS or b"X" not in text or b"Y" not in text:
         return b""
     return b"XYZ" if b"Z" in text else b"XY"
-
-
-def for_several(players: int, letters: bytes) -> str:
-    """Return the message that a chart is for several players."""
-    return _SEVERAL.format("two" if players == 2 else players, "X and Y" if len(letters) == 2 else "X, Y and Z")
 
 
 def player_of(letter: int) -> int:
@@ -76,7 +70,7 @@ OTHERS_HEAD = 102  # the head of another player's hold (StepF2), which is droppe
 ROW_OF_MINES = 103  # StepManiaX: mines from here to a tail; read as one mine at each end
 _KEYSOUND, _HOLD, _ROLL = int(Kind.KEYSOUND), int(Kind.HOLD), int(Kind.ROLL)
 _MOST_COLUMNS = 64
-_MOST = 20  # limit of warnings of one sort; further ones are only counted
+MAX_WARNINGS = 20  # limit of warnings of one sort; further ones are only counted
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +136,7 @@ def notes_of(cells: Cells, warnings: Sequence[list[ReadWarning]]) -> Cells:
     ):
         found = cells[acting[which]]
         for part in np.flatnonzero(np.bincount(found.part)).tolist():  # `np.unique` would import np.ma, which is slow
-            report(warnings[part], code, text, np.sort(found.line[found.part == part]))
+            add_warnings(warnings[part], code, text, np.sort(found.line[found.part == part]))
     keep = (cells.kind != TAIL) & (cells.kind != OTHERS_HEAD)
     keep[acting[open_head]] = False
     return cells[keep]
@@ -164,54 +158,8 @@ def _last_of_each(cells: Cells, warnings: Sequence[list[ReadWarning]]) -> Cells:
     return cells[last]
 
 
-def report(warnings: list[ReadWarning], code: str, text: str, lines: NDArray[np.integer]) -> None:
+def add_warnings(warnings: list[ReadWarning], code: str, text: str, lines: NDArray[np.integer]) -> None:
     """Add a warning for each of the first 20 lines, and one more with the number of other lines."""
-    warnings.extend(ReadWarning(code, text, line) for line in lines[:_MOST].tolist())
-    if len(lines) > _MOST:
-        warnings.append(ReadWarning(code, f"{len(lines) - _MOST} more: {text}", int(lines[_MOST])))
-
-
-# The parts of players whose notes are in the same rows and are marked by letters.
-
-_PLAIN = 4  # the colour of plain notes in a chart with three letters
-_LEAST = 0.5  # share of the rarest letter's notes from which plain notes belong to a fourth player
-
-
-def notes_by_player(cells: Cells, marks: Mapping[tuple[int, int], int], columns: int, letters: bytes) -> list[Cells]:
-    """Return the notes of each player, in the order of letters, left before right; mines are in all parts.
-
-    Each of two players has the notes with their own letter, and the notes without a letter on their half of the pads.
-    With a third letter, enough plain notes belong to a fourth player, as StepF2 colours them. Fewer plain notes go to
-    the player who mostly steps that panel. A colour that is mostly on both pads at once belongs to two players, one on
-    each pad. A player with only fakes has no part.
-
-    marks : (tick, column) -> player whose letter is in that cell
-    """
-    places = zip(cells.tick.tolist(), cells.column.tolist(), strict=True)
-    owner = np.array([marks.get(place, 0) for place in places], dtype=np.int64)
-    right = (cells.column >= columns // 2).astype(np.int64)
-    mine = cells.kind == Kind.MINE
-    if len(letters) == 2:
-        whose = np.where((owner == 1) | (owner == 2), owner, 1 + right)
-        return [cells[(whose == player) | mine] for player in (1, 2)]
-    step, plain = np.isin(cells.kind, STEP_KINDS), owner == 0
-    colour = np.where(plain, _PLAIN, owner)
-    whose = 2 * colour + right * np.isin(colour, _of_two(colour[step], cells.tick[step], right[step]))
-    counts = np.bincount(owner[step & ~plain], minlength=1)
-    if (step & plain).sum() < _LEAST * counts[counts > 0].min(initial=len(owner)) and counts.any():
-        players = np.unique(whose[step & ~plain])
-        steps = np.array([np.bincount(cells.column[step & (whose == one)], minlength=columns) for one in players])
-        whose[plain] = players[steps.argmax(axis=0)][cells.column[plain]]
-    everybodys = mine | (~step & plain)
-    return [cells[(whose == player) | everybodys] for player in np.unique(whose[step]).tolist()]
-
-
-def _of_two(colour: NDArray[np.int64], tick: NDArray[np.int64], right: NDArray[np.int64]) -> list[int]:
-    """Return the colours of two players: those with steps on both pads in most of their rows."""
-    found = []
-    for one in np.unique(colour).tolist():
-        left_rows, right_rows = (np.unique(tick[(colour == one) & (right == side)]) for side in (0, 1))
-        both = len(np.intersect1d(left_rows, right_rows))
-        if 2 * both > len(left_rows) + len(right_rows) - both:
-            found.append(one)
-    return found
+    warnings.extend(ReadWarning(code, text, line) for line in lines[:MAX_WARNINGS].tolist())
+    if len(lines) > MAX_WARNINGS:
+        warnings.append(ReadWarning(code, f"{len(lines) - MAX_WARNINGS} more: {text}", int(lines[MAX_WARNINGS])))

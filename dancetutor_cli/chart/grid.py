@@ -8,8 +8,19 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart import cells as stepf2
-from dancetutor_cli.chart.cells import OTHERS_HEAD, ROW_OF_MINES, TAIL, Cells, report
+from dancetutor_cli.chart.cells import (
+    FAKE_HEAD,
+    MINES_HEAD,
+    OTHERS_HEAD,
+    PLAYERS,
+    ROW_OF_MINES,
+    TAIL,
+    TEXTS,
+    Cells,
+    add_warnings,
+    note_at,
+    player_of,
+)
 from dancetutor_cli.chart.model import Kind, MeasureTable, ReadWarning, RowTable
 from dancetutor_cli.chart.names import TICKS_PER_MEASURE
 from dancetutor_cli.run.errors import plural
@@ -26,9 +37,9 @@ _KIND[list(b"01234MLFK")] = (
     Kind.EMPTY, Kind.TAP, Kind.HOLD, TAIL, Kind.ROLL, Kind.MINE, Kind.LIFT, Kind.FAKE, Kind.KEYSOUND,
 )  # fmt: skip
 # Kinds of cells for the letters of players: notes in a chart for several players, no notes in other charts.
-_NOBODYS = {letter: int(Kind.EMPTY) if chr(letter).isupper() else OTHERS_HEAD for letter in stepf2.PLAYERS}
-_NOBODYS |= {stepf2.FAKE_HEAD: OTHERS_HEAD, stepf2.MINES_HEAD: ROW_OF_MINES}
-_OF_PLAYERS = _NOBODYS | {letter: int(Kind.TAP if chr(letter).isupper() else Kind.HOLD) for letter in stepf2.PLAYERS}
+_NOBODYS = {letter: int(Kind.EMPTY) if chr(letter).isupper() else OTHERS_HEAD for letter in PLAYERS}
+_NOBODYS |= {FAKE_HEAD: OTHERS_HEAD, MINES_HEAD: ROW_OF_MINES}
+_OF_PLAYERS = _NOBODYS | {letter: int(Kind.TAP if chr(letter).isupper() else Kind.HOLD) for letter in PLAYERS}
 
 
 class LineIndex:
@@ -178,7 +189,7 @@ class Grid:
                 raw = bytes(c for at, c in enumerate(raw, int(first[row])) if at not in self._text.escapes)
             kinds[row], found, others = odd_row(raw, columns, part.letters)
             for column, (letter, _) in others.items():
-                part.marks[int(tick[row]), column] = stepf2.player_of(letter)
+                part.marks[int(tick[row]), column] = player_of(letter)
             for what in {what for _, what in others.values()}:
                 foreign.setdefault(what, []).append(int(line[row]))
             for finding in found:
@@ -186,16 +197,16 @@ class Grid:
         if part.of_players:
             foreign.pop("X", None)
         for what, found_at in foreign.items():
-            message = f"{stepf2.TEXTS[what]}: {plural(len(found_at), 'row')}"
+            message = f"{TEXTS[what]}: {plural(len(found_at), 'row')}"
             code = "stepmaniax-note" if what == "D" else "stepf2-note"
             part.warnings.append(ReadWarning(code, message, found_at[0]))
         for (code, text), found_at in findings.items():
-            report(part.warnings, code, text, np.array(found_at))
+            add_warnings(part.warnings, code, text, np.array(found_at))
         for which, code, text in (
             (short & ~odd, "short-row", _TOO_SHORT.format(columns)),
             (long & ~odd, "long-row", _TOO_LONG.format(columns)),
         ):
-            report(part.warnings, code, text, line[which].astype(np.int64))
+            add_warnings(part.warnings, code, text, line[which].astype(np.int64))
         return kinds
 
 
@@ -249,7 +260,7 @@ def odd_row(
     others: dict[int, tuple[int, str]] = {}
     at = 0
     while at < len(text) and len(cells) < columns:
-        if foreign := stepf2.note_at(text, at, columns):
+        if foreign := note_at(text, at, columns):
             letter, at, what = foreign
             others[len(cells)] = letter, what
             cells.append(letters.get(letter, int(_KIND[letter])))

@@ -1,21 +1,20 @@
-"""Note data: bytes -> measures, rows and notes of all charts of a file at once; the parts of several players."""
+"""Note data: bytes -> measures, rows and notes of all charts of a file at once."""
 
 from __future__ import annotations
 
 import itertools
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.chart import cells as stepf2
-from dancetutor_cli.chart.cells import Cells, notes_of
+from dancetutor_cli.chart.cells import Cells, letters_of, notes_of
 from dancetutor_cli.chart.grid import BLANKS, Grid, LineIndex, NoteSpan, NoteText
-from dancetutor_cli.chart.model import Chart, Kind, MeasureTable, NoteTable, ReadWarning, RowTable
+from dancetutor_cli.chart.model import Kind, MeasureTable, NoteTable, ReadWarning, RowTable
 from dancetutor_cli.chart.msd import blanked
-from dancetutor_cli.chart.names import is_routine
+from dancetutor_cli.chart.players import letters_message, notes_by_player, several_players_message
 from dancetutor_cli.chart.timing import Timing
 
 _PLAYERS = 2
@@ -117,11 +116,11 @@ class _PartCells:
         ]
         warnings = [warning for at in parts for warning in self._parts[at].warnings]
         first = self._parts[parts[0]]
-        letters = stepf2.letters_of(self._text.value[start:end], form.columns) if first.of_players else b""
-        shared = stepf2.notes_by_player(players[0], first.marks, form.columns, letters) if letters else []
+        letters = letters_of(self._text.value[start:end], form.columns) if first.of_players else b""
+        shared = notes_by_player(players[0], first.marks, form.columns, letters) if letters else []
         if len(shared) > 1:
             own = [NoteData(_table([cells], timing), *self._tables(parts[0]), ()) for cells in shared]
-            message = stepf2.for_several(len(own), letters)
+            message = letters_message(len(own), letters)
             warnings.insert(0, ReadWarning("stepf2-note", message, self._text.lines(start)))
         elif not form.routine:  # only fakes have letters
             own = []
@@ -145,7 +144,7 @@ def _note_spans(text: NoteText, value: Value) -> list[NoteSpan]:
         _tell_players([text.value[a:b] for a, b in spans], text.lines(start), warnings)
     parts = [NoteSpan(a, b, begin, columns) for a, b in spans[:_PLAYERS]]
     parts[0].warnings += warnings
-    if len(parts) == 1 and stepf2.letters_of(text.value[start:end], columns):
+    if len(parts) == 1 and letters_of(text.value[start:end], columns):
         parts[0].of_players = True
     return parts
 
@@ -153,7 +152,7 @@ def _note_spans(text: NoteText, value: Value) -> list[NoteSpan]:
 def _tell_players(parts: list[bytes], line: int, warnings: list[ReadWarning]) -> None:
     """Add a warning that a routine chart is for two players, or that only the notes of the first two are read."""
     written = 1 + max((n for n, part in enumerate(parts) if part.strip(BLANKS + b",0")), default=0)
-    text = "the chart is for two players ('&' separates their notes); each has feet of their own"
+    text = several_players_message(2, "'&' separates their notes")
     if written > _PLAYERS:
         text = f"'&' separates the notes of {written} players; those of the first two are read, as in the games"
     if len(parts) > 1:
@@ -173,97 +172,3 @@ def _table(players: list[Cells], timing: Timing) -> NoteTable:
     return NoteTable(
         cells.tick, cells.column.astype(np.int16), cells.kind, cells.end, cells.line, judged,
     )  # fmt: skip
-
-
-# Charts for several players: the steps of each player, as a chart for the pad on which the player stands.
-#
-# In a couple chart, each player has a pad and half of the columns. In a routine, both players dance on one double pad,
-# and `&` separates their notes. Two or more players also share a double pad if letters mark the player of each note.
-# Such charts are StepF2's co-op, a pump-double, and a pump-routine without `&`. In them, all players' notes share rows.
-
-# Steps type of a chart for several players -> steps type of the pad on which each player stands.
-OWN_PADS = {"dance-couple": "dance-single", "pump-couple": "pump-single"}
-ONE_PAD = {"dance-routine": "dance-double", "pump-routine": "pump-double", "smx-team": "smx-double10"}
-
-
-def player_charts(chart: Chart, player: int | None = None) -> tuple[Chart, ...]:
-    """Return the charts to find feet for: the chart itself or, for several players, the part of each or of one."""
-    if not chart.players:
-        return (chart,)
-    return tuple(one for one in chart.players if player in (None, one.player))
-
-
-def written_parts(chart: Chart) -> tuple[Chart, ...]:
-    """Return the parts with their own rows in the file: the players' parts of a routine, otherwise the chart."""
-    return chart.players if chart.steps_type in ONE_PAD and not chart.marked else (chart,)
-
-
-def shares_rows(part: Chart) -> bool:
-    """Whether the rows of a part also hold another player's notes: in a couple chart, or if letters mark players."""
-    return part.written is not None and (part.marked or part.written.steps_type not in ONE_PAD)
-
-
-def with_players(chart: Chart, read: NoteData, data: bytes) -> Chart:
-    """Return a chart with its players' parts, if it is for several. read : its note data; data : bytes of the file"""
-    if chart.steps_type in OWN_PADS:
-        half = chart.columns // 2
-        tables = [_columns(chart, data, first, half) for first in (0, half)]
-        columns = half
-        pad = OWN_PADS[chart.steps_type]
-    elif read.players and (chart.steps_type in ONE_PAD or not is_routine(chart.steps_type)):
-        tables = [(own.notes, own.rows) for own in read.players]
-        columns = chart.columns
-        pad = ONE_PAD.get(chart.steps_type, chart.steps_type)
-        chart = replace(chart, marked=read.marked)
-    else:
-        return chart
-    on_one_pad = chart.steps_type not in OWN_PADS
-    players = tuple(
-        replace(
-            chart,
-            steps_type=pad,
-            columns=columns,
-            notes=notes,
-            rows=rows,
-            measures=read.players[n].measures if on_one_pad else chart.measures,
-            warnings=chart.warnings if n == 0 else (),  # reported once
-            player=n + 1,
-            written=chart,
-            first_column=0 if on_one_pad else n * columns,
-        )
-        for n, (notes, rows) in enumerate(tables)
-    )
-    return replace(chart, players=players)
-
-
-def _columns(chart: Chart, data: bytes, first: int, count: int) -> tuple[NoteTable, RowTable]:
-    """Return the notes in some columns, and the span of these columns in each row."""
-    notes, rows = chart.notes, chart.rows
-    ours = (notes.column >= first) & (notes.column < first + count)
-    table = NoteTable(
-        notes.tick[ours],
-        (notes.column[ours] - first).astype(np.int16),
-        notes.kind[ours],
-        notes.end[ours],
-        notes.line[ours],
-        notes.judged[ours],
-    )
-    start, end = np.minimum(rows.start + first, rows.end), np.minimum(rows.start + first + count, rows.end)
-    for row in np.flatnonzero(rows.end - rows.start != chart.columns).tolist():
-        places = [*_places(data[int(rows.start[row]) : int(rows.end[row])]), int(rows.end[row] - rows.start[row])]
-        start[row] = rows.start[row] + places[min(first, len(places) - 1)]
-        end[row] = rows.start[row] + places[min(first + count, len(places) - 1)]
-    return table, RowTable(start, end, rows.line, rows.tick, rows.measure)
-
-
-def _places(row: bytes) -> list[int]:
-    """Return the offsets of the letters of a row, without keysounds, `[...]`."""
-    found, keysound = [], False
-    for offset, letter in enumerate(row):
-        if letter == ord("["):
-            keysound = True
-        elif not keysound:
-            found.append(offset)
-        if letter == ord("]"):
-            keysound = False
-    return found

@@ -13,9 +13,10 @@ from dancetutor_cli.chart import msd, names, timing_tags
 from dancetutor_cli.chart.grid import LineIndex
 from dancetutor_cli.chart.model import Chart, ReadWarning, Song
 from dancetutor_cli.chart.msd import Tag
-from dancetutor_cli.chart.note_data import NoteForm, Value, read_notes, width_of_first_row, with_players
+from dancetutor_cli.chart.note_data import NoteForm, Value, read_notes, width_of_first_row
+from dancetutor_cli.chart.players import with_players
 from dancetutor_cli.chart.timing import Timing
-from dancetutor_cli.chart.timing_tags import number
+from dancetutor_cli.chart.timing_tags import parse_number
 from dancetutor_cli.run.errors import ChartError, FileError, NoChartsError
 from dancetutor_cli.run.files import CHART_SUFFIXES, EDIT_SUFFIX, UCS_SUFFIX
 from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
@@ -193,7 +194,7 @@ def _unexpected(warnings: Iterable[ReadWarning], steps_type: str) -> Iterator[Re
 
 def _meter(value: str, line: int, warnings: list[ReadWarning]) -> int:
     """Return the meter as the games read it: the whole number at the start; 1 if there is no usable number."""
-    meter, clean = number(value)
+    meter, clean = parse_number(value)
     if not clean or not 0 <= meter <= _LARGEST_METER:
         read = int(meter) if 0 < meter <= _LARGEST_METER else 1
         message = f"meter '{msd.quote(value)}' is not a usable number; read as {read}"
@@ -331,7 +332,7 @@ class _Ssc(SongReader):
 
     def _version(self, song_tags: list[Tag]) -> Fraction:
         version = [self.text(tag) for tag in song_tags if tag.name == "VERSION"]
-        return number(version[-1])[0] if version else Fraction(1)
+        return parse_number(version[-1])[0] if version else Fraction(1)
 
     def _groups(self) -> tuple[list[Tag], list[tuple[list[Tag], Tag]]]:
         """Return the song's tags, and the tags and the NOTES of each chart.

@@ -175,7 +175,7 @@ class Selection:
 
     def parts(self, chart: Chart) -> tuple[Chart, ...]:
         """Return the charts to find feet for: the chart itself or, for several players, the selected players' parts."""
-        from dancetutor_cli.chart.note_data import player_charts
+        from dancetutor_cli.chart.players import player_charts
 
         return player_charts(chart, self.player)
 

@@ -22,7 +22,7 @@ _SHORT = 40  # the numbers of texts with fewer characters are cached
 _DIGITS = 60  # limit of decimals, more than anyone needs; Python refuses to read thousands
 
 
-def number(text: str) -> tuple[Fraction, bool]:
+def parse_number(text: str) -> tuple[Fraction, bool]:
     """Return the decimal at the start of a text, and whether the text is only that. Junk and infinite numbers are 0."""
     return _cached_number(text) if len(text) < _SHORT else _number(text)
 
@@ -59,7 +59,7 @@ def beat(text: str) -> tuple[Fraction, bool]:
     """Return a beat, and whether the text is only that; with the suffix `r` it is given in rows of 1/48 beat."""
     stripped = text.strip()
     bare = stripped.strip("rR")
-    value, clean = number(bare)
+    value, clean = parse_number(bare)
     return (value / TICKS_PER_BEAT if bare != stripped else value), clean
 
 
@@ -107,7 +107,7 @@ def pairs(text: str, tag: str, negative: bool, warn: Warn) -> Pairs:
         if len(parts) != 2:
             warn("odd-timing", f"{tag} entry '{quote(entry)}' has not exactly one '=' and is ignored")
             continue
-        (at, clean), (value, clean_value) = beat(parts[0]), number(parts[1])
+        (at, clean), (value, clean_value) = beat(parts[0]), parse_number(parts[1])
         below = value.numerator < 0  # ten times as fast as a comparison of fractions
         if abs(at.numerator) > MAX_BEAT * at.denominator:
             warn("odd-timing", f"{tag} entry '{quote(entry)}' is too large for any song and is ignored")
@@ -147,7 +147,7 @@ def holds_segment(tag: str, text: str) -> bool:
     for _, parts in entries(text):
         if len(parts) < least or (tag in ("TICKCOUNTS", "LABELS") and len(parts) != 2):
             continue
-        numbers = [number(p)[0] for p in parts]
+        numbers = [parse_number(p)[0] for p in parts]
         if tag == "TIMESIGNATURES" and (numbers[1] < 1 or numbers[2] < 1):
             continue
         if numbers[0] >= 0 or tag in ("TICKCOUNTS", "COMBOS"):
@@ -159,7 +159,7 @@ def odd_signatures(text: str) -> list[str]:
     """Return the entries of TIMESIGNATURES that the games ignore."""
     out = []
     for entry, parts in entries(text):
-        numbers = [math.trunc(number(p)[0]) for p in parts[:3]]
+        numbers = [math.trunc(parse_number(p)[0]) for p in parts[:3]]
         if len(numbers) < 3 or numbers[0] < 0 or numbers[1] < 1 or numbers[2] < 1:
             out.append(quote(entry))
     return out
@@ -359,7 +359,7 @@ def is_own(tags: Mapping[str, Text], source: Source) -> bool:
 
 
 def _offset(tag: Text, warnings: list[ReadWarning]) -> Fraction:
-    value, clean = number(tag.value)
+    value, clean = parse_number(tag.value)
     if not clean and tag.value.strip():
         text = f"OFFSET '{quote(tag.value)}' is not a decimal number; read as {float(value):g}"
         warnings.append(ReadWarning("odd-offset", text, tag.line))

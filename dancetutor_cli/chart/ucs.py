@@ -26,11 +26,11 @@ from pathlib import Path
 import numpy as np
 
 from dancetutor_cli.chart import msd
-from dancetutor_cli.chart.cells import report
+from dancetutor_cli.chart.cells import add_warnings
 from dancetutor_cli.chart.model import Chart, Kind, MeasureTable, NoteTable, ReadWarning, RowTable, Song
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.chart.timing import Timing
-from dancetutor_cli.chart.timing_tags import MAX_BEAT, number
+from dancetutor_cli.chart.timing_tags import MAX_BEAT, parse_number
 from dancetutor_cli.run.errors import ChartError
 
 # Lines -> blocks and rows.
@@ -142,7 +142,7 @@ class _Text:
 
     def _number(self, name: str, value: str, line: int) -> Fraction:
         """Return a decimal number, with a comma or a point: some editors write a comma."""
-        found, clean = number(value.replace(",", "."))
+        found, clean = parse_number(value.replace(",", "."))
         if not clean:
             raise ChartError(self.path, f":{name}='{msd.quote(value)}' is not a number", line)
         return found
@@ -320,7 +320,7 @@ def read_ucs(data: bytes, path: Path) -> Song:
         ("unmatched-head", line_of[sorted(steps.endless)], "a hold has no end, W; it is read up to its last H"),
         ("unmatched-tail", line_of[sorted(steps.headless)], "a hold has no head, M; it is read from here on"),
     ):
-        report(warnings, code, message, np.asarray(found, dtype=np.int64))
+        add_warnings(warnings, code, message, np.asarray(found, dtype=np.int64))
     chart = Chart(
         index=0, steps_type=steps_type, difficulty="Edit", meter=_level(path),
         description=text.mode if "-" in text.mode else "", columns=columns, notes=_note_table(steps, clock, line_of),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.chart.note_data import ONE_PAD, OWN_PADS
+from dancetutor_cli.chart.players import ONE_PAD, OWN_PADS
 from dancetutor_cli.dance.context import PANEL, panels_on_ground
 from dancetutor_cli.dance.footwork.turning import leading_foot
 from dancetutor_cli.feet.limbs import Limb

@@ -10,8 +10,8 @@ from typing import Annotated, Any
 
 from dancetutor_cli.chart.model import STEP_KINDS, Chart, Song
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
-from dancetutor_cli.chart.note_data import shares_rows
 from dancetutor_cli.chart.pack_files import SETTINGS_FILE, check_not_a_link_out, find_settings_file
+from dancetutor_cli.chart.players import shares_rows
 from dancetutor_cli.feet.annotations import has_pins, pinned
 from dancetutor_cli.feet.conditions import Condition, When, condition_of
 from dancetutor_cli.feet.limbs import LETTERS, MEANING, UNKNOWN, limb_and_part

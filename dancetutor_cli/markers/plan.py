@@ -11,7 +11,7 @@ import numpy as np
 from dancetutor_cli.chart.edits import check_edit
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.names import is_lights
-from dancetutor_cli.chart.note_data import player_charts, written_parts
+from dancetutor_cli.chart.players import player_charts, written_parts
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.annotations import step_rows
 from dancetutor_cli.feet.preset import Preset, mismatch

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 from dancetutor_cli.chart.edits import apply
 from dancetutor_cli.chart.model import Chart
-from dancetutor_cli.chart.note_data import player_charts, written_parts
+from dancetutor_cli.chart.players import player_charts, written_parts
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.commands import cli
 from dancetutor_cli.feet.annotations import step_rows

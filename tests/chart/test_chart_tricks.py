@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.chart.timing import Timing
-from dancetutor_cli.chart.timing_tags import beat, number
+from dancetutor_cli.chart.timing_tags import beat, parse_number
 
 NOTES = "1000\n0100\n0010\n0001\n"
 
@@ -56,12 +56,12 @@ def codes(song: Song) -> set[str]:
     ],
 )
 def test_numbers_are_read_as_by_the_games(text: str, value: Fraction, clean: bool) -> None:
-    assert number(text) == (value, clean)
+    assert parse_number(text) == (value, clean)
 
 
 @given(st.decimals(-1_000_000, 1_000_000, places=6))
 def test_decimals_are_exact(value: object) -> None:
-    assert number(str(value))[0] == Fraction(str(value))
+    assert parse_number(str(value))[0] == Fraction(str(value))
 
 
 def test_rows_suffix() -> None:

@@ -78,10 +78,10 @@ class Preview(FileRule):
 
     def check(self, subject: FileSubject) -> Iterable[Finding]:
         """At most one finding."""
-        from dancetutor_cli.chart.timing_tags import number
+        from dancetutor_cli.chart.timing_tags import parse_number
 
         tags = {name: subject.song.tags.get(name, "").strip() for name in ("SAMPLESTART", "SAMPLELENGTH")}
-        start, length = (float(number(tags[name])[0]) if tags[name] else None for name in tags)
+        start, length = (float(parse_number(tags[name])[0]) if tags[name] else None for name in tags)
         end = subject.music.seconds if subject.music else None
         if length is not None and length <= 0:
             yield self.finding(f"the preview lasts {length:g} s", subject.tag_place("SAMPLELENGTH"))
