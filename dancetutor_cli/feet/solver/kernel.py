@@ -21,50 +21,12 @@ import numpy as np
 
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import StepKind
-from dancetutor_cli.feet.solver import tables as columns
+from dancetutor_cli.feet.solver import store, tables
 from dancetutor_cli.feet.solver.compiled import inner_kernel
 from dancetutor_cli.feet.solver.itg_costs import charge_time
 from dancetutor_cli.feet.solver.itg_moves import start_itg
 from dancetutor_cli.feet.solver.state import PLACE_BITS, name_neighbours
-from dancetutor_cli.feet.solver.store import (
-    BASE,
-    COST_SHIFT,
-    DONE,
-    EDGE_COST_SHIFT,
-    EDGE_COUNT,
-    EDGE_MASK,
-    EVENT_BITS,
-    FACTS,
-    FACTS_KNOWN,
-    FACTS_MASK,
-    FACTS_SHIFT,
-    FIRST,
-    FIRST_EDGE,
-    LAST_BIT,
-    LAYER_SIZE,
-    LIMB_CODES,
-    MORE_NODES,
-    MORE_TIMED,
-    MOVES,
-    NEXT,
-    PART_SHIFT,
-    PATTERNS,
-    PLACE_MASK,
-    START,
-    STATES,
-    TERMS_SHIFT,
-    TIMES,
-    TO_LAYER,
-    UNEXPLORED,
-    UNKNOWN,
-    WIDE_ACTION,
-    WIDE_EVENTS,
-    find,
-    number_of,
-    number_of_layer,
-    slot_of,
-)
-from dancetutor_cli.feet.solver.tables import ROLLS, UNPLAYED_CODE
+from dancetutor_cli.feet.solver.store import find, number_of, number_of_layer, slot_of
 from dancetutor_cli.feet.solver.thesis_moves import start_thesis
 from dancetutor_cli.feet.solver.vocabulary import MOST_MS  # fmt: skip
 
@@ -75,7 +37,7 @@ _NEVER = np.int64(1 << 60)
 # The bits of each kind of step in the first column of a packed row: with all rolls as taps, and with taps of rolls
 # apart.
 _KINDS = np.array(
-    [[0, 1, 1, 1 << columns.HOLDS, 1, 1], [0, 1, 1, 1 << columns.HOLDS, 1, 1 << columns.ROLL_TAPS]], dtype=np.int64
+    [[0, 1, 1, 1 << tables.HOLDS, 1, 1], [0, 1, 1, 1 << tables.HOLDS, 1, 1 << tables.ROLL_TAPS]], dtype=np.int64
 )
 
 
@@ -88,8 +50,8 @@ def _pattern(row, more, patterns, numbers, counts):  # type: ignore[no-untyped-d
         if patterns[number, 0] == row and patterns[number, 1] == more:
             return number
         at = (at + 1) & (len(numbers) - 1)
-    number = counts[PATTERNS]
-    counts[PATTERNS] += 1
+    number = counts[store.PATTERNS]
+    counts[store.PATTERNS] += 1
     numbers[at] = number
     patterns[number, 0], patterns[number, 1] = row, more
     return number
@@ -129,7 +91,7 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
     patterns, numbers, counts = t.pattern, t.pattern_hash, t.counts
     pattern, ends = rows.pattern, rows.ends
     n, c = steps.shape
-    if counts[PATTERNS] + n > len(patterns) or 2 * (counts[PATTERNS] + n) > len(numbers):
+    if counts[store.PATTERNS] + n > len(patterns) or 2 * (counts[store.PATTERNS] + n) > len(numbers):
         return False
     kinds = _KINDS[1 if keep_rolls else 0]
     rolled, mined = keep_rolls and _any_from(steps, _ROLL), _any_from(mines, 1)
@@ -139,31 +101,31 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
         ends[p] = -1
     held, last, latest = 0, np.int64(-1), np.int64(-1)
     for r in range(n):
-        row = np.int64(pattern[r]) << ROLLS if rolled else np.int64(0)
+        row = np.int64(pattern[r]) << tables.ROLLS if rolled else np.int64(0)
         more = forced[r] if len(forced) else np.int64(0)
         if keep_rolls and latest >= last >= 0:
             for p in range(c):
                 if ends[p] == last:
-                    more |= np.int64(1) << p + columns.EARLIER
+                    more |= np.int64(1) << p + tables.EARLIER
         if held:
             for p in range(c):
                 if held >> p & 1 and ends[p] <= tick[r]:
-                    row |= 1 << p + columns.RELEASED
-                    if keep_rolls and tick[r] - ends[p] <= columns.FRESH_TICKS:
-                        row |= 1 << columns.FRESH
+                    row |= 1 << p + tables.RELEASED
+                    if keep_rolls and tick[r] - ends[p] <= tables.FRESH_TICKS:
+                        row |= 1 << tables.FRESH
                     held &= ~(1 << p)
         stepped = np.int64(0)
         for p in range(c):
             stepped |= kinds[steps[r, p]] << p
-        if stepped >> columns.HOLDS & (1 << columns.COLUMN_BITS) - 1:
+        if stepped >> tables.HOLDS & (1 << tables.COLUMN_BITS) - 1:
             for p in range(c):
-                if stepped >> columns.HOLDS + p & 1:
+                if stepped >> tables.HOLDS + p & 1:
                     ends[p] = hold_end[r, p]
                     latest = max(latest, ends[p])
                     held |= 1 << p
         if mined:
             for p in range(c):
-                row |= np.int64(mines[r, p]) << p + columns.MINES
+                row |= np.int64(mines[r, p]) << p + tables.MINES
         if stepped:
             last = tick[r]
         row |= stepped
@@ -188,9 +150,9 @@ def wait(rows):  # type: ignore[no-untyped-def]
 def _row_of_time(ms, t):  # type: ignore[no-untyped-def]
     """Return the row of `timed_cost` for `ms` milliseconds; a new time is entered. Returns -1 if there is no room."""
     row = np.int64(t.timed_row[ms])
-    if row < 0 and t.counts[TIMES] < len(t.timed_cost):
-        row = t.counts[TIMES]
-        t.counts[TIMES] += 1
+    if row < 0 and t.counts[store.TIMES] < len(t.timed_cost):
+        row = t.counts[store.TIMES]
+        t.counts[store.TIMES] += 1
         t.timed_row[ms] = row
     return row
 
@@ -216,45 +178,50 @@ def advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
     layer, edge, transition = t.layer, t.edge, t.transition
     keys, numbers, curves = t.transition_key, t.transition_hash, rules.curves
     timed_key, timed_cost = t.timed_key, t.timed_cost
-    here = np.int64(transition[chosen[r - 1], TO_LAYER]) if r else np.int64(START)
+    here = np.int64(transition[chosen[r - 1], store.TO_LAYER]) if r else np.int64(store.START)
     for row in range(r, len(pattern)):
         number = np.int64(chosen[row])
         if number < 0:
             number = find(here << 32 | pattern[row], keys, numbers)
             if number < 0:
-                return row, UNEXPLORED
+                return row, store.UNEXPLORED
             chosen[row] = number
-        here = np.int64(transition[number, TO_LAYER])
-        low, high, ms = first[row, FIRST], first[row + 1, FIRST], elapsed[row]
-        top = high + layer[here, LAYER_SIZE]
+        here = np.int64(transition[number, store.TO_LAYER])
+        low, high, ms = first[row, store.FIRST], first[row + 1, store.FIRST], elapsed[row]
+        top = high + layer[here, store.LAYER_SIZE]
         if top > len(node):
-            return row, MORE_NODES
+            return row, store.MORE_NODES
         time = _row_of_time(ms, t)
         if time < 0:
-            return row, MORE_TIMED
+            return row, store.MORE_TIMED
         costs = timed_cost[time]
         u, best, cheapest = high, _NEVER, _NEVER
-        start = np.int64(transition[number, FIRST_EDGE])
-        for e in range(start, start + transition[number, EDGE_COUNT]):
+        start = np.int64(transition[number, store.FIRST_EDGE])
+        for e in range(start, start + transition[number, store.EDGE_COUNT]):
             packed = edge[e]
-            facts = packed >> FACTS_SHIFT & FACTS_MASK
+            facts = packed >> store.FACTS_SHIFT & store.FACTS_MASK
             price = costs[facts]
-            if price == UNKNOWN:
+            if price == store.UNKNOWN:
                 price = _time_cost(facts, ms, timed_key, costs, curves, scratch)
-            cost = (node[low + (packed & PLACE_MASK)] >> COST_SHIFT) + (packed >> EDGE_COST_SHIFT) + price - 1
-            way = cost << COST_SHIFT | e
+            cost = (
+                (node[low + (packed & store.PLACE_MASK)] >> store.COST_SHIFT)
+                + (packed >> store.EDGE_COST_SHIFT)
+                + price
+                - 1
+            )
+            way = cost << store.COST_SHIFT | e
             best = min(best, way)
             node[u] = best
             cheapest = min(cheapest, way)
-            last = packed >> LAST_BIT & 1
+            last = packed >> store.LAST_BIT & 1
             u += last
             best = _NEVER if last else best
-        cheapest >>= COST_SHIFT
+        cheapest >>= store.COST_SHIFT
         for u in range(high, top):
-            node[u] -= cheapest << COST_SHIFT
-        first[row + 2, FIRST] = top
-        first[row + 1, BASE] = first[row, BASE] + cheapest
-    return len(pattern), DONE
+            node[u] -= cheapest << store.COST_SHIFT
+        first[row + 2, store.FIRST] = top
+        first[row + 1, store.BASE] = first[row, store.BASE] + cheapest
+    return len(pattern), store.DONE
 
 
 @inner_kernel(inline="always")
@@ -263,18 +230,18 @@ def trace(t, nodes, found):  # type: ignore[no-untyped-def]
     first, node, edge, wide = nodes.row, nodes.node, t.edge, t.wide
     limb, part, path = found.limb, found.part, found.move
     n, c = limb.shape
-    at = first[n, FIRST]
-    while node[at] >> COST_SHIFT:
+    at = first[n, store.FIRST]
+    while node[at] >> store.COST_SHIFT:
         at += 1
     for r in range(n - 1, -1, -1):
-        e = node[at] & EDGE_MASK
-        at = first[r, FIRST] + (edge[e] & PLACE_MASK)
+        e = node[at] & store.EDGE_MASK
+        at = first[r, store.FIRST] + (edge[e] & store.PLACE_MASK)
         path[r] = t.edge_move[e]
-        action = wide[path[r], WIDE_ACTION]
+        action = wide[path[r], store.WIDE_ACTION]
         for p in range(c):
             code = action >> 3 * p & 7
-            limb[r, p] = _LEFT_OVER if code == UNPLAYED_CODE else code - 1
-            part[r, p] = action >> PART_SHIFT + 2 * p & 3
+            limb[r, p] = _LEFT_OVER if code == tables.UNPLAYED_CODE else code - 1
+            part[r, p] = action >> store.PART_SHIFT + 2 * p & 3
 
 
 @inner_kernel(inline="always")
@@ -285,13 +252,13 @@ def explain_path(t, rows, rules, found):  # type: ignore[no-untyped-def]
     panels, angle = rules.geometry.panels, rules.geometry.angle
     for r in range(len(path)):
         move = path[r]
-        number = wide[move, WIDE_EVENTS] >> TERMS_SHIFT
-        events[r] = wide[move, WIDE_EVENTS] & EVENT_BITS
+        number = wide[move, store.WIDE_EVENTS] >> store.TERMS_SHIFT
+        events[r] = wide[move, store.WIDE_EVENTS] & store.EVENT_BITS
         for term in range(cost.shape[1]):
             cost[r, term] = terms[number, term] if term < terms.shape[1] else 0
-        if moves[move, FACTS]:
-            charge_time(timed_key[moves[move, FACTS]], elapsed[r], rules.curves, cost[r])
-        key = keys[moves[move, NEXT]]
+        if moves[move, store.FACTS]:
+            charge_time(timed_key[moves[move, store.FACTS]], elapsed[r], rules.curves, cost[r])
+        key = keys[moves[move, store.NEXT]]
         left, right = key & _PLACE, key >> PLACE_BITS & _PLACE
         feet[r, 0], feet[r, 1] = panels[left, 0, 0], panels[right, 1, 0]
         # the dancer reached this facing by turning right
@@ -312,53 +279,53 @@ def margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
     timed_cost, wide, path = t.timed_cost, t.wide, found.move
     margin, ambiguity = found.margin, found.ambiguity
     n = len(path)
-    least, end = first[n, BASE], first[n + 1, FIRST]
+    least, end = first[n, store.BASE], first[n + 1, store.FIRST]
     widest = np.int64(0)
     for r in range(n + 1):
-        widest = max(widest, first[r + 1, FIRST] - first[r, FIRST])
+        widest = max(widest, first[r + 1, store.FIRST] - first[r, store.FIRST])
     if end + 4 * widest > len(node):
-        return MORE_NODES
+        return store.MORE_NODES
     after, before = node[end : end + widest], node[end + widest :]
     same_after, same_before = node[end + 2 * widest :], node[end + 3 * widest :]  # with the same limbs
     for v in range(widest):
         after[v] = same_after[v] = 0
     for r in range(n - 1, -1, -1):
-        low, base, time = first[r, FIRST], first[r, BASE], t.timed_row[elapsed[r]]
-        ours, other, resolved = wide[path[r], WIDE_ACTION] & LIMB_CODES, _NEVER, _NEVER
-        for v in range(first[r + 1, FIRST] - low):
+        low, base, time = first[r, store.FIRST], first[r, store.BASE], t.timed_row[elapsed[r]]
+        ours, other, resolved = wide[path[r], store.WIDE_ACTION] & store.LIMB_CODES, _NEVER, _NEVER
+        for v in range(first[r + 1, store.FIRST] - low):
             before[v] = same_before[v] = _NEVER
-        start = np.int64(transition[chosen[r], FIRST_EDGE])
+        start = np.int64(transition[chosen[r], store.FIRST_EDGE])
         u = 0
-        for e in range(start, start + transition[chosen[r], EDGE_COUNT]):
+        for e in range(start, start + transition[chosen[r], store.EDGE_COUNT]):
             packed = edge[e]
-            v, price = packed & PLACE_MASK, (packed >> EDGE_COST_SHIFT) - 1
-            price += timed_cost[time, packed >> FACTS_SHIFT & FACTS_MASK]
+            v, price = packed & store.PLACE_MASK, (packed >> store.EDGE_COST_SHIFT) - 1
+            price += timed_cost[time, packed >> store.FACTS_SHIFT & store.FACTS_MASK]
             rest, same_rest = price + after[u], price + same_after[u]
             before[v] = min(before[v], rest)
             if edge_limbs[e] == ours:
                 same_before[v] = min(same_before[v], same_rest)
             else:
-                reached = base + (node[low + v] >> COST_SHIFT)
+                reached = base + (node[low + v] >> store.COST_SHIFT)
                 other, resolved = min(other, reached + rest), min(resolved, reached + same_rest)
-            u += packed >> LAST_BIT & 1
+            u += packed >> store.LAST_BIT & 1
         margin[r] = other - least if other < _NEVER else -1
         ambiguity[r] = 0 if other != least else 1 if resolved == least else 2
         after, before, same_after, same_before = before, after, same_before, same_after
-    return DONE
+    return store.DONE
 
 
 @inner_kernel
 def begin(rows, t, nodes, rules):  # type: ignore[no-untyped-def]
     """Prepare rows for the dynamic programme; return False if the tables do not have room for the patterns."""
-    if t.counts[MOVES] == 0:  # move 0, state 0 and layer 0 are the start of every play
+    if t.counts[store.MOVES] == 0:  # move 0, state 0 and layer 0 are the start of every play
         key = start_thesis(rules.geometry) if rules.model == 0 else start_itg(rules.home)
-        t.move[0, NEXT] = number_of(key, t.state_key, t.state_hash, t.counts, STATES)
-        nodes.node[0] = START
+        t.move[0, store.NEXT] = number_of(key, t.state_key, t.state_hash, t.counts, store.STATES)
+        nodes.node[0] = store.START
         number_of_layer(nodes.node, 1, t)
-        t.counts[MOVES] = t.counts[FACTS_KNOWN] = 1  # facts 0 are the empty facts
+        t.counts[store.MOVES] = t.counts[store.FACTS_KNOWN] = 1  # facts 0 are the empty facts
     if not _number_rows(rows, rules.model > 0, t):
         return False
     wait(rows)
-    nodes.row[0, FIRST], nodes.row[1, FIRST], nodes.row[0, BASE] = 0, 1, 0
+    nodes.row[0, store.FIRST], nodes.row[1, store.FIRST], nodes.row[0, store.BASE] = 0, 1, 0
     nodes.node[0] = 0
     return True

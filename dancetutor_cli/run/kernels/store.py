@@ -168,7 +168,7 @@ def source_digest(source: Path) -> bytes:
 def source_modules(source: Path, package: Path = PACKAGE) -> list[Path]:
     """Return the modules whose code a module's kernels may contain.
 
-    These are the module itself, the modules whose kernels or constants it imports, and so on.
+    These are the module itself, the modules whose kernels or constants it imports or that it imports whole, and so on.
     """
     found, new = {source.resolve(): source.read_text("utf-8")}, [source.resolve()]
     while new:
@@ -180,7 +180,7 @@ def source_modules(source: Path, package: Path = PACKAGE) -> list[Path]:
                 if path in found or name.startswith("run.") or not path.is_file():
                     continue
                 text = path.read_text("utf-8")
-                if _CONSTANT.search(names) or _KERNEL.search(text):
+                if not is_module or _CONSTANT.search(names) or _KERNEL.search(text):
                     found[path] = text
                     new.append(path)
     return sorted(found)
